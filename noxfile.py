@@ -15,7 +15,7 @@ PYTHONS = ["3.11", "3.12", "3.13", "3.14"]
 CORE = (  # short tests of every part, for versions of the dependencies
     "tests/reference/test_closed_form_motions.py",
     "tests/multibody/test_single_run.py",
-    "tests/comparison/test_report_files.py",
+    "tests/comparison/report/test_report_files.py",
 )
 
 

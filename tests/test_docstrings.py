@@ -81,7 +81,7 @@ def undocumented(node: ast.Module | ast.ClassDef | ast.FunctionDef, name: str) -
 
 
 @pytest.mark.parametrize("package", ["reference", "multibody", "comparison"])
-def test_every_public_module_class_function_and_method_has_a_docstring(package: str) -> None:
+def test_everything_public_has_a_docstring(package: str) -> None:
     files = sorted((ROOT / package).rglob("*.py"))
     assert len(files) > 20
     missing = [

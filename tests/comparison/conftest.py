@@ -5,19 +5,19 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from fake_models import fake_hierarchy, known_motions
 from known_analyses import analyses_are, known_others
-from PIL import Image
+from runs import Here, Run, quick_figure, quick_figures
 
 from comparison.analyses.assumptions import figure as assumptions
 from comparison.analyses.errata.analysis import Effect
+from comparison.cli import user_models
 from comparison.run import main
 from comparison.study.models import Model
-from comparison.surfaces.figures import budget, pairs, paper, print_maps
 
 try:
     import fcntl
@@ -25,37 +25,12 @@ except ImportError:  # on Windows every process makes its own
     fcntl = None  # type: ignore[assignment]
 
 
-@dataclass(frozen=True)
-class Run:
-    """What one command left: exit code, output, and where the report went."""
-
-    code: int
-    out: str
-    err: str
-    report: Path
-
-
-QUICK_MAPS = b'<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"/>'
-
-
-def quick_figure(path: Path, *rest: object) -> None:
-    """One dot."""
-    Image.new("RGB", (1, 1)).save(path, "PNG")
-
-
-def quick_figures(patch: pytest.MonkeyPatch) -> None:
-    """Every picture of the surfaces is one dot."""
-    patch.setattr(pairs, "draw_pair", quick_figure)
-    patch.setattr(budget, "draw_budget", quick_figure)
-    patch.setattr(paper, "draw_paper_figure", quick_figure)
-    patch.setattr(print_maps, "draw_maps", lambda *arguments: QUICK_MAPS)
-
-
 @pytest.fixture
 def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
     """The command line with fake models in threads of this process and quick figures; --out in an empty directory."""
     monkeypatch.setattr(assumptions, "draw_assumptions", quick_figure)
     quick_figures(monkeypatch)
+    monkeypatch.setattr(user_models, "Workers", Here)
     analyses_are(monkeypatch, motions=[])
 
     def run(

@@ -25,6 +25,7 @@ from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
+from reference.problem import Amplification
 
 SCALES = (1.0, 0.5, 0.25)
 ASKED = (
@@ -95,3 +96,23 @@ def known_others() -> dict[str, Any]:
         "scaling": [trend("fig3-I", 1, "exact minus small, supremum", SCALES, sizes, 1e-3 * sizes, 2.0)],
         "convergence": [trend("fig3-I", 2, "engine against resolved", SCALES, sizes, 2.0 * sizes, 1.0)],
     }
+
+
+def with_engine_off_by(monkeypatch: pytest.MonkeyPatch, factor: float, error: float = 1e-6) -> None:
+    """Every model answers with mu = 2, the engine's models with `factor` times that."""
+
+    def imported(path: str):  # type: ignore[no-untyped-def]
+        if path.endswith(":refusal"):
+            return lambda scene, **settings: ""
+        return answering(factor if "multibody" in path else 1.0, error)
+
+    monkeypatch.setattr("comparison.study.batches.imported", imported)
+
+
+def answering(factor: float, error: float):  # type: ignore[no-untyped-def]
+    def amplification(scene, phases, **settings):  # type: ignore[no-untyped-def]
+        mu = np.full((len(phases), len(scene.bodies)), 2.0 * factor)
+        ok, never = np.full(len(phases), "ok"), np.full(len(phases), np.nan)
+        return Amplification(mu, np.full_like(mu, error), ok, never, 0.0)
+
+    return amplification

@@ -12,8 +12,8 @@ from contextlib import suppress
 from pathlib import Path
 
 from distributed import Client
+from places import HELPERS, ROOT
 
-HERE = Path(__file__).parent
 DEADLINE = 300.0  # s for programs to start: nothing here takes that long, however busy the machine
 
 
@@ -40,7 +40,7 @@ class LocalCluster:
             raise
 
     def _start(self, words: list[str]) -> subprocess.Popen[bytes]:
-        paths = os.pathsep.join([str(HERE), str(HERE.parents[1]), os.environ.get("PYTHONPATH", "")])
+        paths = os.pathsep.join([str(HELPERS), str(ROOT), os.environ.get("PYTHONPATH", "")])
         settings = {
             "PYTHONPATH": paths,
             "PYTHONWARNINGS": "ignore",

@@ -35,7 +35,7 @@ def test_an_example_runs_and_draws_its_picture(example: Path, gallery: ModuleTyp
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
-def test_an_example_is_short_and_has_its_picture_and_its_text_in_the_gallery(
+def test_an_example_has_its_picture_in_the_gallery(
     example: Path, gallery: ModuleType
 ) -> None:
     script = gallery.script_of(example)
@@ -47,12 +47,5 @@ def test_an_example_is_short_and_has_its_picture_and_its_text_in_the_gallery(
     assert (ROOT / "docs" / "gallery" / f"{example.stem}.png").stat().st_size > 5000
 
 
-def test_the_notebook_among_the_examples_is_valid() -> None:
-    nbformat = pytest.importorskip("nbformat")
-    notebook = ROOT / "examples" / "study.ipynb"
-    nbformat.validate(nbformat.read(notebook, as_version=4))
-    assert all(not cell.get("outputs") for cell in json.loads(notebook.read_text(encoding="utf-8"))["cells"])
 
 
-def test_there_are_five_examples() -> None:
-    assert len(EXAMPLES) >= 5

@@ -17,7 +17,7 @@ LOADED = re.compile(
 
 
 @pytest.mark.long
-def test_the_site_is_built_without_warnings_and_needs_no_network_to_be_read(tmp_path: Path) -> None:
+def test_the_site_is_built_without_warnings(tmp_path: Path) -> None:
     for module in ("sphinx", "numpydoc", "myst_nb", "furo"):
         pytest.importorskip(module)
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "docs", str(tmp_path)]

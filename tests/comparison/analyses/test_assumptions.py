@@ -1,0 +1,245 @@
+"""How far the assumptions hold: variations vary what they say, nothing is claimed without a value, ranges stop at the
+first variation that fails, and the real models show that turning fades with the heights over the ring."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fake_models import fake_hierarchy
+from known_analyses import collected
+from matplotlib.image import imread
+
+from comparison.analyses.assumptions.command import main
+from comparison.analyses.assumptions.feature import figure_name
+from comparison.analyses.assumptions.figure import draw_assumptions
+from comparison.analyses.assumptions.validity import Assumptions, ValidityRanges, describe
+from comparison.analyses.assumptions.variations import (
+    FEW,
+    PHASES,
+    UNDER_LOAD,
+    AssumptionCell,
+    Variation,
+    ranges,
+    variation_arguments,
+    varied,
+)
+from comparison.study.models import MODEL_HIERARCHY
+from comparison.study.study import Study
+from multibody import amplification
+from reference.problem import Scene, load_scene, parse_scene
+
+STATED = load_scene("fig3-I")
+BARE = parse_scene(
+    b"""title = "no word about supports"
+duration = 1.0
+isolator = {period = 1.0, friction = 0.1}
+bodies = [{mass = 1.0}]
+excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.0, 0.0]}""",
+    "bare.toml",
+)
+
+
+def _cell(variation: Variation, first: float, second: float, uncertainty: float = 0.0) -> AssumptionCell:
+    """mu_1 changes by `one` and `other` at two phase pairs, mu_2 not at all."""
+    estimate = ((uncertainty, 0.0),) * 2
+    return AssumptionCell("fig3-I", variation, ((first, 0.0), (second, 0.0)), estimate, ("ok", "ok"))
+
+
+def _said(cells: Sequence[AssumptionCell], key: str, share: float = 0.01) -> tuple[float | None, float | None]:
+    validity = next(line for line in ranges([STATED], cells) if (line.body, line.key, line.share) == (1, key, share))
+    return validity.holds, validity.fails
+
+
+def test_a_variation_changes_ring_heights_and_supports_alone() -> None:
+    changed = Variation(ring=2.0, height=0.5, supports=3).of(STATED)
+    assert (changed.isolator.ring, changed.isolator.supports) == (2.0, 3)
+    assert [body.height for body in changed.bodies] == [0.1, 0.6]
+    back = Variation(ring=0.5, height=2.0, supports=4).of(changed)
+    assert back == STATED
+    assert Variation().of(STATED) == STATED
+
+
+def test_a_ring_holds_only_if_every_wider_one_tried_does() -> None:
+    line = {4.0: 0.001, 2.0: 0.002, 1.0: 0.02, 0.5: 0.003}
+    cells = [_cell(Variation(ring=ring), size, -size / 2.0) for ring, size in line.items()]
+    assert _said(cells, "ring") == (2.0, 1.0), "0.5 m would hold, but 1 m does not"
+    assert _said(cells, "ring", 0.05) == (0.5, None)
+
+
+def test_heights_hold_only_if_every_lower_one_tried_does() -> None:
+    line = {0.0: 0.0, 0.5: -0.004, 1.0: -0.03, 2.0: 0.002}
+    cells = [_cell(Variation(height=height), 0.0, size) for height, size in line.items()]
+    assert _said(cells, "height") == (0.5, 1.0)
+    assert _said(cells, "height", 0.05) == (2.0, None)
+
+
+def test_the_uncertainty_counts_against_the_range() -> None:
+    wide = _cell(Variation(ring=2.0), 0.004, 0.0)
+    assert _said([wide, _cell(Variation(), 0.008, 0.0, 0.003)], "ring") == (2.0, 1.0)
+    assert _said([wide, _cell(Variation(), 0.008, 0.0, 0.001)], "ring") == (1.0, None)
+    assert _said([wide, _cell(Variation(), float("nan"), 0.0)], "ring") == (2.0, 1.0)
+    assert _said([_cell(Variation(ring=2.0), 0.2, 0.0)], "ring") == (None, 2.0)
+
+
+def test_the_sentences_name_what_holds_and_what_was_tried_next() -> None:
+    cells = [_cell(Variation(ring=2.0), 0.0, 0.0), _cell(Variation(), 0.02, 0.0)]
+    lines = [describe(validity) for validity in ranges([STATED], cells) if validity.body == 1]
+    assert "mu_1 stays within 1 % with rings from 2 m, no longer at 1 m" in lines
+    assert "mu_1 stays within 5 % with rings from 1 m, every smaller one tried too" in lines
+    assert "mu_1 stays within 1 % at no heights tried" in lines
+
+
+def test_cells_compare_the_two_engine_models() -> None:
+    study = Study((STATED, BARE), 2, 1e-3, fake_hierarchy(gap=0.0))
+    cells = collected(Assumptions(), study).cells
+    assert [cell.variation for cell in cells] == list(FEW)
+    for cell in cells:
+        assert (np.array(cell.change) == 0.0).all(), "both fake models answer alike"
+        assert np.array(cell.change).shape == (len(PHASES), 2)
+        np.testing.assert_allclose(cell.uncertainty, 2e-3 * np.sqrt(2.0))  # both claim a fifth of 1 %: enough to tell
+    assert collected(Assumptions(), Study((BARE,), 2, 1e-3, fake_hierarchy())) is None
+
+
+def test_a_model_that_raises_leaves_no_value_and_says_why() -> None:
+    study = Study((STATED,), 2, 1e-3, fake_hierarchy("always_raising"))
+    cells = collected(Assumptions(), study).cells
+    assert [cell.variation for cell in cells] == list(FEW)
+    for cell in cells:
+        assert np.isnan(cell.change).all()
+        assert cell.error_message == "RuntimeError: the matrix is singular"
+        assert not cell.holds(1, 0.05)
+
+
+def test_the_picture_shows_what_was_tried(tmp_path: Path) -> None:
+    cells = [_cell(Variation(ring, height), 0.02 * height / ring, 0.0) for ring in (0.5, 1.0) for height in (0.0, 1.0)]
+    path = tmp_path / figure_name(STATED)
+    draw_assumptions(path, STATED, [*cells, _cell(Variation(2.0, 1.0), float("nan"), 0.0)])
+    assert imread(path)[..., :3].std() > 0.1
+
+
+def test_a_scene_without_supports_is_refused_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "bare.toml"
+    path.write_text(
+        'title = "bare"\nduration = 1.0\n[isolator]\nperiod = 1.0\nfriction = 0.1\n[[bodies]]\nmass = 1.0\n'
+        "[excitation]\namplitudes = [[1.0, 0.0], [0.0, 1.0]]\nperiods = [0.9, 1.1]\ndecay = [0.0, 0.0]\n"
+    )
+    assert main([str(path)]) == 2
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1
+    assert "the spatial model needs supports, ring and sphere_radius" in err
+
+
+def test_an_uneven_variation_gives_factors_and_torsion() -> None:
+    spatial = MODEL_HIERARCHY[-1]
+    short, uneven = STATED.with_values({"duration": 1.0}), Variation(offset=0.1)
+    solved = varied((short, spatial, uneven, 1e-3))
+    factors = amplification(uneven.of(short), PHASES, tolerance=1e-3, **spatial.settings)
+    assert solved.status == tuple(factors.status)
+    assert (np.abs(solved.mu - factors.mu) <= np.minimum(solved.error, factors.error)).all()
+    assert (solved.error <= 1e-3 * solved.mu).all()
+    assert np.array(solved.torsion)[:, 1].min() > 1e-3
+
+
+def test_where_motions_raise_the_factors_stay() -> None:
+    spatial = replace(MODEL_HIERARCHY[-1], trajectory="comparison.nowhere:trajectory")
+    short, uneven = STATED.with_values({"duration": 0.5}), Variation(offset=0.1)
+    solved = varied((short, spatial, uneven, 1e-3))
+    factors = amplification(uneven.of(short), PHASES, tolerance=1e-3, **spatial.settings)
+    assert np.array_equal(solved.mu, factors.mu)
+    reason = "no motion: ModuleNotFoundError: No module named 'comparison.nowhere'"
+    assert solved.error_message == reason
+    cell = replace(_cell(uneven, 0.03, 0.02), error_message=reason)
+    assert ValidityRanges([STATED], [_cell(Variation(), 0.0, 0.0), cell]).lines(STATED)[-1].endswith(f"({reason})")
+
+
+def _turning(scene: Scene, variations: Sequence[Variation]) -> list[AssumptionCell]:
+    study = Study((scene.with_values({"duration": 2.0}),), 1, 1e-3, MODEL_HIERARCHY)
+    return list(collected(Assumptions(variations), study).cells)
+
+
+def test_with_all_heights_zero_the_real_models_agree() -> None:
+    (cell,) = _turning(load_scene("fig3-II"), [Variation(height=0.0)])
+    assert set(cell.status) == {"ok"}
+    assert (np.abs(cell.change) <= cell.uncertainty).all()
+    assert np.abs(cell.change).max() > 0.0, "the model that turns has answered, not the one it is held against"
+
+
+def test_a_wider_ring_turns_the_real_platform_less() -> None:
+    narrow, wide = _turning(load_scene("fig3-I"), [Variation(ring=0.5), Variation(ring=4.0)])
+    for body in (1, 2):
+        assert narrow.largest(body) > 3.0 * wide.largest(body), "eight times the ring; mu_1 also has errors of 3e-4"
+
+
+def test_an_uneven_variation_moves_what_stands_above_alone() -> None:
+    uneven = Variation(offset=0.1, yaw=0.2).of(STATED)
+    assert uneven.offsets.tolist() == [[0.0, 0.0], [0.1, 0.1]]
+    assert uneven.yaws.tolist() == [0.0, 0.2]
+    assert uneven.with_values({"bodies.1.offset": None, "bodies.1.yaw": None}) == STATED
+
+
+def test_positions_of_supports_are_varied_by_the_same_factor() -> None:
+    square = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]
+    scene = STATED.with_values({"isolator.supports": square, "isolator.ring": None})
+    assert Variation(ring=0.5).of(scene).support_places.tolist() == (0.5 * np.array(square)).tolist()
+    three = Variation(supports=3).of(scene).isolator
+    assert (three.supports, three.ring) == (3, pytest.approx(np.sqrt(2.0)))
+
+
+def test_what_uneven_bodies_change_is_said_with_their_torsion() -> None:
+    even = _cell(Variation(), 0.002, 0.001)
+    moved = replace(_cell(Variation(offset=0.1), 0.03, 0.02), torsion=((1e-3, 5e-3), (2e-3, 4e-3), (0.0, 0.0)))
+    unknown = _cell(Variation(yaw=0.2), 0.002, 0.002)
+    lines = ValidityRanges([STATED], [even, moved, unknown]).lines(STATED)
+    moving = "with the stated offsets, no longer with centers of mass moved along x and along y by 0.1 m"
+    assert f"mu_1 stays within 1 % {moving}" in lines
+    assert "mu_1 stays within 1 % with bodies and links turned by up to 0.2 rad, the largest tried" in lines
+    first, second = lines[-2:]
+    assert first.endswith("change mu_1 by up to 3 %, mu_2 by up to 0 %; they turn by up to 5 mrad")
+    assert second.endswith("no motion says how far they turn")
+
+
+def test_real_bodies_off_the_axis_turn_about_it() -> None:
+    even, moved = _turning(load_scene("fig3-I"), [Variation(), Variation(offset=0.1)])
+    assert even.torsion == ()
+    assert np.array(moved.torsion).shape == (len(PHASES), 2)
+    assert np.array(moved.torsion)[:, 1].min() > 1e-3
+    assert moved.largest(2) > 2.0 * even.largest(2)
+
+
+BARS = {"count": 4, "bending_stiffness": 0.8, "length": 1.0, "axial_stiffness": 2900.0, "spread": 0.8}
+
+
+def test_bars_under_load_are_varied_only_where_they_give_way() -> None:
+    rigid = {key: value for key, value in BARS.items() if key != "axial_stiffness"}
+    for bars, expected in ((BARS, UNDER_LOAD), (rigid, ())):
+        scene = STATED.with_values({"bodies.1.period": None, "bodies.1.bars": bars})
+        study = Study((scene,), 1, 1e-3, MODEL_HIERARCHY)
+        asked = [variation for _, _, variation, _ in variation_arguments(study, ())]
+        assert asked == [None, *expected]
+    softening, shortening = (
+        variation.of(STATED.with_values({"bodies.1.period": None, "bodies.1.bars": BARS})) for variation in UNDER_LOAD
+    )
+    assert softening.bodies[1].bars.load_effect == "softening"
+    assert shortening.bodies[1].bars.load_effect == "shortening"
+
+
+def test_what_shortening_changes_is_said_beside_softening_alone() -> None:
+    cells = [_cell(variation, size, size, 1e-3) for variation, size in zip(UNDER_LOAD, (-0.1, -0.082))]
+    even = _cell(Variation(), 0.0, 0.0)
+    lines = ValidityRanges([STATED], [even, *cells]).lines(STATED)
+    assert lines[-1].endswith("change mu_1 by up to 2 ± 0.1 %, mu_2 by up to 0 ± 0 %")
+    nothing = [even, cells[0], _cell(UNDER_LOAD[1], float("nan"), 0.0)]
+    assert ValidityRanges([STATED], nothing).lines(STATED)[-1].startswith("no value says")
+
+
+def test_real_bars_that_shorten_change_more_than_softening() -> None:
+    scene = STATED.with_values({"bodies.1.period": None, "bodies.1.bars": BARS, "name": "bars"}).with_amplitude(1.5)
+    softened, shortened = _turning(scene, [])
+    for cell in (softened, shortened):
+        assert set(cell.status) == {"ok"}
+    gap = np.abs(np.array(shortened.change) - np.array(softened.change))[:, 1]
+    assert (gap > 3.0 * shortened.error_estimate(2)).any()

@@ -1,0 +1,237 @@
+"""Numbers published elsewhere: met by the equations and by the engine, or the difference is explained."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from heated_pendulum import ranges
+from known_analyses import collected
+from places import ROOT
+
+import reference
+from comparison.analyses.benchmarks import readings
+from comparison.analyses.benchmarks.analysis import (
+    ENGINE,
+    EQUATIONS,
+    SMOOTHED,
+    Answer,
+    BenchmarkTable,
+    Question,
+    _benchmark,
+    solve,
+)
+from comparison.analyses.benchmarks.cases import Case, Published, Reading, cases, shipped
+from comparison.analyses.benchmarks.command import main
+from comparison.analyses.benchmarks.mastodon import mastodon
+from comparison.analyses.benchmarks.page import HEAD, page
+from comparison.analyses.benchmarks.table import STORED, Benchmarks, Verdict
+from reference.analytical import den_hartog
+from reference.problem import GRAVITY, SceneError, State
+
+CASES = cases()
+CHEAP = ("sdnd104-0.99", "frame", "pendulum")
+INPUT = Path(os.environ.get("PHASE_RESONANCE_MASTODON", "mastodon-fp-seismic-input.csv"))
+BY_NAME = {case.scene.name: case for case in CASES}
+
+
+def answer(case: Case, side: str) -> Answer:
+    return solve(Question(case.scene, case.phases, case.start, case.regularization, case.reading, side))
+
+
+@pytest.mark.parametrize("name", BY_NAME)
+def test_the_equations_meet_every_published_number(name):
+    case = BY_NAME[name]
+    solved = answer(case, EQUATIONS)
+    assert len(solved.values) == len(case.published)
+    for value, error, published in zip(solved.values, solved.errors, case.published):
+        assert abs(value - published.value) <= error + published.uncertainty
+        assert error <= max(published.uncertainty, 1e-7 * abs(value)), "smaller than what the published digits leave"
+
+
+def _judged(chosen: list[Case]) -> Benchmarks:
+    return collected(BenchmarkTable(chosen), None, executor=ThreadPoolExecutor)
+
+
+def _every_number_is_met_or_explained(table: Benchmarks) -> None:
+    for each in table.benchmarks:
+        for row in each.rows:
+            assert row.numbers[EQUATIONS].verdict == Verdict.MET, (each.name, row)
+            assert row.numbers[ENGINE].verdict in (Verdict.MET, Verdict.FRICTION), (each.name, row)
+
+
+def test_the_engine_meets_published_numbers_or_is_explained():
+    _every_number_is_met_or_explained(_judged([BY_NAME[name] for name in CHEAP]))
+
+
+@pytest.mark.long
+def test_the_engine_meets_all_published_numbers():
+    _every_number_is_met_or_explained(_judged([BY_NAME[name] for name in BY_NAME if name not in CHEAP]))
+
+
+@pytest.mark.skipif(not INPUT.exists(), reason="the input motion of MASTODON's test is not shipped")
+def test_the_difference_from_mastodon_is_one_of_models():
+    case = mastodon(INPUT)
+    table = _judged([case])
+    for row in table.benchmarks[0].rows:
+        equations, smoothed, engine = (row.numbers[side] for side in (EQUATIONS, SMOOTHED, ENGINE))
+        assert equations.verdict == engine.verdict == Verdict.MODEL
+        assert 0.5 < equations.value / row.published < 1.0, "heated friction is lower, so theirs slides farther"
+        assert abs(engine.value - smoothed.value) <= engine.error + smoothed.error, "both sides agree"
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not INPUT.exists(), reason="the input motion of MASTODON's test is not shipped")
+def test_heating_is_what_mastodon_adds_to_the_planar_equations():
+    """A planar integration of the published law: without heating ours, with heating theirs."""
+    case = mastodon(INPUT)
+    record = case.scene.record
+    times = np.arange(0.0, case.scene.duration, 1e-3)
+    ground = np.stack([np.interp(times, record[:, 0], record[:, axis]) for axis in (1, 2, 3)], axis=1)
+    motion = reference.trajectory(case.scene, (0.0, 0.0), "small")
+    ours = 1e3 * np.array(readings.ranges(motion))
+    rigid, _ = ranges(ground, 1e-3, 20, 1e-5, False)
+    plain, _ = ranges(ground, 1e-3, 20, 1e-3, False)
+    heated, temperature = ranges(ground, 1e-3, 20, 1e-3, True)
+    theirs = np.array([each.value for each in case.published])
+    assert np.abs(rigid - ours).max() < 2.0, "mm: the same model"
+    assert np.abs(heated - theirs).max() < 6.0, "mm: read to 3 mm"
+    assert 190.0 < temperature < 205.0
+    assert (np.abs(heated - plain) > 3.0 * np.abs(heated - theirs)).all()
+
+
+# the numbers themselves ----------------------------------------------------------------------------------------------
+
+
+def test_closed_forms_give_the_published_digits():
+    assert math.sqrt(1.0 - (0.2 * math.pi) ** 2) == pytest.approx(0.777956, abs=5e-7)
+    assert den_hartog(0.6, 0.3).amplitude == pytest.approx(BY_NAME["den-hartog"].published[0].value, abs=5e-7)
+    pulse = (3.0 * 0.5) ** 2 / 2.0 * (1.0 - 1.0 / 3.0)
+    assert pulse == pytest.approx(BY_NAME["newmark"].published[0].value)
+    chain = [2.0 * math.sin(math.pi / 22.0) / math.sin((2 * n - 1) * math.pi / 22.0) for n in range(1, 6)]
+    assert chain == pytest.approx([each.value for each in BY_NAME["stories"].published], abs=5e-5)
+    limit, pace = 1.875 / 30.0, math.sqrt(30.0 * 386.0 / 10.0)
+    swings = [-limit - (1.0 - limit) * math.cos(0.09 * pace)]
+    for time in (0.102, 0.183):
+        swings.append(limit + (1.0 - 3.0 * limit) * math.cos(pace * time - math.pi))
+    assert swings == pytest.approx([each.value for each in BY_NAME["vm73"].published], abs=5e-6)
+
+
+def test_the_periods_of_the_frame_are_also_those_of_its_modes():
+    modes = reference.modes(shipped("frame")).period[0]
+    assert modes == pytest.approx([each.value for each in BY_NAME["frame"].published], abs=5e-5)
+
+
+# readings ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_reading_does_not_depend_on_where_the_instants_are():
+    case = BY_NAME["pendulum"]
+    start = State(np.array(case.start), np.zeros((1, 2)))
+    coarse, fine = (
+        reference.trajectory(
+            case.scene, (0.0, 0.0), initial=start, tolerance=1e-8, times=np.linspace(0.0, 8.0, samples)
+        )
+        for samples in (161, 40_001)
+    )
+    assert readings.half_range(coarse, 1.0) == pytest.approx(case.start[0][0], rel=1e-5)
+    assert readings.path_length(coarse, 1.0, 7.0) == pytest.approx(readings.path_length(fine, 1.0, 7.0), rel=1e-5)
+    assert readings.period(coarse) == pytest.approx(readings.period(fine), rel=1e-5)
+    assert readings.positions_at(coarse, [1.01]) == pytest.approx(readings.positions_at(fine, [1.01]), rel=1e-5)
+
+
+def test_turning_points_end_where_the_motion_ends():
+    case = BY_NAME["sdnd100"]
+    assert np.array(answer(case, EQUATIONS).values) == pytest.approx([-0.65, 0.45, -0.25, 0.05], abs=1e-7)
+
+
+# verdicts ------------------------------------------------------------------------------------------------------------
+
+
+def _verdicts(difference: str = "", **sides: tuple[float, float]) -> dict[str, str]:
+    case = Case("a", "b", "c", [Published("x", 1.0, 0.01)], Reading(readings.period), shipped("pendulum"))
+    case = replace(case, difference=difference)
+    answers = {side: Answer([value], [error], "ok", 0.0) for side, (value, error) in sides.items()}
+    numbers = _benchmark(case, answers).rows[0].numbers
+    return {side: number.verdict for side, number in numbers.items()}
+
+
+def test_a_number_is_met_within_both_errors():
+    near, far = (1.005, 1e-3), (1.2, 1e-3)
+    assert _verdicts(equations=near, smoothed=near, engine=near)[ENGINE] == Verdict.MET
+    assert _verdicts(equations=near, smoothed=far, engine=(1.2005, 1e-3))[ENGINE] == Verdict.FRICTION
+    assert _verdicts(equations=near, smoothed=near, engine=far)[ENGINE] == Verdict.OFF
+    assert _verdicts(equations=far, smoothed=far, engine=far)[EQUATIONS] == Verdict.OFF
+    assert _verdicts("heating", equations=far, smoothed=far, engine=far)[EQUATIONS] == Verdict.MODEL
+    assert _verdicts(equations=(math.nan, math.nan), smoothed=far, engine=far)[EQUATIONS] == Verdict.NONE
+
+
+def test_a_side_that_fails_costs_the_others_nothing():
+    broken = replace(BY_NAME["pendulum"], start=((5.0, 0.0),))  # beyond the rim: both sides refuse
+    table = _judged([broken, BY_NAME["frame"]])
+    first, second = table.benchmarks
+    assert {number.verdict for number in first.rows[0].numbers.values()} == {Verdict.NONE}
+    assert "rim" in first.endings[EQUATIONS]
+    assert {number.verdict for row in second.rows for number in row.numbers.values()} == {Verdict.MET}
+
+
+# the command ---------------------------------------------------------------------------------------------------------
+
+
+def test_the_command_writes_tables_and_goes_on_where_it_stopped(tmp_path, capsys):
+    words = ["--only", "pendulum", "--jobs", "1", "--out", str(tmp_path / "report")]
+    for _ in range(2):
+        assert main(words, ThreadPoolExecutor) == 0
+        seen = capsys.readouterr().out
+    assert "3 of 3 tasks are in" in seen
+    assert "2 numbers: 2 met, 0 friction, 0 model, 0 NOT MET, 0 no answer." in seen
+    table = STORED.load(tmp_path / "report")
+    assert table is not None
+    assert STORED.as_json(table) == (tmp_path / "report" / "benchmarks.json").read_bytes()
+    assert (tmp_path / "report" / "benchmarks.md").read_text(encoding="utf-8") == page(table)
+    assert json.loads(STORED.as_json(table))["benchmarks"][0]["name"] == "pendulum"
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (["--only", "nothing"], "--only = 'nothing': no benchmark is left"),
+        (["--mastodon", "nowhere.csv"], "--mastodon = 'nowhere.csv': No such file or directory"),
+        (["--jobs", "0"], "--jobs = 0: must be a whole number"),
+    ],
+)
+def test_a_wrong_option_is_one_line(words, line, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert line in error
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_input_motion_without_three_directions_is_refused(tmp_path):
+    file = tmp_path / "flat.csv"
+    file.write_text("time [s],ax [m/s^2]\n0,0\n1,1\n")
+    with pytest.raises(SceneError, match="ax, ay and az"):
+        mastodon(file)
+
+
+def test_the_scenes_weigh_what_the_sources_say():
+    case = BY_NAME["sdnd104-15"]
+    assert case.scene.friction_coefficient * GRAVITY == pytest.approx(0.1 * 10.0)
+    assert case.scene.amplitudes[0, 0] == 15.0
+
+
+def test_the_page_in_docs_has_every_benchmark():
+    text = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    assert text.startswith(HEAD)
+    for case in CASES:
+        assert f"\n## {case.title}\n" in text
+        assert case.source in text
+    assert "(0): beyond both errors, and not explained" in text

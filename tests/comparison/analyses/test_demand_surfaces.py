@@ -1,0 +1,152 @@
+"""Demands of every phase pair in a study: the surfaces, their symmetry, statistics, gaps, and the report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from fake_models import fake_hierarchy
+from known_analyses import analyses_are, collected
+from report_texts import Tables, page_of, summary_of
+from runs import Run
+
+import reference
+from comparison.analyses.demands.analysis import PREFIX, DemandSurfaces, demand_statistics, with_demands
+from comparison.study.models import EXACT, REGULARIZED, SMALL
+from comparison.study.study import Study
+from reference.measures import Demands
+from reference.measures.peak_demands import QUANTITIES
+from reference.problem import Scene, load_scene, phase_axis
+
+MODELS = (SMALL, EXACT, REGULARIZED)
+
+
+@pytest.fixture(scope="module")
+def study() -> Study:
+    """A scene with mirrored phases, shortened, and one under a record."""
+    first = load_scene("fig3-I").with_values({"duration": 1.5})
+    record = load_scene("synthetic-pair").with_values({"duration": 2.0})
+    return Study((first, record), 4, 1e-3, MODELS)
+
+
+@pytest.fixture(scope="module")
+def demands(study: Study) -> xr.Dataset:
+    found: xr.Dataset = collected(DemandSurfaces(), study)
+    return found
+
+
+def test_every_demand_has_a_name_and_a_unit() -> None:
+    assert {field.name for field in fields(Demands)} - {"status"} <= set(QUANTITIES)
+
+
+def test_every_pair_has_the_demands_of_its_own_motion(study: Study, demands: xr.Dataset) -> None:
+    """Mirrored ones, too, whose motions are not computed again."""
+    scene, axis = study.scenes[0], phase_axis(4)
+    assert len(study.solved(scene, REGULARIZED)) < 16
+    pairs = [(axis[row], axis[column]) for row in range(4) for column in range(4)]
+    expected = reference.peak_demands(scene, pairs, regularization=1e-3)
+    for name, estimates in expected.items():
+        there = demands[name].sel(scene=scene.name, model=REGULARIZED.key)
+        error = demands[f"{name}_error"].sel(scene=scene.name, model=REGULARIZED.key)
+        if name == "acceleration":
+            there, error = there.transpose("alpha1", "alpha2", "body"), error.transpose("alpha1", "alpha2", "body")
+        elif name == "drift":
+            there, error = there.sel(body=2), error.sel(body=2)
+        values = np.asarray(there).reshape(16, -1)
+        known = estimates.value.reshape(16, -1)
+        assert (np.isfinite(values) == np.isfinite(known)).all()
+        far = np.abs(values - known) > np.asarray(error).reshape(16, -1) + estimates.error.reshape(16, -1)
+        assert not far.any(), name
+    assert set(demands["status"].sel(scene=scene.name, model=REGULARIZED.key).values.ravel()) == {"ok"}
+
+
+def test_a_record_has_one_value_and_no_phases(study: Study, demands: xr.Dataset) -> None:
+    rows = {(row.model, row.quantity, row.body): row for row in demand_statistics(study, demands, study.scenes[1])}
+    row = rows[EXACT.key, "base_shear", 0]
+    assert (row.points, row.unknown) == (1, 0.0)
+    assert row.lowest.value == row.mean.value == row.highest.value
+    assert np.isnan(row.highest.phases).all()
+
+
+def test_statistics_are_those_of_the_surface(study: Study, demands: xr.Dataset) -> None:
+    scene = study.scenes[0]
+    rows = {(row.model, row.quantity, row.body): row for row in demand_statistics(study, demands, scene)}
+    drift = demands["drift"].sel(scene=scene.name, model=SMALL.key, body=2)
+    row = rows[SMALL.key, "drift", 2]
+    assert row.highest.value == drift.max()
+    assert row.lowest.value == drift.min()
+    at = dict(zip(("alpha1", "alpha2"), row.highest.phases))
+    assert float(drift.sel(at)) == row.highest.value
+    assert (SMALL.key, "drift", 1) not in rows
+    assert (SMALL.key, "uplift", 0) not in rows, "no supports"
+    assert row.fractiles[2].value == pytest.approx(float(drift.median()), rel=0.2)
+
+
+def test_surfaces_nc_has_them_beside_mu(study: Study, demands: xr.Dataset) -> None:
+    bodies = 2
+    surfaces = xr.Dataset(coords={"scene": ["other", *demands["scene"].values], "body": np.arange(1, bodies + 1)})
+    together = with_demands(surfaces, demands)
+    assert list(together["scene"].values) == ["other", *(scene.name for scene in study.scenes)]
+    assert np.isnan(together[f"{PREFIX}base_shear"].sel(scene="other")).all()
+    assert set(together[f"{PREFIX}status"].sel(scene="other").values.ravel()) == {"not asked"}
+    assert together[f"{PREFIX}base_shear"].attrs["units"] == "N"
+    assert with_demands(surfaces, None) is surfaces
+
+
+def test_a_task_that_fails_costs_its_own_pairs_alone(study: Study) -> None:
+    broken = replace(EXACT, trajectory="fake_models:refused")
+    found = collected(DemandSurfaces(), replace(study, hierarchy=(SMALL, broken)))
+    assert set(found["status"].sel(scene="fig3-I", model="exact").values.ravel()) == {"solver failed"}
+    assert np.isnan(found["base_shear"].sel(model="exact")).all()
+    assert np.isfinite(found["base_shear"].sel(scene="fig3-I", model="small")).all()
+
+
+def test_one_body_has_no_drift() -> None:
+    bodies = [{"mass": 3.0}]
+    alone = load_scene("fig3-I").model_dump(exclude_none=True) | {"bodies": bodies, "duration": 0.5, "name": "alone"}
+    for key in ("supports", "ring", "sphere_radius"):
+        alone["isolator"].pop(key, None)
+    study = Study((Scene.model_validate(alone),), 2, 1e-3, (SMALL,))
+    found = collected(DemandSurfaces(), study)
+    rows = {(row.quantity, row.body) for row in demand_statistics(study, found, study.scenes[0])}
+    assert ("acceleration", 1) in rows
+    assert not [row for row in rows if row[0] == "drift"]
+
+
+def test_the_report_shows_them_where_they_are_asked_for(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, demands: xr.Dataset
+) -> None:
+    every = [model.key for model in fake_hierarchy()]
+    analyses_are(monkeypatch, motions=[], demands=demands.sel(scene=["fig3-I"]).reindex(model=every))
+    run = command("fig3-I", "--grid", "4", "--only", "demands", hierarchy=fake_hierarchy())
+    assert (run.code, run.err) == (0, "")
+    page = page_of(run.report)
+    assert "Demands over all phases</h2>" in page
+    assert "fig3-I, base shear" in page
+    [scene] = summary_of(run.report)["scenes"]
+    models = {row["model"] for row in scene["demand_statistics"] if row["quantity"] == "base_shear"}
+    assert models == {"small", "exact", "regularised"}
+    shown = Tables(page).headed("demand", "median", "84 %")
+    for row in scene["demand_statistics"]:
+        if (row["quantity"], row["model"]) == ("base_shear", "small"):
+            [cells] = [r for r in shown if "base shear" in r["demand"] and r["model"] == "small equations"]
+            share = {each["probability"]: each["value"] for each in row["fractiles"]}
+            numbers = [row["lowest"]["value"], share[0.5], share[0.84], row["highest"]["value"]]
+            assert len({*share.values()}) > 2, "fractiles can be told apart"
+            assert [cells[name] for name in ("smallest", "median", "84 %", "largest")] == [f"{n:.4g}" for n in numbers]
+    stored = xr.load_dataset(run.report / "surfaces.nc")
+    assert float(stored["demand_base_shear"].sel(model="small").max()) == pytest.approx(
+        float(demands["base_shear"].sel(scene="fig3-I", model="small").max())
+    )
+
+
+def test_without_them_the_report_says_how_to_get_them(finished: Path) -> None:
+    page = page_of(finished)
+    assert "Demands over all phases: on request; --also demands makes it" in page
+    summary = summary_of(finished)
+    assert [scene["demand_statistics"] for scene in summary["scenes"]] == [[], []]
+    assert not [name for name in xr.load_dataset(finished / "surfaces.nc") if str(name).startswith(PREFIX)]

@@ -1,0 +1,112 @@
+"""Effective values come from the motion: a model that computes with other values than it was given is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from fake_models import fake_hierarchy
+from known_analyses import collected
+from report_texts import summary_of
+from runs import Run
+
+from comparison.analyses.effective_values.analysis import PHASES, EffectiveValues, read_back, stated
+from comparison.study.models import MODEL_HIERARCHY, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
+from comparison.study.study import Study
+from reference.problem import ground_acceleration, load_scene
+
+TRUE = {"radius": 0.31, "friction": 0.123, "mass": 2.2}  # the scene says 0.248 m, 0.1 and 2 kg
+
+
+def _model(**settings: object) -> Model:
+    return replace(fake_hierarchy()[-1], trajectory="fake_models:sliding", settings=settings)
+
+
+def test_what_a_model_computed_with_is_read_from_its_motion() -> None:
+    values = read_back((load_scene("fig3-I"), _model(**TRUE)))
+    assert values.error_message == ""
+    assert values.radius == pytest.approx(TRUE["radius"], rel=1e-12)
+    assert values.mass == pytest.approx(TRUE["mass"], rel=1e-12)
+    assert values.contact == pytest.approx(TRUE["mass"] * 9.81, rel=1e-12)
+    assert values.friction == pytest.approx(TRUE["friction"], rel=1e-9)
+
+
+def test_in_a_lubricated_scene_friction_is_read_per_speed() -> None:
+    values = read_back((load_scene("fig4-viscous"), _model(**{**TRUE, "friction": 0.7})))
+    assert values.friction == pytest.approx(0.7, rel=1e-9)
+
+
+@pytest.mark.parametrize(("slow", "fast"), [(0.05, 0.1), (0.1, 0.05)])
+def test_of_friction_that_varies_the_fast_one_is_read(slow: float, fast: float) -> None:
+    law = {"slow": slow, "fast": fast, "rate": 20.0}
+    scene = load_scene("fig3-I").with_values({"isolator.friction": law, "duration": 3.0})
+    model = next(model for model in MODEL_HIERARCHY if model.key == "exact")
+    assert stated(scene).friction == fast
+    assert read_back((scene, model)).friction == pytest.approx(fast, rel=1e-5)
+    slowly = scene.with_values({"isolator.friction.rate": 0.1})
+    assert np.isnan(read_back((slowly, model)).friction), "a motion that sees no fast friction does not tell it"
+
+
+def test_the_scene_states_what_the_motion_is_held_against() -> None:
+    scene = load_scene("fig3-II")
+    value = stated(scene)
+    assert value.radius == scene.radius
+    assert (value.friction, value.mass) == (0.1, 2.0)
+    ground = ground_acceleration(scene, PHASES, [0.0])[0]
+    assert value.acceleration == pytest.approx(np.linalg.norm(ground))
+
+
+def test_a_model_whose_motion_fails_says_why_and_has_no_value() -> None:
+    values = read_back((load_scene("fig3-I"), fake_hierarchy()[-1]))
+    assert values.error_message == "AssertionError: nothing should have been computed"
+    assert np.isnan([values.radius, values.friction, values.contact, values.mass]).all()
+
+
+def test_a_motion_that_ended_early_has_no_value() -> None:
+    values = read_back((load_scene("fig3-I"), _model(**TRUE, status="rim reached")))
+    assert values.error_message == "the motion ended: rim reached"
+    assert np.isnan(values.radius)
+
+
+def test_a_platform_that_never_moves_has_no_radius() -> None:
+    values = read_back((load_scene("fig3-I"), _model(**TRUE, swing=0.0)))
+    assert np.isnan(values.radius)
+    assert np.isnan(values.friction)
+    assert values.mass == pytest.approx(TRUE["mass"], rel=1e-12)
+
+
+def test_every_scene_has_its_statement_and_its_models() -> None:
+    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 2, 1e-3, fake_hierarchy())
+    rows = collected(EffectiveValues(), study)
+    dry = ["scene", "small", "exact", "resolved", "regularised", "translational", "spatial"]
+    assert [row.model for row in rows if row.scene == "fig3-I"] == dry
+    assert [row.model for row in rows if row.scene == "fig4-viscous"] == ["scene", "small", "exact", *dry[-2:]]
+
+
+def test_the_summary_has_null_for_what_is_not_known(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", "--grid", "2")
+    (scene,) = summary_of(run.report)["scenes"]
+    assert scene["effective"][0]["model"] == "scene"
+    assert scene["effective"][0]["mass"] == 2.0
+    assert scene["effective"][1]["mass"] is None
+
+
+def test_the_dampers_of_both_sides_are_those_of_the_scene() -> None:
+    scene = load_scene("fig3-I").with_values({"bodies.1.damping": [0.7, 0.3], "duration": 2.0})
+    assert stated(scene).damping == 0.7
+    models = {model.key: model for model in MODEL_HIERARCHY}
+    for key in ("small", "exact", "regularised", "translational"):
+        assert read_back((scene, models[key])).damping == pytest.approx(0.7, rel=1e-3), key
+    assert np.isnan(read_back((load_scene("fig3-I").with_values({"duration": 2.0}), models["exact"])).damping)
+
+
+def test_the_bars_of_every_model_are_as_stiff_as_stated() -> None:
+    bars = {"count": 4, "bending_stiffness": 0.8, "length": 1.0, "axial_stiffness": 2900.0, "spread": 0.8}
+    scene = load_scene("fig3-I").with_values({"duration": 2.0, "bodies.1.period": None, "bodies.1.bars": bars})
+    assert stated(scene).stiffness == pytest.approx(12.0 * 4 * 0.8)
+    for model in (*MODEL_HIERARCHY[-2:], SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL):
+        own = scene.softened() if "softened" in model.settings else scene
+        assert read_back((scene, model)).stiffness == pytest.approx(own.stiffness[0, 0], rel=1e-5), model.key
+    assert np.isnan(stated(load_scene("fig3-I")).stiffness)

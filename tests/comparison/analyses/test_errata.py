@@ -1,0 +1,114 @@
+"""Errata of the paper: every one has its row, and the effect of the printed form is what was measured."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from known_analyses import collected
+from report_texts import page_of, summary_of
+
+from comparison.analyses.errata import analysis as errata
+from comparison.analyses.errata.analysis import ERRATA, PHASES, Errata, Erratum, cut_platform, measured
+from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
+from comparison.study.models import V_REG
+from comparison.study.study import Study
+from reference import amplification, trajectory
+from reference.problem import Scene, load_scene
+
+
+def _study(*names: str) -> Study:
+    return Study(tuple(load_scene(name) for name in names), 2, 1e-3)
+
+
+def test_effects_come_in_order_and_a_measure_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def half(scene: Scene) -> np.ndarray | None:
+        return np.full((2, 2), 0.5) if scene.name == "fig3-I" else None
+
+    def breaks(scene: Scene) -> np.ndarray | None:
+        raise RuntimeError("singular")
+
+    planted = [
+        Erratum("a", "p", "c", "w", half),
+        Erratum("b", "p", "c", "w", none="n"),
+        Erratum("c", "p", "c", "w", breaks),
+    ]
+    monkeypatch.setattr(errata, "ERRATA", planted)
+    effects = collected(Errata(), _study("fig3-I", "fig3-II"))
+    places = [(effect.scene, effect.erratum) for effect in effects]
+    assert places == [("fig3-I", 0), ("fig3-I", 2), ("fig3-II", 0), ("fig3-II", 2)]
+    assert effects[0].change == ((0.5, 0.5), (0.5, 0.5))
+    assert effects[1].error_message == "RuntimeError: singular"
+    assert effects[2].change == (), "a scene the erratum does not touch"
+
+
+def test_the_report_and_the_summary_show_the_effects(finished: Path) -> None:
+    page = page_of(finished, "verification.html")
+    assert "fig3-I: no answer at some phases; μ<sub>1</sub> by up to 50 %, μ<sub>2</sub> by up to 25 %" in page
+    assert "fig3-I: it broke" in page
+    rows = summary_of(finished)["errata"]
+    assert len(rows) == len(ERRATA)
+    assert rows[0]["effects"][0]["change"] == [[0.5, -0.25], [None, 0.125]]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("damping", [None, [2.0, 0.5]], ids=["undamped", "damped"])
+@pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
+def test_the_mended_matrices_are_the_exact_equations(name: str, damping: list[float] | None) -> None:
+    """Written apart from the reference; what is left is the reading of peaks, 4e-5, and the integrator, 1e-5."""
+    scene = load_scene(name).with_values({"duration": 3.0, "bodies.1.damping": damping})
+    expected = amplification(scene, PHASES, regularization=None if scene.lubricated else V_REG).mu
+    np.testing.assert_allclose(printed_amplification(scene, PHASES), expected, rtol=1e-4)
+
+
+@pytest.mark.long
+def test_a_slip_changes_only_what_it_names() -> None:
+    wet = load_scene("fig4-viscous").with_values({"duration": 2.0})  # T_3x = T_3y: the springs are alike
+    mended = printed_amplification(wet, PHASES)
+    np.testing.assert_array_equal(printed_amplification(wet, PHASES, [WRONG_SPRING]), mended)
+    assert np.abs(printed_amplification(wet, PHASES, [WRONG_DAMPING]) / mended - 1.0).max() > 1e-4
+    unequal = load_scene("fig3-II").with_values({"duration": 2.0})
+    mended = printed_amplification(unequal, PHASES[:1])
+    assert np.abs(printed_amplification(unequal, PHASES[:1], [WRONG_SPRING]) / mended - 1.0).max() > 1e-2
+
+
+@pytest.mark.long
+def test_the_printed_rest_and_coefficient_change_mu() -> None:
+    scene = load_scene("fig3-I").with_values({"duration": 3.0})
+    places = ("after (2.3)", "after (2.5)", "(4.6)")
+    effects = {
+        erratum.where: measured((scene, number)) for number, erratum in enumerate(ERRATA) if erratum.where in places
+    }
+    assert set(effects) == set(places)
+    for where, effect in effects.items():
+        assert effect.error_message == ""
+        assert np.size(effect.change)
+        assert not (np.abs(effect.change) < 1e-3).all(), f"{where}: a change, or no answer at all"
+
+
+@pytest.mark.parametrize("name", ["fig3-I", "fig3-II", "fig4-viscous"])
+def test_a_platform_cut_in_two_moves_small_equations_alone(name: str) -> None:
+    scene = load_scene(name).with_values({"duration": 6.0})
+    v_reg = None if scene.lubricated else V_REG
+    whole, cut = (amplification(each, PHASES, regularization=v_reg).mu for each in (scene, cut_platform(scene)))
+    np.testing.assert_allclose(cut[:, [0, 2]], whole, rtol=2e-4, err_msg="the exact equations know no difference")
+    changes = {
+        erratum.where: np.array(measured((scene, number)).change)
+        for number, erratum in enumerate(ERRATA)
+        if erratum.where in ("(4.3)", "(5.1)")
+    }
+    assert 5e-4 < np.abs(changes["(4.3)"][:, 0]).max() < 1e-2
+    if scene.lubricated:
+        assert not changes["(5.1)"].size
+    else:
+        assert np.abs(changes["(5.1)"][:, 0]).max() > 0.01
+        assert np.abs(changes["(5.1)"][:, 1]).max() < 1e-4, "mu_2 has no such limit"
+
+
+@pytest.mark.long
+def test_the_motion_along_x_equal_beta_y_stays_there() -> None:
+    """(4.7), not the printed x + beta y = 0: fig4-dry has xi'' = eta'' and equal springs, so beta = 1."""
+    scene = load_scene("fig4-dry").with_values({"duration": 6.0})
+    place = trajectory(scene, PHASES[0], equations="small").position
+    assert np.abs(place[..., 0] - place[..., 1]).max() < 1e-9 * np.abs(place[..., 0]).max()

@@ -1,0 +1,296 @@
+"""The matrix of extremes: what is wrong is found, what is right passes, and the equations fail nowhere."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import Counter
+from concurrent.futures import Executor, ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from known_results import PLAIN, fake
+from matplotlib.image import imread
+from rich.console import Console
+
+import reference
+from comparison.analyses.extremes.analysis import Extremes, reduced
+from comparison.analyses.extremes.causes import CAUSES
+from comparison.analyses.extremes.cells import Cell, answers, cells, read_scene, solve_cell
+from comparison.analyses.extremes.command import main
+from comparison.analyses.extremes.engine import amplification
+from comparison.analyses.extremes.figure import draw_extremes
+from comparison.analyses.extremes.matrix import FILE, STORED, Entry, Extreme, Matrix, describe
+from comparison.analyses.extremes.rows import COLUMNS, PLAIN_RADIUS, Row, rows, scene
+from comparison.analyses.extremes.verdicts import Reply, Verdict
+from comparison.runner.cache import Cache
+from comparison.runner.processes import process_pool
+from comparison.runner.runner import Runner
+from comparison.runner.task_results import TaskResults
+from reference.problem import Outcome
+
+FAILING = {
+    "raises": "an inner fault",
+    "calls_nan_ok": "no finite number",
+    "lies_about_its_error": "times what is claimed",
+    "misses_the_tolerance": "asked: 0.001",
+    "refuses_what_can_be_done": "but a finer run: ok",
+    "gives_a_value_with_a_refusal": "and yet a value",
+    "invents_a_status": "no answer of a model",
+}
+
+
+def computed(extremes: Extremes, results: TaskResults | None = None) -> Matrix:
+    """The matrix, by one worker process."""
+    results = results or TaskResults()
+    Runner(results, Console(quiet=True), 1, process_pool).run(extremes.tasks())
+    return extremes.collect(None, None, results)
+
+
+def named(group: str) -> list[Row]:
+    return [row for row in reduced(list(rows())) if row.group == group]
+
+
+@pytest.mark.parametrize("model", FAILING)
+def test_a_model_that_is_wrong_fails_and_is_told_why(model):
+    cell = solve_cell(Cell(PLAIN, fake(model)))
+    assert cell.verdict == Verdict.FAILED
+    assert FAILING[model] in cell.reason
+
+
+def test_models_that_crash_in_a_worker_fail_with_the_reason():
+    columns = [replace(fake(model), key=model) for model in ("crashes", "raises")]
+    (row,) = computed(Extremes([replace(PLAIN, columns=("crashes", "raises"))], columns)).rows
+    assert {entry.verdict for entry in row.entries.values()} == {Verdict.FAILED}
+    assert "exit code 3" in row.entries["crashes"].reason
+    assert FAILING["raises"] in row.entries["raises"].reason
+
+
+def test_a_model_that_hangs_costs_its_cell_alone(tmp_path):
+    other = replace(fake("honest"), key="other")
+    extremes = Extremes([replace(PLAIN, columns=("fake", "other"))], [fake("hangs"), other], 2.0)
+    (row,) = computed(extremes, TaskResults(Cache(tmp_path))).rows
+    hanging = row.entries["fake"]
+    assert (hanging.verdict, hanging.status) == ("FAILED", "time limit")
+    assert hanging.reason == "hangs: no answer within 2 s of processor time"
+    assert row.entries["other"].verdict == Verdict.CONVERGED
+    results = TaskResults(Cache(tmp_path))
+    assert results.missing(extremes.tasks()) == []
+    assert extremes.collect(None, None, results).rows == [row]
+    assert len(TaskResults(Cache(tmp_path)).missing(replace(extremes, limit=3.0).tasks())) == 1, "allowed more"
+
+
+def test_a_model_that_is_right_has_its_verdict():
+    assert solve_cell(Cell(PLAIN, fake("honest"))).verdict == Verdict.CONVERGED
+    assert solve_cell(Cell(PLAIN, fake("at_the_rim"))).verdict == Verdict.REFUSED
+    assert solve_cell(Cell(PLAIN, fake("unable"))).verdict == Verdict.LIMIT
+
+
+def test_a_value_that_no_finer_run_confirms_fails():
+    cell = solve_cell(Cell(PLAIN, fake("honest", finer="unable")))
+    assert cell.verdict == Verdict.FAILED
+    assert "no finer run confirms it: step limit" in cell.reason
+
+
+def test_a_refusal_must_be_the_one_that_the_row_names():
+    row = replace(PLAIN, right=("contact lost",))
+    assert "instead of contact lost" in solve_cell(Cell(row, fake("at_the_rim"))).reason
+
+
+def test_an_input_against_the_rules_must_be_refused():
+    wrong = replace(PLAIN, scene=scene(friction=-0.1))
+    assert solve_cell(Cell(replace(wrong, invalid=True), fake("honest"))).verdict == Verdict.REFUSED
+    assert solve_cell(Cell(wrong, fake("honest"))).verdict == Verdict.FAILED
+    assert solve_cell(Cell(replace(PLAIN, invalid=True), fake("honest"))).verdict == Verdict.FAILED
+
+
+def test_the_matrix_has_every_extreme_and_at_least_120_cells():
+    every = list(rows())
+    groups = Counter(row.group for row in every)
+    for group in (
+        "friction", "v_reg, m/s", "amplitude, m/s^2", "rho, m", "bodies N", "total mass, kg",
+        "platform's share of the mass", "link periods, s", "harmonics", "decay, 1/s", "duration, s",
+        "vertical loading, m/s^2", "phases", "direction", "start at the friction limit", "three supports, ring in m",
+        "offset over the ring", "yaw, rad", "positions of supports",
+    ):  # fmt: skip
+        assert groups[group] > 0, group
+    assert len(cells(every)) >= 120
+    assert len({(row.group, row.title, key) for row in every for key in row.columns}) == len(cells(every))
+
+
+@pytest.mark.parametrize("group", ["friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"])
+def test_the_equations_fail_at_no_extreme(group):
+    tasks = cells(named(group))
+    assert tasks
+    for cell in tasks:
+        entry = solve_cell(cell)
+        assert entry.verdict != Verdict.FAILED, (cell.row.title, cell.column.key, entry.reason)
+
+
+def test_a_motion_of_a_millisecond_converges():
+    """mu_2 is 5e-6, a difference of accelerations near 1: no run knows it better than 2e-7 of itself."""
+    for row in rows():
+        if (row.group, row.title) == ("duration, s", "0.001"):
+            entries = [solve_cell(Cell(row, column)) for column in COLUMNS[:3]]
+    assert [entry.verdict for entry in entries] == [Verdict.CONVERGED] * 3, [entry.reason for entry in entries]
+    assert 1e-7 < entries[2].error < 1e-6
+
+
+@pytest.mark.long
+def test_the_equations_fail_at_none_of_the_extremes():
+    matrix = computed(Extremes(reduced(list(rows())), limit=120.0))
+    assert [(row.group, row.title, title, cell.reason) for row, title, cell in matrix.listed(Verdict.FAILED)] == []
+    assert sum(matrix.counts().values()) >= 120
+
+
+def test_the_command_writes_the_matrix_and_computes_once(tmp_path, capsys):
+    words = ["--models", "small", "--rows", "amplitude, m/s^2 1e", "--jobs", "1", "--out", str(tmp_path / "report")]
+    assert main(words) == 0
+    out = capsys.readouterr().out
+    assert re.search(
+        r"^3 cells in .* s of processor time: \d+ converged, \d+ refused, \d+ limit, 0 FAILED\.$", out, re.M
+    )
+    matrix = STORED.load(tmp_path / "report")
+    assert matrix is not None
+    assert matrix.run["command"].startswith("python -m comparison.extremes --models small ")
+    assert {row.group for row in matrix.rows} == {"amplitude, m/s^2"}
+    assert (tmp_path / "report" / "extremes.png").read_bytes().startswith(b"\x89PNG")
+    assert main(words, forbidden) == 0
+    assert f"3 of 3 tasks are in {tmp_path / 'report'}.tiles: only the others are computed." in capsys.readouterr().out
+    again = STORED.load(tmp_path / "report")
+    assert (again.rows, again.run["stored_before"]) == (matrix.rows, 3)
+    with pytest.raises(AssertionError, match="computed"):
+        main([*words, "--fresh"], forbidden)
+    capsys.readouterr()
+    assert main(words, ThreadPoolExecutor) == 0
+    assert "tasks are in" not in capsys.readouterr().out, "what --fresh dropped is computed by the next run"
+
+
+def forbidden(jobs: int) -> Executor:
+    raise AssertionError("nothing should have been computed")
+
+
+def test_a_failed_cell_is_an_exit_code_and_in_the_picture(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr("comparison.analyses.extremes.command.COLUMNS", (fake("calls_nan_ok"),))
+    monkeypatch.setattr("comparison.analyses.extremes.command.rows", lambda: iter([PLAIN]))
+    assert main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
+    assert "FAILED: anything plain" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("words", [["--jobs", "0"], ["--limit", "-1"], ["--rows", "no such extreme"]])
+def test_a_wrong_option_is_one_line(words, tmp_path, capsys):
+    assert main([*words, "--out", str(tmp_path / "report")], forbidden) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_the_selection_of_analyses_is_not_that_of_the_extremes(tmp_path, capsys):
+    assert main(["--only", "friction", "--out", str(tmp_path / "report")], forbidden) == 2
+    line = "--only = 'friction': selects analyses of a study; the extremes are chosen with --rows TEXT\n"
+    assert capsys.readouterr().err == f"command line: {line}"
+
+
+def test_the_matrix_is_read_back_as_it_was(tmp_path: Path):
+    matrix = Matrix(
+        {"fake": "a fake"},
+        [_extreme("converged", 1e-7), _extreme("FAILED", None)],
+        {"command": "a test", "seconds": 1.0, "cpu_seconds": 2.0},
+    )
+    assert STORED.load(tmp_path) is None
+    (tmp_path / FILE).write_bytes(STORED.as_json(matrix))
+    assert STORED.load(tmp_path) == matrix
+    draw_extremes(tmp_path / "picture.png", matrix)
+    (tmp_path / "extremes.json").write_text(json.dumps({"rows": []}), encoding="utf-8")
+    with pytest.raises(ValueError, match="not a matrix of extremes"):
+        STORED.load(tmp_path)
+
+
+@pytest.mark.parametrize("models", [1, 2, 3])
+@pytest.mark.parametrize("groups", [1, 2])
+def test_the_legend_of_the_picture_lies_within_it(tmp_path: Path, models: int, groups: int) -> None:
+    columns = {f"model {number}": "an engine" for number in range(models)}
+    rows = [Extreme(f"group {number % groups}", "1", {}) for number in range(8)]
+    draw_extremes(tmp_path / "picture.png", Matrix(columns, rows, {}))
+    picture = imread(tmp_path / "picture.png")
+    assert (picture[:, [0, -1]] == 1.0).all(), "nothing goes on beyond its borders"
+
+
+def test_a_field_shows_the_error_or_the_outcome():
+    assert describe(Entry("converged", "a reason", "ok", 2e-7, 0.1, 0.1)) == "2e-07"
+    assert describe(Entry("limit", "a reason: 1e-3", "tolerance not met", 1e-3, 0.1, 0.1)) == "tolerance not met"
+    assert describe(Entry("refused", "rim reached: a rule of the scene", "", None, 0.1, 0.1)) == "against a rule"
+    assert describe(Entry("FAILED", "hangs: a reason", "time limit", None, None, None)) == "FAILED"
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ('{"columns": {}, "rows": [], "run": {}, "old": 1}', "old: "),
+        ('{"columns": {}, "rows": 3, "run": {}}', "rows: "),
+        ('{"columns": {}', "Invalid JSON"),
+        ("\xff", "Invalid JSON"),
+    ],
+)
+def test_a_matrix_of_an_earlier_version_is_refused_in_one_line(content: str, reason: str, tmp_path: Path):
+    (tmp_path / FILE).write_bytes(content.encode("latin-1"))
+    with pytest.raises(ValueError, match="not a matrix of extremes") as error:
+        STORED.load(tmp_path)
+    assert reason in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_matrix_with_a_verdict_that_is_none_is_refused(tmp_path: Path):
+    matrix = Matrix({"fake": "a fake"}, [_extreme("fine", 1e-7)], {"command": "a test"})
+    (tmp_path / FILE).write_bytes(STORED.as_json(matrix))
+    with pytest.raises(ValueError, match="'fine' is not a valid Verdict"):
+        STORED.load(tmp_path)
+
+
+def _extreme(verdict: str, error: float | None) -> Extreme:
+    return Extreme("a group", verdict, {"fake": Entry(verdict, "a reason", "ok", error, 0.25, 0.5)})
+
+
+@pytest.mark.parametrize("choice", [{"contact_stiffness": 1e4}, {"contact_stiffness": 1e6}, {"step": 0.1}])
+def test_the_error_knows_what_a_bad_stiffness_costs(choice):
+    brief = read_scene(scene(duration=0.5))
+    engine = amplification(brief, [(0.3, 1.1)], tolerance=1e-2, **choice)
+    exact = reference.amplification(brief, [(0.3, 1.1)], equations="exact", regularization=1e-3)
+    assert engine.status[0] in ("ok", "tolerance not met")
+    assert (abs(engine.mu - exact.mu) <= engine.error + exact.error).all()
+
+
+def test_a_larger_radius_leaves_the_building_above_its_contacts():
+    """Heights count from a radius below the contacts."""
+    plain = min(body["height"] for body in scene()["bodies"]) - PLAIN_RADIUS
+    larger = [row.scene for row in rows() if row.scene["isolator"].get("radius", 0.0) > PLAIN_RADIUS]
+    finite = [stated for stated in larger if stated["isolator"]["radius"] < float("inf")]
+    assert finite
+    for stated in finite:
+        assert min(body["height"] for body in stated["bodies"]) - stated["isolator"]["radius"] >= plain - 1e-9
+
+
+def test_every_known_cause_of_a_limit_is_that_of_a_cell():
+    asked = {((cell.row.group, cell.row.title), cell.column.key) for cell in cells(list(rows()))}
+    assert {(extreme, model) for extreme, models in CAUSES.items() for model in models} <= asked
+
+
+def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):
+    monkeypatch.setitem(CAUSES, (PLAIN.group, PLAIN.title), {"fake": "the fake gives up"})
+    assert solve_cell(Cell(PLAIN, fake("unable"))).reason == "step limit: the fake gives up"
+    assert "gives up" not in solve_cell(Cell(PLAIN, fake("honest"))).reason
+
+
+def test_the_reduced_form_asks_the_engine_as_well():
+    asked = {cell.column.key for cell in cells(reduced(list(rows())))}
+    assert asked == {column.key for column in COLUMNS}
+
+
+def test_a_value_that_says_nothing_is_not_confirmed() -> None:
+    mu = np.array([[1.0, 2.0]])
+    said = {"status": (Outcome.TOLERANCE_NOT_MET.value,), "mu": mu}
+    assert not answers(Reply(error=mu, **said))
+    assert answers(Reply(error=0.9 * mu, **said))
+    assert answers(Reply(error=mu, **(said | {"status": (Outcome.OK.value,)})))
+    assert answers(Reply(error=mu, **(said | {"status": (Outcome.RIM_REACHED.value,)})))
+    assert not answers(Reply(error=mu, **(said | {"status": (Outcome.STEP_LIMIT.value,)})))

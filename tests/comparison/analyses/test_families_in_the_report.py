@@ -1,0 +1,187 @@
+"""A range in a scene file, or many files, is one study; its budget is drawn against the value that runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fake_models import fake_hierarchy
+from matplotlib.axes import Axes
+from matplotlib.image import imread
+from places import SCENES
+from report_texts import page_of, summary_of
+from runs import RUN, Run
+from studies import solved
+
+from comparison.analyses.demands.analysis import DemandStatistics, Extreme
+from comparison.analyses.families.analysis import family_demands, family_demands_over_phases, family_steps
+from comparison.analyses.families.feature import family_panels
+from comparison.analyses.families.figure import draw_family, family_figure_name
+from comparison.analyses.motions.analysis import Place, StoredMotion
+from comparison.registry import report_of
+from comparison.study.study import Study
+from comparison.surfaces.budget import budget
+from comparison.surfaces.distribution import Fractile
+from comparison.surfaces.waterfall import waterfall
+from reference.measures import Demands, Estimate
+from reference.measures.distribution import FRACTILES
+from reference.problem import load_family
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8")
+    assert "friction = 0.1" in text
+    place = tmp_path / "mine.toml"
+    place.write_text(text.replace("friction = 0.1", "friction = {range = [0.1, 0.2], steps = 3}"), encoding="utf-8")
+    return place
+
+
+def test_a_range_and_other_files_are_one_study(command: Callable[..., Run], file: Path) -> None:
+    run = command(str(file), str(SCENES / "fig4-viscous.toml"), "--grid", "2")
+    assert run.code == 0
+    names = [scene["name"] for scene in summary_of(run.report)["scenes"]]
+    assert names == ["mine[friction=0.1]", "mine[friction=0.15]", "mine[friction=0.2]", "fig4-viscous"]
+    page = page_of(run.report)
+    assert "Families of scenes" in page
+    assert "3 values of isolator.friction" in page
+    for body in (1, 2):
+        assert (run.report / "figures" / f"mine-body{body}-family.png").exists()
+
+
+def test_without_a_range_there_is_no_such_section(command: Callable[..., Run]) -> None:
+    run = command("fig4-viscous", "--grid", "2")
+    assert "Families of scenes</h2>" not in page_of(run.report)
+    assert not list((run.report / "figures").glob("*-family.png"))
+
+
+def test_the_figure_of_a_family_shows_every_step_in_percent(
+    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    family = load_family(file)
+    study = Study(family.scenes, 4, 1e-3, fake_hierarchy(gap=0.01))  # the engine lies 1 % above the reference
+    surfaces = solved(study)
+    drawn: list[tuple[list[float], list[float], str]] = []
+    plot = Axes.plot
+
+    def told(axes: Axes, x: np.ndarray, y: np.ndarray, **look: object) -> object:
+        drawn.append((list(x), list(y), str(look.get("label", look.get("linestyle", "mean")))))
+        return plot(axes, x, y, **look)
+
+    monkeypatch.setattr(Axes, "plot", told)
+    path = tmp_path / family_figure_name(family, 1)
+    bars = {scene.name: [waterfall(study, surfaces, scene, body) for body in (1, 2)] for scene in family.scenes}
+    means = family_steps(family, bars)
+    draw_family(path, family, means, budget(study, surfaces), study.hierarchy, 1)
+    assert {tuple(x) for x, _, _ in drawn} == {(0.1, 0.15, 0.2)}
+    largest = {label: y for _, y, label in drawn if label not in ("mean", "--")}
+    assert set(largest) == {"total", *(model.title for model in study.hierarchy[1:])}
+    np.testing.assert_allclose(largest["total"], 1.0, rtol=1e-9)
+    np.testing.assert_allclose(largest["translational engine"], 1.0, rtol=1e-9)
+    np.testing.assert_array_equal(largest["exact equations"], 0.0)
+    assert imread(path).std() > 0.05, "not an empty picture"
+
+
+def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
+    """The smooth fake model: mu_1 = 3 + cos a1 + sin a2, so 1, 3 and 5 on a 4 x 4 grid; the engine 1 % above."""
+    family = load_family(file)
+    study = Study(family.scenes, 4, 1e-3, fake_hierarchy(gap=0.01))
+    surfaces = solved(study)
+    surfaces["mu"].loc[{"scene": family.scenes[1].name, "model": "translational"}] = np.nan
+    results = report_of(study, surfaces, {}, [], RUN, families=[family]).results
+    assert results.families is not None
+    curves = {(curve.model, curve.body): curve for curve in results.families[0].curves}
+    assert len(curves) == 2 * len(study.hierarchy)
+    small, engine = curves["small", 1], curves["translational", 1]
+    assert (small.lowest, small.mean, small.highest) == (
+        pytest.approx([1.0] * 3),
+        pytest.approx([3.0] * 3),
+        pytest.approx([5.0] * 3),
+    )
+    assert np.isnan([engine.mean[1], engine.lowest[1], engine.error[1]]).all()
+    assert [engine.mean[0], engine.mean[2]] == pytest.approx([3.03, 3.03])
+    steps = {(step.model, step.body): step for step in results.families[0].steps}
+    assert [steps["total", 1].size[0], steps["total", 2].size[2]] == pytest.approx([0.01, 0.01])
+    assert steps["translational", 1].real == (True, False, True)
+
+
+def test_demands_of_stored_motions_have_their_band(file: Path) -> None:
+    family = load_family(file)
+    estimates = {field.name: Estimate(1.0, 0.0) for field in fields(Demands) if field.name != "status"}
+    estimates |= {"acceleration": (Estimate(2.0, 0.0),) * 2, "drift": (Estimate(3.0, 0.0),), "support_force_min": None}
+
+    def motion(scene: str, displacement: float) -> StoredMotion:
+        numbers = Demands(status="ok", **{**estimates, "displacement": Estimate(displacement, 0.0)})
+        nothing = np.zeros((0, 2, 2))
+        place = Place(scene, 0, 0, "")
+        return StoredMotion(place, "small", np.zeros(0), nothing, nothing, demands=numbers)
+
+    first, second, third = (scene.name for scene in family.scenes)
+    stored = [
+        motion(first, 0.1),
+        motion(first, 0.4),
+        motion(first, 0.3),
+        motion(second, float("nan")),
+        motion(third, 5.0),
+    ]
+    found = {(demand.quantity, demand.body): demand for demand in family_demands(family, stored)}
+    band = found["displacement", 0]
+    assert band.motions == (3, 0, 1)
+    assert [band.lowest[0], band.median[0], band.highest[0], band.median[2]] == pytest.approx([0.1, 0.3, 0.4, 5.0])
+    assert np.isnan(band.median[1])
+    assert {("acceleration", 1), ("acceleration", 2), ("drift", 2)} <= set(found)
+    assert ("support_force_min", 0) not in found
+    assert family_demands(family, []) == []
+
+
+def test_demands_of_all_phases_go_before_stored_motions(file: Path) -> None:
+    family = load_family(file)
+
+    def statistics(value: float) -> list[DemandStatistics]:
+        fractiles = tuple(Fractile(probability, value + probability, 0.0) for probability in FRACTILES)
+        low, high = (Extreme(value + shift, 0.0, (0.0, 0.0)) for shift in (-1.0, 2.0))
+        return [DemandStatistics("small", "drift", 2, 16, 0.25, Estimate(value, 0.0), fractiles, low, high, ())]
+
+    first, _, third = (scene.name for scene in family.scenes)
+    [band] = family_demands_over_phases(family, {first: statistics(5.0), third: statistics(7.0)})
+    assert (band.quantity, band.body, band.motions) == ("drift", 2, (12, 0, 12))
+    assert [band.lowest[0], band.median[0], band.highest[0], band.median[2]] == pytest.approx([4.0, 5.5, 7.0, 7.5])
+    assert np.isnan(band.median[1])
+
+
+def test_a_value_that_runs_over_decades_has_a_logarithmic_axis(file: Path) -> None:
+    family = load_family(file)
+    study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
+    surfaces = solved(study)
+    results = report_of(study, surfaces, {}, [], RUN, families=[family]).results
+    assert results.families is not None
+
+    def axis(*values: float) -> dict[str, object]:
+        changed = results.families[0].model_copy(update={"values": list(values)})
+        [listed] = family_panels(results.model_copy(update={"families": [changed]}))
+        return dict(listed["panels"][0]["plot"]["x"])
+
+    assert axis(1e-3, 1e-2, 1e-1).get("log") is True
+    assert "log" not in axis(0.1, 0.15, 0.2)
+    assert "log" not in axis(0.0, 1.0, 100.0)
+
+
+def test_of_many_named_values_some_are_named_on_the_axis(file: Path) -> None:
+    family = load_family(file)
+    study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
+    surfaces = solved(study)
+    results = report_of(study, surfaces, {}, [], RUN, families=[family]).results
+    assert results.families is not None
+
+    def ticks(count: int) -> list[list[object]]:
+        changed = results.families[0].model_copy(update={"values": [f"{n}, 0.5" for n in range(count)]})
+        [listed] = family_panels(results.model_copy(update={"families": [changed]}))
+        named: list[list[object]] = listed["panels"][0]["plot"]["x"]["ticks"]
+        return named
+
+    assert len(ticks(12)) == 12
+    assert [tick[1] for tick in ticks(220)][:3] == ["0, 0.5", "19, 0.5", "38, 0.5"]
+    assert len(ticks(220)) <= 12

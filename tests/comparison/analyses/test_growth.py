@@ -1,0 +1,91 @@
+"""How the cost grows: a slope that is known is found, tall scenes are valid, what takes too long has no value."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from known_analyses import collected
+
+from comparison.analyses.tradeoff import growth_command as command
+from comparison.analyses.tradeoff.growth import (
+    QUANTITIES,
+    SCHEMA,
+    STORED,
+    Growth,
+    MeasuredGrowth,
+    Series,
+    fitted_slope,
+    tall,
+    with_slope,
+)
+from comparison.study.study import Study
+from reference.problem import load_scene
+
+SCENE = load_scene("fig3-I")
+
+
+def test_a_known_slope_is_found_in_the_larger_half() -> None:
+    values = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0]
+    seconds = [1.0, 1.0, 1.0, *(value**1.5 for value in values[3:])]
+    assert fitted_slope(values, seconds) == pytest.approx((1.5, 0.0), abs=1e-12)
+    assert fitted_slope([*values, 64.0], [*seconds, np.nan])[0] == pytest.approx(1.5), "no answer does not count"
+    assert np.isnan(fitted_slope(values[:2], seconds[:2])[0])
+
+
+@pytest.mark.parametrize("bodies", [2, 6, 100])
+def test_a_tall_scene_has_its_bodies_one_above_the_other(bodies: int) -> None:
+    scene = tall(SCENE, bodies)
+    heights = [body.height for body in scene.bodies]
+    assert len(heights) == bodies
+    assert heights == sorted(heights)
+    assert scene.isolator.ring is not None
+    assert scene.isolator.ring >= bodies
+
+
+def test_the_cost_grows_with_bodies_and_phase_pairs() -> None:
+    few = [
+        replace(QUANTITIES[0], values=(2, 4, 8), models=QUANTITIES[2].models),
+        replace(QUANTITIES[2], values=(4, 16, 64)),
+    ]
+    bodies, pairs = collected(Growth(few), Study((SCENE,), 1, 1e-3), executor=lambda jobs: ThreadPoolExecutor(1))
+    assert bodies.quantity == "bodies"
+    assert pairs.quantity == "phase pairs"
+    assert None not in bodies.seconds
+    first, *_, last = pairs.seconds
+    assert first is not None
+    assert last is not None
+    assert last > first
+
+
+def test_the_larger_half_of_a_series_gives_its_slope_or_none() -> None:
+    assert with_slope("bodies", "", "exact", (2.0, 4.0), (0.1, float("nan"))).slope is None
+    assert with_slope("bodies", "", "exact", (1.0, 2.0, 4.0), (1.0, 4.0, 16.0)).slope == pytest.approx(2.0)
+
+
+def test_growth_without_an_answer_is_read_back(tmp_path: Path) -> None:
+    growth = growth_of(
+        with_slope("bodies", "", "exact", (2.0, 4.0), (0.1, float("nan"))),
+        with_slope("workers", "", "exact", (1.0,), (2.0,)),
+    )
+    files = command.growth_files(growth)
+    assert set(files) == set(command.FILES)
+    assert STORED.load(tmp_path) is None
+    (tmp_path / "growth.json").write_bytes(files["growth.json"])
+    assert STORED.load(tmp_path) == growth
+    assert growth.series[0].seconds == [0.1, None]
+
+
+def test_a_file_that_is_no_growth_is_refused_in_one_line(tmp_path: Path) -> None:
+    (tmp_path / "growth.json").write_text('{"schema": "phase-resonance/tradeoff"}')
+    with pytest.raises(
+        ValueError, match=r"growth.json: not a measured growth: .*: run python -m comparison.tradeoff --growth"
+    ):
+        STORED.load(tmp_path)
+
+
+def growth_of(*series: Series) -> MeasuredGrowth:
+    return MeasuredGrowth(SCHEMA, "fig3-I", "a scene", list(series), {"command": "made up"})

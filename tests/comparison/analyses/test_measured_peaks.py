@@ -1,0 +1,137 @@
+"""Measured peaks beside the models: synthetic data made by one model, and what fails."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from known_analyses import collected
+from report_texts import page_of, schema_errors, summary_of
+from runs import Run
+
+import reference
+from comparison.analyses.measured.analysis import MeasuredPeaks
+from comparison.study.models import EXACT, MODEL_HIERARCHY, RESOLVED, SMALL, TRANSLATIONAL
+from comparison.study.study import Study
+from comparison.study.user_models import user_model
+from reference.problem import Scene, load_scene
+
+PHASES = (0.3, 1.1)
+PLAIN = load_scene("fig3-I").with_values({"duration": 3.0, "bodies.1.height": None, "bodies.1.size": None})
+
+
+def peak(quantity: str, value: float, uncertainty: float, body: int | None = None, **more) -> dict:
+    table = {"quantity": quantity, "body": body, "value": value, "uncertainty": uncertainty, "phases": list(PHASES)}
+    return {key: each for key, each in {**table, **more}.items() if each is not None}
+
+
+def compared(scene: Scene, *hierarchy):
+    return collected(MeasuredPeaks(), Study((scene,), 1, 1e-3, hierarchy), executor=ThreadPoolExecutor)
+
+
+def synthetic(noise: float) -> Scene:
+    """Peaks of the exact equations, each larger by `noise` uncertainties of a hundredth of itself."""
+    numbers = reference.demands(reference.trajectory(PLAIN, PHASES))
+    mu = reference.amplification(PLAIN, [PHASES]).mu[0]
+    values = [("mu", mu[1], 2), ("displacement", numbers.displacement.value, None)]
+    values += [("acceleration", numbers.acceleration[0].value, 1), ("drift", numbers.drift[0].value, 2)]
+    values += [("base_shear", numbers.base_shear.value, None)]
+    return PLAIN.with_values(
+        {"measured": [peak(name, (1.0 + 0.01 * noise) * value, 0.01 * value, body) for name, value, body in values]}
+    )
+
+
+@pytest.mark.parametrize(("noise", "exceeds"), [(0.0, False), (0.9, False), (-1.1, True)])
+def test_a_difference_exceeds_the_sum_of_both_uncertainties(noise, exceeds):
+    peaks = compared(synthetic(noise), EXACT)
+    assert [each.quantity for each in peaks] == ["mu", "displacement", "acceleration", "drift", "base_shear"]
+    for each in peaks:
+        (computed,) = each.computed
+        assert computed.exceeds is exceeds
+        assert computed.difference == pytest.approx(-0.01 * noise * computed.value, abs=1e-4 * computed.value)
+
+
+def test_both_sides_stand_beside_a_measured_peak():
+    peaks = compared(synthetic(0.0), SMALL, EXACT, RESOLVED, TRANSLATIONAL)
+    assert [each.model for each in peaks[0].computed] == ["small", "exact", "resolved", "translational"]
+    assert [each.model for each in peaks[1].computed] == ["small", "exact", "translational"], "one motion, read twice"
+    engine = peaks[1].computed[-1]
+    assert engine.value == pytest.approx(peaks[1].value, rel=0.02), "friction linear below v_reg"
+    assert 0.0 < engine.error < 1e-2 * engine.value
+
+
+def test_a_model_that_fails_leaves_the_others_their_numbers():
+    absent = replace(EXACT, key="absent", amplification="nowhere:amplification", trajectory="nowhere:trajectory")
+    peaks = compared(synthetic(0.0), EXACT, absent)
+    good, bad = peaks[1].computed
+    assert good.exceeds is False
+    assert bad.exceeds is None
+    assert math.isnan(bad.value)
+
+
+def test_a_motion_that_ends_early_has_no_peaks_and_says_why():
+    scene = PLAIN.with_values({"isolator.travel": 1e-3, "measured": [peak("displacement", 0.03, 0.001)]})
+    (only,) = compared(scene, EXACT)
+    assert only.computed[0].status == "travel reached"
+    assert only.computed[0].exceeds is None
+
+
+def test_a_quantity_that_a_model_lacks_is_not_known():
+    (only,) = compared(PLAIN.with_values({"measured": [peak("torsion", 0.01, 0.001, 1)]}), EXACT)
+    assert only.computed[0].exceeds is None
+    assert only.computed[0].status == "the model has no such value"
+
+
+def test_a_residual_of_a_platform_that_still_moves_says_so():
+    displacement, residual = peak("displacement", 0.03, 0.001), peak("residual", 0.01, 0.001)
+    scene = PLAIN.with_values({"duration": 1.2, "measured": [displacement, residual]})
+    moving, rest = compared(scene, EXACT, TRANSLATIONAL)
+    assert [each.status for each in moving.computed] == ["ok", "ok"]
+    assert [each.status for each in rest.computed] == ["moving at the end: take a longer duration"] * 2
+
+
+def test_a_record_is_compared_without_phases():
+    scene = load_scene("synthetic-pair").with_values({"duration": 3.0})
+    stated = peak("displacement", 0.01, 0.001)
+    del stated["phases"]
+    (only,) = compared(scene.with_values({"measured": [stated]}), EXACT)
+    assert math.isnan(only.phases[0])
+    assert math.isfinite(only.computed[0].value)
+
+
+def test_a_user_engine_which_has_no_motions_is_not_asked():
+    study = Study((synthetic(0.0),), 1, 1e-3, (EXACT, user_model("mine", {"function": "nowhere:mu"})))
+    assert {task.argument[1].key for task in MeasuredPeaks().tasks(study)} == {"exact"}
+
+
+def test_without_measured_peaks_nothing_is_computed():
+    study = Study((PLAIN,), 1, 1e-3, MODEL_HIERARCHY)
+    assert MeasuredPeaks().tasks(study) == []
+    assert collected(MeasuredPeaks(), study) is None
+
+
+def test_the_report_shows_measured_peaks(command: Callable[..., Run], tmp_path: Path):
+    file = tmp_path / "rig.toml"
+    file.write_text(
+        'title = "rig"\nduration = 1.0\nisolator = {period = 1.0, friction = 0.1}\nbodies = [{mass = 1.0}]\n'
+        "excitation = {amplitudes = [[2.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}\n"
+        '[[measured]]\nquantity = "mu"\nbody = 1\nvalue = 7.0\nuncertainty = 0.25\nphases = [0.0, 1.5]\n'
+        'source = "run <7>"\n'
+    )
+    done = command(str(file), "--grid", "2", "--only", "surfaces,measured")
+    assert done.code == 0, done.err
+    summary = summary_of(done.report)
+    assert schema_errors(done.report) == []
+    assert summary["measured"][0]["value"] == 7.0
+    page = page_of(done.report)
+    assert 'id="measured"' in page
+    assert "7 ± 0.25" in page
+    assert "run &lt;7&gt;" in page
+    line = "1 measured peak stands beside the models, and"
+    assert line in page
+    assert line in done.out
+    assert line in (done.report / "summary.md").read_text(encoding="utf-8")

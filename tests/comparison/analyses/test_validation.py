@@ -1,0 +1,250 @@
+"""Measured motions: files by an independent integration of the frame, closed forms, the real files, and wrong ones."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from places import ROOT
+from report_texts import page_of
+from runs import Run
+from scipy.integrate import solve_ivp
+from scipy.io import savemat
+from scipy.special import ellipk
+
+from comparison.analyses.validation import frame, pendulum
+from comparison.analyses.validation.command import compared, main
+from comparison.analyses.validation.files import DECAY, LARGE, Swing, read_folder
+from comparison.analyses.validation.table import ENGINE, EQUATIONS, LAW, SMOOTHED, STORED, VALID, Validation, recorded
+from comparison.runner.output import publish
+
+MASS, STIFFNESS, DAMPING, RATIO = 3.0799, 1191.0, 0.6690, 0.24
+FREQUENCY, AMPLITUDE, RATE, GRAVITY = 1.003, 1.8e-3, 250.0, 9.80665
+MEASURED = os.environ.get("PHASE_RESONANCE_MEASURED", "")  # folder with the published files
+
+
+@cache
+def shaken(weight: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time, plate and base, mm, of the frame as SciPy integrates it, from a stop to the next, behind six cycles."""
+    turn, friction, end = 2.0 * math.pi * FREQUENCY, RATIO * weight * GRAVITY, 18.0 / FREQUENCY
+
+    def pull(t: float | np.ndarray) -> float | np.ndarray:
+        return AMPLITUDE * (STIFFNESS * np.cos(turn * t) - DAMPING * turn * np.sin(turn * t))
+
+    begin, place = 0.0, AMPLITUDE
+    instants, places = [0.0], [place]
+    while begin < end:
+        held = begin + np.arange(0.0, 1.0, 1e-5)
+        rest = np.abs(pull(held) - STIFFNESS * place) <= friction
+        slip = float(held[np.argmin(rest)])  # the first instant at which it is not held
+        sign = math.copysign(1.0, pull(slip) - STIFFNESS * place)
+
+        def rate(t: float, state: np.ndarray, sign: float = sign) -> list[float]:
+            force = pull(t) - DAMPING * state[1] - STIFFNESS * state[0] - sign * friction
+            return [state[1], force / MASS]
+
+        def stops(t: float, state: np.ndarray, sign: float = sign) -> float:
+            return sign * state[1]
+
+        stops.terminal, stops.direction = True, -1.0
+        slide = solve_ivp(
+            rate, (slip, end + 1.0), [place, sign * 1e-12], events=stops, rtol=1e-10, atol=1e-14, max_step=0.004
+        )
+        instants += [slip, *slide.t[1:]]
+        places += [place, *slide.y[0, 1:]]
+        begin, place = float(slide.t[-1]), float(slide.y[0, -1])
+    time = 6.25 / FREQUENCY + np.arange(2501) / RATE
+    return time, 1e3 * np.interp(time, instants, places), 1e3 * AMPLITUDE * np.cos(turn * time)
+
+
+def save(folder: Path, grams: int, offset: float = 0.0) -> None:
+    """The files of a run, with an offset of the plate's sensor."""
+    time, plate, base = shaken(1e-3 * grams)
+    savemat(folder / f"s_b_{grams}g_x.mat", {"t": time[:, None], "x": plate[:, None] + offset})
+    savemat(folder / f"s_b_{grams}g_y.mat", {"t": time[:, None], "y": base[:, None]})
+
+
+def test_a_known_friction_ratio_is_found_from_one_run(tmp_path: Path):
+    save(tmp_path, 250, offset=-0.15)
+    cycles = frame.fold(read_folder(tmp_path).runs[0])
+    assert cycles.frequency == pytest.approx(FREQUENCY, abs=1e-5)
+    assert cycles.amplitude == pytest.approx(1e3 * AMPLITUDE, rel=1e-4)
+    setup, scatter = frame.fit(cycles, frame.Setup(), "ratio")
+    assert setup.ratio == pytest.approx(RATIO, abs=5e-4)
+    assert np.abs(scatter).max() < 2e-3
+
+
+@pytest.mark.parametrize("grams", [250, 450])
+def test_the_equations_predict_runs_of_an_independent_program(tmp_path: Path, grams: int):
+    save(tmp_path, grams)
+    cycles = frame.fold(read_folder(tmp_path).runs[0])
+    found = np.mean([frame.read_cycle(each, cycles.frequency) for each in cycles.motions], axis=0)
+    computed = frame.solve(cycles, frame.Setup(ratio=RATIO))
+    assert computed[:2] == pytest.approx(found[:2], rel=5e-4)  # without the damper: 5e-3
+    assert computed[2:] == pytest.approx(found[2:], abs=0.2)
+
+
+def test_the_numbers_of_a_known_cycle_are_read():
+    turn = np.arange(frame.SAMPLES) * 360.0 / frame.SAMPLES
+    motion = np.interp(turn, [0.0, 70.0, 150.0, 250.0, 330.0, 360.0], [1.5, 1.5, -1.5, -1.5, 1.5, 1.5])
+    half_range, rms, rest, starts, stops = frame.read_cycle(motion, 1.0)
+    assert half_range == 1.5
+    assert rms == pytest.approx(math.sqrt((200.0 * 1.5**2 + 160.0 * 1.5**2 / 3.0) / 360.0), rel=1e-3)
+    width, top = (
+        360.0 * frame.WIDTH / frame.SAMPLES,
+        3.0 / (80.0 / 360.0),
+    )  # the velocity is a mean over twice the width
+    early = width * (1.0 - 2.0 * frame.SPEED / top)
+    assert (starts, stops) == pytest.approx((70.0 - early, 150.0 + early), abs=0.2)
+    assert rest == pytest.approx(100.0 * (200.0 - 4.0 * early) / 360.0, abs=0.2)
+
+
+def test_losses_and_later_turns_of_a_known_swing_are_met():
+    half, loss, step = 0.39, 0.005, 1.5e-4
+    time = np.arange(-0.3 * half, 16.0 * half, 1e-3)
+    number = np.floor(time / half)
+    middle = 0.5 * loss * (-1.0) ** number  # a half swing is a cosine about a point that friction shifts
+    angle = middle + (0.0659 - (number + 0.5) * loss) * np.cos(np.pi * time / half)
+    angle[number >= 13] = angle[number < 13][-1]
+    found = pendulum.compare_decay(Swing(time, step * np.round(angle / step)))
+    assert float(found.inputs[1].split("swing ")[1].split(" ")[0]) == pytest.approx(loss, abs=3e-5)
+    for each in found.quantities[:4]:
+        assert {side.verdict for side in each.sides.values()} == {VALID}, each
+
+
+def test_half_periods_are_those_of_elliptic_integrals():
+    rate, amplitude, time = np.pi / 0.39, 1.6, 0.0
+    instants, angles = [], []
+    while amplitude > 0.2:
+        half = 2.0 * float(ellipk(np.sin(0.5 * amplitude) ** 2)) / rate
+        dense = np.linspace(0.0, np.pi, 200, endpoint=False)
+        instants += list(time + half * dense / np.pi)
+        angles += list((-1.0) ** (len(angles) // 200) * amplitude * np.sin(dense))
+        time, amplitude = time + half, amplitude - 0.01
+    even = np.arange(0.0, time, 1e-3)
+    found = pendulum.compare_large(Swing(even, np.interp(even, instants, angles)))
+    for each in found.quantities:
+        assert abs(each.sides[EQUATIONS].error) < 2e-4 * each.measured, each
+        assert abs(each.sides[ENGINE].error) < 4e-4 * each.measured, each
+    assert "-14" in found.facts[0]  # what the small-vibration equations are off by at 1.5 rad
+
+
+@pytest.mark.long
+def test_both_sides_meet_runs_of_an_independent_program(tmp_path: Path):
+    save(tmp_path, 250)
+    save(tmp_path, 450, offset=0.3)
+    table = compared(tmp_path)
+    assert len(table.quantities) == 10
+    assert table.counts()[VALID] == 20
+    assert "ratio of this run alone is 0.240" in table.facts[1]
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not MEASURED, reason="PHASE_RESONANCE_MEASURED names no folder with the published files")
+def test_the_recorded_table_is_that_of_the_published_files():
+    table = compared(Path(MEASURED))
+    new = {(each.experiment, each.name): each for each in table.quantities}
+    for each in recorded().quantities:
+        again = new[each.experiment, each.name]
+        assert again.measured == pytest.approx(each.measured, rel=1e-6)
+        for side, computed in each.sides.items():
+            assert again.sides[side].value == pytest.approx(computed.value, abs=3.0 * computed.numerical + 1e-5)
+            assert again.sides[side].verdict == computed.verdict
+
+
+def test_both_sides_agree_on_all_recorded_quantities():
+    for each in recorded().quantities:
+        engine, smoothed = each.sides[ENGINE], each.sides[SMOOTHED]
+        assert abs(engine.value - smoothed.value) <= engine.numerical + smoothed.numerical, each
+
+
+def test_the_page_on_validation_has_the_recorded_table():
+    page = (ROOT / "docs" / "validation.md").read_text(encoding="utf-8")
+    for each in recorded().quantities:
+        equations, engine = each.sides[EQUATIONS], each.sides[ENGINE]
+        cells = [f"{each.experiment}: {each.name}, {each.unit}", each.use, f"{each.measured:.5g}"]
+        sides = [number for side in (equations, engine) for number in (side.error, side.numerical)]
+        numbers = [each.data, each.inputs, *sides, equations.validation]
+        assert "| ".join(["", *(f"{cell} " for cell in [*cells, *(f"{n:.2g}" for n in numbers)])]) in page
+        assert equations.verdict == engine.verdict
+
+
+def wrong_series(folder: Path) -> None:
+    save(folder, 250)
+    savemat(folder / "s_b_250g_x.mat", {"t": np.arange(700.0), "x": np.zeros((700, 3))})
+
+
+def no_partner(folder: Path) -> None:
+    save(folder, 250)
+    (folder / "s_b_250g_y.mat").unlink()
+
+
+def garbage(folder: Path) -> None:
+    save(folder, 250)
+    (folder / "s_b_250g_y.mat").write_bytes(b"MATLAB 5.0 MAT-file" + bytes(range(256)) * 4)
+
+
+def pipe(folder: Path) -> None:
+    save(folder, 250)
+    (folder / "s_b_250g_y.mat").unlink()
+    os.mkfifo(folder / "s_b_250g_y.mat")
+
+
+def no_structure(folder: Path) -> None:
+    savemat(folder / DECAY, {"Theta1": np.zeros(800)})
+
+
+def no_cells(folder: Path) -> None:
+    savemat(folder / LARGE, dict.fromkeys(("Time_id", "Time_vad", "Y_id", "Y_vad"), 1.0))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda folder: None, "holds none of the measured files"),
+        (lambda folder: folder.rmdir(), "must be a folder"),
+        (no_partner, "s_b_250g_y.mat is missing"),
+        (wrong_series, "x must be one column"),
+        (garbage, "must be a MATLAB file"),
+        (pipe, "not a regular file"),
+        (no_structure, "must be a structure"),
+        (no_cells, "must be"),
+    ],
+)
+def test_wrong_files_end_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], spoil: Callable[[Path], None], said: str
+):
+    folder = tmp_path / "files"
+    folder.mkdir()
+    spoil(folder)
+    assert main([str(folder), "--out", str(tmp_path / "report")]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert said in error
+
+
+def test_without_files_what_is_recorded_is_printed(capsys: pytest.CaptureFixture[str]):
+    assert main([]) == 0
+    text = capsys.readouterr().out
+    for part in ("frame, 450 g", "the ratio depends on the load", "arXiv 2303.03858", "GPL-3.0", "MultiArm-Pendulum"):
+        assert part in text, part
+    assert recorded().curves == []  # nothing of the files is in the package
+    assert {side.verdict for each in recorded().quantities for side in each.sides.values()} >= {VALID, LAW}
+
+
+def test_a_table_beside_a_report_is_part_of_the_next(command: Callable[..., Run]):
+    report = command("fig3-I", "--grid", "2").report
+    assert "comparison.validation FOLDER makes it" in page_of(report)
+    table: Validation = replace(recorded(), facts=["a <fact>"])
+    publish(report, {STORED.name: STORED.as_json(table)}, "comparison.validation")
+    run = command("fig3-I", "--grid", "2")
+    assert run.code == 0, run.err
+    page = page_of(report)
+    for seen in ('id="validation"', "a &lt;fact&gt;", "half range, mm", "the ratio depends on the load"):
+        assert seen in page, seen

@@ -1,0 +1,130 @@
+"""The worst phases in a study: what is searched, what the engine has there, and what a failed search leaves."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import reference
+from comparison.analyses.worst_phases.analysis import (
+    ENGINE_POINTS,
+    NOWHERE,
+    Worst,
+    WorstPhases,
+    _engine_beside,
+    worst_of,
+)
+from comparison.runner.task import unfinished
+from comparison.runner.task_results import TaskResults
+from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, TRANSLATIONAL
+from comparison.study.study import Study
+from reference.phase_maximum import GRID
+from reference.problem import Amplification, Outcome, Scene
+
+SHORT = reference.load_scene("fig3-I").with_values({"duration": 3.0})
+
+
+def study_of(*scenes: Scene) -> Study:
+    return Study(scenes, 4, 1e-3, MODEL_HIERARCHY)
+
+
+def test_exact_and_like_equations_are_searched_for_every_body() -> None:
+    searched = [task.argument[1:5] for task in WorstPhases().tasks(study_of(SHORT))]
+    assert [(model.key, body) for model, _, quantity, body in searched if quantity == "amplification"] == [
+        (key, body) for key in ("exact", "regularised") for body in (1, 2)
+    ]
+    assert [(model.key, body) for model, _, quantity, body in searched if quantity == "displacement"] == [("exact", 1)]
+    engines = {engine.key for model, engine, _, _ in searched if engine is not None and model.key == "regularised"}
+    assert engines == {"translational"}
+
+
+def test_a_record_has_no_worst_phases() -> None:
+    study = study_of(reference.load_scene("synthetic-pair"))
+    assert WorstPhases().tasks(study) == []
+    assert WorstPhases().collect(study, None, TaskResults()) is None
+
+
+@pytest.mark.long
+def test_the_engine_confirms_the_maximum_of_the_equations() -> None:
+    equations, engine = worst_of((SHORT, REGULARIZED, TRANSLATIONAL, "amplification", 2, 1e-3, None))
+    assert engine.model == "translational"
+    assert abs(engine.at_start - equations.value) <= engine.start_error + equations.error
+    assert engine.value >= engine.at_start
+    assert math.dist(engine.phases, equations.phases) <= 0.03
+
+
+def test_an_engine_without_an_answer_there_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refusing(scene, phases, **settings):  # type: ignore[no-untyped-def]
+        answer = reference.amplification(SHORT, phases, tolerance=1e-2)
+        answer.mu[:], answer.error[:], answer.status[:] = math.nan, math.nan, Outcome.STEP_LIMIT.value
+        return answer
+
+    monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", lambda path: refusing)
+    worst = Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
+    engine = _engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
+    assert math.isnan(engine.value)
+    assert engine.reason == Outcome.STEP_LIMIT.value
+
+
+def test_the_engine_is_asked_where_its_ratio_says(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def equations(phases: Any) -> Any:
+        return 2.0 - ((phases - [1.004, 2.002]) ** 2).sum(axis=1)
+
+    def engine(phases: Any) -> Any:
+        return equations(phases) * (1.0 + 1e-3 * (phases[:, 0] - 1.0))
+
+    def answering(numerator: Any) -> Any:
+        def amplification(scene, phases, **settings):  # type: ignore[no-untyped-def]
+            mu = np.repeat(numerator(phases)[:, None], 2, axis=1)
+            none = np.full(len(phases), math.nan)
+            return Amplification(mu, 1e-9 * mu, np.full(len(phases), "ok"), none, 0.0)
+
+        return amplification
+
+    sides = {TRANSLATIONAL.amplification: answering(engine), REGULARIZED.amplification: answering(equations)}
+    monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", sides.__getitem__)
+    monkeypatch.setattr("reference.measures.local_search.ground_peak", lambda scene, phases: np.ones(len(phases)))
+    worst = Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
+    beside = _engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
+    assert beside.evaluations == ENGINE_POINTS
+    assert beside.phases == pytest.approx((1.005, 2.002), abs=1e-4)  # 1e-3 of slope over 2 of curvature
+
+
+def test_searches_begin_at_the_hills_of_what_they_search() -> None:
+    study = Study((SHORT,), GRID, 1e-3, MODEL_HIERARCHY)
+    alpha = 2.0 * np.pi * np.arange(GRID) / GRID
+    hill = 2.0 + np.cos(alpha - alpha[5])[:, None] + np.cos(alpha - alpha[9])[None, :]
+    models, scenes = [model.key for model in MODEL_HIERARCHY], [SHORT.name]
+    plane, body = ("scene", "model", "alpha1", "alpha2"), ("scene", "model", "body", "alpha1", "alpha2")
+    shape = (1, len(models), GRID, GRID)
+    surfaces = xr.Dataset(
+        {
+            "mu": (body, np.broadcast_to(np.roll(hill, 3, axis=1), (1, len(models), 2, GRID, GRID))),
+            "error": (body, np.zeros((1, len(models), 2, GRID, GRID))),
+            "displacement": (plane, np.broadcast_to(hill, shape)),
+            "stride": (("scene", "model"), [[study.stride(model) for model in MODEL_HIERARCHY]]),
+        },
+        coords={"scene": scenes, "model": models, "body": [1, 2]},
+    )
+    tasks = WorstPhases().tasks(study, surfaces)
+    for task in tasks:
+        shift = 0 if task.argument[3] == "displacement" else 3
+        assert task.argument[6].tolist() == [[alpha[5], alpha[9 + shift]]]
+
+
+def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:
+    study, results = study_of(SHORT), TaskResults()
+    tasks = WorstPhases().tasks(study)
+    for task in tasks:
+        results.put(task, unfinished(Outcome.TIME_LIMIT, "took too long"))
+    rows = WorstPhases().collect(study, None, results)
+    assert rows is not None
+    assert len(rows) == len(tasks) + 2  # the engine's rows
+    assert all(row.reason == f"{Outcome.TIME_LIMIT}: took too long" and row.phases == NOWHERE for row in rows)
+    assert EXACT.key in {row.model for row in rows}

@@ -1,0 +1,151 @@
+"""A wrong command ends with exit code 2 and one line that names file, key, value and rule; nothing is written."""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from fake_models import fake_hierarchy
+from places import ROOT
+from runs import Run
+
+WRONG = {
+    "grid too small": (["--grid", "1"], "command line: --grid = 1: must be a whole number from 2 to 512"),
+    "grid too large": (["--grid", "513"], "command line: --grid = 513: must be a whole number from 2 to 512"),
+    "grid not whole": (["--grid", "3.5"], "command line: --grid = '3.5': must be a whole number from 2 to 512"),
+    "jobs zero": (["--jobs", "0"], "command line: --jobs = 0: must be a whole number from 1 to 1024"),
+    "jobs a word": (["--jobs", "all"], "command line: --jobs = 'all': must be a whole number from 1 to 1024"),
+    "tolerance zero": (["--tolerance", "0"], "command line: --tolerance = 0.0: must be a number from 1e-08 to 0.1"),
+    "tolerance negative": (["--tolerance=-1e-3"], "command line: --tolerance = -0.001: must be a number"),
+    "tolerance nan": (["--tolerance", "nan"], "command line: --tolerance = nan: must be a number"),
+    "budget zero": (["--budget", "0"], "command line: --budget = 0.0: must be a number from 1 to 1e+07"),
+    "budget a word": (["--budget", "soon"], "command line: --budget = 'soon': must be a number from 1 to 1e+07"),
+    "tolerance a word": (["--tolerance", "fine"], "command line: --tolerance = 'fine': must be a number"),
+    "amplitude zero": (["--amplitude", "0"], "command line: --amplitude = 0.0: must be a number"),
+    "amplitude infinite": (["--amplitude", "inf"], "command line: --amplitude = inf: must be a number"),
+    "unknown option": (["--gird", "3"], "command line: unrecognized arguments: --gird"),
+    "shortened option": (["--gri", "3"], "command line: unrecognized arguments: --gri"),
+    "option without value": (["--grid"], "command line: argument --grid: expected one argument"),
+    "unknown scene": (["fig9"], "fig9: scene = 'fig9': No such file or directory; give a TOML file or one of fig3-I"),
+    "scene twice": (["fig3-I", "fig3-I"], "fig3-I: scene = 'fig3-I': same name as fig3-I"),
+    "scene a directory": (["/"], "/: scene = '/': Is a directory"),
+}
+
+
+@pytest.mark.parametrize(("words", "line"), WRONG.values(), ids=WRONG.keys())
+def test_a_wrong_option_is_one_line_and_exit_code_2(
+    command: Callable[..., Run], words: list[str], line: str, tmp_path: Path
+) -> None:
+    run = command(*words, hierarchy=fake_hierarchy("forbidden"))
+    assert run.code == 2
+    assert run.err.startswith(line)
+    assert run.err.count("\n") == 1, "one line"
+    assert run.out == ""
+    assert list(tmp_path.iterdir()) == [], "nothing half-written"
+
+
+SCENES = {
+    "unknown key": ("title = 'a'\nduration = 3.0\nduratoin = 3.0\n", "duratoin = 3.0: unknown key"),
+    "missing key": ("title = 'a'\n", "duration = None: this key is required"),
+    "not toml": ("title = \n", "file = "),
+    "negative": ("title = 'a'\nduration = -1.0\n", "duration = -1.0: Input should be greater than 0"),
+}
+
+
+@pytest.mark.parametrize(("text", "rule"), SCENES.values(), ids=SCENES.keys())
+def test_a_wrong_scene_file_is_named_with_key_value_and_rule(
+    command: Callable[..., Run], text: str, rule: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "mine.toml"
+    good = ROOT / "reference/problem/scenes/fig3-I.toml"
+    tables = good.read_text(encoding="utf-8").split("\n[isolator]", 1)[1]
+    file.write_text(f"{text}\n[isolator]{tables}", encoding="utf-8")
+    run = command(str(file))
+    assert run.code == 2
+    assert run.err.startswith(f"{file}: ")
+    assert rule in run.err
+    assert run.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_wrong_second_scene_stops_the_run_at_the_start(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", "missing.toml", hierarchy=fake_hierarchy("forbidden"))
+    assert run.code == 2
+    assert run.err.startswith("missing.toml: ")
+    assert not run.report.exists()
+
+
+def test_an_impossible_amplitude_names_the_scene(command: Callable[..., Run], tmp_path: Path) -> None:
+    good = ROOT / "reference/problem/scenes/fig3-I.toml"
+    file = tmp_path / "still.toml"
+    matrix = "amplitudes = [[1.0, 0.0], [0.0, 1.0]]"
+    text = good.read_text(encoding="utf-8")
+    assert matrix in text
+    file.write_text(text.replace(matrix, "amplitudes = [[0.0, 0.0], [0.0, 0.0]]"), encoding="utf-8")
+    run = command(str(file), "--amplitude", "2")
+    assert run.code == 2
+    assert "excitation.amplitudes = 0.0: all entries are 0: nothing to scale" in run.err
+    assert run.err.count("\n") == 1
+
+
+def test_out_never_destroys_what_is_not_a_report(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    foreign = tmp_path / "thesis"
+    foreign.mkdir()
+    (foreign / "chapter1.txt").write_text("years of work", encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    run = command("fig3-I", "--grid", "2", "--out", "thesis")
+    assert run.code == 2
+    assert run.err == (
+        "command line: --out = 'thesis': exists and is not a report of this study: "
+        "give another directory, or empty this one\n"
+    )
+    assert (foreign / "chapter1.txt").read_text(encoding="utf-8") == "years of work"
+
+
+def test_out_refuses_a_report_that_holds_a_file_of_the_user(command: Callable[..., Run], tmp_path: Path) -> None:
+    run = command("fig3-I", "--grid", "2")
+    assert run.code == 0
+    (run.report / "notes.txt").write_text("mine", encoding="utf-8")
+    again = command("fig3-I", "--grid", "2")
+    assert again.code == 2
+    assert "the report there also holds 'notes.txt', which would be lost: move it away" in again.err
+    assert (run.report / "notes.txt").read_text(encoding="utf-8") == "mine"
+
+
+def test_out_refuses_a_file_and_the_working_directory(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "report.html"
+    file.write_text("", encoding="utf-8")
+    assert "is a file: give a directory" in command("--out", str(file)).err
+    empty = tmp_path / "here"
+    empty.mkdir()
+    monkeypatch.chdir(empty)
+    for place in (".", str(empty), ".."):
+        run = command("--out", place)
+        assert run.code == 2
+        assert "is the directory you work in" in run.err
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_out_that_cannot_be_written_is_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:
+    locked = tmp_path / "locked"
+    locked.mkdir()
+    locked.chmod(stat.S_IRUSR | stat.S_IXUSR)
+    run = command("--out", str(locked / "report"), hierarchy=fake_hierarchy("forbidden"))
+    assert run.code == 2
+    assert "cannot be written: Permission denied" in run.err
+
+
+def test_out_below_a_file_is_refused_before_anything_is_computed(command: Callable[..., Run], tmp_path: Path) -> None:
+    file = tmp_path / "notes"
+    file.write_text("mine", encoding="utf-8")
+    run = command("--out", str(file / "report"), hierarchy=fake_hierarchy("forbidden"))
+    assert run.code == 2
+    assert "cannot be written: Not a directory" in run.err
+    assert file.read_text(encoding="utf-8") == "mine"

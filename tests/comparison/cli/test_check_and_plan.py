@@ -1,0 +1,145 @@
+"""--check exits 1 when a stated limit is broken, --plan computes nothing, and the closing table has its rows."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from fake_models import fake_hierarchy
+from places import SCENES
+from report_texts import page_of, summary_of
+from runs import Run
+from studies import solved
+
+import reference
+from comparison.study.models import MODEL_HIERARCHY
+from comparison.study.study import Study
+from comparison.surfaces.acceptance import checked_limits
+from comparison.surfaces.differences import differences
+from comparison.surfaces.unanswered import unanswered
+from reference.problem import builtin_scenes
+
+SMALL = ["fig3-I", "--grid", "2"]
+
+
+def test_check_passes_when_the_limits_hold(command: Callable[..., Run]) -> None:
+    run = command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=5e-5))  # the scene allows a median of 1e-4
+    assert (run.code, run.err) == (0, "")
+
+
+def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callable[..., Run]) -> None:
+    run = command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=5e-4))
+    assert run.code == 1
+    assert "limit broken: fig3-I: body 1: acceptance.median: 0.0005 found, 0.0001 allowed" in run.err
+    assert "limit broken: fig3-I: body 2: acceptance.median" in run.err
+    assert "acceptance.maximum" not in run.err, "5e-4 is within the 1e-3 allowed there"
+
+
+def test_check_names_a_gap_beyond_twice_its_uncertainty(command: Callable[..., Run]) -> None:
+    run = command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=2.1e-3))  # the engine claims 1e-3
+    assert run.code == 1
+    assert "limit broken: fig3-I: body 1: acceptance.ratio: 2.1 found, 2 allowed" in run.err
+    assert "acceptance.closure" not in run.err
+    assert "acceptance.ratio" not in command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=1.9e-3)).err
+
+
+def test_without_check_a_broken_limit_is_no_exit_code(command: Callable[..., Run]) -> None:
+    run = command(*SMALL, hierarchy=fake_hierarchy(gap=5e-4))
+    assert run.code == 0
+    assert "acceptance limits broken" in page_of(run.report)
+
+
+def test_plan_computes_and_writes_nothing(command: Callable[..., Run]) -> None:
+    def no_pool(jobs: int) -> None:
+        raise AssertionError("nothing should have been started")
+
+    run = command("--plan", hierarchy=fake_hierarchy("forbidden"), executor=no_pool)
+    assert run.code == 0
+    assert not run.report.exists()
+    for scene in builtin_scenes():
+        assert scene in run.out
+    assert "nothing was computed" in run.out
+
+
+def test_plan_refuses_what_takes_more_work_than_is_allowed(command: Callable[..., Run]) -> None:
+    run = command(*SMALL, "--plan", "--max-work", "1000", hierarchy=MODEL_HIERARCHY)
+    assert "fig3-I, translational engine: refused before any step" in run.out
+    assert "a phase pair may take 1e+03" in run.out
+    assert "refused" not in command(*SMALL, "--plan", hierarchy=MODEL_HIERARCHY).out
+
+
+def test_a_scene_is_told_what_the_spatial_model_lacks(command: Callable[..., Run], tmp_path: Path) -> None:
+    lines = (SCENES / "fig3-I.toml").read_text("utf-8").splitlines()
+
+    def planned(name: str, *left_out: str) -> str:
+        (tmp_path / name).write_text("\n".join(line for line in lines if line.split(" ")[0] not in left_out), "utf-8")
+        return command(str(tmp_path / name), "--grid", "2", "--plan").out
+
+    told = "no spatial model, as it lacks"
+    assert told not in planned("whole.toml")
+    assert f"part: {told} isolator.sphere_radius." in planned("part.toml", "sphere_radius")
+    assert told not in planned("plain.toml", "sphere_radius", "supports", "ring", "height", "size")
+
+
+def test_plan_of_many_scenes_fits_a_screen(command: Callable[..., Run], tmp_path: Path) -> None:
+    text = (SCENES / "fig3-I.toml").read_text("utf-8")
+    values = ", ".join(str(0.05 + 0.001 * number) for number in range(22))
+    (tmp_path / "many.toml").write_text(
+        re.sub(r"(?m)^friction = .*$", f"friction = {{values = [{values}]}}", text), "utf-8"
+    )
+    out = command(str(tmp_path / "many.toml"), "--plan", hierarchy=MODEL_HIERARCHY).out.splitlines()
+    assert len(out) <= 30
+    assert sum("adding pi to either phase" in line for line in out) == 1
+
+
+def test_the_closing_table_has_every_scene_body_and_pair(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", "fig4-viscous", "--grid", "2")
+    table = run.out.split("Relative differences", 1)[1].splitlines()
+    heading = next(line for line in table if "std. dev." in line).split()
+    assert heading == ["scene", "body", "difference", "mean", "std.", "dev.", "maximum", "not", "ok"]
+    rows = [line.split() for line in table if line.strip().startswith("fig") and ", " not in line]
+    assert [(row[0], row[1], row[2]) for row in rows] == [
+        (scene, body, pair)
+        for scene in ("fig3-I", "fig4-viscous")
+        for body in "12"
+        for pair in ("total", "translational", "like")
+    ]
+    assert all("+1 %" in " ".join(row) and row[-3:] == ["1", "%", "0"] for row in rows)
+
+
+def test_without_a_scene_the_study_is_the_papers_four_cases(command: Callable[..., Run]) -> None:
+    run = command("--grid", "2")
+    assert run.code == 0
+    for scene in ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"):
+        assert (run.report / "figures" / f"{scene}-body2-total.png").exists()
+
+
+@pytest.mark.parametrize("batch", [1, 4])
+def test_the_cost_of_a_model_is_that_of_all_its_batches(command: Callable[..., Run], batch: int) -> None:
+    run = command("fig3-I", "--grid", "4", hierarchy=fake_hierarchy(batch=batch))
+    models = summary_of(run.report)["scenes"][0]["models"]
+    assert {key: round(model["cost"], 9) for key, model in models.items()} == dict.fromkeys(models, 0.016), "1 ms each"
+
+
+@pytest.mark.parametrize("key", [model.key for model in MODEL_HIERARCHY])
+def test_check_counts_the_missing_values_of_every_model_of_ours(command: Callable[..., Run], key: str) -> None:
+    missing = {"amplification": "fake_models:failing_point", "settings": {}}
+    hierarchy = [replace(model, **missing) if model.key == key else model for model in fake_hierarchy(gap=5e-5)]
+    run = command("fig3-I", "--grid", "4", "--check", hierarchy=hierarchy)
+    assert run.code == 1
+    assert run.err.splitlines()[-1].startswith("limit broken: fig3-I: acceptance.failed: 1 points without an answer")
+
+
+@pytest.mark.parametrize("body", [1, 2])
+@pytest.mark.parametrize("limit", ["median", "maximum", "ratio"])
+def test_the_worst_body_breaks_a_limit_whichever_it_is(limit: str, body: int) -> None:
+    scene = reference.load_scene("fig3-I").with_values({"acceptance": {limit: 0.02}})
+    study = Study((scene,), 2, 1e-3, fake_hierarchy(gap=0.0))
+    surfaces = solved(study)
+    surfaces["mu"].loc[{"model": "translational", "body": body}] *= 1.021
+    rows = differences(study, surfaces)
+    found = [limit for limit in checked_limits(study, surfaces, rows, unanswered(study, surfaces)) if limit.breaches]
+    assert [(each.key, [breach.body for breach in each.breaches]) for each in found] == [(limit, [body])]

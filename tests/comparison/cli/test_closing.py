@@ -1,0 +1,172 @@
+"""The terminal ends with the sentences of the page, and with commands that work as they are printed."""
+
+from __future__ import annotations
+
+import io
+import shlex
+import subprocess
+import sys
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from fake_models import busy, errors_in, fake_hierarchy
+from places import SCENES
+from report_texts import summary_of
+from rich.console import Console
+from runs import Run
+
+import comparison.run
+from comparison.cli import reports
+from comparison.cli.start import Clock
+from comparison.cli.terminal import new_table
+from comparison.run import main
+from comparison.runner.processes import process_pool
+from comparison.runner.resume import changed, resume_hint, without_scheduler
+from comparison.runner.task import RESULT
+
+
+def after_report(run: Run) -> list[str]:
+    lines = run.out.splitlines()
+    return lines[next(number for number, line in enumerate(lines) if line.startswith("Report: ")) :]
+
+
+def test_the_last_lines_are_the_sentences_of_the_results(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", "fig4-viscous", "--grid", "4", hierarchy=fake_hierarchy(gap=0.01))
+    summary = summary_of(run.report)
+    sentences = [headline["sentence"] for scene in summary["scenes"] for headline in scene["headlines"]]
+    assert len(sentences) == 4
+    lines = run.out.splitlines()
+    last = next(number for number, line in enumerate(lines) if line.startswith("Report: "))
+    assert lines[last - 4 : last] == sentences
+    text = (run.report / "summary.md").read_text(encoding="utf-8")
+    assert all(sentence.split("(")[0].split(": ", 1)[1] in text for sentence in sentences)
+
+
+def test_the_next_commands_work_as_they_are_printed(
+    command: Callable[..., Run], capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    run = command("fig3-I", "--grid", "2", hierarchy=errors_in({"translational": 0.01, "spatial": 0.1}))
+    film, finer = after_report(run)[2:]
+    words = shlex.split(film.split("difference: ")[1])
+    assert words[:3] == ["python", "-m", "multibody.animate"]
+    assert (words[3], words[4], words[7:]) == ("fig3-I", "--phases", ["--model", "spatial"])
+    assert all(0.0 <= float(phase) < 6.2832 for phase in words[5:7])
+    words = shlex.split(finer.split("costs: ")[1])
+    assert words[:3] == ["python", "-m", "comparison.run"]
+    assert words.count("--grid") == 1
+    assert main([*words[3:], "--out", str(tmp_path / "other")], fake_hierarchy(), ThreadPoolExecutor) == 0
+    assert "4 x 4 phases" in capfd.readouterr().out.replace("\n", " ")
+
+
+def test_a_changed_loading_offers_no_film_of_another(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", "--grid", "2", "--amplitude", "0.5", hierarchy=errors_in({"spatial": 0.1}))
+    assert not any("multibody.animate" in line for line in after_report(run))
+
+
+def test_a_scene_of_a_file_is_filmed_from_its_file(command: Callable[..., Run], tmp_path: Path) -> None:
+    place = tmp_path / "my scene.toml"
+    place.write_text((SCENES / "fig3-I.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    run = command(str(place), "--grid", "2", hierarchy=errors_in({"spatial": 0.1}))
+    assert f"multibody.animate '{place}' --phases" in run.out
+
+
+def test_printed_options_stand_before_scenes_with_a_dash(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("-mine.toml").write_text((SCENES / "fig3-I.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    run = command(
+        "--grid", "2", "--out", str(tmp_path / "report"), "--", "-mine.toml", hierarchy=errors_in({"spatial": 0.1})
+    )
+    film, finer = after_report(run)[2:]
+    assert shlex.split(film)[shlex.split(film).index("multibody.animate") + 1] == "./-mine.toml"
+    words = shlex.split(finer.split("costs: ")[1])[3:]
+    assert words[-5:] == ["--grid", "4", "--plan", "--", "-mine.toml"]
+    assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
+
+
+def test_a_changed_command_keeps_what_stands_behind_two_dashes() -> None:
+    words = ["--grid=4", "--grid", "8", "--fresh", "--out", "r", "--", "--grid", "--fresh", "-a.toml"]
+    assert changed(words, ["--plan"], flags=["--fresh"], options=["--grid"]) == [
+        "--out", "r", "--plan", "--", "--grid", "--fresh", "-a.toml",
+    ]  # fmt: skip
+    assert resume_hint(SimpleNamespace(kept={RESULT: 0}, folder="d"), words).endswith(  # type: ignore[arg-type]
+        "comparison.run --grid=4 --grid 8 --out r -- --grid --fresh -a.toml"
+    )
+    assert without_scheduler(["--scheduler", "tcp://a:1", "--", "--scheduler", "b"]) == ["--", "--scheduler", "b"]
+
+
+def test_engines_given_in_python_are_used_in_spite_of_two_dashes(command: Callable[..., Run]) -> None:
+    words = ["--grid", "2", "--plan", "--", "fig3-I"]
+    assert main(words, fake_hierarchy(), ThreadPoolExecutor, models={"mine": "user_engines:plain"}) == 0
+
+
+def test_a_long_name_of_a_scene_cuts_no_number(capsys: pytest.CaptureFixture[str]) -> None:
+    table = new_table("scene", "body", "difference", "mean", "std. dev.", "maximum", "not ok")
+    name = "building-" + "x" * 71
+    numbers = ("−0.0051 %", "< 0.0001 %", "0.014 %", "12345")
+    table.add_row(name, "2", "like for like", *numbers)
+    for width in (80, 100, 120):
+        Console(width=width).print(table)
+        shown = capsys.readouterr().out
+        assert all(cell in shown for cell in ("like for like", *numbers)), shown
+        assert "".join(line.split()[0] for line in shown.splitlines()[3:] if line.strip()) == name
+
+
+def test_a_check_without_limits_says_so_in_the_last_line(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8").split("[acceptance]")[0]
+    (tmp_path / "free.toml").write_text(text, encoding="utf-8")
+    both = io.StringIO()
+    monkeypatch.setattr(sys, "stdout", both)
+    monkeypatch.setattr(sys, "stderr", both)
+    words = [str(tmp_path / "free.toml"), "--grid", "2", "--check", "--out", str(tmp_path / "report")]
+    assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
+    assert both.getvalue().splitlines()[-1] == "--check: no scene states [acceptance] limits: nothing was checked"
+
+
+def test_a_record_has_no_grid_to_refine(command: Callable[..., Run]) -> None:
+    assert after_report(command("synthetic-pair", hierarchy=fake_hierarchy()))[2:] == []
+
+
+def test_the_times_of_a_run_are_the_same_in_every_place(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Told(Clock):
+        @classmethod
+        def now(cls) -> Clock:
+            return Clock(1002.0, 50.0)
+
+    monkeypatch.setattr(reports, "Clock", Told)
+    monkeypatch.setattr(comparison.run, "start_time", lambda: Clock(900.0, 20.0))
+    run = command("fig3-I", "--grid", "2", hierarchy=fake_hierarchy())
+    times = summary_of(run.report)["run"]
+    assert (times["wall_seconds"], times["processor_seconds"]) == (102.0, 30.0)
+    words = "102.0 s of wall time with"
+    for name in ("index.html", "summary.md"):
+        text = (run.report / name).read_text(encoding="utf-8")
+        assert words in text
+        assert "30.0 s of processor time" in text
+    assert words in run.out
+    assert "predicted" not in run.out
+
+
+@pytest.mark.long
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
+def test_the_processor_time_of_a_running_process_is_counted() -> None:
+    before = Clock.now()
+    with process_pool(1) as pool:
+        pool.submit(busy, 1.5).result()
+        assert Clock.now().since(before).processor >= 1.2, "processor time is counted in steps"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not add up the times of processes")
+def test_the_processor_time_of_an_ended_process_is_counted() -> None:
+    before = Clock.now()
+    burn = "import time\nwhile time.process_time() < 0.5: pass"
+    subprocess.run([sys.executable, "-c", burn], check=True)
+    assert Clock.now().since(before).processor >= 0.45, "processor time is counted in steps"

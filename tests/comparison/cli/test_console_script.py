@@ -1,0 +1,204 @@
+"""The console script does what the modules do, and a user's own reference.py beside it is never imported."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from places import ROOT
+
+import reference
+from comparison.cli.start import COMMANDS
+
+SHADOW = "raise SystemExit('a module of the user was imported')\n"
+PLANTED = ("multiprocessing", "threading", "socket", "pickle", "numpy", "numba", "typing_extensions")
+TELLING = """
+import pathlib
+pathlib.Path(__file__).with_name("imported").open("a").write(__name__ + " ")
+raise ImportError(__name__)
+"""
+ENGINE = """
+import numpy as np
+
+import beside  # another file of the user
+
+
+def amplification(scene, phases):
+    return np.full((len(phases), len(scene.bodies)), beside.MU)
+"""
+
+
+@pytest.fixture
+def script(tmp_path: Path) -> Path:
+    """The script as an installer writes it, for this copy of the project."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    module, function = project["scripts"]["phase-resonance"].split(":")
+    file = tmp_path / "bin" / "phase-resonance"
+    file.parent.mkdir()
+    lines = [
+        "import sys",
+        f"from {module} import {function}",
+        "if __name__ == '__main__':",
+        f"    sys.exit({function}())",
+    ]
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return file
+
+
+def called(script: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """The script in a directory of the user whose modules have the names of this project's packages."""
+    place = script.parent.parent / "work"
+    place.mkdir(exist_ok=True)
+    for name in ("reference", "multibody", "comparison"):
+        (place / f"{name}.py").write_text(SHADOW, encoding="utf-8")
+    command = [sys.executable, str(script), *words]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.long
+def test_modules_beside_a_user_are_not_imported(script: Path) -> None:
+    run = called(script, "extremes", "--models", "small", "--rows", "outside the rules", "--jobs", "2")
+    assert run.returncode == 0, run.stderr
+    matrix = json.loads((script.parent.parent / "work/report/extremes.json").read_text(encoding="utf-8"))
+    assert matrix["run"]["command"].startswith("phase-resonance extremes --models small")
+
+
+def planted(script: Path) -> Path:
+    """The working directory with modules that tell when they are imported; the file in which they do."""
+    place = script.parent.parent / "work"
+    place.mkdir()
+    for name in PLANTED:
+        (place / f"{name}.py").write_text(TELLING, encoding="utf-8")
+    return place / "imported"
+
+
+def test_workers_of_the_script_import_nothing_from_the_folder(script: Path) -> None:
+    imported = planted(script)
+    (imported.parent / "rk45.py").write_text(ENGINE, encoding="utf-8")
+    (imported.parent / "beside.py").write_text("MU = 1.0\n", encoding="utf-8")
+    run = called(script, "run", "fig3-I", "--plan", "--model", "mine=rk45:amplification")  # a worker imports it
+    assert not imported.exists(), imported.read_text(encoding="utf-8")
+    assert (run.returncode, run.stderr) == (0, "")
+    assert "mine" in run.stdout
+
+
+@pytest.mark.long
+def test_workers_of_a_program_elsewhere_import_nothing_there(script: Path) -> None:
+    imported = planted(script)
+    script.write_text(
+        "import os\n"
+        "from comparison.runner.processes import process_pool\n"
+        "if __name__ == '__main__':\n"
+        "    with process_pool(1) as workers:\n"
+        "        print(workers.submit(os.getenv, 'PYTHONSAFEPATH').result(), os.getenv('PYTHONSAFEPATH'))\n",
+        encoding="utf-8",
+    )
+    run = called(script)
+    assert not imported.exists(), imported.read_text(encoding="utf-8")
+    assert (run.returncode, run.stdout) == (0, "None None\n"), "what a task starts is searched as ever"
+
+
+def test_an_unknown_command_is_one_line_with_the_nearest(script: Path) -> None:
+    run = called(script, "extrems")
+    assert (run.returncode, run.stdout) == (2, "")
+    assert run.stderr == "command line: COMMAND = 'extrems': did you mean extremes?\n"
+
+
+def test_without_a_command_the_script_lists_them(script: Path) -> None:
+    run = called(script)
+    assert run.returncode == 0
+    assert all(f"  {name} " in run.stdout for name in COMMANDS)
+
+
+def test_the_script_states_its_version(script: Path) -> None:
+    run = called(script, "--version")
+    assert (run.returncode, run.stdout, run.stderr) == (0, f"phase-resonance {reference.__version__}\n", "")
+
+
+@pytest.mark.long
+def test_an_engine_that_cannot_be_loaded_is_one_line(tmp_path: Path) -> None:
+    lines = "Tried, in order:\\n  libGL.so.1: cannot open shared object file"
+    (tmp_path / "exudyn.py").write_text(f"raise ImportError('{lines}')\n", encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
+    command = [sys.executable, "-m", "comparison.run", "fig3-I", "--plan"]
+    run = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert (run.returncode, run.stdout) == (3, "")
+    assert run.stderr == (
+        "phase-resonance cannot start: the engine Exudyn cannot be loaded (on Debian and Ubuntu it needs the package "
+        "libgl1): Tried, in order: libGL.so.1: cannot open shared object file\n"
+    )
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_states_the_version(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        import_module(COMMANDS[name][0]).main(["--version"])
+    assert end.value.code == 0
+    assert capsys.readouterr().out == f"phase-resonance {reference.__version__}\n"
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("words", [("--no-such-option",), ("--jobs", "0"), ("--out",)])
+def test_a_wrong_option_of_every_command_is_one_line(
+    name: str, words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    main = import_module(COMMANDS[name][0]).main
+    assert main(list(words)) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1), err
+    assert err.startswith("command line: ")
+
+
+COMPUTING = tuple(name for name in COMMANDS if name not in ("init", "animate", "validation"))  # these have no workers
+
+
+def test_shared_options_are_the_same_in_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    helps = set()
+    for name in COMPUTING:
+        with pytest.raises(SystemExit):
+            import_module(COMMANDS[name][0]).main(["--help"])
+        text = " ".join(capsys.readouterr().out.split())
+        options = text[text.index("--jobs N worker") :]
+        helps.add(options[: options.index("is used") + len("is used")])
+        assert re.search(r"--out DIR .*\(default report\)", text), name
+    (shared,) = helps
+    assert re.match(r"--jobs N .* --scheduler ADDRESS .* --fresh .*", shared)
+
+
+COMMAND = """
+if __name__ == "__main__":
+    from comparison.cli.start import start
+
+    start("counted")
+
+print("loaded", flush=True)
+
+
+def main():
+    from comparison.runner.processes import process_pool
+
+    with process_pool(1) as workers:
+        workers.submit(len, "").result()
+    return 0
+"""
+
+
+def test_worker_processes_do_not_load_the_command_again(tmp_path: Path) -> None:
+    (tmp_path / "counted.py").write_text(COMMAND)
+    run = subprocess.run(
+        [sys.executable, "-m", "counted"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )
+    assert run.stdout.count("loaded") == 1

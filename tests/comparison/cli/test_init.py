@@ -1,0 +1,247 @@
+"""`phase-resonance init` writes a study that runs, whole or not at all, and never over what is there."""
+
+from __future__ import annotations
+
+import errno
+import json
+import runpy
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
+
+import pytest
+from known_analyses import with_engine_off_by
+from packaging.requirements import Requirement
+from places import ROOT
+
+import reference
+from comparison.cli import requirement as source
+from comparison.cli.init import TEMPLATE, main, study_files
+from comparison.cli.start import main as script
+
+
+@pytest.fixture
+def study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
+    """A new study, as the command writes it."""
+    place = tmp_path / "my-study"
+    assert main([str(place)]) == 0
+    capsys.readouterr()
+    return place
+
+
+def contents(folder: Path) -> set[str]:
+    return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_it_writes_every_file_of_the_template(study: Path) -> None:
+    assert contents(study) == set(TEMPLATE)
+    template = ROOT / "comparison" / "cli" / "study_template"
+    assert sorted(file.name for file in template.iterdir() if file.is_file()) == sorted(TEMPLATE.values())
+    assert (study / "README.md").read_text(encoding="utf-8").startswith("# my-study\n")
+    assert [name for name, content in study_files("x").items() if b"@NAME@" in content or b"@REQ" in content] == []
+
+
+def test_its_requirement_is_the_version_that_made_it(study: Path) -> None:
+    lines = (study / "requirements.txt").read_text(encoding="utf-8").splitlines()
+    asked = {parsed.name: parsed for parsed in map(Requirement, (line for line in lines if not line.startswith("#")))}
+    wanted = asked["phase-resonance"]
+    if wanted.url is None:
+        assert not (ROOT / "pyproject.toml").is_file(), "nobody has put a checkout into an index"
+    elif wanted.url.startswith("file:"):
+        assert Path(url2pathname(urlsplit(wanted.url).path)) == ROOT
+    else:
+        head = subprocess.run(["git", "-C", ROOT, "rev-parse", "HEAD"], capture_output=True, text=True, check=True)
+        assert wanted.url.endswith(f"@{head.stdout.strip()}")
+
+
+COMMIT = "0123456789abcdef0123456789abcdef01234567"
+RECORDED = {
+    "an index": (None, f"phase-resonance=={reference.__version__}"),
+    "a repository": (
+        {"url": "https://me:word@host.org/a.git", "vcs_info": {"vcs": "git", "commit_id": COMMIT}},
+        f"phase-resonance @ git+https://host.org/a.git@{COMMIT}",
+    ),
+    "an archive": ({"url": "https://host.org/a.whl", "archive_info": {}}, "phase-resonance @ https://host.org/a.whl"),
+    "a folder": ({"url": "file:///no/such/folder", "dir_info": {}}, "phase-resonance @ file:///no/such/folder"),
+}
+
+
+@pytest.mark.parametrize(("recorded", "line"), RECORDED.values(), ids=RECORDED.keys())
+def test_the_requirement_is_where_pip_found_the_project(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recorded: object, line: str
+) -> None:
+    text = None if recorded is None else json.dumps(recorded)
+    monkeypatch.setattr(source, "distribution", lambda name: SimpleNamespace(read_text=lambda file: text))
+    monkeypatch.setattr(source, "CHECKOUT", tmp_path)
+    assert source.requirement() == line
+    assert Requirement(line).name == "phase-resonance"
+
+
+@pytest.mark.parametrize(
+    ("origin", "address"),
+    [
+        ("https://me:word@host.org/a/b.git", "git+https://host.org/a/b.git@"),
+        ("git@host.org:a/b.git", "git+ssh://git@host.org/a/b.git@"),
+        ("ssh://git:word@host.org/a/b.git", "git+ssh://git@host.org/a/b.git@"),
+        ("/srv/a/b.git", "file://"),
+    ],
+)
+@pytest.mark.parametrize("pushed", [True, False])
+def test_a_checkout_is_found_by_its_commit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, origin: str, address: str, pushed: bool
+) -> None:
+    said = {"rev-parse": COMMIT, "branch": "origin/main" if pushed else "", "remote": origin}
+    monkeypatch.setattr(source, "git", lambda folder, verb, *rest: said[verb])
+    monkeypatch.setattr(source, "_recorded", dict)
+    monkeypatch.setattr(source, "CHECKOUT", tmp_path)
+    (tmp_path / "pyproject.toml").touch()
+    elsewhere = pushed and not origin.startswith("/")
+    line = f"phase-resonance @ {address}{COMMIT}" if elsewhere else f"phase-resonance @ {tmp_path.as_uri()}"
+    assert source.requirement() == line
+    assert "word" not in line
+
+
+def test_the_scene_loads_and_the_spatial_model_can_take_it(study: Path) -> None:
+    scene = reference.load_scene(study / "building.toml")
+    assert (scene.name, len(scene.bodies)) == ("building", 3)
+    assert scene.support_places is not None
+    assert all(body.height is not None and body.size is not None for body in scene.bodies)
+
+
+def test_the_script_runs(study: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(sys, "argv", ["study.py", "--grid", "2"])
+    runpy.run_path(str(study / "study.py"), run_name="__main__")
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "Building on a friction pendulum: 4 phase pairs, status ok"
+    assert len(lines) == 10
+    assert lines[-1].startswith("  drifts ")
+
+
+def test_the_gate_passes(study: Path) -> None:
+    gate = runpy.run_path(str(study / "test_building.py"))
+    gate["test_the_equations_and_the_engine_agree"]()
+
+
+def test_the_gate_fails_where_a_side_is_off(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    with_engine_off_by(monkeypatch, 1.01)
+    gate = runpy.run_path(str(study / "test_building.py"))
+    with pytest.raises(AssertionError, match="building, body 1: like_for_like: median difference"):
+        gate["test_the_equations_and_the_engine_agree"]()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["-m", "pytest", "-q"],
+        ["-m", "comparison.run", "building.toml", "--grid", "4", "--check"],
+    ],
+    ids=["gate", "report"],
+)
+def test_what_its_continuous_integration_runs_passes(study: Path, words: list[str]) -> None:
+    run = subprocess.run([sys.executable, *words], cwd=study, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+@pytest.mark.parametrize(
+    ("schema", "name"), [("github-workflows", ".github/workflows/study.yml"), ("gitlab-ci", ".gitlab-ci.yml")]
+)
+def test_its_workflows_follow_their_schema(study: Path, schema: str, name: str) -> None:
+    check = [sys.executable, "-m", "check_jsonschema", "--builtin-schema", f"vendor.{schema}", str(study / name)]
+    run = subprocess.run(check, capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stdout + run.stderr
+
+
+def test_an_empty_directory_and_a_new_repository_are_filled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / ".git").mkdir()
+    before = tmp_path.stat().st_ino
+    monkeypatch.chdir(tmp_path)
+    assert main(["."]) == 0
+    assert contents(tmp_path) == set(TEMPLATE)
+    assert tmp_path.stat().st_ino == before, "the shell that stands in it still does"
+
+
+def occupied(place: Path) -> Path:
+    place.mkdir()
+    (place / "thesis.txt").write_text("years of work", encoding="utf-8")
+    return place
+
+
+def a_file(place: Path) -> Path:
+    place.write_text("years of work", encoding="utf-8")
+    return place
+
+
+REFUSED: dict[str, tuple[Callable[[Path], Path], str]] = {
+    "something in it": (occupied, "holds 'thesis.txt': give a new directory, or one that is empty"),
+    "a file": (a_file, "is a file: give a directory"),
+    "below a file": (lambda place: a_file(place) / "study", "cannot be written: Not a directory"),
+    "a line break": (lambda place: place.with_name("my\nstudy"), "must be a name of printable characters"),
+    "a long name": (lambda place: place.with_name(250 * "x"), "has a name of more than 240 bytes"),
+    "the root": (lambda place: Path("/"), "is the root directory: give a directory inside it"),
+    "two slashes": (lambda place: Path("//"), "is the root directory: give a directory inside it"),
+    "no such place": (lambda place: Path("/proc/no/such"), "cannot be written: "),
+}
+
+
+@pytest.mark.parametrize(("place", "rule"), REFUSED.values(), ids=REFUSED.keys())
+def test_a_directory_that_cannot_be_taken_stays_as_it_was(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], place: Callable[[Path], Path], rule: str
+) -> None:
+    path = place(tmp_path / "study")
+    before = contents(tmp_path)
+    assert main([str(path)]) == 2
+    out, err = capsys.readouterr()
+    assert (out, err.count("\n")) == ("", 1)
+    assert err.startswith("command line: DIRECTORY = ")
+    assert rule in err
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("exists", [False, True], ids=["new", "empty"])
+@pytest.mark.parametrize("moment", ["writing", "moving"])
+def test_a_full_disk_leaves_nothing_behind(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], exists: bool, moment: str
+) -> None:
+    place = tmp_path / "of" / "mine" / "study"
+    if exists:
+        place.mkdir(parents=True)
+    before = sorted(tmp_path.rglob("*"))
+    full = OSError(errno.ENOSPC, "No space left on device")
+    if moment == "writing":
+        write = Path.write_bytes
+
+        def until_full(file: Path, content: bytes) -> int:
+            if file.name == "requirements.txt":
+                raise full
+            return write(file, content)
+
+        monkeypatch.setattr(Path, "write_bytes", until_full)
+    else:
+        import os
+
+        rename = os.rename
+
+        def move(source: Path, target: Path) -> None:
+            if Path(target).name in ("study", "study.py"):
+                raise full
+            rename(source, target)
+
+        monkeypatch.setattr(os, "rename", move)
+    assert main([str(place)]) == 3
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1
+    assert "DIRECTORY" in err
+    assert "No space left on device" in err
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_the_script_lists_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setattr(sys, "argv", ["phase-resonance"])
+    with pytest.raises(SystemExit):
+        script()
+    assert "  init " in capsys.readouterr().out

@@ -1,0 +1,19 @@
+"""Folders of the project."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+HELPERS = Path(__file__).parent
+ROOT = HELPERS.parents[1]
+SCENES = ROOT / "reference/problem/scenes"
+EXAMPLES = ROOT / "reference/problem/examples"
+
+
+def scene_text(name: str = "fig3-I", *replaced: tuple[str, str]) -> str:
+    """The file of a built-in scene, with texts that stand in it once replaced."""
+    text = (SCENES / f"{name}.toml").read_text(encoding="utf-8")
+    for old, new in replaced:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return text

@@ -1,0 +1,364 @@
+"""A study of pairwise different numbers, read back from page, texts, terminal and figures: each stands in its place."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import xarray as xr
+from distinct_models import KEYS, STEPS, differences_of, distinct_hierarchy, first_mu, grid_phases
+from known_analyses import analyses_are
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
+from numpy.typing import NDArray
+from report_texts import Tables, flat, page_of, summary_of, text_of
+from runs import RUN, Run, quick_figures
+
+from comparison.analyses.worst_phases.analysis import Worst
+from comparison.registry import report_of
+from comparison.report.page_data import page_data
+from comparison.report.pdf import map_tasks
+from comparison.run import main
+from comparison.study.batches import execute_batch
+from comparison.study.study import Study
+from comparison.surfaces.figures import pairs, print_maps
+from comparison.surfaces.surfaces import labeled_surfaces
+from reference.problem import load_scene
+
+GRID, COARSE = 8, 4  # of the equations, and of the engine
+Array = NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("distinct") / "report"
+    with pytest.MonkeyPatch.context() as patch:
+        quick_figures(patch)
+        analyses_are(patch, motions=[])
+        words = ["fig3-I", "--grid", str(GRID), "--skip", "assumptions", "--out", str(place)]
+        assert main(words, distinct_hierarchy(), ThreadPoolExecutor) == 0
+    return place
+
+
+@pytest.fixture(scope="module")
+def tables(report: Path) -> Tables:
+    return Tables(page_of(report))
+
+
+@pytest.fixture(scope="module")
+def summary(report: Path) -> dict[str, Any]:
+    found: dict[str, Any] = summary_of(report)
+    return found
+
+
+def step(key: str, body: int, count: int = COARSE) -> Array:
+    """What a model adds to the one before it on a grid."""
+    before = KEYS[KEYS.index(key) - 1]
+    return differences_of(key, body, grid_phases(count)) - differences_of(before, body, grid_phases(count))
+
+
+def pair_sizes(pair: str, body: int, count: int = COARSE) -> Array:
+    """The signed differences of a pair of models, relative to its own first model."""
+    first, second = {
+        "total": ("small", "spatial"),
+        "translational": ("small", "translational"),
+        "like for like": ("regularised", "translational"),
+    }[pair]
+    phases = grid_phases(count)
+    size = (1.0 + differences_of(second, body, phases)) / (1.0 + differences_of(first, body, phases)) - 1.0
+    return np.asarray(size)
+
+
+def of_sizes(pair: str, body: int) -> dict[str, float]:
+    """The statistics of the table of differences, made with NumPy alone."""
+    signed, size = pair_sizes(pair, body), np.abs(pair_sizes(pair, body))
+    return {
+        "mean": signed.mean(), "standard deviation": signed.std(), "95 %": np.percentile(size, 95.0, method="hazen"),
+        "maximum": size.max(), "median size": np.median(size),
+    }  # fmt: skip
+
+
+def in_percent(value: float, plus: str = "") -> str:
+    """Two digits, or whole percents from 10 % on."""
+    size = 100.0 * abs(value)
+    return ("−" if value < 0.0 else plus) + (f"{size:.0f} %" if size >= 10.0 else f"{size:.2g} %")
+
+
+ROWS = [(pair, body) for body in (1, 2) for pair in ("total", "translational", "like for like")]
+
+
+def test_no_two_statistics_of_the_study_are_written_alike() -> None:
+    for pair, body in ROWS:
+        written = {in_percent(abs(value)) for value in of_sizes(pair, body).values()}
+        assert len(written) == 5, f"{pair}, body {body}"
+        signed = pair_sizes(pair, body)
+        assert in_percent(signed.mean()) != in_percent(np.median(signed)), f"{pair}, body {body}"
+    means = [of_sizes(pair, body)["mean"] for pair, body in ROWS]
+    assert min(means) < 0.0 < max(means), "of both signs"
+
+
+@pytest.mark.parametrize(("pair", "body"), ROWS)
+def test_every_statistic_of_a_pair_stands_in_its_own_column(
+    pair: str, body: int, tables: Tables, summary: dict[str, Any]
+) -> None:
+    numbers, place = of_sizes(pair, body), lambda row: (row["body"], row["difference"]) == (str(body), pair)
+    [row] = filter(place, tables.headed("mean, 95 %, maximum", "standard deviation"))
+    for name in ("mean", "standard deviation", "95 %", "maximum"):
+        assert row[name] == in_percent(numbers[name], "+" if name == "mean" else "")
+    [row] = filter(place, tables.headed("median size", "beyond uD"))
+    assert row["median size"] == in_percent(numbers["median size"])
+    [stored] = [
+        each
+        for each in summary["scenes"][0]["differences"]
+        if (each["body"], each["pair"]) == (body, pair.replace(" ", "-"))
+    ]
+    fields = {"mean": "mean", "spread": "standard deviation", "median": "median size", "percentile95": "95 %"}
+    for field, name in (fields | {"maximum": "maximum"}).items():
+        assert stored[field] == pytest.approx(numbers[name], rel=1e-9)
+
+
+def test_the_largest_is_at_the_phases_where_it_is(tables: Tables) -> None:
+    for row in tables.headed("median size", "beyond uD"):
+        sizes = np.abs(pair_sizes(row["difference"], int(row["body"])))
+        alpha1, alpha2 = np.degrees(grid_phases(COARSE)[sizes.argmax()])
+        assert (row["maximum at α₁"], row["at α₂"]) == (f"{alpha1:.0f}°", f"{alpha2:.0f}°")
+
+
+def test_beyond_u_d_counts_differences_of_both_signs(tables: Tables) -> None:
+    shares = set()
+    for row in tables.headed("median size", "beyond uD"):
+        pair, body = row["difference"], int(row["body"])
+        signed, phases = pair_sizes(pair, body), grid_phases(COARSE)
+        first, second = (
+            ("regularised" if pair == "like for like" else "small"),
+            ("spatial" if pair == "total" else "translational"),
+        )
+        ratio = (1.0 + differences_of(second, body, phases)) / (1.0 + differences_of(first, body, phases))
+        error = np.hypot(STEPS[first][-1], STEPS[second][-1] * ratio)
+        beyond = np.abs(signed) > error
+        assert row["beyond uD"] == f"{100.0 * beyond.mean():.0f} %"
+        if (signed[beyond] < 0.0).any():
+            shares.add((pair, body))
+    assert len(shares) > 2, "there are negative ones among them"
+
+
+def test_ring_and_bar_of_the_chart_are_at_95_percent_and_maximum(report: Path) -> None:
+    page = page_of(report)
+    charts = re.findall(r'<svg class="dots body-(\d)".*?</svg>', page)
+    drawn = re.findall(r'<svg class="dots body-\d".*?</svg>', page)
+    assert len(charts) == len(drawn) == 6
+    ends = re.search(r"logarithmic axis from ([\d.e+-]+) % to ([\d.e+-]+) %", page)
+    assert ends is not None
+    low, high = (float(end) / 100.0 for end in ends.groups())
+
+    def at(size: float) -> float:
+        return 1.0 + 98.0 * np.log(size / low) / np.log(high / low)
+
+    for (pair, body), chart in zip(ROWS, drawn):
+        numbers = of_sizes(pair, body)
+        ring = float(re.search(r'class="ring" cx="([\d.]+)%', chart)[1])  # type: ignore[index]
+        end = float(re.search(r'class="end" x1="([\d.]+)%', chart)[1])  # type: ignore[index]
+        dot = float(re.search(r'<circle cx="([\d.]+)%', chart)[1])  # type: ignore[index]
+        expected = [at(abs(numbers[name])) for name in ("mean", "95 %", "maximum")]
+        assert [dot, ring, end] == pytest.approx(expected, abs=2e-3)
+
+
+def bars_of_page(report: Path, body: int, view: str = "mean") -> Iterator[tuple[str, str]]:
+    """Title and markup of every row of a waterfall of the page."""
+    page = page_of(report)
+    tables = re.findall(rf'<table class="waterfall fixed" data-waterfall="{view}".*?</table>', page, re.DOTALL)
+    for row in re.findall(r"<tr class=\"(?!axis).*?</tr>", tables[body - 1], re.DOTALL):
+        yield re.sub("<.*?>", "", re.search(r"<th.*?</th>", row, re.DOTALL)[0]), row  # type: ignore[index]
+
+
+@pytest.mark.parametrize("body", [1, 2])
+def test_an_error_bar_is_as_long_as_the_error_on_either_side(body: int, report: Path) -> None:
+    rows = list(bars_of_page(report, body))
+    assert len(rows) == 6
+    ticks = [float(x) for x in re.findall(r'class="(?:grid|zero)" x1="([\d.]+)%', rows[0][1])]
+    page = page_of(report)
+    labels = re.findall(r'<text x="[\d.]+%" y="11" text-anchor="middle">(.*?)</text>', page)[: len(ticks)]
+    sizes = [float(label.replace("−", "-").replace("+", "").replace(" %", "")) / 100.0 for label in labels]
+    per_share = (ticks[-1] - ticks[0]) / (sizes[-1] - sizes[0])  # percent of the width for a size of 1
+    phases = grid_phases(COARSE)
+    levels = {key: 1.0 + differences_of(key, body, phases) for key in KEYS}
+    for (first, second), (_, row) in zip([*pairwise(KEYS), (KEYS[0], KEYS[-1])], rows, strict=True):
+        error = np.hypot(STEPS[first][-1] * levels[first], STEPS[second][-1] * levels[second]).mean()
+        low, high = map(float, re.search(r'class="error" x1="([-\d.]+)%" x2="([-\d.]+)%', row).groups())  # type: ignore[union-attr]
+        assert high - low == pytest.approx(2.0 * error * per_share, abs=2.1e-3), "the places have three decimals"
+
+
+@pytest.mark.parametrize("body", [1, 2])
+def test_every_place_has_the_one_mean_of_the_total(
+    body: int, report: Path, tables: Tables, summary: dict[str, Any]
+) -> None:
+    signed = differences_of("spatial", body, grid_phases(COARSE))
+    mean, spread = signed.mean(), signed.std()
+    scene = summary["scenes"][0]
+    headline, waterfall = scene["headlines"][body - 1], scene["waterfalls"][body - 1]
+    total = next(row for row in scene["differences"] if (row["body"], row["pair"]) == (body, "total"))
+    for held in (headline["mean"], waterfall["total"]["size"], total["mean"]):
+        assert held == pytest.approx(mean, rel=1e-9)
+    for held in (headline["spread"], waterfall["spread"], total["spread"]):
+        assert held == pytest.approx(spread, rel=1e-9)
+    assert sum(bar["size"] for bar in waterfall["bars"]) == pytest.approx(mean, rel=1e-12)
+    digits = f"{abs(100.0 * mean):.2g} %"
+    direction = "less" if mean < 0.0 else "more"
+    assert f"the engine gives {digits} {direction} than the paper's equations (mean over 4 × 4" in headline["sentence"]
+    assert f"standard deviation {100.0 * spread:.2g} %;" in headline["sentence"]
+    rows = [text for title, text in bars_of_page(report, body) if title == "= total"]
+    sign = "−" if mean < 0.0 else "+"
+    assert [re.search(r'<td class="size">(.*?)</td>', row)[1] for row in rows] == [sign + digits]  # type: ignore[index]
+    [row] = [
+        row for row in tables.headed("step to", "real at") if (row["body"], row["step to"]) == (str(body), "total")
+    ]
+    assert row["mean"] == in_percent(mean, "+")
+    statement = headline["sentence"].removeprefix("fig3-I, ")
+    assert statement in (report / "summary.md").read_text(encoding="utf-8").replace("\\", "")
+    assert statement in str(ElementTree.parse(report / "junit.xml").getroot().findtext("testsuite/system-out"))
+    assert flat(statement) in flat(text_of(report / "report.pdf")[1])
+
+
+def test_means_of_the_steps_in_the_table_are_the_bars(tables: Tables, summary: dict[str, Any]) -> None:
+    titles = {model["title"].replace("_", ""): model["key"] for model in summary["models"]}
+    rows = [row for row in tables.headed("step to", "real at") if row["step to"] != "total"]
+    assert len(rows) == 10
+    for row in rows:
+        key, body = titles[row["step to"]], int(row["body"])
+        count = COARSE if key in ("translational", "spatial") else GRID  # of the sizes: of both models of the step
+        sizes = np.abs(step(key, body, count))
+        assert row["mean"] == in_percent(step(key, body).mean(), "+")
+        assert row["95 %"] == in_percent(np.percentile(sizes, 95.0, method="hazen"))
+        assert row["maximum"] == in_percent(sizes.max())
+
+
+def test_the_terminal_has_statistics_and_times_of_the_page(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = command("fig3-I", "--grid", str(GRID), "--skip", "assumptions", hierarchy=distinct_hierarchy())
+    cells = [re.split(r"\s{2,}", line.strip()) for line in run.out.splitlines()]
+    heading = next(row for row in cells if row[0] == "scene")
+    assert heading[3:6] == ["mean", "std. dev.", "maximum"]
+    for pair, body in ROWS:
+        [row] = [row for row in cells if row[1:3] == [str(body), pair]]
+        numbers = of_sizes(pair, body)
+        written = [float(cell.replace("−", "-").replace("+", "").replace(" %", "")) / 100.0 for cell in row[3:6]]
+        expected = [numbers[name] for name in ("mean", "standard deviation", "maximum")]
+        assert written == pytest.approx(expected, rel=0.06), "two digits"
+    text = summary_of(run.report)["run"]
+    took = f"{text['wall_seconds']:.1f} s of wall time with {text['jobs']} workers, {text['processor_seconds']:.1f} s"
+    for place in (run.out, *((run.report / name).read_text(encoding="utf-8") for name in ("index.html", "summary.md"))):
+        assert f"{took} of processor time" in place
+    assert flat(f"{took} of processor time") in flat(text_of(run.report / "report.pdf")[1])
+
+
+def drawn(patch: pytest.MonkeyPatch, draw: Callable[..., object], *arguments: Any) -> Figure:
+    """The figure that a function draws."""
+    figures: list[Figure] = []
+    patch.setattr(Figure, "savefig", lambda figure, *rest, **options: figures.append(figure))
+    draw(*arguments)
+    return figures[0]
+
+
+def by_phase(values: Array) -> Array:
+    """Values on a grid, alpha1 along the rows, closed at 2 pi."""
+    count = round(len(values) ** 0.5)
+    return np.pad(values.reshape(count, count), ((0, 1), (0, 1)), mode="wrap")
+
+
+@pytest.fixture(scope="module")
+def solved() -> tuple[Study, xr.Dataset]:
+    study = Study((load_scene("fig3-I"),), GRID, 1e-3, distinct_hierarchy())
+    batches = study.batches()
+    return study, labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+
+
+def heights(key: str, body: int, count: int) -> Array:
+    phases = grid_phases(count)
+    return by_phase(first_mu(body, phases) * (1.0 + differences_of(key, body, phases)))
+
+
+def test_a_pair_of_surfaces_has_each_under_its_title(
+    solved: tuple[Study, xr.Dataset], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, surfaces = solved
+    scene = study.scenes[0]
+    [pair] = [pair for pair in study.pairs(scene) if pair.key == "translational"]
+    shown: list[tuple[Any, ...]] = []
+    surface = Axes3D.plot_surface
+
+    def told(axes: Axes3D, *xyz: Array, **look: object) -> object:
+        shown.append((axes, *xyz))
+        return surface(axes, *xyz, **look)
+
+    monkeypatch.setattr(Axes3D, "plot_surface", told)
+    figure = drawn(monkeypatch, pairs.draw_pair, Path("unused.png"), surfaces, scene, 2, pair)
+    first, second, difference, _ = figure.axes
+    assert ["small equations" in first.get_title(), "translational engine" in second.get_title()] == [True, True]
+    for axes, key, count in ((first, "small", GRID), (second, "translational", COARSE)):
+        [(_, alpha1, alpha2, mu)] = [call for call in shown if call[0] is axes]
+        np.testing.assert_allclose(mu, heights(key, 2, count), rtol=1e-12)
+        assert alpha1[1, 0] == alpha2[0, 1] == pytest.approx(2.0 * np.pi / count)
+        assert alpha1[0, 1] == alpha2[1, 0] == 0.0
+    for axes in (first, second, difference):
+        assert (axes.get_xlabel(), axes.get_ylabel()) == (r"$\alpha_1$, rad", r"$\alpha_2$, rad")
+    [mesh] = difference.collections
+    sizes = 100.0 * by_phase(pair_sizes("translational", 2))
+    np.testing.assert_allclose(mesh.get_array().reshape(COARSE + 1, COARSE + 1), sizes.T, rtol=1e-9)
+    assert f"largest of 4 × 4: {np.abs(sizes).max():.2g} %" in difference.get_title()
+
+
+def test_maps_for_print_have_each_model_under_its_title(
+    solved: tuple[Study, xr.Dataset], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, surfaces = solved
+    models = study.hierarchy[0], study.hierarchy[4]
+    figure = drawn(monkeypatch, print_maps.draw_maps, surfaces, study.scenes[0], models, [2], [])
+    maps = [axes for axes in figure.axes if axes.get_title()]
+    assert [axes.get_title().split(", ")[1] for axes in maps] == ["small equations", "translational engine", "%"]
+    percent = 100.0 * by_phase(pair_sizes("translational", 2))
+    expected = heights("small", 2, GRID), heights("translational", 2, COARSE), percent
+    for axes, values in zip(maps, expected, strict=True):
+        [mesh] = axes.collections
+        np.testing.assert_allclose(mesh.get_array().reshape(values.shape), values.T, rtol=1e-9)
+    for axes, values in zip(maps[:2], expected):
+        [cross] = [line for line in axes.lines if line.get_marker() == "x"]
+        row, column = np.unravel_index(values[:-1, :-1].argmax(), values[:-1, :-1].shape)
+        place = 2.0 * np.pi * np.array([row, column]) / (len(values) - 1)
+        assert [float(cross.get_xdata()[0]), float(cross.get_ydata()[0])] == pytest.approx(place.tolist())
+
+
+def test_what_is_not_real_is_explained_as_not_real(report: Path) -> None:
+    page = page_of(report)
+    [tip] = re.findall(r'data-tip="([^"]*)">not real</span>', page)
+    assert tip.startswith("Not larger than five times the error estimates")
+
+
+def test_a_largest_value_names_its_grid_and_the_search(
+    solved: tuple[Study, xr.Dataset],
+) -> None:
+    study, surfaces = solved
+    searched = [
+        Worst("fig3-I", "exact", "amplification", 1, value=8.765, phases=(1.0, 2.0)),
+        Worst("fig3-I", "translational", "amplification", 1, value=7.654, phases=(1.1, 2.1)),
+    ]
+    report = report_of(study, surfaces, {"worst_phases": searched}, [], RUN)
+    [(about, _)] = map_tasks(report)
+    fine, coarse = heights("small", 1, GRID).max(), heights("spatial", 1, COARSE).max()
+    for words in (
+        f"μ_1, small equations: {fine:.4g} of 8 × 8 phases, 8.765 over all phases by the exact equations",
+        f"μ_1, spatial engine: {coarse:.4g} of 4 × 4 phases, 7.654 over all phases by the translational engine",
+        f"μ_2, small equations: {heights('small', 2, GRID).max():.4g} of 8 × 8 phases, not searched over all phases",
+    ):
+        assert words in about["note"]
+    data = json.loads(page_data(report))["scenes"][0]["models"]
+    assert data["small"]["worst"] == [[1.0, 2.0, 8.765, "exact"], None]
+    assert data["spatial"]["worst"] == [[1.1, 2.1, 7.654, "translational"], None]

@@ -1,0 +1,123 @@
+"""A feature is one folder and its entry in the registry: one is added to a copy of the package, another deleted."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from places import ROOT
+from report_texts import page_of, summary_of
+
+FOLDER = {
+    "__init__.py": '"""Ratio of the amplification factors of body 2 and the platform."""\n',
+    "analysis.py": '''from comparison.result_types import Number, result
+from comparison.runner.analysis import Analysis
+
+
+@result
+class Ratio:
+    """mu_2 over mu_1 of one scene and model."""
+
+    scene: str
+    """name of the scene"""
+    model: str
+    """key of the model"""
+    largest: Number
+    """largest ratio over the phase pairs"""
+
+
+class Ratios(Analysis):
+    key, stage, level = "ratio", "ratio", 1
+
+    def tasks(self, study, surfaces=None):
+        return []
+
+    def collect(self, study, surfaces, results):
+        mu = surfaces["mu"]
+        largest = (mu.sel(body=2) / mu.sel(body=1)).max(["alpha1", "alpha2"])
+        names = [(scene.name, model.key) for scene in study.scenes for model in study.hierarchy]
+        return [Ratio(*name, float(largest.sel(scene=name[0], model=name[1]))) for name in names]
+''',
+    "feature.py": """from comparison.analyses.ratio.analysis import Ratio, Ratios
+from comparison.report.section import Feature, Section
+
+
+def _draw(figures, report):
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    figure.subplots().plot([each.largest for each in report.results.of("ratio")])
+    figure.savefig(figures / "ratio.png")
+
+
+FEATURE = Feature(
+    "ratio",
+    list[Ratio],
+    "ratio of the two amplification factors",
+    analysis=Ratios(),
+    section=Section("ratio", "Ratio of the factors", "ratio/section.html.j2", ("ratio",), draw=_draw),
+)
+""",
+    "section.html.j2": """{% for row in results.ratio %}
+<p class="ratio">{{ row.model }} {{ row.largest }}</p>
+{% endfor %}
+""",
+}
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    """Report of a copy of the package that has the feature `ratio` and not the claims, and what it says."""
+    copy = tmp_path_factory.mktemp("copy")
+    for name in ("reference", "multibody"):
+        (copy / name).symlink_to(ROOT / name)
+    shutil.copytree(ROOT / "comparison", copy / "comparison", ignore=shutil.ignore_patterns("__pycache__"))
+    folder = copy / "comparison" / "analyses" / "ratio"
+    folder.mkdir()
+    for name, text in FOLDER.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    shutil.rmtree(copy / "comparison" / "analyses" / "claims")
+    registry = copy / "comparison" / "registry.py"
+    text = registry.read_text(encoding="utf-8")
+    measured = "from comparison.analyses.measured import feature as measured\n"
+    edits = {
+        "from comparison.analyses.claims import feature as claims\n": "",
+        "    claims.FEATURE,\n": "    ratio.FEATURE,\n",
+        measured: measured + "from comparison.analyses.ratio import feature as ratio\n",
+    }
+    for old, new in edits.items():
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    registry.write_text(text, encoding="utf-8")
+    command = [sys.executable, "-P", "-m", "comparison.run", "fig3-I", "--grid", "2", "--only", "surfaces,budget"]
+    environment = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(
+        [*command, "--out", str(copy / "report")], cwd=copy, env=environment, text=True, capture_output=True
+    )
+    assert done.returncode == 0, done.stderr
+    return copy / "report", summary_of(copy / "report")
+
+
+@pytest.mark.long
+def test_a_new_folder_and_its_entry_reach_file_page_and_figures(study: tuple[Path, dict[str, Any]]) -> None:
+    report, summary = study
+    assert [row["model"] for row in summary["ratio"]] == [model["key"] for model in summary["models"]]
+    assert min(row["largest"] for row in summary["ratio"]) > 0.5
+    page = page_of(report)
+    assert page.count('<p class="ratio">') == len(summary["models"])
+    assert (report / "figures" / "ratio.png").exists()
+    schema = json.loads((report / "summary.schema.json").read_text(encoding="utf-8"))
+    assert "ratio" in schema["properties"]
+
+
+@pytest.mark.long
+def test_a_deleted_folder_leaves_nothing_behind(study: tuple[Path, dict[str, Any]]) -> None:
+    report, summary = study
+    assert "claims" not in summary
+    assert 'id="claims"' not in page_of(report, "verification.html")

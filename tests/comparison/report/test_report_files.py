@@ -1,0 +1,195 @@
+"""What a finished run leaves: labeled surfaces, a summary for programs, figures, and a page that needs no network."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+import re
+from html import unescape
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.image import imread
+from report_texts import page_of, summary_of
+
+from comparison.study.models import MODEL_HIERARCHY
+from comparison.wording import symbols
+from reference.problem import load_scene
+
+GRID = 4
+PARTS = {
+    "index.html",
+    "verification.html",
+    "report.pdf",
+    "surfaces.nc",
+    "summary.json",
+    "summary.schema.json",
+    "summary.md",
+    "junit.xml",
+    "figures",
+    "manifest.json",
+}
+
+
+@pytest.fixture(scope="module")
+def surfaces(finished: Path) -> xr.Dataset:
+    with xr.open_dataset(finished / "surfaces.nc", engine="h5netcdf") as data:
+        return data.load()
+
+
+def test_a_report_is_exactly_its_parts(finished: Path) -> None:
+    assert {entry.name for entry in finished.iterdir()} == PARTS
+    beside = {entry.name for entry in finished.parent.iterdir()}
+    assert beside == {"report", "report.tiles"}, "the store, and no working directory left"
+
+
+def test_surfaces_are_labeled_by_scene_model_body_and_phases(surfaces: xr.Dataset) -> None:
+    assert surfaces["mu"].dims == ("scene", "model", "body", "alpha1", "alpha2")
+    assert surfaces["error"].dims == surfaces["mu"].dims
+    assert surfaces["status"].dims == ("scene", "model", "alpha1", "alpha2")
+    assert list(surfaces["scene"].values) == ["fig3-I", "fig4-viscous"]
+    assert list(surfaces["model"].values) == [model.key for model in MODEL_HIERARCHY]
+    assert list(surfaces["body"].values) == [1, 2]
+    for name in ("alpha1", "alpha2"):
+        np.testing.assert_allclose(surfaces[name], 2.0 * np.pi * np.arange(GRID) / GRID, rtol=1e-15)
+        assert surfaces[name].attrs["units"] == "rad"
+
+
+def test_every_value_stands_at_its_own_phases(surfaces: xr.Dataset) -> None:
+    """The fake reference answers 2 + i + cos a1 + sin a2, which no exchange of axes or order leaves alone."""
+    expected = 2.0 + surfaces["body"] + np.cos(surfaces["alpha1"]) + np.sin(surfaces["alpha2"])
+    assert surfaces["scene"].values.tolist() == ["fig3-I", "fig4-viscous"]
+    for scene in surfaces["scene"].values:
+        for model, factor in (("small", 1.0), ("exact", 1.0), ("translational", 1.01)):
+            mu = surfaces["mu"].sel(scene=scene, model=model)
+            np.testing.assert_allclose(mu, factor * expected.transpose(*mu.dims), rtol=1e-14)  # rounding
+
+
+def test_a_model_that_does_not_apply_is_nan_and_says_so(surfaces: xr.Dataset) -> None:
+    regularized = surfaces.sel(scene="fig4-viscous", model="regularised")
+    assert np.isnan(regularized["mu"]).all()
+    assert (regularized["status"] == "not applicable").all()
+
+
+def test_bodies_a_scene_does_not_have_are_nan_and_counted(surfaces: xr.Dataset) -> None:
+    assert list(surfaces["bodies"].values) == [2, 2]
+    assert list(surfaces["digest"].values) == [load_scene(name).digest() for name in ("fig3-I", "fig4-viscous")]
+
+
+def test_the_file_carries_its_own_provenance(surfaces: xr.Dataset) -> None:
+    assert surfaces.attrs["command"].startswith("python -m comparison.run fig3-I fig4-viscous --grid 4")
+    assert surfaces.attrs["exudyn"].startswith("1.")
+    assert surfaces.attrs["tolerance"] == 1e-3
+
+
+def _strict(text: str) -> object:
+    def refuse(word: str) -> float:
+        raise ValueError(f"{word} is not JSON")
+
+    return json.loads(text, parse_constant=refuse)
+
+
+def test_summary_has_its_schema_and_no_nan(finished: Path) -> None:
+    summary = _strict((finished / "summary.json").read_text(encoding="utf-8"))
+    assert isinstance(summary, dict)
+    assert summary["schema"] == "phase-resonance/summary"
+    assert summary["version"] == 5
+    assert (summary["grid"], summary["tolerance"]) == (GRID, 1e-3)
+    assert {"command", "began", "wall_seconds", "processor_seconds", "jobs", "provenance"} <= set(summary["run"])
+    assert [model["key"] for model in summary["models"]] == [model.key for model in MODEL_HIERARCHY]
+    assert [scene["name"] for scene in summary["scenes"]] == ["fig3-I", "fig4-viscous"]
+    dry, wet = summary["scenes"]
+    assert dry["models"]["exact"]["outcomes"] == {"ok": GRID**2}
+    assert "regularised" not in wet["models"]
+    assert {
+        "pair",
+        "body",
+        "median",
+        "percentile95",
+        "maximum",
+        "phases",
+        "beyond_error",
+        "not_ok",
+        "unanswered",
+    } <= set(dry["differences"][0])
+
+
+def test_differences_are_the_planted_one_percent(finished: Path) -> None:
+    summary = summary_of(finished)
+    rows = [row for scene in summary["scenes"] for row in scene["differences"]]
+    assert len(rows) == 2 * 2 * 3, "scenes x bodies x pairs"
+    for row in rows:
+        for key in ("median", "percentile95", "maximum"):
+            assert row[key] == pytest.approx(0.01, rel=1e-12)  # rounding of a quotient near 1
+        assert row["beyond_error"] == 1.0, "1 % is well above the 0.1 % both sides claim"
+        assert (row["not_ok"], row["unanswered"]) == (0, 0)
+    dry = {row["pair"]: (row["first"], row["second"]) for row in summary["scenes"][0]["differences"]}
+    wet = {row["pair"]: (row["first"], row["second"]) for row in summary["scenes"][1]["differences"]}
+    both = {"total": ("small", "spatial"), "translational": ("small", "translational")}
+    assert dry == {**both, "like-for-like": ("regularised", "translational")}
+    assert wet == {**both, "like-for-like": ("exact", "translational")}
+
+
+def test_every_body_of_every_scene_has_its_figures(finished: Path) -> None:
+    expected = {
+        f"{scene}-body{body}-{pair}"
+        for scene in ("fig3-I", "fig4-viscous")
+        for body in (1, 2)
+        for pair in ("total", "translational", "like-for-like", "budget")
+    }
+    paper = {f"{scene}-{kind}" for scene in ("fig3-I", "fig4-viscous") for kind in ("paper", "assumptions")}
+    files = {f"{name}.png" for name in expected | paper} | {f"{name}.pdf" for name in paper}
+    assert {entry.name for entry in (finished / "figures").iterdir()} == files
+    assert all((finished / "figures" / name).read_bytes().startswith(b"%PDF") for name in files if "pdf" in name)
+    for name in (f"{stem}.png" for stem in expected | paper):
+        picture = imread(finished / "figures" / name)
+        assert picture.shape[1] > 1000
+        thirds = np.array_split(picture[60:, :, :3], 3, axis=1)
+        assert all(third.std() > 0.05 for third in thirds), "no panel is empty"
+
+
+class _Requests(HTMLParser):
+    """Every address a browser would load by itself."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        for name, value in attrs:
+            if name in {"src", "href", "data", "poster", "srcset", "action"} and value:
+                self.found.append(value)
+
+
+def test_the_page_needs_no_other_file_and_no_network(finished: Path) -> None:
+    page = page_of(finished)
+    parser = _Requests()
+    parser.feed(page)
+    assert parser.found, "the figures are there"
+    assert [value[:40] for value in parser.found if not value.startswith(("data:", "#"))] == ["verification.html"]
+    policy = unescape(page.split('http-equiv="Content-Security-Policy" content="', 1)[1].split('"', 1)[0])
+    assert "default-src 'none'" in policy, "the browser itself refuses whatever a library might ask for"
+    style = page.split("<style>", 1)[1].split("</style>", 1)[0]
+    assert re.findall(r"@import|url\(", style) == []
+
+
+def test_the_page_names_every_scene_body_and_model(finished: Path) -> None:
+    page = page_of(finished)
+    for text in ("(fig3-I)", "(fig4-viscous)", "platform: ", "body 2: ", "no building has been compared"):
+        assert text in page
+    for model in MODEL_HIERARCHY:
+        assert str(symbols(model.title)) in page
+    digest = load_scene("fig3-I").digest()
+    assert digest in page
+
+
+def test_the_data_of_the_page_are_the_surfaces(finished: Path, surfaces: xr.Dataset) -> None:
+    page = page_of(finished)
+    packed = re.findall(r'<script[^>]*id="data"[^>]*>(.*?)</script>', page, flags=re.DOTALL)[0]
+    data = json.loads(gzip.decompress(base64.b64decode(packed)))
+    mu = np.array(data["scenes"][0]["models"]["translational"]["mu"])
+    np.testing.assert_allclose(mu, surfaces["mu"].sel(scene="fig3-I", model="translational"), rtol=1e-6)  # 7 digits

@@ -1,0 +1,150 @@
+"""What a pull request and a CI server are shown: summary.md and junit.xml say what the run found, and nothing else."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable, Iterator
+from html import unescape
+from importlib import resources
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import pytest
+from fake_models import errors_in, fake_hierarchy
+from jsonschema import Draft202012Validator
+from pydantic import TypeAdapter
+from report_texts import summary_of
+
+from comparison.registry import StudyResults
+from comparison.surfaces.waterfall import WaterfallBar
+from reference.problem import load_scene
+
+LIMITS = ("median", "maximum", "ratio", "closure", "failed")
+
+
+def _cells(line: str) -> list[str]:
+    return [cell.strip() for cell in line.strip("|").split("|")]
+
+
+def test_the_summary_names_every_broken_limit_and_every_verdict(finished: Path) -> None:
+    text = (finished / "summary.md").read_text(encoding="utf-8")
+    assert "12 acceptance limits broken" in text
+    assert r"- fig3-I: body 1: acceptance.median: 0.01 found, 0.0001 allowed" in text
+    assert "- **fig3-I** (Fig. 3a, b" in text
+    assert "Cause: elastic contact, not geometry" in text, "the only model of the hierarchy that differs"
+    assert "no building has been compared, and this study has no measured peaks" in text
+
+
+def test_tables_of_the_summary_have_the_planted_size(finished: Path) -> None:
+    lines = (finished / "summary.md").read_text(encoding="utf-8").splitlines()
+    tables = [_cells(line) for line in lines if line.startswith("|")]
+    assert [len(row) for row in tables] == [10] * 14 + [9] * 6, "differences; five steps, the total and its phase pairs"
+    sizes = [row for row in tables if row[:3] == ["fig3-I", "1", "like for like"]]
+    assert [row[3:7] for row in sizes] == [["+1 %", r"\< 0.0001 %", "1 %", "1 %"]]
+
+
+def test_a_sound_run_says_that_its_limits_hold(command: Callable[..., object]) -> None:
+    done = command("fig3-I", "--grid", "2", hierarchy=errors_in({"small": 0.02}))
+    text = (done.report / "summary.md").read_text(encoding="utf-8")  # type: ignore[attr-defined]
+    assert "**Every acceptance limit holds.**" in text
+    assert "broken" not in text
+    suites = ElementTree.parse(done.report / "junit.xml").getroot()  # type: ignore[attr-defined]
+    assert (suites.get("tests"), suites.get("failures")) == ("5", "0")
+
+
+def test_junit_fails_the_broken_limits_of_every_scene(finished: Path) -> None:
+    suites = ElementTree.parse(finished / "junit.xml").getroot()
+    assert [suite.get("name") for suite in suites] == ["fig3-I", "fig4-viscous"]
+    for suite in suites:
+        acceptance = load_scene(str(suite.get("name"))).acceptance
+        cases = suite.findall("testcase")
+        assert [case.get("name") for case in cases] == [f"acceptance.{k} = {getattr(acceptance, k):g}" for k in LIMITS]
+        failed = [case for case in cases if case.find("failure") is not None]
+        assert [str(case.get("name")).split()[0] for case in failed] == [
+            "acceptance.median",
+            "acceptance.maximum",
+            "acceptance.ratio",
+        ]
+        assert suite.get("failures") == "3"
+        text = str(failed[0].findtext("failure"))
+        assert [line.split(": ")[1] for line in text.splitlines()] == ["body 1", "body 2"], "both bodies break it"
+
+
+def _objects(schema: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Every schema inside a schema."""
+    yield schema
+    inner = [*schema.get("properties", {}).values(), *schema.get("$defs", {}).values()]
+    inner += [schema.get("items"), schema.get("additionalProperties"), *schema.get("anyOf", [])]
+    for part in inner:
+        if isinstance(part, dict):
+            yield from _objects(part)
+
+
+def test_every_key_of_the_summary_is_as_documented(finished: Path) -> None:
+    schema = json.loads((finished / "summary.schema.json").read_text(encoding="utf-8"))
+    Draft202012Validator.check_schema(schema)
+    summary = summary_of(finished)
+    assert [error_message.message for error_message in Draft202012Validator(schema).iter_errors(summary)] == []
+    for part in _objects(schema):
+        if "properties" in part:
+            limits_of_engines = {"$ref": "#/$defs/Limits"}  # tables under names that users choose
+            assert part["additionalProperties"] in (False, limits_of_engines), "an undocumented key is a fault"
+            assert all(key.get("description") for key in part["properties"].values())
+
+
+def test_the_summary_read_back_is_the_results(finished: Path) -> None:
+    text = (finished / "summary.json").read_text(encoding="utf-8")
+    assert json.loads(StudyResults.model_validate_json(text).as_json()) == json.loads(text)
+
+
+def test_page_and_summary_have_the_sentences_of_the_results(finished: Path) -> None:
+    summary = summary_of(finished)
+    page, text = ((finished / name).read_text(encoding="utf-8") for name in ("index.html", "summary.md"))
+    shown = unescape(re.sub("<.*?>", "", page))
+    for scene in summary["scenes"]:
+        assert [headline["body"] for headline in scene["headlines"]] == [1, 2]
+        for headline in scene["headlines"]:
+            sentence = headline["sentence"].removeprefix(f"{scene['name']}, ")
+            assert sentence in shown
+            assert sentence in text.replace("\\", ""), "what Markdown would read is escaped"
+
+
+def test_broken_limits_are_numbers_and_the_lines_say_the_same(finished: Path) -> None:
+    summary = summary_of(finished)
+    limits = [limit for scene in summary["scenes"] for limit in scene["limits"]]
+    alerts = [alert for alert in summary["alerts"] if alert["kind"] == "limit"]
+    assert [line for limit in limits for line in limit["broken"]] == [f"{a['scene']}: {a['text']}" for a in alerts]
+    median = next(limit for limit in limits if limit["key"] == "median")
+    assert [breach["body"] for breach in median["breaches"]] == [1, 2]
+    assert [breach["found"] for breach in median["breaches"]] == pytest.approx([0.01, 0.01])
+    assert median["allowed"] == 1e-4
+
+
+def test_a_missing_number_is_null_in_one_way() -> None:
+    form, bar = TypeAdapter(WaterfallBar), WaterfallBar("exact", math.nan, math.inf)
+    written = form.dump_python(bar, mode="json")
+    assert written == {"model": "exact", "size": None, "error": None, "real": False}
+    assert math.isnan(form.validate_python(written).size)
+
+
+def test_a_point_without_an_answer_is_in_the_summary(command: Callable[..., object]) -> None:
+    done = command("fig3-I", "--grid", "4", hierarchy=fake_hierarchy("failing_point"))
+    text = (done.report / "summary.md").read_text(encoding="utf-8")  # type: ignore[attr-defined]
+    assert "- fig3-I, translational engine: 1 × rim reached" in text
+
+
+@pytest.mark.parametrize("name", ["summary.md", "junit.xml"])
+def test_nothing_of_a_scene_is_read_as_markup(name: str, command: Callable[..., object], tmp_path: Path) -> None:
+    source = resources.files("reference.problem") / "scenes" / "fig3-I.toml"
+    lines = source.read_text(encoding="utf-8").splitlines()
+    lines = ['title = "a | b <c> *d* & `e`"' if line.startswith("title") else line for line in lines]
+    (tmp_path / "odd.toml").write_text("\n".join(lines), encoding="utf-8")
+    done = command(str(tmp_path / "odd.toml"), "--grid", "2")
+    text = (done.report / name).read_text(encoding="utf-8")  # type: ignore[attr-defined]
+    if name == "junit.xml":
+        assert ElementTree.fromstring(text).tag == "testsuites"
+    else:
+        assert r"a \| b \<c\> \*d\* \& \`e\`" in text

@@ -1,0 +1,138 @@
+"""Names and titles of scenes are texts: no markup, no formula, no end of a file name, in whatever shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from fake_models import fake_hierarchy
+from places import SCENES
+from report_texts import page_of
+from rich.console import Console
+from runs import RUN, Run
+from studies import solved
+
+from comparison.analyses.assumptions.figure import draw_assumptions
+from comparison.analyses.assumptions.variations import FEW, AssumptionCell
+from comparison.analyses.families.analysis import FamilyStep
+from comparison.analyses.families.figure import draw_family
+from comparison.registry import report_of
+from comparison.report.junit import junit
+from comparison.report.summary_text import summary_text
+from comparison.runner.progress import progress, wide_console
+from comparison.study.study import Study
+from comparison.surfaces.figures.file_names import figure_file, with_ending
+from comparison.surfaces.figures.paper import draw_paper_figure, paper_figure_name
+from reference.problem import Family, Scene, load_family, load_scene
+
+
+def _written(folder: Path, name: str, title: str = "plain", friction: str = "0.1") -> str:
+    lines = (SCENES / "fig3-I.toml").read_text(encoding="utf-8").splitlines()
+    lines[0] = f"title = '{title}'"
+    text = "\n".join(lines).replace("friction = 0.1", f"friction = {friction}")
+    (folder / name).write_text(text, encoding="utf-8")
+    return str(folder / name)
+
+
+def test_members_of_a_family_have_figures_of_their_own(tmp_path: Path) -> None:
+    family = load_family(_written(tmp_path, "fam.toml", friction="{values = [0.02, 0.04]}"))
+    study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
+    surfaces = solved(study)
+    folder = tmp_path / "figures"
+    folder.mkdir()
+    for scene in study.scenes:
+        draw_paper_figure(folder / paper_figure_name(scene), study, surfaces, scene)
+    assert sorted(file.name for file in folder.iterdir()) == [
+        f"fam[friction={value}]-paper.{ending}" for value in ("0.02", "0.04") for ending in ("pdf", "png")
+    ]
+
+
+def test_a_name_with_dots_keeps_them_and_a_long_one_is_cut() -> None:
+    assert with_ending(Path("a[b=0.02]-paper"), ".pdf").name == "a[b=0.02]-paper.pdf"
+    assert with_ending(Path("a[b=0.02].png"), ".pdf").name == "a[b=0.02].pdf"
+    long = [figure_file("é" * 150 + end, "body1", "total") for end in "ab"]
+    assert len(set(long)) == 2, "two long names are two files"
+    assert all(len(name.encode()) <= 255 and name.endswith("-body1-total.png") for name in long)
+
+
+def test_brackets_in_names_and_titles_are_printed(command: Callable[..., Run], tmp_path: Path) -> None:
+    scene = _written(tmp_path, "fam.toml", "a [/b] [bold]c :warning:", "{values = [0.02, 0.04]}")
+    plan = command(scene, "--plan", "--out", str(tmp_path / "[x] y"))
+    assert plan.code == 0
+    for name in ("fam", "[x] y"):
+        assert name in plan.out
+    run = command(scene, "--grid", "2")
+    assert run.code == 0
+    assert "fam[friction=0.04]" in run.out.split("Relative differences")[1]
+
+
+def test_bars_and_consoles_print_brackets(capsys: pytest.CaptureFixture[str]) -> None:
+    wide_console().print("[red]a[/b] :warning:")
+    assert capsys.readouterr().out == "[red]a[/b] :warning:\n"
+    console = Console(width=80, force_terminal=True)
+    with console.capture() as shown, progress(console, 1.0, 1) as display:
+        display.advance("x[/b]", "1 of 1 tasks", 1.0)
+    assert "x[/b]" in shown.get()
+
+
+def _odd(scene: Scene) -> Scene:
+    return scene.with_values({"title": r"x $\frac{$ y"})
+
+
+def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
+    scene = _odd(load_scene("fig3-I"))
+    nothing = (tuple([0.01] * 2),) * 3
+    cells = [AssumptionCell(scene.name, variation, nothing, nothing, ("ok",) * 3) for variation in FEW]
+    draw_assumptions(tmp_path / "assumptions.png", scene, cells)
+    draw_family(
+        tmp_path / "family.png",
+        Family("fam", (scene, scene), "a$b$", ("$c$", r"$\frac{$")),
+        [FamilyStep("total", 1, (0.01, 0.02), (1e-3, 1e-3), (True, True))],
+        [],
+        fake_hierarchy(),
+        1,
+    )
+    assert (tmp_path / "assumptions.png").stat().st_size > 0
+    assert (tmp_path / "family.png").stat().st_size > 0
+
+
+def test_two_scenes_of_one_name_are_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:
+    family = _written(tmp_path, "fam.toml", friction="{values = [0.02, 0.4]}")
+    member = _written(tmp_path, "fam[friction=0.4].toml")
+    run = command(family, member, hierarchy=fake_hierarchy("forbidden"))
+    assert run.code == 2
+    assert run.err.startswith(f"{member}: scene = 'fam[friction=0.4]': same name as {family}")
+    assert run.err.count("\n") == 1
+
+
+def test_junit_and_summary_are_well_formed_for_any_name() -> None:
+    title = "[a](http://b) #1 $x$ &copy; ~~c~~ <b>\n| d"
+    valid = load_scene("fig3-I")
+    scene = Scene.model_construct(**{**dict(valid), "name": "a\x00\x01\ud800\ufffe<b>", "title": title})
+    study = Study((scene,), 2, 1e-3, fake_hierarchy())
+    surfaces = solved(study)
+    results = report_of(study, surfaces, {}, [], RUN).results
+    assert results.broken
+    suites = ElementTree.fromstring(junit(results).encode())
+    assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"
+    text = summary_text(results)
+    assert r"\[a\](http://b) \#1 \$x\$ \&copy; \~\~c\~\~ \<b\> \| d" in text
+    assert "`` run `a` ``" in text
+    assert np.unique([line.count("|") for line in text.splitlines() if line.startswith("| a")]).size <= 2
+
+
+def test_a_page_of_records_says_nothing_of_phases(command: Callable[..., Run]) -> None:
+    run = command("synthetic-pair")
+    page = page_of(run.report)
+    top = page[page.index("<h1>") : page.index("<nav")]
+    assert "initial phases" not in top
+    assert "of every body under a recorded motion" in top
+    assert "48 ×" not in (run.report / "summary.md").read_text(encoding="utf-8")
+    assert "over the phases" not in run.out
+    mixed = command("synthetic-pair", "fig3-I", "--grid", "2")
+    assert mixed.code == 0, mixed.err
+    page = page_of(mixed.report)
+    assert "over 2 × 2 initial phases of the two-frequency loading, or under a recorded motion" in page

@@ -1,0 +1,86 @@
+"""The parts of a report, read back."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+from jsonschema import Draft202012Validator
+from pypdf import PdfReader
+
+
+def summary_of(report: Path) -> dict[str, Any]:
+    """What summary.json holds."""
+    found: dict[str, Any] = json.loads((report / "summary.json").read_text(encoding="utf-8"))
+    return found
+
+
+def schema_errors(report: Path) -> list[str]:
+    """What summary.json has against the schema beside it."""
+    schema = json.loads((report / "summary.schema.json").read_text(encoding="utf-8"))
+    return [error.message for error in Draft202012Validator(schema).iter_errors(summary_of(report))]
+
+
+def page_of(report: Path, name: str = "index.html") -> str:
+    """The source of a page."""
+    return (report / name).read_text(encoding="utf-8")
+
+
+def both_pages(report: Path) -> str:
+    """The sources of both pages."""
+    return page_of(report) + page_of(report, "verification.html")
+
+
+def data_of(report: Path) -> dict[str, Any]:
+    """The numbers that the page draws."""
+    (packed,) = re.findall(r'<script[^>]*id="data"[^>]*>(.*?)</script>', page_of(report), flags=re.DOTALL)
+    found: dict[str, Any] = json.loads(gzip.decompress(base64.b64decode(packed)))
+    return found
+
+
+def text_of(path: Path) -> tuple[int, str]:
+    """Number of pages of a PDF, and its text on one line."""
+    pages = PdfReader(path).pages
+    words = " ".join(page.extract_text() for page in pages).replace("\u00a0", " ").split()
+    return len(pages), " ".join(words)
+
+
+def flat(text: str) -> str:
+    """The letters alone: where lines break, a reader of the file may add or lose a space or a hyphen."""
+    return "".join(letter for letter in text if letter.isalnum())
+
+
+class Tables(HTMLParser):
+    """Every table of a page: rows of cells, each a text."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tables: list[list[list[str]]] = []
+        self._inside = False
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append([])
+        elif tag in ("td", "th"):
+            self.tables[-1][-1].append("")
+            self._inside = True
+
+    def handle_endtag(self, tag: str) -> None:
+        self._inside = self._inside and tag not in ("td", "th")
+
+    def handle_data(self, data: str) -> None:
+        if self._inside:
+            self.tables[-1][-1][-1] += data
+
+    def headed(self, *headings: str) -> list[dict[str, str]]:
+        """Rows of the one table with these headings, as cells by heading."""
+        [table] = [table for table in self.tables if set(headings) <= set(table[0])]
+        return [dict(zip(table[0], row, strict=True)) for row in table[1:]]

@@ -1,0 +1,187 @@
+"""Killed at any moment, or with a full disk, a run goes on from what is stored, and its numbers are the same bytes."""
+
+from __future__ import annotations
+
+import errno
+import io
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from places import HELPERS, ROOT
+from report_texts import summary_of
+from rich.console import Console
+from runs import Run
+from whole_runs import whole_run
+
+from comparison.runner.cache import store_beside
+from comparison.study.batches import BatchResult
+
+INSTANTS = 24
+
+# One process imports everything, then forks a run for every instant: a start of Python would take most of the time.
+# An instant is a random number of stored results and a random time after. The run counts and kills itself: another
+# process, which a busy machine may keep waiting, would meet the late stages only.
+SCRIPT = """
+import os, random, shutil, signal, sys
+sys.path[:0] = [{here!r}, {root!r}]
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from rich.console import Console
+from ending import end_after
+
+def run(place):
+    whole_run(place, Console(file=open(os.devnull, "w")))
+
+def killed(place, results, seconds):
+    child = os.fork()
+    if child == 0:
+        end_after(results, seconds)
+        run(place)
+        os._exit(0)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
+
+run(Path("whole"))
+draw, count = random.Random(7), 0
+while count < {instants}:
+    place = Path(f"killed{{count}}")
+    late = count % 3 == 0  # a third of them after the surfaces
+    if killed(place, 96 + draw.randrange(24) if late else draw.randrange(96), draw.uniform(0.0, 0.003)):
+        count += 1
+    else:  # it was done before its end
+        shutil.rmtree(place, ignore_errors=True)
+"""
+
+
+def _bytes(answers: list[BatchResult]) -> list[object]:
+    return [(a.mu.tobytes(), a.error.tobytes(), a.instant.tobytes(), a.status) for a in answers]
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="fork")
+def test_a_run_killed_at_random_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
+    script = SCRIPT.format(here=str(HELPERS), root=str(ROOT), instants=INSTANTS)
+    subprocess.run([sys.executable, "-c", script], cwd=tmp_path, check=True)
+    quiet = Console(quiet=True)
+    whole, motions, *stored = whole_run(tmp_path / "whole", quiet)
+    assert stored == [len(whole), len(motions)] == [72, 48], "the run that was not killed"
+    anew, same, *stored = whole_run(tmp_path / "new", quiet)
+    assert (_bytes(anew), same, stored) == (_bytes(whole), motions, [0, 0])
+    before = []
+    for count in range(INSTANTS):
+        resumed, same, *stored = whole_run(tmp_path / f"killed{count}", quiet)
+        assert (_bytes(resumed), same) == (_bytes(whole), motions)
+        before.append(tuple(stored))
+    assert len({batches for batches, _ in before}) > 8, "killed at different stages"
+    assert sum(batches == 72 and 0 < others < 48 for batches, others in before) > 3, "of these some after the surfaces"
+
+
+def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[..., Run]) -> None:
+    words = ["fig3-I", "--grid", "4"]
+    first = command(*words)
+    assert first.code == 0
+    again = command(*words)
+    assert "only the others are computed" in again.out
+    summary = summary_of(again.report)["run"]
+    assert summary["tiles_stored_before"] == summary["tiles"] > 0
+    batches = summary["tiles"]
+    assert f"{batches} of {batches} batches, " in command(*words, "--plan").out.replace("\n", " ")
+    assert "batches are in" not in command(*words, "--fresh", "--plan").out
+    fresh = command(*words, "--fresh")
+    assert "only the others are computed" not in fresh.out
+    summary = summary_of(fresh.report)["run"]
+    assert summary["tiles_stored_before"] == 0
+
+
+@pytest.mark.long
+@pytest.mark.skipif(sys.platform == "win32", reason="the system does not limit the size of files")
+def test_a_disk_that_fills_up_under_the_surfaces_is_one_line(tmp_path: Path) -> None:
+    script = """
+import resource, sys
+from concurrent.futures import ThreadPoolExecutor
+sys.path[:0] = [{here!r}, {root!r}]
+from comparison.report import writing as report
+from comparison.run import main
+from fake_models import fake_hierarchy
+written = report.write_report
+def with_little_room(*arguments):
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20 * 1024, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+    written(*arguments)
+report.write_report = with_little_room
+sys.exit(main(["fig3-I", "--grid", "2", "--only", "budget", "--out", "report"], fake_hierarchy(), ThreadPoolExecutor))
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", script.format(here=str(HELPERS), root=str(ROOT))],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 3, run.stderr
+    assert run.stderr.count("\n") == 1
+    assert "--out = 'report': could not be written: [Errno 27] File too large" in run.stderr
+    assert [entry.name for entry in tmp_path.iterdir()] == ["report.tiles"]
+
+
+def test_a_full_disk_is_exit_3_and_the_run_goes_on_later(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[str] = []
+
+    class Full(io.FileIO):
+        def write(self, content: Any) -> int:
+            written.append(str(self.name))
+            if len(written) > 3:
+                super().write(content[:100])  # as much as there was room for
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return super().write(content)
+
+    words = ["fig3-I", "--grid", "4"]
+    with monkeypatch.context() as patch:
+        patch.setattr("reference.problem.files.os.fdopen", lambda handle, mode: Full(handle, mode))
+        run = command(*words)
+    assert run.code == 3
+    assert run.err.count("\n") == 1
+    assert "a result could not be stored: No space left on device; 3 of " in run.err
+    assert "go on with: python -m comparison.run fig3-I --grid 4 " in run.err
+    store = store_beside(run.report)
+    assert len(list(store.glob("*/*.batch"))) == 3
+    assert not list(store.glob("*/.phase*"))
+    assert not run.report.exists()
+    again = command(*words)
+    assert again.code == 0
+    assert "only the others are computed" in again.out
+
+
+@pytest.mark.long
+def test_a_real_run_is_repeated_without_computing_anything(tmp_path: Path) -> None:
+    def ended() -> int:
+        words = ["fig4-viscous", "--grid", "2", "--jobs", "1", "--out", "report"]
+        script = f"import sys\nfrom comparison.run import main\nsys.exit(main({words}))"
+        paths = os.pathsep.join([str(HELPERS), str(ROOT)])
+        environment = {**os.environ, "PYTHONPATH": paths, "NUMBA_CACHE_DIR": str(tmp_path / "build")}
+        command = [sys.executable, "-c", script]
+        return subprocess.run(command, cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL).returncode
+
+    def numbers() -> tuple[object, dict[str, dict[str, int]]]:
+        summary = summary_of(tmp_path / "report")
+        run = summary.pop("run")
+        for scene in summary["scenes"]:
+            for model in scene["models"].values():
+                model.pop("cost")  # processor time is no number of the models
+        for cell in summary["assumptions"]["cells"]:
+            cell.pop("cost")
+        return json.dumps(summary), run["parts"]
+
+    assert ended() == 0
+    whole, _ = numbers()
+    assert ended() == 0
+    again, parts = numbers()
+    assert again == whole
+    assert parts
+    assert all(part["stored_before"] == part["tasks"] for part in parts.values()), "nothing is computed"

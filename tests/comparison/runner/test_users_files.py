@@ -1,0 +1,360 @@
+"""What the study did not write is never deleted, replaced or run: it stays, and the study's own files go beside it."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import os
+import signal
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import pytest
+from fake_models import fake_hierarchy
+from known_results import FOUND
+from report_texts import page_of
+from runs import Run
+
+from comparison.analyses.extremes import command as extremes
+from comparison.analyses.tradeoff import command as tradeoff
+from comparison.cli import reports
+from comparison.runner.cache import Cache, Key
+from comparison.runner.output import (
+    MANIFEST,
+    Own,
+    clear_dead,
+    foreign,
+    publish,
+    read_manifest,
+    refuse_foreign_files,
+    replace_report,
+    write_manifest,
+)
+from reference.problem.files import TEMPORARY, write_new
+
+SMALL = ["fig3-I", "--grid", "2"]
+
+
+def put(folder: Path, *names: str, content: str = "new") -> tuple[Path, list[str]]:
+    """A report of these files; where it went, and what was said."""
+    said: list[str] = []
+    with replace_report(folder, said.append) as report:
+        for name in names or ("index.html",):
+            (report.folder / name).parent.mkdir(exist_ok=True)
+            (report.folder / name).write_text(content, encoding="utf-8")
+    return report.place, said
+
+
+APPEARS = {
+    "a new folder": ("thesis.txt", False),
+    "a file in a finished report": ("notes.txt", True),
+    "a picture among the figures": ("figures/my.png", True),
+    "a picture deeper": ("figures/for-paper/fig.svg", True),
+    "a changed page": ("index.html", True),
+    "a manifest": (MANIFEST, False),
+}
+
+
+@pytest.mark.parametrize(("name", "finished"), APPEARS.values(), ids=APPEARS.keys())
+def test_what_appears_in_out_meanwhile_stays(tmp_path: Path, name: str, finished: bool) -> None:
+    if finished:
+        put(tmp_path / "report", "index.html", "figures/ours.png")
+    said: list[str] = []
+    with replace_report(tmp_path / "report", said.append) as report:
+        (report.folder / "index.html").write_text("new", encoding="utf-8")
+        file = tmp_path / "report" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text("years of work", encoding="utf-8")
+    assert (tmp_path / "report" / name).read_text(encoding="utf-8") == "years of work"
+    assert report.place == tmp_path / "report-2"
+    assert (tmp_path / "report-2" / "index.html").read_text(encoding="utf-8") == "new"
+    assert foreign(tmp_path / "report-2") == []
+    assert len(said) == 1
+    assert repr(name) in said[0]
+    assert "report-2" in said[0]
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report-2"]
+
+
+def test_a_study_says_where_its_report_went_instead(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write = reports.report_of
+
+    def meanwhile(*arguments: object, **options: object) -> object:
+        (tmp_path / "report").mkdir()
+        (tmp_path / "report" / "thesis.txt").write_text("years of work", encoding="utf-8")
+        return write(*arguments, **options)
+
+    monkeypatch.setattr(reports, "report_of", meanwhile)
+    run = command(*SMALL)
+    assert run.code == 0
+    assert (tmp_path / "report" / "thesis.txt").read_text(encoding="utf-8") == "years of work"
+    assert run.err.count("\n") == 1
+    assert "'thesis.txt' there is not a file of this study" in run.err
+    assert str(tmp_path / "report-2" / "index.html") in run.out.replace("\n", "")
+    again = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
+    assert again.code == 2, "now it is known at the start"
+
+
+@pytest.mark.parametrize("name", ["figures/my.png", "figures/for-paper/fig.svg", "old-tradeoff.nc/x", "empty/"])
+def test_a_file_of_the_user_in_a_report_is_refused_at_the_start(
+    command: Callable[..., Run], tmp_path: Path, name: str
+) -> None:
+    put(tmp_path / "report", "figures/ours.png")
+    file = tmp_path / "report" / name
+    (file if name.endswith("/") else file.parent).mkdir(parents=True, exist_ok=True)
+    if not name.endswith("/"):
+        file.write_text("mine", encoding="utf-8")
+    run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
+    assert run.code == 2
+    assert "which would be lost: move it away" in run.err
+    assert run.err.count("\n") == 1
+    assert file.exists()
+
+
+def test_a_file_or_link_in_place_of_the_report_stays(tmp_path: Path) -> None:
+    with replace_report(tmp_path / "report", lambda line: None) as report:
+        (report.folder / "index.html").write_text("new", encoding="utf-8")
+        (tmp_path / "report").write_text("mine", encoding="utf-8")
+    assert (tmp_path / "report").read_text(encoding="utf-8") == "mine"
+    (tmp_path / "elsewhere").mkdir()
+    with replace_report(tmp_path / "other", lambda line: None) as report:
+        (report.folder / "index.html").write_text("new", encoding="utf-8")
+        (tmp_path / "other").symlink_to(tmp_path / "elsewhere")
+    assert (tmp_path / "other").is_symlink()
+    assert (tmp_path / "other-2" / "index.html").exists()
+
+
+def test_a_file_added_while_the_report_is_moved_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    put(tmp_path / "report", "index.html", "figures/old.png", content="old")
+    move = os.replace
+
+    def late(source: Path, target: Path) -> None:
+        move(source, target)
+        if target.name == "index.html":
+            (tmp_path / "report" / "figures" / "late.txt").write_text("mine", encoding="utf-8")
+
+    monkeypatch.setattr(os, "replace", late)
+    place, said = put(tmp_path / "report")
+    assert (place, said) == (tmp_path / "report", [])
+    assert page_of(place) == "new"
+    assert [entry.name for entry in (place / "figures").iterdir()] == ["late.txt"]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")
+@pytest.mark.parametrize("deaths", range(1, 5))
+def test_a_report_half_moved_is_still_the_studys(tmp_path: Path, deaths: int) -> None:
+    put(tmp_path / "report", "index.html", "figures/old.png", content="old")
+    child = os.fork()
+    if child == 0:
+        dies_at(deaths)
+        put(tmp_path / "report", "index.html", "summary.json")
+        os._exit(0)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
+    assert foreign(tmp_path / "report") == []
+    assert (tmp_path / "report" / "index.html").read_text(encoding="utf-8") in ("old", "new"), "each file is whole"
+    clear_dead(tmp_path / "report")
+    put(tmp_path / "report", "index.html", content="newer")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["report"]
+    assert sorted(entry.name for entry in (tmp_path / "report").iterdir()) == ["index.html", MANIFEST]
+
+
+def dies_at(number: int) -> None:
+    """Let this process be killed in place of moving the file of this number."""
+    moves, move = itertools.count(), os.replace
+
+    def dies(source: Path, target: Path) -> None:
+        if next(moves) == number:
+            os.kill(os.getpid(), signal.SIGKILL)
+        move(source, target)
+
+    os.replace = dies  # type: ignore[assignment]
+
+
+def test_a_folder_that_only_looks_like_a_left_over_one_stays(tmp_path: Path) -> None:
+    for name in (".report-x", f"{TEMPORARY}holiday"):
+        (tmp_path / name / "old").mkdir(parents=True)
+        (tmp_path / name / "old" / "photo.jpg").write_text("mine", encoding="utf-8")
+        (tmp_path / name / "staging.json").write_text("{}", encoding="utf-8")
+    clear_dead(tmp_path / "report")
+    put(tmp_path / "report")
+    assert len(list(tmp_path.glob(".*/old/photo.jpg"))) == 2
+
+
+def test_a_manifest_that_was_tampered_with_proves_nothing(tmp_path: Path) -> None:
+    put(tmp_path / "report")
+    (tmp_path / "thesis.txt").write_text("mine", encoding="utf-8")
+    manifest = read_manifest(tmp_path / "report")
+    outside = Own("comparison.run", (hashlib.sha256(b"mine").hexdigest(),))
+    write_manifest(tmp_path / "report", manifest | {"../thesis.txt": outside})
+    assert put(tmp_path / "report")[0].name == "report"
+    assert (tmp_path / "thesis.txt").read_text(encoding="utf-8") == "mine"
+    (tmp_path / "report" / "notes.txt").write_text("mine", encoding="utf-8")
+    write_manifest(tmp_path / "report", manifest | {"notes.txt": Own("comparison.run", ("0" * 64,))})
+    assert put(tmp_path / "report")[0].name == "report-2"
+    assert (tmp_path / "report" / "notes.txt").read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
+@pytest.mark.parametrize("name", [MANIFEST, "index.html"])
+def test_a_pipe_among_the_files_of_a_report_is_the_users(tmp_path: Path, name: str) -> None:
+    put(tmp_path / "report")
+    (tmp_path / "report" / name).unlink()
+    os.mkfifo(tmp_path / "report" / name)
+    assert name in foreign(tmp_path / "report")
+
+
+def test_a_folder_of_24_letters_in_the_store_is_never_trimmed(tmp_path: Path) -> None:
+    needed, old = Key('"needed"', "0" * 64, "batch"), Key('"old"', "0" * 64, "batch")
+    cache = Cache(tmp_path / "e.tiles")
+    cache.put(old, 1.5)
+    photos = tmp_path / "e.tiles" / "my-photos-of-summer-2024"
+    photos.mkdir()
+    mine = [photos / "a.jpg", photos / "b.batch", tmp_path / "e.tiles" / old.group / "c.batch"]
+    for file in mine:
+        file.write_bytes(b"mine")
+    (tmp_path / "e.tiles" / "link").symlink_to(photos)
+    cache.trim([needed], limit=0)
+    assert all(file.read_bytes() == b"mine" for file in mine)
+    assert not (tmp_path / "e.tiles" / old.name).exists(), "what is the study's own is"
+
+
+def test_a_foreign_folder_in_the_store_is_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:
+    (tmp_path / "report.tiles" / "my-photos-of-summer-2024").mkdir(parents=True)
+    run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
+    assert run.code == 2
+    assert "it holds 'my-photos-of-summer-2024': move it away" in run.err
+
+
+EXTREMES = ["--rows", "amplitude", "--models", "small", "--jobs", "1"]
+
+
+@pytest.mark.parametrize("name", ["extremes.json", "extremes.png", MANIFEST])
+def test_a_foreign_file_where_extremes_go_is_refused(
+    tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / name).write_text("mine", encoding="utf-8")
+    monkeypatch.setattr(extremes, "judged_matrix", lambda *rest: pytest.fail("it was computed"))
+    assert extremes.main([*EXTREMES, "--out", str(tmp_path)]) == 2
+    assert f"holds {name!r}, which this study did not write" in capsys.readouterr().err
+    assert (tmp_path / name).read_text(encoding="utf-8") == "mine"
+
+
+def test_extremes_go_beside_a_file_that_appears_meanwhile(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mine = [tmp_path / name for name in ("extremes.json", "extremes.png", "extremes.part")]
+
+    def meanwhile(*rest: object) -> object:
+        for file in mine:
+            file.write_text("mine", encoding="utf-8")
+        return FOUND
+
+    monkeypatch.setattr(extremes, "judged_matrix", meanwhile)
+    extremes.main([*EXTREMES, "--out", str(tmp_path)])
+    assert [file.read_text(encoding="utf-8") for file in mine] == ["mine"] * 3
+    assert {"extremes-2.json", "extremes-2.png"} <= {entry.name for entry in tmp_path.iterdir()}
+    assert capsys.readouterr().err.count("not a file of this study") == 2
+
+
+def test_the_extremes_replace_their_own_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(extremes, "judged_matrix", lambda *rest: FOUND)
+    for _ in range(2):
+        extremes.main([*EXTREMES, "--out", str(tmp_path)])
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["extremes.json", "extremes.png", MANIFEST]
+
+
+def test_a_foreign_diagram_is_refused_before_measuring(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "fig3-I-tradeoff.pdf").write_text("mine", encoding="utf-8")
+    monkeypatch.setattr(tradeoff, "measured_trades", lambda *rest: pytest.fail("it was measured"))
+    assert tradeoff.main(["fig3-I", "--out", str(tmp_path)]) == 2
+    assert "holds 'fig3-I-tradeoff.pdf', which this study did not write" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")
+@pytest.mark.parametrize("deaths", range(4))
+def test_a_file_half_replaced_is_still_the_studys(tmp_path: Path, deaths: int) -> None:
+    publish(tmp_path, {"extremes.json": b"old"}, "comparison.extremes")
+    child = os.fork()
+    if child == 0:
+        dies_at(deaths)
+        publish(tmp_path, {"extremes.json": b"new", "extremes.png": b"new"}, "comparison.extremes")
+        os._exit(0)
+    os.waitpid(child, 0)
+    refuse_foreign_files(tmp_path, ["extremes.json", "extremes.png"])
+
+
+def test_a_new_file_never_takes_a_name_that_something_has(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "run.gif").write_bytes(b"mine")
+    (tmp_path / "run-2.gif").symlink_to(tmp_path / "nowhere")
+    assert write_new(tmp_path / "run.gif", b"film") == tmp_path / "run-3.gif"
+
+    def unsupported(*names: object) -> None:
+        raise PermissionError("no hard links here")
+
+    monkeypatch.setattr(os, "link", unsupported)
+    assert write_new(tmp_path / "run.gif", b"film") == tmp_path / "run-4.gif"
+    assert (tmp_path / "run.gif").read_bytes() == b"mine"
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["run-2.gif", "run-3.gif", "run-4.gif", "run.gif"]
+
+
+def test_files_of_other_commands_in_the_report_are_kept(tmp_path: Path) -> None:
+    put(tmp_path / "report")
+    with replace_report(tmp_path / "report") as report:
+        (report.folder / "index.html").write_text("newer", encoding="utf-8")
+        publish(tmp_path / "report", {"extremes.json": b"{}"}, "comparison.extremes")
+    assert report.place == tmp_path / "report"
+    assert (tmp_path / "report" / "extremes.json").read_bytes() == b"{}"
+    assert foreign(tmp_path / "report") == []
+
+
+PLACES: Mapping[str, tuple[str, str]] = {
+    "ends in two dots": ("a/b/..", "ends in '..'"),
+    "300 letters": ("x" * 300, "File name too long"),
+    "245 letters": ("x" * 245, "has a name of more than 240 bytes"),
+    "bytes that are no text": ("caf\udce9", "is not text in UTF-8"),
+    "a link that leads back": ("loop", "leads back to itself"),
+    "a link with another's store beside what it means": ("link", "beside it is not a store of results"),
+    "a store that is a link": ("linked-store", "beside it is not the folder that keeps results"),
+    "a mount point": ("mount", "is a mount point, which cannot be replaced"),
+    "the root": ("/", "is the root directory: give a directory inside it"),
+    "two slashes": ("//", "is the root directory: give a directory inside it"),
+}
+
+
+@pytest.mark.parametrize(("name", "rule"), PLACES.values(), ids=PLACES.keys())
+def test_an_odd_place_is_refused_at_the_start_in_one_line(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, rule: str
+) -> None:
+    (tmp_path / "mount").mkdir()
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "elsewhere")
+    (tmp_path / "elsewhere.tiles").mkdir()
+    (tmp_path / "elsewhere.tiles" / "mine.txt").write_text("mine", encoding="utf-8")
+    (tmp_path / "linked-store.tiles").symlink_to(tmp_path / "elsewhere")
+    ismount = os.path.ismount
+    monkeypatch.setattr(os.path, "ismount", lambda path: Path(path).name == "mount" or ismount(path))
+    before = sorted(str(path) for path in tmp_path.rglob("*"))
+    place = name if name.startswith("/") else f"{tmp_path}/{name}"
+    run = command(*SMALL, "--out", place, hierarchy=fake_hierarchy("forbidden"))
+    assert run.code == 2
+    assert rule in run.err
+    assert run.err.count("\n") == 1
+    assert sorted(str(path) for path in tmp_path.rglob("*")) == before
+
+
+def test_a_link_to_a_report_stays_a_link(command: Callable[..., Run], tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "report")
+    for _ in range(2):
+        assert command(*SMALL, "--out", str(tmp_path / "link")).code == 0
+    assert (tmp_path / "link").is_symlink()
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["link", "report", "report.tiles"]
+
+
+def test_the_manifest_names_every_file_of_the_report(command: Callable[..., Run]) -> None:
+    report = command(*SMALL).report
+    files = {path.relative_to(report).as_posix() for path in report.rglob("*") if path.is_file()}
+    assert set(read_manifest(report)) == files - {MANIFEST}

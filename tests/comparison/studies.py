@@ -1,0 +1,35 @@
+"""Studies that are solved here, batch after batch, and surfaces with a planted difference."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from fake_models import errors_in
+
+from comparison.study.batches import execute_batch
+from comparison.study.study import Study
+from comparison.surfaces.surfaces import labeled_surfaces
+from reference.problem import load_scene
+
+GRID = 8
+KEYS = ("exact", "resolved", "regularised", "translational", "spatial")
+
+
+def solved(study: Study) -> xr.Dataset:
+    """The surfaces of a study."""
+    batches = study.batches()
+    return labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+
+
+def planted_study(
+    gaps: dict[str, float], errors: dict[str, float] | None = None, scene: str = "fig3-I", tolerance: float = 1e-3
+) -> tuple[Study, xr.Dataset]:
+    """Surfaces of the smooth fake model, every model `gaps` above it."""
+    study = Study((load_scene(scene),), GRID, tolerance, errors_in(gaps, errors))
+    return study, solved(study)
+
+
+def scattered(surfaces: xr.Dataset, seed: int = 0) -> xr.Dataset:
+    """The surfaces with every value changed by up to 30 %, another for every model and phase pair."""
+    factor = 1.0 + 0.3 * np.random.default_rng(seed).uniform(-1.0, 1.0, surfaces["mu"].shape)
+    return surfaces.assign(mu=surfaces["mu"] * factor)

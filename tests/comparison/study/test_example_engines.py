@@ -1,0 +1,81 @@
+"""Every engine of examples/engines gives mu of the equations as closely as its page says; where it is installed."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+from places import ROOT
+
+import reference
+from comparison.study.user_models import amplification
+from reference.problem import Scene, load_scene
+
+PHASES = np.array([(0.0, 0.0), (2.0, 0.5)])
+
+
+def example(name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """The module of an example; the test is skipped where what it needs is not installed."""
+    monkeypatch.syspath_prepend(str(ROOT))
+    try:
+        module = import_module(f"examples.engines.{name}")
+    except (ImportError, RuntimeError) as error:  # openseespy raises the latter without a library of the system
+        pytest.skip(f"{name}: {error}")
+    if name == "siconos_moreau" and not list(Path("/usr/lib/python3/dist-packages").glob("siconos")):
+        pytest.skip("python3-siconos is not installed")
+    return module
+
+
+def mu(name: str, scene: Scene, **settings: Any) -> np.ndarray:
+    return amplification(scene, PHASES, engine={"function": f"examples.engines.{name}:amplification"}, **settings).mu
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "law", "close"),
+    [
+        ("scipy_equations", {"tolerance": 1e-2}, {"regularization": 1e-3}, (3e-3, 3e-4)),
+        ("opensees", {"step": 2e-3}, {"equations": "small", "cutoff": 1e-3}, (0.5, 5e-3)),
+        ("siconos_moreau", {"step": 4e-3}, {"cutoff": 1e-3}, (0.1, 5e-4)),
+        ("mujoco_slider", {"step": 1e-3}, {"equations": "small", "cutoff": 1e-3}, (0.05, 5e-4)),
+    ],
+)
+def test_an_example_gives_mu_of_the_equations_with_its_law(
+    name: str,
+    settings: dict[str, Any],
+    law: dict[str, Any],
+    close: tuple[float, float],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    example(name, monkeypatch)
+    scene = load_scene("fig3-I").with_values({"duration": 6.0})
+    right = reference.amplification(scene, PHASES, **law).mu
+    assert (np.abs(mu(name, scene, **settings) / right - 1.0).max(axis=0) < close).all()
+
+
+@pytest.mark.parametrize("name", ["scipy_equations", "siconos_moreau"])
+def test_an_example_tends_to_the_equations_with_its_step(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    example(name, monkeypatch)
+    scene = load_scene("fig3-I").with_values({"duration": 3.0})
+    coarse, fine, law = (
+        ({"rtol": 1e-3}, {"rtol": 1e-6}, {"regularization": 1e-3})
+        if name == "scipy_equations"
+        else ({"step": 8e-3}, {"step": 1e-3}, {"cutoff": 1e-3})
+    )
+    right = reference.amplification(scene, PHASES, **law).mu[:, 1]
+    errors = [np.abs(mu(name, scene, **settings)[:, 1] / right - 1.0).max() for settings in (coarse, fine)]
+    assert errors[1] < 0.3 * errors[0]
+
+
+def test_the_page_of_other_engines_lists_every_example() -> None:
+    page = (ROOT / "docs/other-engines.md").read_text(encoding="utf-8")
+    files = sorted((ROOT / "examples/engines").glob("*.py"))
+    assert len(files) >= 2
+    for file in files:
+        assert f"(../examples/engines/{file.name})" in page, file.name
+        text = file.read_text(encoding="utf-8")
+        assert f"=examples.engines.{file.stem}:amplification" in text
+        assert len(text.splitlines()) <= 130, "short"

@@ -1,0 +1,198 @@
+"""A study computes mirrored phases once, where and only where the scene's symmetry is exact."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import multibody
+from comparison.study.batches import execute_batch
+from comparison.study.models import (
+    EXACT,
+    MODEL_HIERARCHY,
+    REGULARIZED,
+    RESOLVED,
+    SMALL,
+    SPATIAL,
+    TRANSLATIONAL,
+    Model,
+    models_of,
+    never,
+)
+from comparison.study.reductions import reductions
+from comparison.study.study import Study
+from comparison.surfaces.surfaces import labeled_surfaces
+from reference.problem import Scene, builtin_scenes, load_scene, mirror_symmetric
+from reference.problem.symmetry import sources
+
+GRID = 4
+
+
+def surfaces(scene: Scene, models: list[Model], full: bool):
+    study = Study((scene.with_values({"duration": 4.0}),), GRID, 1e-3, models, full)
+    batches = study.batches()
+    return sum(len(batch.phases) for batch in batches), labeled_surfaces(
+        study, batches, [execute_batch(batch) for batch in batches]
+    )
+
+
+@pytest.mark.parametrize("name", builtin_scenes())
+def test_the_reduced_study_gives_the_full_surfaces(name: str) -> None:
+    models = [model for model in (SMALL, EXACT, REGULARIZED) if model.applies(load_scene(name))]
+    whole, full = surfaces(load_scene(name), models, full=True)
+    fewer, reduced = surfaces(load_scene(name), models, full=False)
+    saved = {"fig3-I": 4, "fig3-II": 2, "fig4-dry": 2, "fig4-viscous": 2}[name]
+    assert fewer * saved == whole == len(models) * GRID**2
+    assert (reduced["status"] == full["status"]).all()
+    assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
+
+
+def test_the_engine_has_the_symmetry_too() -> None:
+    whole, full = surfaces(load_scene("fig3-I"), [TRANSLATIONAL], full=True)
+    fewer, reduced = surfaces(load_scene("fig3-I"), [TRANSLATIONAL], full=False)
+    assert whole == 4 * fewer
+    assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
+
+
+def short(duration: float = 2.0, name: str = "fig3-I", **changes: Any) -> Scene:
+    """`name` over so short a time, with the given keys of isolator, excitation, or of every body."""
+    table = load_scene(name).model_dump(exclude_none=True)
+    table["isolator"] |= changes.get("isolator", {})
+    table["excitation"] |= changes.get("excitation", {})
+    for body in table["bodies"]:
+        body |= changes.get("bodies", {})
+    return Scene.model_validate({**table, "duration": duration})
+
+
+def alone(scene: Scene) -> Scene:
+    """The platform of a scene without the bodies above it."""
+    table = scene.model_dump(exclude_none=True)
+    return Scene.model_validate({**table, "bodies": table["bodies"][:1]})
+
+
+@pytest.mark.parametrize("supports", [4, pytest.param(6, marks=pytest.mark.long)])
+def test_the_spatial_model_on_an_even_ring_has_it_too(supports: int) -> None:
+    scene = short(isolator={"supports": supports})
+    phases = np.array([[2.0, 0.7], [0.3, 1.1]])
+    here = multibody.amplification(scene, phases, model="spatial")
+    for shift in ([np.pi, 0.0], [0.0, np.pi]):
+        there = multibody.amplification(scene, phases + shift, model="spatial")
+        assert (here.status == "ok").all()
+        assert (abs(here.mu - there.mu) <= here.error + there.error).all()
+    assert len(Study((scene,), GRID, 1e-3, [SPATIAL]).solved(scene, SPATIAL)) == GRID**2 // 4
+
+
+def test_on_an_odd_ring_the_spatial_model_is_computed_in_full() -> None:
+    scene = short(isolator={"supports": 3})
+    assert len(Study((scene,), GRID, 1e-3, [SPATIAL]).solved(scene, SPATIAL)) == GRID**2
+    # with reason: mirrored x is another motion (2.0, 0.7, over 20 s: by eleven error estimates)
+    here, there = (
+        multibody.trajectory(scene, (2.0 + shift, 0.7), model="spatial").position[-1, 0, 0] for shift in (0.0, np.pi)
+    )
+    assert abs(here + there) > 1e-6 * abs(here)
+
+
+RECTANGLE = [[1.2, 0.8], [-1.2, 0.8], [-1.2, -0.8], [1.2, -0.8], [0.0, 0.8], [0.0, -0.8]]
+
+
+def test_mirrored_positions_have_the_symmetry_of_the_loading() -> None:
+    scene = short().with_values({"isolator.supports": RECTANGLE, "isolator.ring": None})
+    assert mirror_symmetric(scene)
+    here, *there = (
+        multibody.amplification(scene, [np.add((2.0, 0.7), shift)], model="spatial")
+        for shift in ([0.0, 0.0], [np.pi, 0.0], [0.0, np.pi])
+    )
+    for mirrored in there:
+        assert (abs(here.mu - mirrored.mu) <= here.error + mirrored.error).all()
+    assert len(Study((scene,), GRID, 1e-3, [SPATIAL]).solved(scene, SPATIAL)) == GRID**2 // 4
+
+
+@pytest.mark.parametrize(
+    ("values", "shift"),
+    [
+        ({"bodies.1.offset": [0.1, 0.05]}, [np.pi, 0.0]),
+        ({"bodies.1.yaw": 0.5}, [np.pi, 0.0]),
+        ({"isolator.ring": None, "isolator.supports": [[1.2, 0.8], [-1.0, 0.9], [-0.6, -1.2]]}, [np.pi, np.pi]),
+    ],
+)
+def test_an_uneven_scene_is_computed_in_full(values: dict[str, Any], shift: list[float]) -> None:
+    scene = short().with_values(values)
+    assert not mirror_symmetric(scene)
+    assert len(Study((scene,), GRID, 1e-3, [SPATIAL]).solved(scene, SPATIAL)) == GRID**2
+    # with reason: the mirrored or turned loading has another motion
+    here, there = (
+        multibody.trajectory(scene, np.add((2.0, 0.7), by), model="spatial").position[-1, :, :2] for by in (0.0, shift)
+    )
+    assert np.abs(np.abs(here) - np.abs(there)).max() > 1e-5 * np.abs(here).max()
+
+
+def test_the_phase_of_a_harmonic_without_amplitude_is_not_varied() -> None:
+    scene = short(4.0, excitation={"amplitudes": [[1.0, 0.0], [0.5, 0.0], [0.3, 0.0]]})
+    whole, full = surfaces(scene, [EXACT], full=True)
+    fewer, reduced = surfaces(scene, [EXACT], full=False)
+    assert (whole, fewer) == (GRID**2, GRID)
+    assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
+    almost = short(excitation={"amplitudes": [[1.0, 1e-9], [0.5, 0.0], [0.3, 0.0]]})
+    assert len(Study((almost,), GRID, 1e-3, [EXACT]).solved(almost, EXACT)) == GRID**2
+
+
+def test_without_friction_no_law_of_friction_is_varied() -> None:
+    free, held = short(isolator={"friction": 0.0}), short(isolator={"friction": 1e-9})
+    assert [model.key for model in models_of(free, MODEL_HIERARCHY)] == ["small", "exact", "translational", "spatial"]
+    assert len(models_of(held, MODEL_HIERARCHY)) == len(MODEL_HIERARCHY)
+    [batch] = Study((free,), 3, 1e-3, [EXACT]).batches()
+    answers = [
+        execute_batch(replace(batch, settings={**model.settings, "tolerance": 1e-6}))
+        for model in (EXACT, RESOLVED, REGULARIZED)
+    ]
+    for other in answers[1:]:
+        assert (abs(other.mu - answers[0].mu) <= other.error + answers[0].error).all()
+
+
+def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
+    for full in (False, True):
+        batches = Study((short(),), GRID, 1e-3, full=full).batches()
+        assert all(batch.settings.get("full", False) == full for batch in batches)
+    free = short(4.0, isolator={"friction": 0.0})
+    _, whole = surfaces(free, [SMALL], full=True)
+    _, reduced = surfaces(free, [SMALL], full=False)
+    assert (abs(reduced["mu"] - whole["mu"]) <= reduced["error"] + whole["error"]).all()
+    assert float(reduced["error"].max()) < 1e-8 < float(whole["error"].max()), "one is a sum, the other integrated"
+
+
+def test_what_is_left_out_is_listed_once_with_its_reason() -> None:
+    scene = alone(short(isolator={"friction": 0.0}, bodies={"height": 0.0}))
+    rows = {row.what: row for row in reductions(Study((scene,), GRID, 1e-3))}
+    assert [row.models for row in rows.values()] == [
+        "all models",
+        "resolved, regularised",
+        "small",
+        "spatial",
+    ]
+    assert "mirrored phases, all but 1/4" in rows
+    assert reductions(Study((scene,), GRID, 1e-3, full=True)) == []
+    twins = tuple(
+        Scene.model_validate(load_scene("fig3-I").model_dump(exclude_none=True) | {"name": name}) for name in "ab"
+    )
+    (row,) = reductions(Study(twins, GRID, 1e-3))
+    assert row.scenes == ("a", "b")
+
+
+def test_just_outside_the_condition_nothing_is_saved() -> None:
+    table = load_scene("fig3-I").model_dump(exclude_none=True)
+    crossed = [[1.0, 1e-9], [0.0, 1.0]]
+    lifted = [[1.0, 0.0], [0.0, 1.0], [1e-9, 0.0]]
+    for amplitudes, computed in ((crossed, GRID**2 // 2), (lifted, GRID**2)):
+        table["excitation"]["amplitudes"] = amplitudes
+        study = Study((Scene.model_validate(table),), GRID, 1e-3, [EXACT])
+        assert len(study.solved(study.scenes[0], EXACT)) == computed
+
+
+def test_an_odd_grid_is_computed_in_full() -> None:
+    scene = load_scene("fig3-I")
+    assert (sources(scene, 5) == np.arange(25)).all()
+    plain = replace(EXACT, symmetric=never)
+    assert len(Study((scene,), GRID, 1e-3, [plain]).solved(scene, plain)) == GRID**2

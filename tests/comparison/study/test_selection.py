@@ -1,0 +1,195 @@
+"""Analyses are selected on the command line and in a scene; what was not asked for is absent and not computed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from fake_models import fake_hierarchy
+from places import SCENES
+from report_texts import both_pages, schema_errors, summary_of
+from runs import Run
+
+from comparison.cli.options import parsed
+from comparison.registry import FEATURES, chosen_analyses, first_tasks
+from comparison.study.analyses import ANALYSES, selected
+from comparison.study.selection import Selection
+from comparison.study.study import Study
+from comparison.surfaces.figures.pictures import Pictures, pictures
+from comparison.surfaces.surfaces import labeled_surfaces
+from reference.problem import load_scene
+
+GRID = ("--grid", "4")
+STAGES = {  # of the tasks of an analysis
+    "effective": "effective values",
+    "errata": "errata",
+    "scaling": "scaling test",
+    "convergence": "convergence",
+    "assumptions": "assumptions",
+}
+
+
+def sections(page: str) -> set[str]:
+    """Names of the sections of a page."""
+    return set(re.findall(r'<(?:section|details class="section") id="(\w+)">', page)) - {"absent", "summary"}
+
+
+def scene_file(folder: Path, analyses: str) -> str:
+    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8")
+    (folder / "mine.toml").write_text(f"{text}\n[analyses]\n{analyses}\n", encoding="utf-8")
+    return str(folder / "mine.toml")
+
+
+@pytest.mark.parametrize("analysis", STAGES)
+def test_a_skipped_analysis_has_no_task(analysis: str) -> None:
+    study = Study((load_scene("fig3-I"),), 4, 1e-3)
+    rest = replace(study, selection=Selection.of(study.scenes, None, [analysis]))
+    every, kept = (first_tasks(part, chosen_analyses(part)) for part in (study, rest))
+    assert STAGES[analysis] in {task.stage for task in every}
+    assert [task.key for task in kept] == [task.key for task in every if task.stage != STAGES[analysis]]
+    assert len(kept) < len(every)
+
+
+def test_a_study_of_surfaces_alone_computes_their_pictures() -> None:
+    study = Study((load_scene("fig3-I"),), 4, 1e-3)
+    study = replace(study, selection=Selection.of(study.scenes, ["surfaces"], None))
+    assert first_tasks(study, chosen_analyses(study)) == []
+    assert len(pictures(study, labeled_surfaces(study, [], []))) == 1 + 2 * len(study.pairs(study.scenes[0]))
+
+
+def test_a_selection_changes_the_key_of_no_picture(finished: Path) -> None:
+    study = Study((load_scene("fig3-I"),), 4, 1e-3)
+    surfaces = xr.load_dataset(finished / "surfaces.nc")
+    part = replace(study, selection=Selection.of(study.scenes, ["budget"], None))
+    every, kept = ({task.key for task in Pictures().tasks(one, surfaces)} for one in (study, part))
+    assert 0 < len(kept) < len(every)
+    assert kept <= every
+
+
+def test_only_leaves_the_sections_asked_for(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", *GRID, "--only", "surfaces,budget")
+    assert (run.code, run.err) == (0, "")
+    page = both_pages(run.report)
+    selectable = {feature.key for feature in FEATURES if feature.section} & set(ANALYSES)
+    assert sections(page) & selectable == {"surfaces", "budget"}
+    assert sections(page) - selectable == {"outcomes", "models", "verification", "provenance"}
+    missing = "".join(part.split("</ul>")[0] for part in page.split('id="absent">')[1:])
+    assert missing.count(": not asked for</li>") == missing.count("<li>") == len(selectable) - 2
+    assert "Relative differences" not in run.out
+    assert "### Differences" not in (run.report / "summary.md").read_text(encoding="utf-8")
+    summary = summary_of(run.report)
+    assert summary["errata"] is None
+    assert set(summary["absent"].values()) == {"not asked for"}
+    assert schema_errors(run.report) == []
+
+
+def test_skipped_surfaces_leave_no_picture_and_no_link_to_them(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", *GRID, "--skip", "surfaces,budget")
+    assert run.code == 0
+    page = both_pages(run.report)
+    assert {"surfaces", "budget"}.isdisjoint(sections(page))
+    anchors = set(re.findall(r'href="#([\w-]+)"', page))
+    assert all(f'id="{anchor}"' in page for anchor in anchors)
+    assert {file.name for file in (run.report / "figures").iterdir()} == {"fig3-I-assumptions.png"}
+    assert (run.report / "surfaces.nc").exists()
+
+
+def test_the_command_line_selects_before_the_scene(command: Callable[..., Run], tmp_path: Path) -> None:
+    mine = scene_file(tmp_path, 'skip = ["differences", "surfaces"]')
+    run = command(mine, "fig4-viscous", *GRID)
+    page = both_pages(run.report)
+    table = page.split('id="differences">')[1].split("</table>")[0]
+    assert "<td>fig4-viscous</td>" in table
+    assert "<td>mine</td>" not in table
+    assert '<option value="1">' in page
+    assert '<option value="0">' not in page
+    options = parsed([mine, "--only", "budget", "--out", str(tmp_path / "other")])
+    assert options.selection.by_scene == {"mine": ("budget",)}
+
+
+def test_a_selection_changes_no_number_and_no_stored_result(command: Callable[..., Run], tmp_path: Path) -> None:
+    file = scene_file(tmp_path, 'only = ["budget"]')
+    assert load_scene(file).digest() == load_scene("fig3-I").digest()
+
+
+WRONG = {
+    "misspelt": (
+        ["--only", "surfaces,bugdet"],
+        "--only = 'surfaces,bugdet': 'bugdet' is no analysis; did you mean budget?",
+    ),
+    "empty": (["--skip", ""], "--skip = '': '' is no analysis; the analyses are differences, "),
+    "also": (["--also", "demand"], "--also = 'demand': 'demand' is no analysis; did you mean demands?"),
+    "both": (["--only", "budget", "--skip", "claims"], "--skip = 'claims': names what --only leaves out anyway"),
+}
+
+
+@pytest.mark.parametrize(("words", "line"), WRONG.values(), ids=WRONG)
+def test_a_wrong_selection_is_one_line(command: Callable[..., Run], words: list[str], line: str) -> None:
+    run = command("fig3-I", *words, hierarchy=fake_hierarchy("forbidden"))
+    assert (run.code, run.out, run.err.count("\n")) == (2, "", 1)
+    assert run.err.startswith(f"command line: {line}")
+
+
+@pytest.mark.parametrize(
+    ("analyses", "line"),
+    [
+        ('only = ["bugdet"]', "analyses.only = ['bugdet']: 'bugdet' is no analysis; did you mean budget?"),
+        ('onyl = ["budget"]', "analyses.onyl = ['budget']: unknown key; did you mean only?"),
+        ('only = ["budget"]\nskip = ["claims"]', "give only or skip, not both"),
+    ],
+)
+def test_a_wrong_selection_of_a_scene_is_one_line(
+    command: Callable[..., Run], tmp_path: Path, analyses: str, line: str
+) -> None:
+    run = command(scene_file(tmp_path, analyses), hierarchy=fake_hierarchy("forbidden"))
+    assert (run.code, run.err.count("\n")) == (2, 1)
+    assert line in run.err
+
+
+def test_motions_bring_the_surfaces_below_which_they_are_shown() -> None:
+    assert set(selected(["motions"], None)) == {"motions", "surfaces"}
+    assert {"motions", "surfaces"}.isdisjoint(selected(None, ["surfaces"]))
+
+
+def test_claims_and_errata_are_of_the_papers_scenes(command: Callable[..., Run], tmp_path: Path) -> None:
+    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8")
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "named.toml").write_text(text + '[analyses]\nonly = ["errata", "surfaces"]\n', encoding="utf-8")
+    mine, named, paper = (load_scene(place) for place in (tmp_path / "mine.toml", tmp_path / "named.toml", "fig3-I"))
+    selection = Selection.of([mine, named, paper], None, None)
+    assert [selection.has("errata", scene.name) for scene in (mine, named, paper)] == [False, True, True]
+    assert [selection.has("claims", scene.name) for scene in (mine, named, paper)] == [False, False, True]
+    assert selection.has("differences", "mine")
+    assert Selection.of([mine], ["errata"], None).has("errata", "mine")
+    assert not Selection.of([mine], None, ["motions"]).has("errata", "mine")
+    run = command(str(tmp_path / "mine.toml"), *GRID)
+    absent = summary_of(run.report)["absent"]
+    assert absent == {
+        **{name: f"of the paper's scenes; --only {name} makes it of others" for name in ("claims", "errata")},
+        "demands": "on request; --also demands makes it",
+    }
+
+
+def test_demands_of_every_phase_are_computed_on_request(command: Callable[..., Run], tmp_path: Path) -> None:
+    scene = load_scene("fig3-I")
+    usual = Study((scene,), 4, 1e-3)
+    for selection, made in (
+        (Selection.of((scene,), None, None), False),
+        (Selection.of((scene,), None, None, ["demands"]), True),
+        (Selection.of((scene,), ["demands"], None), True),
+        (Selection.of((scene,), None, ["demands"]), False),
+        (Selection.of((load_scene(scene_file(tmp_path, 'also = ["demands"]')),), None, None), True),
+    ):
+        assert any(selection.has("demands", name) for name in ("fig3-I", "mine")) == made
+    asked = replace(usual, selection=Selection.of((scene,), None, None, ["demands"]))
+    made_usually, made_now = ({analysis.key for analysis in chosen_analyses(study)} for study in (usual, asked))
+    assert made_now - made_usually == {"demands"}
+    run = command("fig3-I", *GRID, "--also", "demands", "--plan")
+    assert ", demands " in run.out.replace("\n", " ")
+    usual_plan = command("fig3-I", *GRID, "--plan").out.replace("\n", " ")
+    assert ", demands " not in usual_plan
+    assert "on request; --also demands makes it" in usual_plan

@@ -1,0 +1,508 @@
+"""An engine of the user joins a study, is never more than its numbers allow, and spoils nothing for the others."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import user_engines
+import xarray as xr
+from fake_models import fake_hierarchy, smooth
+from known_analyses import collected
+from places import ROOT, SCENES, scene_text
+from report_texts import data_of, page_of, summary_of
+from runs import Run
+from studies import solved
+
+import reference
+from comparison.analyses.extremes.cells import cells
+from comparison.analyses.extremes.rows import rows, user_column
+from comparison.analyses.extremes.verdicts import Reply, judged
+from comparison.analyses.tradeoff import analysis
+from comparison.analyses.tradeoff.analysis import TradeOff
+from comparison.analyses.tradeoff.figure import draw_tradeoff
+from comparison.analyses.tradeoff.settings import QUESTIONS, user_settings
+from comparison.cli.user_models import as_words, look_at, user_models
+from comparison.runner.environment import engine_fingerprint, source_digest
+from comparison.runner.processes import process_pool
+from comparison.study.batches import execute_batch
+from comparison.study.levels import levels_of
+from comparison.study.models import Model, pairs_of
+from comparison.study.study import Study
+from comparison.study.user_models import amplification, user_model
+from comparison.surfaces.budget import budget
+from comparison.surfaces.differences import differences, pair_step
+from comparison.surfaces.headline import headline
+from comparison.surfaces.tasks import surface_tasks
+from comparison.surfaces.unanswered import compared_study, unanswered
+from comparison.surfaces.waterfall import waterfall
+from reference.problem import Outcome, SceneError, load_scene
+
+ONLY = ("--only", "differences")  # what the limits are held to, without pictures
+DOCS = ROOT / "docs/other-engines.md"
+SCENE = load_scene("fig3-I")
+PHASES = np.array([(0.0, 0.0), (1.0, 2.0)])
+RAISES = user_engines.raises.__code__.co_firstlineno + 1
+RAISES_INSIDE = user_engines.raises_in_scipy.__code__.co_firstlineno + 3
+ASKS = user_engines.asks_us_wrongly.__code__.co_firstlineno + 3
+
+
+def supplied(function: str, name: str = "mine", like: str = "regularised") -> Model:
+    return user_model(name, {"function": f"user_engines:{function}"}, like)
+
+
+def studied(*models: Model) -> tuple[Study, xr.Dataset]:
+    """A study with models of known answer and these, computed here."""
+    study = Study((SCENE,), 4, 1e-3, [*fake_hierarchy(gap=0.01), *models])
+    surfaces = solved(study)
+    return compared_study(study, surfaces), surfaces
+
+
+@pytest.fixture
+def stranger(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """The engine of the documentation in a folder of its own, as a user would have it."""
+    (code,) = re.findall(r"```python\n(.*?)```", DOCS.read_text(encoding="utf-8"), re.DOTALL)
+    assert len([line for line in code.splitlines() if line.strip()]) <= 22
+    (tmp_path / "my_engine.py").write_text(code, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    (option,) = re.findall(r"--model (mine=\S+)\n", DOCS.read_text(encoding="utf-8"))
+    yield option
+    sys.modules.pop("my_engine", None)
+
+
+def test_the_engine_of_the_documentation_appears_in_the_report(
+    command: Callable[..., Run], stranger: str, tmp_path: Path
+) -> None:
+    (tmp_path / "short.toml").write_text(scene_text("fig3-I", ("duration = 20.0", "duration = 3.0")))
+    run = command("short.toml", "--grid", "2", "--model", stranger)
+    assert (run.code, run.err) == (0, "")
+    with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as surfaces:
+        mine = surfaces.sel(model="mine", scene="short")
+        assert (mine["status"] == "ok").all()
+        assert np.isnan(mine["error"]).all(), "it states none"
+        assert (mine["cost"] > 0.0).all(), "measured, though it states none"
+        mu = mine["mu"].values
+    exact = reference.amplification(SCENE.with_values({"duration": 3.0}), [(0.0, 0.0)], regularization=1e-3).mu[0]
+    np.testing.assert_allclose(mu[:, 0, 0], exact, rtol=0.03)  # geometry left out
+    shown = data_of(run.report)["scenes"][0]
+    (pair,) = [pair for pair in shown["pairs"] if pair["key"] == "mine"]
+    assert (pair["first"], pair["second"]) == ("regularised", "mine")
+    assert pair["uncertainty"] == [[[None, None]] * 2] * 2, "unknown"
+    assert not shown["models"]["mine"]["surface"]
+    scene = summary_of(run.report)["scenes"][0]
+    rows = [row for row in scene["differences"] if row["pair"] == "mine"]
+    assert [(row["beyond_error"], row["ratio"], row["not_ok"]) for row in rows] == [(None, None, 0)] * 2
+    assert "mine" in scene["models"]
+
+
+@pytest.mark.parametrize(
+    ("spec", "rule"),
+    [
+        ("mine", "must be NAME=module:function"),
+        ("mine=my_engine", "must be NAME=module:function"),
+        ("mine=my engine:f", "must be NAME=module:function"),
+        ("=my_engine:f", "NAME must begin with a letter"),
+        ("../a=my_engine:f", "NAME must begin with a letter"),
+        ("my_name=my_engine:f", "NAME must begin with a letter"),
+        ("exact=my_engine:f", "exact names a model"),
+        ("spatial=my_engine:f", "spatial names a model"),
+        ("total=my_engine:f", "total names a model, a difference or a limit"),
+        ("mine=my_engine:f@spatial", "KEY must be one of small, exact, resolved, regularised"),
+    ],
+)
+def test_a_wrong_spelling_is_one_line_and_exit_code_2(command: Callable[..., Run], spec: str, rule: str) -> None:
+    run = command("fig3-I", "--grid", "2", "--model", spec)
+    assert (run.code, run.out, run.report.exists()) == (2, "", False)
+    assert run.err.startswith(f"command line: --model = '{spec}': ")
+    assert rule in run.err
+    assert run.err.count("\n") == 1
+
+
+def test_a_name_of_an_engine_is_there_once(command: Callable[..., Run]) -> None:
+    twice = command("fig3-I", "--model", "a=user_engines:plain", "--model", "a=user_engines:raises")
+    assert (twice.code, twice.err.count("\n")) == (2, 1)
+    assert "a is there twice" in twice.err
+    far = command("fig3-I", "--model", "a=user_engines:plain", "--scheduler", "tcp://127.0.0.1:1")
+    assert (far.code, "give one of the two" in far.err) == (2, True)
+    limit = command("fig3-I", "--model", "a=user_engines:plain", "--model-limit", "soon")
+    assert (limit.code, "--model-limit = 'soon': must be a number" in limit.err) == (2, True)
+
+
+@pytest.mark.parametrize(
+    ("path", "fault"),
+    [
+        ("no_such_module:f", "there is no module no_such_module: run the command in the folder of its file"),
+        ("user_engines:nothing", "user_engines has no nothing"),
+        ("user_engines:NUMBER", "cannot be called as NUMBER(scene, phases): NUMBER is int, not a function"),
+        ("user_engines:with_three", "cannot be called as with_three(scene, phases): missing a required argument"),
+        (
+            "engine_that_raises:f",
+            "importing engine_that_raises raises ZeroDivisionError: division by zero (engine_that_raises.py, line 2)",
+        ),
+        ("engine_that_exits:f", "importing engine_that_exits raises SystemExit: 0"),
+        ("engine_that_lacks:f", "there is no module no_such_package"),
+    ],
+)
+def test_what_cannot_be_imported_or_called_is_named(
+    path: str, fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "engine_that_raises.py").write_text("\n1 / 0\n")
+    (tmp_path / "engine_that_exits.py").write_text("raise SystemExit(0)\n")
+    (tmp_path / "engine_that_lacks.py").write_text("import no_such_package\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    said, _ = look_at(path)
+    assert said.startswith(fault)
+    assert "\n" not in said
+
+
+def test_an_import_that_ends_its_process_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "engine_that_leaves.py").write_text("import os\nprint('noise')\nos._exit(7)\n")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    with pytest.raises(SceneError, match="importing it ends the process: exit code 7"):
+        user_models(["mine=engine_that_leaves:f"])
+
+
+def test_functions_are_used_from_python_by_their_place() -> None:
+    words = as_words({"a": user_engines.plain, "b": "user_engines:raises@exact"})
+    assert words == ["--model", "a=user_engines:plain", "--model", "b=user_engines:raises@exact"]
+    with pytest.raises(SceneError, match=r"models: a = '.*<lambda>': worker processes import an engine by its name"):
+        as_words({"a": lambda scene, phases: None})
+
+
+@pytest.mark.parametrize("form", ["plain", "with_error", "as_object", "as_full_object", "as_list"])
+def test_every_form_of_answer_is_read(form: str) -> None:
+    answer = amplification(SCENE, PHASES, engine={"function": f"user_engines:{form}"}, tolerance=1e-3)
+    np.testing.assert_array_equal(answer.mu, smooth(SCENE, PHASES, 1e-3).mu)
+    if form in ("with_error", "as_full_object"):
+        np.testing.assert_array_equal(answer.error, 1e-3 * answer.mu)
+    else:
+        assert np.isnan(answer.error).all()
+    assert list(answer.status) == ["ok", "ok"]
+    assert answer.displacement.tolist() == (
+        [0.1, 0.1] if form == "as_full_object" else pytest.approx([np.nan] * 2, nan_ok=True)
+    )
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        ("raises", f"RuntimeError: the matrix is singular (user_engines.py, line {RAISES})"),
+        ("raises_in_scipy", f"ZeroDivisionError: division by zero (user_engines.py, line {RAISES_INSIDE})"),
+        (
+            "asks_us_wrongly",
+            f"ValueError: equations = 'none': must be one of exact, small (user_engines.py, line {ASKS})",
+        ),
+        ("misshapen", "ValueError: the engine's mu has shape (3,), asked: (4, 2)"),
+        ("texts", "TypeError: the engine's mu has <U1 in place of real numbers"),
+        ("nothing_at_all", "TypeError: the engine's mu is None"),
+        ("complex_numbers", "TypeError: the engine's mu has complex128 in place of real numbers"),
+        ("exits", "RuntimeError: the engine asked the process to end: exit code 0"),
+        ("too_few_outcomes", "ValueError: the engine's status has 1 entries, asked: 4"),
+    ],
+)
+def test_what_is_no_answer_costs_its_own_points_and_says_why(function: str, message: str) -> None:
+    model = replace(supplied(function), batch=4)
+    study = Study((SCENE,), 2, 1e-3, [*fake_hierarchy(), model])
+    (batch,) = [batch for batch in study.batches() if batch.model == "mine" and len(batch.phases) == 4]
+    result = execute_batch(batch)
+    assert np.isnan(result.mu).all()
+    assert set(result.status) == {Outcome.SOLVER_FAILED.value}
+    assert result.error_message == message
+
+
+def test_values_that_are_none_are_never_ok() -> None:
+    answer = amplification(SCENE, PHASES, engine={"function": "user_engines:half"})
+    assert list(answer.status) == [Outcome.SOLVER_FAILED, "ok"]
+    assert np.isnan(answer.mu[0]).all()
+    own_words = amplification(SCENE, PHASES, engine={"function": "user_engines:own_words"})
+    assert list(own_words.status) == [Outcome.RIM_REACHED, Outcome.SOLVER_FAILED]
+
+
+def test_the_function_gets_what_it_names_of_its_law() -> None:
+    def told(like: str) -> SimpleNamespace:
+        user_engines.told.clear()
+        model = supplied("listens", like=like)
+        amplification(SCENE, PHASES, **model.settings, tolerance=1e-3)
+        return SimpleNamespace(**user_engines.told)
+
+    assert told("regularised") == SimpleNamespace(tolerance=1e-3, regularization=1e-3)
+    assert told("exact") == SimpleNamespace(tolerance=1e-3, regularization=None)
+
+
+@pytest.mark.parametrize("like", ["small", "exact", "resolved", "regularised"])
+def test_the_documentation_names_every_argument_that_is_passed(like: str) -> None:
+    text = DOCS.read_text(encoding="utf-8")
+    table = text.split("| by name | passed | value |")[1].split("\n\n")[0]
+    user_engines.told.clear()
+    (batch, *_) = (b for b in Study((SCENE,), 1, 1e-3, [supplied("takes_all", like=like)], full=True).batches())
+    execute_batch(batch)
+    rows = {line.split("`")[1]: line for line in table.splitlines()[2:]}
+    assert set(user_engines.told) <= set(rows)
+    passed = {name for name, row in rows.items() if "| always |" in row or f"| with `@{like}` |" in row}
+    assert set(user_engines.told) - {"full"} == passed
+    if user_engines.told["regularization"] is None:
+        assert f"`@{like}`" in rows["regularization"].split("`None`")[1]
+
+
+@pytest.mark.parametrize("like", ["small", "exact", "resolved", "regularised"])
+def test_the_engine_of_the_documentation_answers_under_every_law(stranger: str, like: str) -> None:
+    function = stranger.removeprefix("mine=")
+    sys.path.append(".")
+    model = user_model("mine", {"function": function}, like)
+    (batch,) = Study((SCENE.with_values({"duration": 1.0}),), 1, 1e-3, [model]).batches()
+    answer = execute_batch(batch)
+    assert (answer.error_message, answer.status) == ("", ["ok"])
+    right = reference.amplification(batch.scene, batch.phases, regularization=1e-4, tolerance=1e-4).mu
+    np.testing.assert_allclose(answer.mu, right, rtol=0.03)  # geometry left out
+
+
+def test_no_difference_to_an_unknown_error_is_real() -> None:
+    study, surfaces = studied(supplied("plain", "silent"), supplied("with_error", "open"))
+    pairs = {pair.key: pair for pair in study.pairs(SCENE)}
+    for body in (1, 2):
+        silent, stated = (pair_step(surfaces, SCENE.name, pairs[key], body) for key in ("silent", "open"))
+        assert silent.known.all()
+        assert stated.known.all()
+        np.testing.assert_array_equal(silent.size, stated.size)
+        assert not (silent.real | silent.unresolved).any()
+    rows = [row for row in differences(study, surfaces) if row.pair == "silent"]
+    assert len(rows) == 2
+    assert all(np.isnan(row.beyond_error) and np.isnan(row.ratio) and row.unanswered == 0 for row in rows)
+
+
+@pytest.mark.parametrize("function", ["plain", "raises"])
+def test_a_user_engine_changes_no_other_number(function: str) -> None:
+    alone, without = studied()
+    study, surfaces = studied(supplied(function))
+    others = [model.key for model in alone.hierarchy]
+    xr.testing.assert_identical(surfaces.sel(model=others), without)
+    assert repr(budget(study, surfaces)) == repr(budget(alone, without))  # repr: NaN is not equal to itself
+    theirs = [row for row in differences(study, surfaces) if row.pair != "mine"]
+    assert repr(theirs) == repr(differences(alone, without))
+    for body in (1, 2):
+        numbers = [
+            replace(
+                headline(each, data, SCENE, waterfall(each, data, SCENE, body), differences(each, data)), sentence=""
+            )
+            for each, data in ((alone, without), (study, surfaces))
+        ]
+        assert repr(numbers[0]) == repr(numbers[1])
+    keys = [task.key for task in surface_tasks(study) if task.argument.model != "mine"]
+    assert keys == [task.key for task in surface_tasks(alone)]
+    assert {gap.model for gap in unanswered(study, surfaces)} == ({"mine"} if function == "raises" else set())
+    assert ("mine" in {pair.key for pair in study.pairs(SCENE)}) == (function == "plain")
+
+
+@pytest.mark.parametrize(
+    ("function", "said"),
+    [
+        ("off", "mine differs by up to 2.1 % from the exact equations, v_reg (mean +2.1 % over 4 × 4 initial phases; "),
+        ("with_error", "mine agrees to 0 % with the exact equations, v_reg (mean 0 % over 4 × 4 initial phases; "),
+    ],
+)
+def test_the_headline_begins_with_the_users_engine(function: str, said: str) -> None:
+    study, surfaces = studied(supplied(function))
+    rows = differences(study, surfaces)
+    assert [pair.key for pair in study.pairs(SCENE)] == ["mine", "total", "translational", "like-for-like"]
+    for body in (1, 2):
+        sentence = headline(study, surfaces, SCENE, waterfall(study, surfaces, SCENE, body), rows).sentence
+        assert sentence.split(": ", 1)[1].startswith(said)
+        assert "The engine gives 1.0 % more than the paper's equations" in sentence
+        assert "the two codes" not in sentence, "it would be taken for the engine of the user"
+
+
+def acceptance(limits: str, folder: Path) -> str:
+    """A scene file with these limits."""
+    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8")
+    (folder / "limited.toml").write_text(text.split("[acceptance]")[0] + limits, encoding="utf-8")
+    return str(folder / "limited.toml")
+
+
+def test_check_counts_the_missing_values_of_every_model(command: Callable[..., Run]) -> None:
+    engine = ("--model", "none=user_engines:without_values")
+    run = command("fig3-I", "--grid", "2", *engine, "--check", hierarchy=fake_hierarchy(gap=5e-5))
+    assert run.code == 1
+    line = "fig3-I: acceptance.failed: 4 points without an answer (none 4 of 4), 0 allowed"
+    assert run.err.splitlines()[-1] == f"limit broken: {line}"
+    assert 'failures="1"' in (run.report / "junit.xml").read_text(encoding="utf-8")
+    page = page_of(run.report)
+    assert "Every acceptance limit stated by the scenes holds" not in page
+    assert line in page
+
+
+def test_a_value_with_an_error_as_large_as_itself_is_missing(command: Callable[..., Run]) -> None:
+    engine = ("--model", "vague=user_engines:vague")
+    run = command("fig3-I", "--grid", "2", *engine, *ONLY, "--check", hierarchy=fake_hierarchy(gap=5e-5))
+    assert (run.code, "4 points without an answer (vague 4 of 4)" in run.err) == (1, True)
+    assert "vague: only values with errors above half of them at any of 4 phase pairs" in run.out
+
+
+@pytest.mark.parametrize("limit", ["median", "maximum", "ratio"])
+def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tmp_path: Path, limit: str) -> None:
+    engines = ("--model", "good=user_engines:with_error", "--model", "bad=user_engines:off_with_error")
+    tables = "".join(
+        f"[acceptance.{name}]\n{limit} = {2.0 if limit == 'ratio' else 0.02}\n" for name in ("good", "bad")
+    )
+    run = command(acceptance(tables, tmp_path), "--grid", "2", *engines, *ONLY, "--check")
+    found = 21.0 if limit == "ratio" else 0.021  # it claims 1e-3
+    allowed = 2 if limit == "ratio" else 0.02
+    assert run.code == 1
+    assert run.err.splitlines() == [
+        f"limit broken: limited: body {body}: acceptance.bad.{limit}: {found:g} found, {allowed} allowed"
+        for body in (1, 2)
+    ]
+    junit = (run.report / "junit.xml").read_text(encoding="utf-8")
+    assert f'name="acceptance.good.{limit} = {allowed}"' in junit
+    assert 'tests="3" failures="1"' in junit
+    summary = summary_of(run.report)
+    assert summary["scenes"][0]["acceptance"]["bad"][limit] == allowed
+
+
+def test_one_body_beyond_a_limit_breaks_it(command: Callable[..., Run], tmp_path: Path) -> None:
+    scene = acceptance("[acceptance.mine]\nmedian = 0.02\n", tmp_path)
+    run = command(scene, "--grid", "2", "--model", "mine=user_engines:off_in_the_second_body", *ONLY, "--check")
+    assert run.err == "limit broken: limited: body 2: acceptance.mine.median: 0.021 found, 0.02 allowed\n"
+
+
+def test_a_limit_in_units_of_errors_needs_all_of_them(command: Callable[..., Run], tmp_path: Path) -> None:
+    scene = acceptance("[acceptance.mine]\nratio = 2.0\n", tmp_path)
+    for function in ("plain", "with_one_error"):
+        run = command(scene, "--grid", "2", "--model", f"mine=user_engines:{function}", *ONLY, "--check")
+        assert run.code == 1
+        assert "body 1: acceptance.mine.ratio: an error estimate is missing, 2 allowed" in run.err
+
+
+def test_limits_of_an_absent_engine_are_refused(command: Callable[..., Run], tmp_path: Path) -> None:
+    scene = acceptance("[acceptance.mine]\nmedian = 0.02\n", tmp_path)
+    run = command(scene, "--grid", "2", *ONLY, "--check", hierarchy=fake_hierarchy("forbidden"))
+    assert (run.code, run.err.count("\n")) == (2, 1)
+    assert "acceptance.mine = {'median': 0.02}: this study has no engine of this name" in run.err
+    assert "--model mine=module:function enters it" in run.err
+    unchecked = command(scene, "--grid", "2", *ONLY)
+    assert unchecked.code == 0
+    assert "no engine mine in this study" in (unchecked.report / "summary.md").read_text(encoding="utf-8")
+
+
+def test_it_is_compared_with_the_model_of_its_law() -> None:
+    for like in ("small", "exact", "resolved", "regularised"):
+        pairs = {
+            pair.key: pair.first.key for pair in pairs_of(SCENE, [*fake_hierarchy(), supplied("plain", like=like)])
+        }
+        assert pairs["mine"] == like
+    wet = load_scene("fig4-viscous")
+    pairs = {pair.key: pair.first.key for pair in pairs_of(wet, [*fake_hierarchy(), supplied("plain")])}
+    assert pairs["mine"] == pairs["like-for-like"] == "exact"
+
+
+@pytest.mark.parametrize("like", ["small", "exact", "resolved", "regularised"])
+def test_it_is_asked_for_one_phase_pair_in_a_call(like: str) -> None:
+    linear = SCENE.with_values({"isolator.friction": 0.0})
+    study = Study(
+        (SCENE, linear.with_values({"name": "linear"})), 4, 1e-3, [*fake_hierarchy(), supplied("plain", like=like)]
+    )
+    assert {len(batch.phases) for batch in study.batches() if batch.model == "mine"} == {1}
+
+
+def test_the_first_level_asks_it_at_few_phases() -> None:
+    study = Study((SCENE,), 48, 1e-3, [*fake_hierarchy(), supplied("plain")])
+    first = levels_of(study, {})[0].study
+    assert len(first.axis(first.hierarchy[-1])) == 8
+
+
+def test_its_results_belong_to_its_source_and_its_helpers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(tmp_path))
+    seen = []
+    for helper, engine in (("1", "1"), ("2", "1"), ("2", "2"), ("2", "2")):
+        (tmp_path / "its_helper.py").write_text(f"NUMBER = {helper}\n")
+        (tmp_path / "its_engine.py").write_text(f"import json, numpy\nimport its_helper\nNUMBER = {engine}\n")
+        source_digest.cache_clear()
+        seen.append(engine_fingerprint("its_engine"))
+    assert seen[2] == seen[3]
+    assert len({json.dumps(about, sort_keys=True) for about in seen}) == 3
+    assert set(seen[0]) == {"numpy", "source of its_engine", "source of its_helper"}
+    (tmp_path / "its_folder").mkdir()  # without __init__.py
+    (tmp_path / "its_folder" / "inner.py").write_text("import reference\n")
+    assert {"source of its_folder.inner", "source of reference"} <= set(engine_fingerprint("its_folder.inner"))
+
+
+@pytest.mark.long
+def test_engines_that_hang_or_crash_cost_nobody_else(command: Callable[..., Run]) -> None:
+    engines = ("plain", "prints", "computes-for-ever", "waits-for-ever", "leaves", "spoils-its-process")
+    words = [word for name in engines for word in ("--model", f"{name}=user_engines:{name.replace('-', '_')}")]
+    words += ["--only", "differences", "--model-limit", "2"]
+    run = command("fig3-I", "--grid", "2", *words, executor=process_pool)
+    assert run.code == 0
+    assert "noise" not in run.out + run.err
+    with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as data:
+        outcomes = {name: set(data["status"].sel(model=name).values.ravel().tolist()) for name in engines}
+        mu = data["mu"].sel(model=["small", "plain", "prints"]).values
+    assert outcomes.pop("leaves") - {"time limit"} == {"worker died"}, "after two deaths it may not be asked again"
+    assert outcomes == {
+        "plain": {"ok"},
+        "prints": {"ok"},
+        "computes-for-ever": {"time limit"},
+        "waits-for-ever": {"time limit"},
+        "spoils-its-process": {"ok"},
+    }
+    assert np.isfinite(mu).all()
+
+
+def test_extremes_judge_an_engine_without_errors_by_its_value() -> None:
+    def verdict(off: float, error: float = np.nan) -> tuple[str, str]:
+        mu, right = np.array([[1.0, 2.0 + off]]), np.array([[1.0, 2.0]])
+        reply = Reply(mu, np.full((1, 2), error), ("ok",))
+        judgment = judged(reply, [Reply(right, np.full((1, 2), 1e-9), ("ok",))], 1e-3, False, ())
+        return judgment.verdict, judgment.reason
+
+    assert verdict(1e-3) == ("converged", "states no error, off by 5.0e-04")
+    assert verdict(1e-2) == ("limit", "states no error, off by 5.0e-03")
+    assert verdict(1e-2, error=1e-4)[0] == "FAILED", "a false claim is one"
+
+
+def test_extremes_of_its_law_concern_a_user_engine() -> None:
+    every = list(rows())
+    met = {cell.row.name for cell in cells(every, [user_column(supplied("plain"))])}
+    alike = {row.name for row in every if "regularised" in row.columns and not row.amplification}
+    assert met == alike
+    assert all(row.name not in met for row in every if row.amplification)
+
+
+def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
+    def curve(names: str, like: str = "regularised") -> list[tuple[str, float, bool]]:
+        model = user_model("mine", {"function": "user_engines:plain", "names": names}, like)
+        return [(one.question, one.value, one.against is None) for one in user_settings([model])]
+
+    assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
+    assert curve("") == [("regularised", 1e-3, True)]
+    assert curve("", like="resolved") == [("exact", 1e-3, False)]
+    tasks = TradeOff(True, (supplied("plain"),)).tasks(Study((SCENE,), 1, 1e-3))
+    mine = [task for task in tasks if task.group]
+    assert mine
+    assert all(task.timeout == 60.0 * len(task.argument.phases) for task in mine)
+
+
+def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(analysis, "settings", lambda scene, quick: [])
+    monkeypatch.setattr(analysis, "asked", lambda scene: [one for one in QUESTIONS if one.key == "regularised"])
+    models = supplied("as_reference", "good"), supplied("raises", "bad")
+    scene = SCENE.with_values({"duration": 1.0})
+    (measured,) = collected(
+        TradeOff(True, models), Study((scene,), 1, 1e-3), executor=lambda jobs: ThreadPoolExecutor(1)
+    )
+    good, bad = measured.trade.entries
+    assert (good.answered, bad.answered) == (good.points, 0)
+    assert bad.error_message == f"RuntimeError: the matrix is singular (user_engines.py, line {RAISES})"
+    assert max(error for error in good.most if error is not None) == pytest.approx(1e-3, rel=1e-3)
+    assert good.error_estimate == [None, None], "it states none"
+    assert good.pareto_front == (True, True)
+    draw_tradeoff(tmp_path / "trade.png", measured.trade)

@@ -1,0 +1,216 @@
+"""The budget adds up, claims only what exceeds its uncertainty, and blames a planted error on the model that has it."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import xarray as xr
+from fake_models import errors_in, fake_hierarchy
+from numpy.typing import NDArray
+from studies import solved
+
+from comparison.study.models import Model
+from comparison.study.study import Study
+from comparison.surfaces.budget import TOTAL, BudgetEntry, budget, closure, steps, torus_distance
+from comparison.surfaces.differences import differences
+from comparison.surfaces.waterfall import waterfall
+from reference.problem import load_scene
+
+GRID = 8
+
+
+def _solved(hierarchy: tuple[Model, ...], scene: str = "fig3-I", tolerance: float = 1e-5) -> tuple[Study, xr.Dataset]:
+    study = Study((load_scene(scene),), GRID, tolerance, hierarchy)
+    return study, solved(study)
+
+
+def _table(study: Study, surfaces: xr.Dataset, body: int = 1) -> dict[str, BudgetEntry]:
+    return {entry.step: entry for entry in budget(study, surfaces) if entry.body == body}
+
+
+def _means(study: Study, surfaces: xr.Dataset, body: int = 1) -> dict[str, float]:
+    bars = waterfall(study, surfaces, study.scenes[0], body)
+    return {bar.model: bar.size for bar in bars.bars} | {TOTAL: bars.total.size}
+
+
+@pytest.mark.parametrize("scene", ["fig3-I", "fig4-viscous"])
+def test_the_steps_add_up_to_the_total_at_every_point(scene: str) -> None:
+    study, surfaces = _solved(errors_in({"small": 0.02, "exact": -0.03, "regularised": 0.005}), scene)
+    for body in (1, 2):
+        steps_and_total = steps(study, surfaces, scene, body)
+        assert steps_and_total[-1].key == TOTAL
+        assert np.abs(steps_and_total[-1].size).max() > 1e-3, "there is something to add up"
+        assert closure(steps_and_total) < 1e-14  # rounding of a handful of numbers near 1
+
+
+def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
+    """Errors 0.03 and 0.04 make u_D = 0.05; 1.0 to 0.9 is twice that, and 1.43 times their sum. The sign has no say."""
+    study, surfaces = _solved(fake_hierarchy())
+    first, second = {"model": "regularised"}, {"model": "translational"}
+    for name, one, other in (("mu", 1.0, 0.9), ("error", 0.03, 0.04)):
+        surfaces[name].loc[first], surfaces[name].loc[second] = one, other
+    (row,) = (row for row in differences(study, surfaces) if (row.pair, row.body) == ("like-for-like", 1))
+    assert row.ratio == pytest.approx(2.0)
+    assert row.beyond_error == 1.0
+    assert row.median == pytest.approx(0.1)
+
+
+def test_a_budget_without_a_step_does_not_close() -> None:
+    study, surfaces = _solved(errors_in({"exact": 0.02, "resolved": 0.02}))
+    steps_and_total = steps(study, surfaces, "fig3-I", 1)
+    assert closure(steps_and_total[1:]) == pytest.approx(0.02)
+    assert closure([steps_and_total[0], *steps_and_total]) == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational", "spatial"])
+def test_an_error_from_one_model_on_is_blamed_on_it(culprit: str) -> None:
+    """A wrong stiffness, sign or mass stays in every model above the one that introduced it."""
+    keys = [model.key for model in fake_hierarchy()]
+    wrong = keys[keys.index(culprit) :]
+    study, surfaces = _solved(errors_in(dict.fromkeys(wrong, 0.02)))
+    for body in (1, 2):
+        table = _table(study, surfaces, body)
+        assert table[culprit].real == 1.0
+        assert _means(study, surfaces, body)[culprit] == pytest.approx(0.02, rel=1e-9)
+        for key, entry in table.items():
+            if key not in (culprit, TOTAL):
+                assert entry.real == 0.0, "no other model is blamed"
+                assert entry.maximum < 1e-12
+        assert table[TOTAL].rms == pytest.approx(0.02, rel=1e-9)
+
+
+@pytest.mark.parametrize("culprit", ["exact", "resolved", "regularised", "translational"])
+def test_an_error_in_one_model_cancels_in_the_total(culprit: str) -> None:
+    study, surfaces = _solved(errors_in({culprit: 0.02}))
+    table = _table(study, surfaces)
+    keys = list(table)
+    after = keys[keys.index(culprit) + 1]
+    means = _means(study, surfaces)
+    assert (means[culprit], means[after]) == pytest.approx((0.02, -0.02), rel=1e-9)
+    assert table[TOTAL].real == 0.0
+
+
+def test_a_coarse_step_with_an_honest_error_is_no_difference() -> None:
+    study, surfaces = _solved(errors_in({"translational": 0.02}, error_estimates={"translational": 0.03}))
+    table = _table(study, surfaces)
+    assert table["translational"].real == 0.0
+    assert table["translational"].error_estimate == pytest.approx(0.03 * 1.02, rel=1e-3)  # u_A = 1e-5 adds 5e-8
+
+
+@pytest.mark.parametrize("grid", [12, 34, 48, 50])
+@pytest.mark.parametrize("name", ["fig3-I", "fig3-II"])
+def test_mirrored_phases_are_pi_away_from_computed_ones(grid: int, name: str) -> None:
+    """34 and 50 leave the engine an even number of phases that do not divide the period evenly."""
+    study, scene = Study((load_scene(name),), grid, 1e-3), load_scene(name)
+    for model in study.hierarchy:
+        apart = np.subtract(np.divmod(study.places(model), grid), np.divmod(study.sources(scene, model), grid))
+        assert (2 * apart % grid == 0).all(), model.key
+
+
+def test_a_step_known_to_less_than_a_fifth_is_not_real() -> None:
+    for gap, expected in ((0.9, (0.0, 0.0)), (1.1, (0.0, 1.0)), (4.9, (0.0, 1.0)), (5.1, (1.0, 0.0))):
+        study, surfaces = _solved(errors_in({"exact": gap * 1e-3}, error_estimates={"small": 6e-4, "exact": 8e-4}))
+        entry = _table(study, surfaces)["exact"]
+        assert (entry.real, entry.unresolved) == expected, "u_D is 1e-3, up to the 0.5 % that the step itself adds"
+
+
+def test_a_false_error_is_blamed_on_the_engine() -> None:
+    """The like-for-like step must vanish: one far above its u_D is an error error_estimates too small, not physics."""
+    study, surfaces = _solved(errors_in({"translational": 0.02}, error_estimates={"translational": 1e-6}))
+    table = _table(study, surfaces)
+    assert table["translational"].real == 1.0
+    assert table["translational"].median > 100.0 * table["translational"].error_estimate
+
+
+def test_uncertainties_of_the_two_models_add_in_quadrature() -> None:
+    study, surfaces = _solved(errors_in({}, error_estimates={"exact": 3e-3, "small": 4e-3}))
+    np.testing.assert_allclose(steps(study, surfaces, "fig3-I", 1)[0].uncertainty, 5e-3, rtol=1e-12)
+
+
+def test_a_point_without_a_value_is_left_out_of_its_steps() -> None:
+    study, surfaces = _solved(errors_in({"translational": 0.02}))
+    surfaces["mu"].loc[{"model": "exact", "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][6]}] = np.nan
+    table = _table(study, surfaces)
+    assert {"exact", "resolved", "translational", TOTAL} <= set(table)
+    for key, entry in table.items():
+        assert entry.points == entry.asked - (key in ("exact", "resolved"))
+        assert np.isfinite(entry.rms)
+    assert closure(steps(study, surfaces, "fig3-I", 1)) < 1e-14
+
+
+def test_a_value_not_known_to_half_of_itself_counts_as_missing() -> None:
+    study, surfaces = _solved(errors_in({}))
+    place = {"model": "spatial", "body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][6]}
+    for error_estimates, points in ((49.0, 16), (51.0, 15)):
+        surfaces["mu"].loc[place], surfaces["error"].loc[place] = 100.0, error_estimates
+        assert _table(study, surfaces)["spatial"].points == points
+
+
+def test_a_coarse_model_is_compared_where_it_was_asked() -> None:
+    study, surfaces = _solved(errors_in({"spatial": 0.02}))
+    assert study.strides == {**dict.fromkeys(study.strides, 1), "spatial": 2}
+    assert (surfaces["status"].sel(model="spatial")[0, ::2, ::2] == "ok").all()
+    assert (surfaces["status"].sel(model="spatial")[0, 1::2] == "not asked").all()
+    table = _table(study, surfaces)
+    assert {key: entry.asked for key, entry in table.items() if entry.asked < GRID**2} == {"spatial": 16, TOTAL: 16}
+    assert _means(study, surfaces)["spatial"] == pytest.approx(0.02, rel=1e-9)
+    assert (table["spatial"].real, table["translational"].real) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize("grid", range(2, 65))
+def test_of_two_models_the_coarser_grid_is_part_of_the_finer(grid: int) -> None:
+    study = Study((), grid, 1e-3)
+    axes = [set(study.axis(model)) for model in sorted(study.hierarchy, key=lambda model: model.most or 1000)]
+    assert all(coarse <= fine for coarse, fine in pairwise(axes))
+    for model in study.hierarchy:
+        assert min(model.most or grid, grid) / 3 < len(study.axis(model)) <= (model.most or grid)
+
+
+def test_a_scene_without_a_common_point_gives_nan() -> None:
+    study, surfaces = _solved(errors_in({}))
+    surfaces["mu"].loc[{"model": "exact"}] = np.nan
+    table = _table(study, surfaces)
+    for key in ("exact", "resolved"):
+        assert table[key].points == 0
+        assert np.isnan(table[key].median)
+    assert np.isnan(closure(steps(study, surfaces, "fig3-I", 1)))
+
+
+def _with_peak_at(surfaces: xr.Dataset, model: str, row: int, column: int) -> None:
+    mu: NDArray[np.float64] = np.ones((GRID, GRID))
+    mu[row, column] = 2.0
+    surfaces["mu"].loc[{"model": model, "body": 1}] = mu
+
+
+def test_the_peak_moves_the_short_way_round_the_torus() -> None:
+    study, surfaces = _solved(fake_hierarchy())
+    for model in study.hierarchy:
+        _with_peak_at(surfaces, model.key, 0, 0)
+    _with_peak_at(surfaces, "translational", GRID - 1, 1)
+    entry = _table(study, surfaces)["translational"]
+    assert entry.peak_moves == pytest.approx(np.sqrt(2.0) * 2.0 * np.pi / GRID, rel=1e-12)
+    assert entry.correlation == pytest.approx(-1.0 / (GRID**2 - 1), rel=1e-9)  # two single peaks apart
+
+
+def test_of_several_equal_peaks_the_nearest_counts() -> None:
+    study, surfaces = _solved(fake_hierarchy())
+    for model in study.hierarchy:
+        _with_peak_at(surfaces, model.key, 1, 1)
+    other = {"model": "exact", "body": 1, "alpha1": surfaces["alpha1"][5], "alpha2": surfaces["alpha2"][5]}
+    surfaces["mu"].loc[other] = 2.0 * (1.0 + 1e-7)  # higher by less than the error error_estimates
+    assert _table(study, surfaces)["exact"].peak_moves == 0.0
+
+
+def test_distances_on_the_square_are_those_of_a_torus() -> None:
+    assert torus_distance((0.1, 0.0), (2.0 * np.pi - 0.1, 0.0)) == pytest.approx(0.2)
+    assert torus_distance((0.0, 0.0), (np.pi, np.pi)) == pytest.approx(np.sqrt(2.0) * np.pi)
+
+
+def test_a_model_more_is_a_step_more_and_nothing_else() -> None:
+    longer = errors_in({"translational": 0.02, "spatial": 0.02})
+    solved = [_solved(hierarchy) for hierarchy in (longer[:-1], longer)]
+    short, long = (_table(*each) for each in solved)
+    assert _means(*solved[1])[TOTAL] == pytest.approx(_means(*solved[0])[TOTAL])
+    assert (list(long), long["spatial"].real) == ([*list(short)[:-1], "spatial", TOTAL], 0.0)

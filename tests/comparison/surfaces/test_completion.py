@@ -1,0 +1,318 @@
+"""A coarse model is completed through a finer one only where that is right: known ridges, known roughness."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from fake_models import errors_in
+from known_analyses import collected
+from numpy.typing import NDArray
+from scipy.stats import binom
+from studies import solved
+
+from comparison.runner.task_results import TaskResults
+from comparison.study.models import EXACT, TRANSLATIONAL, Model, never
+from comparison.study.study import Study
+from comparison.surfaces import completion
+from comparison.surfaces.completion import (
+    CONFIDENCE,
+    CompletedSurfaces,
+    Completion,
+    HeldOut,
+    completions,
+    held_out_places,
+    largest_share,
+    with_completed,
+)
+from comparison.surfaces.surfaces import labeled_surfaces
+from reference.problem import Outcome, Scene, load_scene
+
+Array = NDArray[np.float64]
+FINE, COARSE = 48, 16
+ENGINE_ERROR = 2e-4  # relative, of the held-out values
+
+
+@pytest.fixture(scope="module")
+def blank() -> tuple[Study, xr.Dataset]:
+    """A study of 48 x 48 phases, 16 x 16 of the translational model, 4 x 4 of the spatial one."""
+    study = Study((load_scene("fig3-I"),), FINE, 1e-3, errors_in({}))
+    return study, solved(study)
+
+
+def square(grid: int) -> tuple[Array, Array]:
+    phase = 2.0 * np.pi * np.arange(grid) / grid
+    alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
+    return alpha1, alpha2
+
+
+ALPHA = square(FINE)
+
+
+def ridge(alpha1: Array, alpha2: Array) -> Array:
+    """1.5 with a ridge of height 1 that is 3 degrees wide: 16 phases are 22.5 degrees apart."""
+    middle = 2.0 * np.pi * 13 / FINE  # 7.5 degrees from the nearest coarse phase
+    return 1.5 + np.exp(-(((alpha1 - middle) / np.radians(3.0)) ** 2)) + 0.3 * np.cos(alpha2)
+
+
+def gap(alpha1: Array, alpha2: Array) -> Array:
+    """What the engine adds: small and smooth."""
+    return 2e-3 * np.cos(alpha1 + 2.0 * alpha2) + 1e-3
+
+
+def engine(study: Study) -> Model:
+    return next(model for model in study.hierarchy if model.key == "translational")
+
+
+def unused(study: Study, truth: Array) -> dict[tuple[str, str], HeldOut]:
+    """The truth at the held-out phase pairs of the translational model, the same for both bodies."""
+    (scene,), model = study.scenes, engine(study)
+    values = np.repeat(truth.ravel()[held_out_places(study, scene, model)][:, None], 2, axis=1)
+    return {(scene.name, model.key): HeldOut(values, ENGINE_ERROR * values)}
+
+
+def completed(
+    blank: tuple[Study, xr.Dataset],
+    base: Array,
+    difference: Array,
+    first: float = 0.9,
+    held_out: dict[tuple[str, str], HeldOut] | None = None,
+) -> Completion:
+    """The completion of the translational model, which is `base` + `difference`; the paper's is `first` * base."""
+    study, surfaces = blank
+    mu = surfaces["mu"].copy(deep=True)
+    for model in ("exact", "resolved", "regularised"):
+        mu.loc[{"model": model, "body": 1}] = base
+    mu.loc[{"model": "small", "body": 1}] = first * base
+    every = slice(None, None, FINE // COARSE)
+    sparse = np.full_like(base, np.nan)
+    sparse[every, every] = (base + difference)[every, every]
+    mu.loc[{"model": "translational", "body": 1}] = sparse
+    known = unused(study, base + difference) if held_out is None else held_out
+    listed = completions(study, surfaces.assign(mu=mu, error=0.0 * mu), study.scenes[0], known)
+    return next(surface for surface in listed if (surface.model, surface.body) == ("translational", 1))
+
+
+def test_a_ridge_between_coarse_phases_is_completed(blank: tuple[Study, xr.Dataset]) -> None:
+    base, difference = ridge(*ALPHA), gap(*ALPHA)
+    every = slice(None, None, FINE // COARSE)
+    assert base.max() - base[every, every].max() > 0.9, "the coarse phases miss it"
+    surface = completed(blank, base, difference)
+    assert (surface.accepted, surface.difference_accepted, surface.through) == (True, True, "regularised")
+    truth = base + difference
+    missed = np.abs(surface.mu / truth - 1.0)
+    assert missed.max() < 2e-4, "the ridge is there, and the small difference on it"
+    assert (missed > surface.error).mean() < 0.05, "not more phase pairs are off by more than it states"
+    assert (surface.held_out, surface.confidence, surface.asked) == (59, CONFIDENCE, 1e-3)
+    assert surface.share == pytest.approx(0.05, abs=5e-4)
+    assert surface.model_error == pytest.approx(ENGINE_ERROR)
+    assert f"{100.0 * surface.error:.2g} % at 59 held-out phase pairs" in surface.certificate
+    assert "with 95 % confidence at most 5 % of the phase pairs" in surface.certificate
+    computed = surface.mu[every, every]
+    np.testing.assert_allclose(computed, truth[every, every], rtol=1e-12, err_msg="computed values stay as they are")
+
+
+def test_a_difference_that_is_not_smooth_is_refused(blank: tuple[Study, xr.Dataset]) -> None:
+    rough = 0.1 * np.random.default_rng(0).uniform(-1.0, 1.0, (FINE, FINE))
+    surface = completed(blank, ridge(*ALPHA), rough)
+    assert not surface.accepted
+    assert not surface.difference_accepted
+    assert "misses held-out phase pairs" in surface.reason
+    assert np.isnan(surface.mu).all(), "nothing that could be drawn by mistake"
+
+
+def test_a_jump_in_the_difference_is_refused(blank: tuple[Study, xr.Dataset]) -> None:
+    jump = np.where(ALPHA[0] + ALPHA[1] > 2.0 * np.pi, 0.1, 0.0)
+    assert not completed(blank, ridge(*ALPHA), jump).accepted
+
+
+def test_a_surface_may_be_drawn_where_its_difference_may_not(
+    blank: tuple[Study, xr.Dataset],
+) -> None:
+    rough = 5e-4 * np.random.default_rng(0).uniform(-1.0, 1.0, (FINE, FINE))
+    surface = completed(blank, ridge(*ALPHA), rough, first=1.0)
+    assert (surface.accepted, surface.difference_accepted) == (True, False)
+
+
+def test_the_spatial_model_is_never_a_surface_on_few_phases(blank: tuple[Study, xr.Dataset]) -> None:
+    study, surfaces = blank
+    listed = [surface for surface in completions(study, surfaces, study.scenes[0], {}) if surface.model == "spatial"]
+    assert [(surface.accepted, surface.computed) for surface in listed] == [(False, 16)] * 2
+    assert "16 values" not in listed[0].reason
+    small = Study(study.scenes, 4, 1e-3, tuple(model for model in study.hierarchy))
+    whole = solved(small)
+    listed = completions(small, whole, small.scenes[0], {})
+    assert {surface.model for surface in listed} == set(), "fake models do not say that they are spatial"
+
+
+def test_points_without_a_value_leave_the_rest_completed(blank: tuple[Study, xr.Dataset]) -> None:
+    base, difference = ridge(*ALPHA), gap(*ALPHA)
+    difference[9, 12] = np.nan
+    surface = completed(blank, base, difference)
+    assert (surface.accepted, surface.computed, surface.held_out) == (True, 255, 59)
+    assert np.abs(surface.mu - base - gap(*ALPHA)).max() < 2e-4
+
+
+def test_held_out_phases_without_a_value_weaken_the_statement(blank: tuple[Study, xr.Dataset]) -> None:
+    base, difference = ridge(*ALPHA), gap(*ALPHA)
+    (place,) = known = unused(blank[0], base + difference)
+    few = known[place].mu.copy()
+    few[:20] = np.nan
+    surface = completed(blank, base, difference, held_out={place: HeldOut(few, 0.0 * few)})
+    assert (surface.accepted, surface.held_out, surface.share) == (True, 39, largest_share(39))
+    few[:40] = np.nan
+    surface = completed(blank, base, difference, held_out={place: HeldOut(few, 0.0 * few)})
+    assert surface.reason == "19 held-out phase pairs with a value are too few"
+    assert not completed(blank, base, difference, held_out={}).accepted, "nor without any"
+
+
+def test_records_and_models_with_all_phases_are_not_completed(blank: tuple[Study, xr.Dataset]) -> None:
+    study, surfaces = blank
+    models = {surface.model for surface in completions(study, surfaces, study.scenes[0], {})}
+    assert models == {"translational", "spatial"}
+    record = Study((load_scene("synthetic-pair"),), 4, 1e-3, errors_in({}))
+    assert completions(record, surfaces, record.scenes[0], {}) == []
+    assert CompletedSurfaces().tasks(record) == []
+    level = CompletedSurfaces().tasks(replace(study, grid=COARSE))
+    assert {task.argument[1].key for task in level} == {"spatial"}, "a level that has all phases holds none of them out"
+
+
+@pytest.mark.parametrize(("scene", "images"), [("fig3-I", 4), ("fig3-II", 2)])
+def test_held_out_phases_are_no_mirror_images(scene: str, images: int) -> None:
+    model = replace(TRANSLATIONAL, most=COARSE)
+    study = Study((load_scene(scene),), FINE, 1e-3, (model,))
+    chosen = held_out_places(study, study.scenes[0], model)
+    assert len(chosen) == 59
+    np.testing.assert_array_equal(chosen, held_out_places(study, study.scenes[0], model), err_msg="alike in every run")
+    row, column = np.divmod(chosen, FINE)
+    half = FINE // 2
+    shifts = [(0, 0), (half, half), (0, half), (half, 0)][:images]
+    every = {((r + a) % FINE, (c + b) % FINE) for r, c in zip(row, column) for a, b in shifts}
+    assert len(every) == 59 * images, "each counts once"
+    assert all(r % 3 or c % 3 for r, c in every), "none was computed"
+    other = held_out_places(study, load_scene("fig4-dry"), model)
+    assert len(np.intersect1d(chosen, other)) < 20, "another scene, another choice"
+    full = held_out_places(replace(study, full=True), study.scenes[0], model)
+    assert len(full) == 59
+    assert (np.column_stack(np.divmod(full, FINE)) % 3).any(axis=1).all()
+    quarters = np.bincount(full // FINE // 12 * 4 + full % FINE // 12, minlength=16)
+    assert binom.sf(quarters.max() - 1, 59, 1.0 / 16.0) > 1e-4, "spread over the square"
+
+
+def test_the_analysis_computes_what_is_held_out(blank: tuple[Study, xr.Dataset]) -> None:
+    study, surfaces = blank
+    found = collected(CompletedSurfaces(), study)
+    (scene,) = study.scenes
+    assert set(found) == {(scene.name, "translational"), (scene.name, "spatial")}
+    place = held_out_places(study, scene, engine(study))
+    truth = surfaces["mu"].sel(scene=scene.name, model="exact").values.reshape(2, -1)[:, place]
+    np.testing.assert_allclose(found[scene.name, "translational"].mu.T, truth, rtol=1e-12)
+    assert all(surface.accepted for surface in completions(study, surfaces, scene, found))
+    assert CompletedSurfaces().collect(study, surfaces, TaskResults()) is None, "where the time ended before them"
+    reasons = {surface.reason for surface in completions(study, surfaces, scene, None)}
+    assert reasons == {"no phase pairs were held out to check an interpolation"}
+
+
+def test_completed_surfaces_have_their_certificate(
+    blank: tuple[Study, xr.Dataset],
+) -> None:
+    study, surfaces = blank
+    listed = completions(study, surfaces, study.scenes[0], collected(CompletedSurfaces(), study))
+    both = with_completed(surfaces, [surface for surface in listed if surface.model == "translational"])
+    assert np.isfinite(both["completed"].sel(model="translational")).all()
+    assert np.isnan(both["completed"].sel(model=["small", "spatial"])).all()
+    assert both["completed"].attrs["confidence"] == 0.95
+    certificate = ["completed_error", "completed_model_error", "completed_share", "completed_held_out"]
+    for name in certificate:
+        assert both[name].dims == ("scene", "model", "body")
+        assert np.isfinite(both[name].sel(model="translational")).all()
+        assert np.isnan(both[name].sel(model="small")).all()
+    assert (both["completed_held_out"].sel(model="translational") == 59).all()
+    xr.testing.assert_identical(both.drop_vars(["completed", *certificate]), surfaces)
+
+
+# ---- the statement itself: at most a share of the phase pairs is off by more than the stated error
+
+
+def bump(random: np.random.Generator, alpha: tuple[Array, Array]) -> Array:
+    """A difference on 6 to 12 % of the phase pairs somewhere, rough there, and a little noise everywhere."""
+    middle = random.uniform(0.0, 2.0 * np.pi, 2)
+    apart = [np.abs(np.angle(np.exp(1j * (axis - m)))) for axis, m in zip(alpha, middle)]
+    inside = np.maximum(*apart) < np.pi * np.sqrt(random.uniform(0.06, 0.12))
+    return 1e-5 * random.normal(size=inside.shape) + np.where(inside, 0.01 * random.uniform(0.5, 1.0, inside.shape), 0)
+
+
+def noise(random: np.random.Generator, alpha: tuple[Array, Array]) -> Array:
+    return 1e-3 * random.normal(size=alpha[0].shape)
+
+
+def wave(random: np.random.Generator, alpha: tuple[Array, Array]) -> Array:
+    """Smooth, but too short a wave for some of the grids."""
+    first, second = random.integers(1, 8, 2)
+    return 0.01 * np.cos(first * alpha[0] + random.uniform(0.0, 6.3)) * np.cos(second * alpha[1])
+
+
+def kept_statements(grid: int, difference: Callable[..., Array], surfaces: int) -> float:
+    """The share of random surfaces of which no larger share is off by more than their certificates state."""
+    first, model = (replace(each, symmetric=never) for each in (EXACT, replace(TRANSLATIONAL, most=grid // 2)))
+    study = Study((load_scene("fig3-I"),), grid, 1e3, (first, model))  # every surface is kept, however far it is off
+    (scene,), every = study.scenes, study.places(model)
+    batches = study.batches()
+    empty = [batch.without_result(Outcome.STEP_LIMIT, "") for batch in batches]
+    surfaces_of_nothing = labeled_surfaces(study, batches, empty)
+    random, alpha = np.random.default_rng(0), square(grid)
+    base = 2.0 + np.cos(alpha[0])
+    kept = 0
+    for _ in range(surfaces // 2):  # two bodies each
+        truth = np.stack([base + difference(random, alpha) for _ in range(2)])
+        sparse = np.full((2, grid**2), np.nan)
+        sparse[:, every] = truth.reshape(2, -1)[:, every]
+        mu = np.stack([np.stack([base, base]), sparse.reshape(truth.shape)])[None]
+        dims = surfaces_of_nothing["mu"].dims
+        known = surfaces_of_nothing.assign(mu=(dims, mu), error=(dims, 0.0 * mu))
+        values = truth.reshape(2, -1)[:, completion.held_out_places(study, scene, model)].T
+        held_out = {(scene.name, model.key): HeldOut(values, 0.0 * values)}
+        for surface in completions(study, known, scene, held_out):
+            missed = np.abs(surface.mu / truth[surface.body - 1] - 1.0).ravel()
+            between = np.delete(missed, every)
+            kept += (between > surface.error * (1.0 + 1e-9)).mean() <= surface.share
+    return kept / surfaces
+
+
+@pytest.mark.parametrize("difference", [bump, noise, wave])
+def test_a_certificate_holds_as_often_as_its_confidence(
+    difference: Callable[..., Array],
+) -> None:
+    assert kept_statements(18, difference, 120) >= CONFIDENCE
+
+
+def _first_ones(study: Study, scene: Scene, model: Model) -> NDArray[np.intp]:
+    """The first phase pairs that were not computed, in place of random ones."""
+    return np.setdiff1d(np.arange(study.grid**2), study.places(model))[:59]
+
+
+def _computed_ones(study: Study, scene: Scene, model: Model) -> NDArray[np.intp]:
+    return study.places(model)[:59]
+
+
+@pytest.mark.parametrize(
+    ("chosen", "difference"), [(_first_ones, bump), (_computed_ones, noise)], ids=["not random", "used"]
+)
+def test_held_out_phases_that_are_not_random_break_it(
+    monkeypatch: pytest.MonkeyPatch, chosen: Callable[..., NDArray[np.intp]], difference: Callable[..., Array]
+) -> None:
+    monkeypatch.setattr(completion, "held_out_places", chosen)
+    assert kept_statements(18, difference, 20) < 0.5
+
+
+def test_a_wrong_interpolation_is_no_surface(blank: tuple[Study, xr.Dataset], monkeypatch: pytest.MonkeyPatch) -> None:
+    base, difference = ridge(*ALPHA), gap(*ALPHA)
+    assert completed(blank, base, difference).accepted
+    right = completion.interpolated
+    monkeypatch.setattr(completion, "interpolated", lambda *known: right(*known).T)
+    assert not completed(blank, base, difference).accepted, "alpha1 and alpha2 exchanged"
+    monkeypatch.setattr(completion, "interpolated", lambda *known: np.zeros((FINE, FINE)))
+    assert not completed(blank, base, difference).accepted, "the difference left out"

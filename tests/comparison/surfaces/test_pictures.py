@@ -1,0 +1,79 @@
+"""Pictures drawn by workers are those drawn at home, are stored, and one whose worker fails is drawn all the same."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+import xarray as xr
+from fake_models import fake_hierarchy
+from known_analyses import collected
+from rich.console import Console
+from runs import quick_figures
+from studies import solved
+
+from comparison.runner.cache import Cache
+from comparison.runner.runner import Runner
+from comparison.runner.task_results import TaskResults
+from comparison.study.study import Study
+from comparison.surfaces.figures.pictures import Pictures
+from reference.problem import load_scene
+
+
+class Broken(Executor):
+    """Whose every task fails."""
+
+    def submit(self, solve: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        failed: Future[Any] = Future()
+        failed.set_exception(RuntimeError("no room"))
+        return failed
+
+
+def _solved(gap: float = 0.01, grid: int = 4) -> tuple[Study, xr.Dataset]:
+    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), grid, 1e-3, fake_hierarchy(gap=gap))
+    return study, solved(study)
+
+
+@pytest.fixture
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    quick_figures(monkeypatch)
+
+
+@pytest.mark.usefixtures("quick")
+def test_every_difference_and_budget_has_a_picture() -> None:
+    study, surfaces = _solved()
+    files = collected(Pictures(), study, surfaces)
+    shown = [name for name in files if name.endswith(".png") and not name.endswith("paper.png")]
+    assert len(shown) == 2 * 2 * 4, "three differences and the budget, of two bodies in two scenes"
+
+
+@pytest.mark.usefixtures("quick")
+def test_what_no_worker_draws_is_drawn_at_home() -> None:
+    study, surfaces = _solved()
+    assert collected(Pictures(), study, surfaces, lambda jobs: Broken()) == collected(Pictures(), study, surfaces)
+
+
+@pytest.mark.usefixtures("quick")
+def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None:
+    def drawn_anew(study: Study, surfaces: xr.Dataset) -> int:
+        results = TaskResults(Cache(tmp_path))
+        tasks = Pictures().tasks(study, surfaces)
+        Runner(results, Console(quiet=True), 1, ThreadPoolExecutor).run(tasks)
+        return len(tasks) - results.parts["pictures"].stored
+
+    whole = drawn_anew(*_solved())
+    assert whole > 0
+    assert drawn_anew(*_solved()) == 0
+    assert drawn_anew(*_solved(gap=0.02)) == whole
+
+
+def test_a_real_figure_is_a_file() -> None:
+    study, surfaces = _solved()
+    budget = next(task for task in Pictures().tasks(study, surfaces) if task.argument.kind == "budget")
+    files = budget.function(budget.argument)
+    assert [name for name, content in files if len(content) > 1000] == [
+        "fig3-I-body1-budget.png",
+    ]

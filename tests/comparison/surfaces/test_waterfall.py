@@ -1,0 +1,114 @@
+"""The bars are means over the phases that every model has, add up, and are real only beyond five errors."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from studies import GRID, KEYS, planted_study, scattered
+
+from comparison.study.models import MODEL_HIERARCHY
+from comparison.study.study import Study
+from comparison.surfaces.independent import independent_phases
+from comparison.surfaces.waterfall import waterfall
+from reference.problem import load_scene
+
+
+def test_the_bars_add_up_to_the_total() -> None:
+    study, surfaces = planted_study({})
+    surfaces = scattered(surfaces)
+    for body in (1, 2):
+        bars = waterfall(study, surfaces, study.scenes[0], body)
+        assert bars.points == 16, "the spatial model has 4 x 4"
+        assert abs(sum(bar.size for bar in bars.bars) - bars.total.size) < 1e-15
+        largest = bars.largest
+        assert abs(sum(bar.size for bar in largest.bars) - largest.total.size) < 1e-15
+        assert abs(largest.total.size) > abs(bars.total.size)
+
+
+def test_every_bar_is_the_planted_step_with_its_sign() -> None:
+    levels = dict(zip(KEYS, (0.03, 0.03, -0.02, -0.01, -0.01)))
+    study, surfaces = planted_study(levels)
+    bars = waterfall(study, surfaces, study.scenes[0], 1)
+    assert [bar.model for bar in bars.bars] == list(KEYS)
+    assert [bar.size for bar in bars.bars] == pytest.approx([0.03, 0.0, -0.05, 0.01, 0.0], abs=1e-12)
+    assert (bars.total.model, bars.total.size) == ("spatial", pytest.approx(-0.01, rel=1e-9))
+    assert [bar.real for bar in bars.bars] == [True, False, True, True, False]
+
+
+def test_a_bar_is_real_beyond_five_errors_and_not_below() -> None:
+    def real(size: float) -> bool:
+        study, surfaces = planted_study({"spatial": size}, {"spatial": 0.01, **dict.fromkeys(KEYS[:-1], 0.0)})
+        return waterfall(study, surfaces, study.scenes[0], 1).bars[-1].real
+
+    # u_D = 0.01 (1 + size): real where size > 0.05 (1 + size), that is above 0.05263
+    assert not real(0.052)
+    assert real(0.0535)
+
+
+def test_only_phases_that_every_model_has_are_in_the_means() -> None:
+    study, surfaces = planted_study({"exact": 0.02})
+    surfaces["mu"].loc[{"model": "regularised", "alpha1": surfaces["alpha1"][0], "alpha2": surfaces["alpha2"][0]}] = (
+        np.nan
+    )
+    surfaces["mu"].loc[{"model": "exact", "alpha1": surfaces["alpha1"][0], "alpha2": surfaces["alpha2"][0]}] *= 9.0
+    surfaces["mu"].loc[{"model": "exact", "alpha1": surfaces["alpha1"][1]}] *= 9.0  # no phase of the spatial model
+    bars = waterfall(study, surfaces, study.scenes[0], 1)
+    assert (bars.points, bars.bars[0].size) == (15, pytest.approx(0.02, rel=1e-9))
+
+
+def test_the_largest_difference_may_be_of_the_finer_engine() -> None:
+    """A ridge between the phases of the spatial model: the translational model shows it."""
+    study, surfaces = planted_study({"spatial": 0.05})
+    place = {"body": 2, "alpha1": surfaces["alpha1"][3], "alpha2": surfaces["alpha2"][5]}
+    for model in ("resolved", "regularised", "translational"):
+        surfaces["mu"].loc[{"model": model, **place}] *= 0.6
+    largest = waterfall(study, surfaces, study.scenes[0], 2).largest
+    assert (largest.total.model, largest.total.size) == ("translational", pytest.approx(-0.4, rel=1e-9))
+    assert largest.phases == pytest.approx((2.0 * np.pi * 3 / 8, 2.0 * np.pi * 5 / 8))
+    assert {bar.model: bar.size for bar in largest.bars} == pytest.approx(
+        {"exact": 0.0, "resolved": -0.4, "regularised": 0.0, "translational": 0.0}, abs=1e-12
+    )
+
+
+def test_without_a_common_phase_there_is_no_bar_and_no_crash() -> None:
+    study, surfaces = planted_study({})
+    surfaces["mu"].loc[{"model": "exact"}] = np.nan
+    bars = waterfall(study, surfaces, study.scenes[0], 1)
+    assert bars.points == bars.independent == 0
+    assert not any(bar.real for bar in (*bars.bars, bars.total))
+    surfaces["mu"][:] = np.nan
+    assert waterfall(study, surfaces, study.scenes[0], 1).largest.bars == ()
+
+
+def test_a_record_has_bars_of_one_point() -> None:
+    study, surfaces = planted_study(dict.fromkeys(KEYS[3:], 0.01), scene="synthetic-pair")
+    bars = waterfall(study, surfaces, study.scenes[0], 1)
+    assert (bars.points, bars.independent) == (1, 1)
+    assert {bar.model: round(bar.size, 12) for bar in bars.bars}["translational"] == 0.01
+    assert np.isnan(bars.largest.phases).all()
+
+
+@pytest.mark.parametrize(
+    ("scene", "orbits"),
+    [
+        ("fig3-I", 4),  # each harmonic has its axis: four phase pairs give the same mu
+        ("fig3-II", 8),  # adding pi to both: two do
+    ],
+)
+def test_independent_phases_are_counted_by_symmetries(scene: str, orbits: int) -> None:
+    study = Study((load_scene(scene),), GRID, 1e-3, MODEL_HIERARCHY)
+    every = np.ones((4, 4), dtype=bool)
+    models = [study.hierarchy[0], study.hierarchy[-1]]
+    for full in (False, True):
+        asked = replace(study, full=full)
+        assert independent_phases(asked, asked.scenes[0], models, every, stride=2) == orbits
+    every[0, 0] = False  # one of an orbit is missing, the others still tell what it would
+    assert independent_phases(study, study.scenes[0], models, every, stride=2) == orbits
+
+
+def test_a_model_without_the_symmetry_makes_every_phase_count() -> None:
+    study, _ = planted_study({})  # the fake models have none
+    every = np.ones((8, 8), dtype=bool)
+    assert independent_phases(study, study.scenes[0], [study.hierarchy[0], MODEL_HIERARCHY[0]], every, stride=1) == 64
