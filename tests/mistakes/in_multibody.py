@@ -1,0 +1,5 @@
+"""Mistakes in `multibody`."""
+
+from register import Mistake
+
+MISTAKES: tuple[Mistake, ...] = ()
