@@ -51,6 +51,13 @@ def long(session: nox.Session) -> None:
 
 
 @nox.session
+def mistakes(session: nox.Session) -> None:
+    """The mistakes of tests/mistakes, planted one at a time: the tests named there see each."""
+    session.install("-e", ".[test]")
+    session.run("python", "tests/mistakes/plant.py", *session.posargs)
+
+
+@nox.session
 def bench(session: nox.Session) -> None:
     """The benchmarks, one after the other."""
     session.install(".[test]")

@@ -100,7 +100,7 @@ def test_every_level_at_least_halves_the_error_at_an_onset(
     assert (np.array(errors[1:]) < np.array(errors[:-1]) / 2.0).all(), errors
 
 
-@pytest.mark.parametrize("slip_change", [math.inf, 20.0, 1e-4])
+@pytest.mark.parametrize("slip_change", [math.inf, 20.0, pytest.param(1e-4, marks=pytest.mark.long)])
 def test_a_run_ends_whatever_change_of_the_slip_velocity_its_level_allows(slip_change: float) -> None:
     scene = changed(load_scene("fig3-I"), duration=1.5)
     level = replace(multibody.levels(scene)[1], slip_change=slip_change)

@@ -55,26 +55,6 @@ def test_64_phases_lie_within_their_errors(name: str, damping: float | list[floa
     assert share <= 1.0
 
 
-@pytest.mark.parametrize("model", ["translational", "spatial"])
-def test_damping_of_zero_is_no_damping_to_the_last_bit(model: str) -> None:
-    scene = load_scene("fig3-I").with_values({"duration": 1.5})
-    without, zero = (
-        multibody.amplification(each, PHASES[:1], model, tolerance=1e-2) for each in (scene, damped(scene, 0.0))
-    )
-    np.testing.assert_array_equal(zero.mu, without.mu)
-    np.testing.assert_array_equal(zero.error, without.error)
-
-
-def test_factors_tend_to_those_without_damping_with_slope_one() -> None:
-    """At one level, where steps are the same: differences are those of the motion."""
-    scene = load_scene("fig3-I").with_values({"duration": 3.0})
-    level = multibody.levels(scene)[3]
-    without, weak, weaker = (
-        multibody.single_run(damped(scene, zeta), PHASES[1], level=level).peak[1] for zeta in (0.0, 1e-2, 1e-3)
-    )
-    assert np.log10((without - weak) / (without - weaker)) == pytest.approx(1.0, abs=0.05)
-
-
 @pytest.mark.parametrize("zeta", [0.05, 1.0, 3.0])
 def test_a_damped_body_on_a_held_platform_decays_as_its_closed_form(zeta: float) -> None:
     w, amplitude = 2.0 * np.pi / 1.5, 0.02

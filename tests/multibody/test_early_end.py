@@ -119,17 +119,6 @@ def test_full_runs_go_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.isinf(stops).all()
 
 
-def test_a_thousand_seconds_have_the_factors_of_twenty() -> None:
-    scene = load_scene("fig3-I")
-    short, long = (
-        refine(moving, assemble(moving, "translational", 1e-3), np.array([0.3, 1.1]), TOLERANCE)
-        for moving in (scene, scene.with_values({"duration": 1000.0}))
-    )
-    assert long.outcome == Outcome.OK
-    np.testing.assert_allclose(long.peaks, short.peaks, rtol=1e-12)
-    assert long.finest.work == short.finest.work
-
-
 def test_a_motion_is_integrated_again_where_a_look_ahead_finds_something_large(monkeypatch: pytest.MonkeyPatch) -> None:
     ends: list[float] = []
 

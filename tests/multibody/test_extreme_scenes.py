@@ -74,7 +74,8 @@ def test_an_answer_beyond_the_tolerance_is_that_of_the_level_that_rounding_has_n
         (strong(duration=0.1, excitation={"decay": [1e3, 0.3]}), V_REG),
         (linked(1e-2, duration=0.6), V_REG),  # undamped, it rings when the loading begins
         (linked(1e-3, duration=0.02), V_REG),
-        (linked(1e-3, duration=0.3, isolator={"friction": 0.1}), V_REG),  # a slow contact's damper would end its swing
+        # a slow contact's damper would end its swing
+        pytest.param(linked(1e-3, duration=0.3, isolator={"friction": 0.1}), V_REG, marks=pytest.mark.long),
         (strong(duration=3.0), 1e-4),  # two levels agree to 0.9 of what both are off
     ],
     ids=["decay 1e6/s", "decay 1e3/s", "link 1e-2 s", "link 1e-3 s", "link 1e-3 s, longer", "v_reg 1e-4 m/s"],
@@ -164,7 +165,10 @@ def test_a_loading_of_a_millionth_has_the_factors_of_the_equations(model: str) -
 
 @pytest.mark.parametrize(
     "scene",
-    [linked(1e3, duration=1.0), strong(duration=1.0, excitation={"decay": [1e6, 1e6]})],
+    [
+        linked(1e3, duration=1.0),
+        pytest.param(strong(duration=1.0, excitation={"decay": [1e6, 1e6]}), marks=pytest.mark.long),
+    ],
     ids=["link 1e3 s", "decay 1e6/s"],
 )
 def test_a_body_that_hardly_moves_has_the_factor_of_the_equations_to_1e_3_of_itself(scene: Scene) -> None:

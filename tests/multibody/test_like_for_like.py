@@ -158,18 +158,6 @@ def test_errors_hold_where_v_reg_is_small(scene: str) -> None:
     assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
 
 
-def test_a_smaller_tolerance_is_met_by_refinement() -> None:
-    scene = changed(load_scene("fig3-I"), duration=4.0)
-    equations = reference.amplification(scene, PHASES[:1], equations="exact", regularization=V_REG)
-    errors = []
-    for tolerance in (1e-3, 1e-5):
-        engine = multibody.amplification(scene, PHASES[:1], regularization=V_REG, tolerance=tolerance)
-        assert (engine.error <= tolerance * engine.mu).all()
-        errors.append(np.abs(engine.mu - equations.mu).max())
-        assert errors[-1] <= (engine.error + equations.error).max()
-    assert errors[1] < 0.2 * errors[0]
-
-
 def test_longer_chains_agree_as_well() -> None:
     floors = [{"mass": 2.0}, {"mass": 1.0, "period": [0.5, 0.4]}, {"mass": 0.5, "stiffness": [40.0, 60.0]}]
     scene = changed(load_scene("fig3-II"), bodies=floors, duration=6.0)
@@ -185,23 +173,3 @@ def test_vertical_shaking_agrees_as_well() -> None:
     engine = multibody.amplification(shaken, PHASES[:1], regularization=V_REG)
     equations = reference.amplification(shaken, PHASES[:1], equations="exact", regularization=V_REG)
     assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
-
-
-def test_a_million_times_the_mass_gives_the_same_factors() -> None:
-    scene = changed(load_scene("fig3-I"), duration=4.0)
-
-    def factors(times: float) -> np.ndarray:
-        bodies = [{**body, "mass": times * body["mass"]} for body in scene.model_dump()["bodies"]]
-        return multibody.amplification(changed(scene, bodies=bodies), PHASES[:1]).mu
-
-    light = factors(1.0)
-    np.testing.assert_array_equal(factors(2.0**20), light)  # a power of two rounds nothing
-    # the last digit of the link stiffness, 1e-16, grows where a slide begins and in the contact: 2e-8 was seen
-    np.testing.assert_allclose(factors(1e6), light, rtol=1e-7)
-
-
-def test_phases_do_not_depend_on_their_neighbors_in_one_call() -> None:
-    scene = changed(load_scene("fig3-I"), duration=2.0)
-    together = multibody.amplification(scene, PHASES[:2]).mu
-    alone = np.vstack([multibody.amplification(scene, [phase]).mu for phase in PHASES[1::-1]])[::-1]
-    np.testing.assert_array_equal(together, alone)

@@ -12,7 +12,7 @@ from reference.problem import Outcome, load_scene
 PHASES = [(0.1, 0.2), (2.0, 0.7)]
 
 
-@pytest.mark.parametrize("lubrication", [1e-3, 0.5, 10.0, 1e3, 1e5, 1e7, pytest.param(1e9, marks=pytest.mark.long)])
+@pytest.mark.parametrize("lubrication", [1e-3, 10.0, 1e5, pytest.param(1e9, marks=pytest.mark.long)])
 def test_the_error_holds_at_any_lubrication(lubrication: float) -> None:
     scene = load_scene("fig4-viscous").with_values({"duration": 5.0, "isolator.lubrication": lubrication})
     engine, equations = multibody.amplification(scene, PHASES), reference.amplification(scene, PHASES)

@@ -43,7 +43,7 @@ print((resident() - before) / {calls})
 @pytest.mark.parametrize(
     ("scene", "function", "phases", "settings"),
     [
-        ("fig3-I", "amplification", "[(0.3, 1.1)]", "loading='plate'"),
+        pytest.param("fig3-I", "amplification", "[(0.3, 1.1)]", "loading='plate'", marks=pytest.mark.long),
         pytest.param("fig3-I", "trajectory", "(0.3, 1.1)", "model='spatial'", marks=pytest.mark.long),
         pytest.param("synthetic-pair", "amplification", "[(0.3, 1.1)]", "", marks=pytest.mark.long),
     ],

@@ -88,22 +88,6 @@ def test_without_friction_nothing_moves_the_platform():
     assert answer.mu[0, 0] <= answer.error[0, 0] < 1e-4
 
 
-@pytest.mark.long
-def test_a_large_radius_tends_to_the_plane_with_slope_one():
-    scene, asked = SCENES["own axes"].with_values({"duration": 6.0}), {"tolerance": 1e-5, "max_work": 2e7}
-    limit = multibody.amplification(scene, PHASES[:1], **asked)
-    exact = reference.amplification(scene, PHASES[:1], regularization=V_REG, tolerance=1e-8)
-    curved = reference.amplification(
-        scene.with_values({"isolator.radius": 1e4}), PHASES[:1], regularization=V_REG, tolerance=1e-8
-    )
-    slope = 1e4 * (curved.mu - exact.mu)
-    for radius in (10.0, 30.0, 100.0):
-        engine = multibody.amplification(scene.with_values({"isolator.radius": radius}), PHASES[:1], **asked)
-        gap, uncertain = engine.mu - limit.mu, engine.error + limit.error
-        assert (np.abs(gap - slope / radius) <= uncertain + 0.05 * np.abs(slope) / radius).all()
-    assert (np.abs(gap) > 3.0 * uncertain).any(), "the slope is seen above the errors"
-
-
 def test_the_unit_of_length_follows_the_loading():
     slow = SCENES["own axes"].with_values({"duration": 2.0})
     factor = 16.0  # times all periods: a motion in slow motion, loading and friction unchanged

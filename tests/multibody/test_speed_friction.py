@@ -106,15 +106,6 @@ def test_a_force_between_slow_and_fast_friction_makes_the_platform_creep_at_its_
     assert motion.velocity[-1, 0, 0] == pytest.approx(-np.log(share) / law["rate"], rel=1e-4)
 
 
-def test_equal_coefficients_give_the_bits_of_plain_friction() -> None:
-    plain, equal = (
-        multibody.amplification(paper_scene(law, duration=2.0), PHASES[:1])
-        for law in (0.1, {"slow": 0.1, "fast": 0.1, "rate": 50.0})
-    )
-    np.testing.assert_array_equal(equal.mu, plain.mu)
-    np.testing.assert_array_equal(equal.error, plain.error)
-
-
 @BOTH_LAWS
 def test_every_contact_has_the_friction_of_its_own_speed(law: dict[str, float]) -> None:
     """A body level with the depressions does not turn: the spatial model has the motion of the translational one."""

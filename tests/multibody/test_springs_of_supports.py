@@ -104,12 +104,6 @@ def test_an_answer_that_real_bearings_hardly_change_stays_and_the_change_is_an_e
     np.testing.assert_allclose(done.answer.errors, [5e-4 + level_error(1), 2.0 * level_error(1)])
 
 
-def test_the_larger_change_of_two_levels_is_the_error(refined: Any) -> None:
-    changes = [5e-4, 1e-5]
-    done = refined(lambda number, springs: result(1.0 + changes[number] * (springs == REAL)))
-    np.testing.assert_allclose(done.answer.errors[0], 5e-4 + level_error(1))
-
-
 def test_a_change_that_leaves_no_room_for_the_error_of_levels_asks_for_another_level_and_no_run_in_vain(
     refined: Any,
 ) -> None:

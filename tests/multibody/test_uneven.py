@@ -209,16 +209,6 @@ def test_rotation_grows_in_proportion_and_factors_with_the_square(key: str, law:
     np.testing.assert_allclose(changes[1] / changes[0], 4.0, rtol=0.02)
 
 
-def test_equations_and_translation_do_not_read_the_new_keys() -> None:
-    plain, scene = load_scene("fig3-I").with_values({"duration": 1.0}), uneven("everything", 1.0)
-    for solve in (
-        lambda scene: reference.amplification(scene, [PHASE]),
-        lambda scene: reference.amplification(scene, [PHASE], equations="small"),
-        lambda scene: multibody.amplification(scene, [PHASE]),
-    ):
-        np.testing.assert_array_equal(solve(plain).mu, solve(scene).mu)
-
-
 def test_energy_comes_from_the_plate_and_goes_into_friction() -> None:
     scene, v_reg = uneven("three positions off the axis", 2.0, **{"bodies.1.yaw": 0.4, **SIZES}), 1e-3
     motion = multibody.trajectory(scene, PHASE, "spatial", regularization=v_reg, tolerance=1e-4)
@@ -257,14 +247,6 @@ def test_energy_comes_from_the_plate_and_goes_into_friction() -> None:
     lost = trapezoid(rubbed, time)
     assert lost > 0.2 * stored.max()
     np.testing.assert_allclose(stored - stored[0], work, atol=1e-3 * lost)
-
-
-@pytest.mark.parametrize("name", ["all off the axis", "everything"])
-def test_a_run_that_ends_early_has_the_values_of_one_to_the_end(name: str) -> None:
-    scene = uneven(name, 8.0)
-    early, whole = (multibody.amplification(scene, [PHASE], "spatial", full=full) for full in (False, True))
-    assert agree(early, whole)
-    assert early.cost < whole.cost
 
 
 @pytest.mark.parametrize("stiffness", [3e4, 1e6])

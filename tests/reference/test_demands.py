@@ -61,10 +61,6 @@ def estimates(answer: Demands) -> dict[str, Estimate]:
     return named
 
 
-def test_both_sides_have_the_same_function() -> None:
-    assert reference.demands is multibody.demands is demands
-
-
 def test_a_body_released_in_a_smooth_cap_swings_to_where_it_was_let_go() -> None:
     """Frictionless plane pendulum on a plate at rest: amplitude A, N = m g (3 cos t - 2 cos A) from the energy."""
     scene = one_body().with_values({"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0]]})

@@ -23,32 +23,6 @@ SCENES = {
     ),
     "one body": chain(0.25, 0.05, [2.0], amplitudes=[[1.2, 0.5], [0.3, 1.0]]),
 }
-LAWS = {
-    "exact": {"equations": "exact"},
-    "small": {"equations": "small"},
-    "regularized": {"regularization": 1e-3},
-    "resolved": {"cutoff": 1e-3},
-}
-
-
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("name", SCENES)
-def test_mu_is_within_its_error_and_its_tolerance_of_a_run_a_hundred_times_tighter(name, law):
-    scene, options = SCENES[name], dict(LAWS[law])
-    if scene.lubricated and law in ("regularized", "resolved"):
-        pytest.skip("a lubricated contact has one law")
-    phases = phase_grid(5) + 0.1
-    coarse = reference.amplification(scene, phases, tolerance=1e-5, **options)
-    fine = reference.amplification(scene, phases, tolerance=1e-7, **options)
-    good = coarse.status == "ok"
-    assert good.mean() > 0.95
-    assert np.isfinite(coarse.mu[good]).all()
-    assert np.all(coarse.error[good] <= 1e-5 * coarse.mu[good])
-    both = good & (fine.status == "ok")
-    gap = np.abs(coarse.mu - fine.mu)[both]
-    assert np.all(gap <= 1e-5 * fine.mu[both])
-    # the error is stated to hold for 99 % of the points: of these fifty or so values, one may be beyond it
-    assert np.mean(gap <= (coarse.error + fine.error)[both]) >= 0.98
 
 
 @pytest.mark.parametrize("name", [pytest.param("fig3-II", marks=pytest.mark.long), "fig4-dry"])
@@ -60,23 +34,6 @@ def test_a_peak_at_the_start_of_rest_is_that_of_an_independent_code(name):
     assert np.all(np.abs(found.mu[0] - expected) <= found.error[0])
 
 
-def test_a_peak_at_the_start_of_a_short_rest_is_within_its_error():
-    """The next slide begins within the first step at rest, which is made again up to there."""
-    scene = chain(
-        0.2959160976407856,
-        0.03265811695708547,
-        amplitudes=[[-0.446462258848715, -0.43464461928925835], [0.0, 0.0], [0.0, 0.0]],
-        periods=[1.2366178483466048, 0.6610917633217478],
-        decay=[0.05, 0.05],
-        duration=4.0,
-    )
-    asked = {"cutoff": 0.18222927461028254}
-    phase = (6.032843094784534, 2.7332843318055944)
-    found = reference.amplification(scene, [phase], **asked)
-    truth = reference.amplification(scene, [phase], tolerance=1e-9, **asked)
-    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
-
-
 def test_a_peak_of_the_upper_body_on_the_last_arc_of_a_slide_is_that_of_an_independent_code():
     """The slip direction turns on while the platform stops: all bodies share the vertical acceleration of that."""
     phase = (2.0944, 1.7017)
@@ -85,34 +42,8 @@ def test_a_peak_of_the_upper_body_on_the_last_arc_of_a_slide_is_that_of_an_indep
     assert np.all(np.abs(found.mu[0] - expected) <= found.error[0] + 1e-9)
 
 
-def test_the_error_counts_a_vibration_that_both_runs_damp():
-    """The stiff link on top of four bodies vibrates undamped, by less than the tolerance inside a step."""
-    scene = Scene.model_validate(
-        {
-            "title": "stiff link on top",
-            "duration": 3.9,
-            "isolator": {"radius": 0.79, "friction": 0.29},
-            "bodies": [
-                {"mass": 2.9},
-                {"mass": 0.46, "period": [0.18, 0.13]},
-                {"mass": 0.58, "period": [1.2, 1.7]},
-                {"mass": 2.1, "period": [0.055, 0.047]},
-            ],
-            "excitation": {
-                "amplitudes": [[-0.4, -0.18], [0.64, -1.3], [-0.15, 0.39]],
-                "periods": [1.0, 0.77],
-                "decay": [0.0, 0.058],
-            },
-        }
-    )
-    phase = (3.7, 0.4)
-    found = reference.amplification(scene, [phase], cutoff=1e-3)
-    truth = reference.amplification(scene, [phase], cutoff=1e-3, tolerance=1e-8)
-    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
-
-
 @pytest.mark.parametrize("period", [0.09, 0.12])
-def test_the_error_counts_what_equal_steps_between_the_knots_of_a_record_miss(period):
+def test_an_error_counts_what_equal_steps_between_knots_miss(period):
     """Both runs step from knot to knot: they agree, however wrongly a stiff link vibrates within such steps."""
     time = 0.05 * np.arange(81)
     for seed in range(8):
@@ -132,114 +63,82 @@ def test_the_error_counts_what_equal_steps_between_the_knots_of_a_record_miss(pe
         assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error), seed
 
 
-def test_the_error_of_a_peak_read_at_a_stage_is_that_of_the_places_there():
-    """At a stage the interpolating polynomial is exact, and stiff links return a wrong place as an acceleration."""
-    scene = Scene.model_validate(
-        {
-            "title": "stiff link on a plane",
-            "duration": 2.9151874635691977,
-            "isolator": {"radius": float("inf"), "friction": 0.2439118221521473},
-            "bodies": [
-                {"mass": 0.749599907571332},
-                {"mass": 2.222804077965832, "period": [0.1011706677778102, 0.062068992441822006]},
-            ],
-            "excitation": {
-                "amplitudes": [
-                    [0.3213943270276767, -0.9174033188431983],
-                    [-1.7232873793996446, 1.0913846932317521],
-                    [-1.2745928250202376, -0.9194598522227189],
-                ],
-                "periods": [1.0255153347693375, 1.078778262315151],
-                "decay": [0.0, 0.19269694617653776],
-            },
-        }
-    )
-    phase, law = (3.4142843076791825, 0.32840127542146164), {"equations": "small", "regularization": 1e-3}
-    found = reference.amplification(scene, [phase], **law)
-    truth = reference.amplification(scene, [phase], tolerance=1e-9, **law)
+def asked(isolator: dict, bodies: list, amplitudes: list, periods: list, decay: list, duration: float) -> Scene:
+    excitation = {"amplitudes": amplitudes, "periods": periods, "decay": decay}
+    tables = {"isolator": isolator, "bodies": bodies, "excitation": excitation}
+    return Scene.model_validate({"title": "asked of the error", "duration": duration, **tables})
+
+
+# what an error would lack: scene, phases, law, tolerance
+LACKING = {
+    # the next slide begins within the first step at rest, which is made again up to there
+    "start of a short rest": (
+        asked(
+            {"radius": 0.2959160976407856, "friction": 0.03265811695708547}, [{"mass": 1.0}],
+            [[-0.446462258848715, -0.43464461928925835], [0.0, 0.0], [0.0, 0.0]],
+            [1.2366178483466048, 0.6610917633217478], [0.05, 0.05], 4.0,
+        ),
+        (6.032843094784534, 2.7332843318055944), {"cutoff": 0.18222927461028254}, 1e-6,
+    ),
+    # the stiff link on top of four bodies vibrates undamped, by less than the tolerance inside a step
+    "vibration that both runs damp": (
+        asked(
+            {"radius": 0.79, "friction": 0.29},
+            [{"mass": 2.9}, {"mass": 0.46, "period": [0.18, 0.13]}, {"mass": 0.58, "period": [1.2, 1.7]},
+             {"mass": 2.1, "period": [0.055, 0.047]}],
+            [[-0.4, -0.18], [0.64, -1.3], [-0.15, 0.39]], [1.0, 0.77], [0.0, 0.058], 3.9,
+        ),
+        (3.7, 0.4), {"cutoff": 1e-3}, 1e-6,
+    ),
+    # at a stage the interpolating polynomial is exact, and stiff links return a wrong place as an acceleration
+    "places at a stage": (
+        asked(
+            {"radius": float("inf"), "friction": 0.2439118221521473},
+            [{"mass": 0.749599907571332},
+             {"mass": 2.222804077965832, "period": [0.1011706677778102, 0.062068992441822006]}],
+            [[0.3213943270276767, -0.9174033188431983], [-1.7232873793996446, 1.0913846932317521],
+             [-1.2745928250202376, -0.9194598522227189]],
+            [1.0255153347693375, 1.078778262315151], [0.0, 0.19269694617653776], 2.9151874635691977,
+        ),
+        (3.4142843076791825, 0.32840127542146164), {"equations": "small", "regularization": 1e-3}, 1e-6,
+    ),
+    # the defect of the acceleration is small there, that of the velocity is not
+    "vibration whose acceleration is zero where the step begins": (
+        asked(
+            {"radius": float("inf"), "friction": 0.2410461351714428},
+            [{"mass": 2.0334465501971253},
+             {"mass": 2.4041598998469538, "period": [1.7158223844817824, 1.1489567897578785]},
+             {"mass": 0.4065760535114943, "period": [0.03409016784258648, 0.159199130584121]}],
+            [[1.6587128332517427, -1.5793306980738033], [1.582995927447317, -1.2735503379100233],
+             [1.0607216669910304, -0.6447819313971683]],
+            [0.5191640817131488, 1.5204245061365294], [0.0, 0.0], 4.202171020401759,
+        ),
+        (2.6065706627301535, 0.9463193827363767), {"cutoff": 0.05}, 1e-5,
+    ),
+    # friction that depends on the velocity answers to a wrong one, which is wrong most of all at the stages
+    "velocity at a stage of a slow slide": (
+        asked(
+            {"radius": 0.4055392718770014,
+             "friction": {"slow": 0.13309190933512813, "fast": 0.18536089582186507, "rate": 96.26506232767552}},
+            [{"mass": 1.5848051508005034}],
+            [[-0.6066648967154049, -0.9035527068508564], [-1.1910997411924935, -0.3475833836386375]],
+            [0.7288123599658124, 0.792461983489356], [0.36665382523949813, 0.0], 5.278268500333847,
+        ),
+        (3.96547402629501, 6.1657221400022255), {}, 1e-6,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("scene", "phase", "law", "tolerance"), LACKING.values(), ids=LACKING)
+def test_an_error_lacks_nothing(scene: Scene, phase: tuple[float, float], law: dict, tolerance: float):
+    found, truth = (reference.amplification(scene, [phase], tolerance=each, **law) for each in (tolerance, 1e-9))
     assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
-
-
-def test_the_error_counts_a_damped_vibration_whose_acceleration_is_zero_where_the_step_begins():
-    """The defect of the acceleration is small there, that of the velocity is not."""
-    scene = Scene.model_validate(
-        {
-            "title": "three bodies on a plane",
-            "duration": 4.202171020401759,
-            "isolator": {"radius": float("inf"), "friction": 0.2410461351714428},
-            "bodies": [
-                {"mass": 2.0334465501971253},
-                {"mass": 2.4041598998469538, "period": [1.7158223844817824, 1.1489567897578785]},
-                {"mass": 0.4065760535114943, "period": [0.03409016784258648, 0.159199130584121]},
-            ],
-            "excitation": {
-                "amplitudes": [
-                    [1.6587128332517427, -1.5793306980738033],
-                    [1.582995927447317, -1.2735503379100233],
-                    [1.0607216669910304, -0.6447819313971683],
-                ],
-                "periods": [0.5191640817131488, 1.5204245061365294],
-                "decay": [0.0, 0.0],
-            },
-        }
-    )
-    phase = (2.6065706627301535, 0.9463193827363767)
-    found = reference.amplification(scene, [phase], cutoff=0.05, tolerance=1e-5)
-    truth = reference.amplification(scene, [phase], cutoff=0.05, tolerance=1e-8)
-    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
-
-
-def test_the_error_of_a_peak_read_at_a_stage_of_a_slow_slide_is_that_of_its_velocity():
-    """Friction that depends on the velocity answers to a wrong one, which is wrong most of all at the stages."""
-    scene = Scene.model_validate(
-        {
-            "title": "friction of the velocity",
-            "duration": 5.278268500333847,
-            "isolator": {
-                "radius": 0.4055392718770014,
-                "friction": {"slow": 0.13309190933512813, "fast": 0.18536089582186507, "rate": 96.26506232767552},
-            },
-            "bodies": [{"mass": 1.5848051508005034}],
-            "excitation": {
-                "amplitudes": [[-0.6066648967154049, -0.9035527068508564], [-1.1910997411924935, -0.3475833836386375]],
-                "periods": [0.7288123599658124, 0.792461983489356],
-                "decay": [0.36665382523949813, 0.0],
-            },
-        }
-    )
-    phase = (3.96547402629501, 6.1657221400022255)
-    found = reference.amplification(scene, [phase])
-    truth = reference.amplification(scene, [phase], tolerance=1e-9)
-    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
-
-
-def test_the_error_holds_for_99_percent_and_is_not_far_too_large():
-    ratios = []
-    for name, law in (("fig3-I", "exact"), ("fig3-II", "small"), ("fig3-II", "regularized"), ("fig4-viscous", "exact")):
-        phases = phase_grid(8) + 0.1
-        found = reference.amplification(SCENES[name], phases, **LAWS[law])
-        truth = reference.amplification(SCENES[name], phases, tolerance=1e-9, **LAWS[law])
-        assert (found.status == "ok").all()
-        ratios.append((found.error / np.maximum(np.abs(found.mu - truth.mu), 1e-12)).ravel())
-    assert np.mean(np.concatenate(ratios) >= 1.0) >= 0.99
-    # 22 in the median, 86 for the regularized law, whose answers are better than two runs show
-    assert np.median(np.concatenate(ratios)) <= 35.0
 
 
 def test_a_run_of_fig3_takes_few_steps():
     """159 over 20 s at 1e-5 inside a step: none is made in vain before a stop, and few on the way into it."""
     system, demand = checked_demand(SCENES["fig3-I"], "exact", None, 1e-6, None, "consistent")
     assert peaks_at(system, phase_grid(8) + 0.1, demand, 1e-5).steps.mean() <= 170.0
-
-
-@pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
-def test_a_tighter_tolerance_gives_smaller_errors(name):
-    phases = phase_grid(4) + 0.1
-    errors = [
-        np.median(reference.amplification(SCENES[name], phases, tolerance=t).error) for t in (1e-3, 1e-5, 1e-7, 1e-9)
-    ]
-    assert errors[0] >= errors[1] > errors[2] > errors[3]
-    assert errors[3] < 1e-8
 
 
 def test_a_point_does_not_depend_on_its_company():
@@ -249,12 +148,6 @@ def test_a_point_does_not_depend_on_its_company():
         alone = reference.amplification(scene, phases[m : m + 1])
         np.testing.assert_array_equal(alone.mu[0], whole.mu[m])
         np.testing.assert_array_equal(alone.error[0], whole.error[m])
-
-
-def test_no_phases_give_an_empty_surface():
-    found = reference.amplification(SCENES["fig3-I"], np.empty((0, 2)))
-    assert found.mu.shape == (0, 2)
-    assert found.status.shape == (0,)
 
 
 def test_what_is_known_remains_where_a_finer_run_cannot_be_finished():

@@ -270,25 +270,6 @@ def test_loading_and_friction_scaled_together_scale_the_motion_exactly(scale):
     np.testing.assert_allclose(again.displacement, scale * once.displacement, rtol=1e-3)
 
 
-@pytest.mark.parametrize("name", ["fig3-I", "fig3-II"])
-def test_the_symmetries_of_the_phases_hold_on_a_plane(name):
-    scene = flat(name, duration=6.0)
-    shifts = [(np.pi, np.pi)] + ([(np.pi, 0.0)] if reference.problem.own_axes(scene) else [])
-    mu = reference.amplification(scene, PHASES).mu
-    for shift in shifts:
-        np.testing.assert_allclose(reference.amplification(scene, PHASES + shift).mu, mu, rtol=1e-6)
-
-
-@pytest.mark.parametrize("regularization", [None, V_REG])
-def test_reduced_to_a_line_the_motion_on_a_plane_is_the_same(regularization):
-    scene = flat(duration=6.0, excitation__amplitudes=[[2.0, 1.0], [0.0, 0.0]])
-    assert reference.problem.planar(scene)
-    asked = {"regularization": regularization}
-    reduced, whole = (reference.amplification(scene, PHASES, full=full, **asked) for full in (False, True))
-    assert (np.abs(reduced.mu - whole.mu) <= reduced.error + whole.error).all()
-    np.testing.assert_allclose(reduced.displacement, whole.displacement, rtol=1e-3)
-
-
 # the scene and its numbers -------------------------------------------------------------------------------------------
 
 

@@ -37,10 +37,6 @@ def harmonic(period: float, duration: float, count: int) -> Trajectory:
     return floor(time, np.stack([wave, 2.0 * wave], axis=1))
 
 
-def test_both_sides_have_the_same_function() -> None:
-    assert reference.floor_spectra is multibody.floor_spectra
-
-
 def test_an_oscillator_in_resonance_amplifies_by_one_over_twice_its_damping() -> None:
     spectra = reference.floor_spectra(harmonic(0.8, 80.0, 40_001), [0.8], DAMPING)
     assert spectra.acceleration[0, 0, 0] == pytest.approx(1.0 / (2.0 * DAMPING), rel=1e-4)

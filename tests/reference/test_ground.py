@@ -42,6 +42,7 @@ def ground_in_a_step(system: System, elapsed: Array) -> Array:
     return work.ground[:, :STAGES].copy()
 
 
+@pytest.mark.long  # it compiles
 @pytest.mark.parametrize("angle", [1e-12, 0.3, 1.9, 2.1])
 def test_the_harmonics_at_the_stages_of_a_step_are_those_of_the_scene(angle: float) -> None:
     """By their series up to an angle of 2, by themselves beyond it."""

@@ -30,6 +30,7 @@ def assert_factors_of_an_independent_code(scene: Scene, phase: tuple[float, floa
     return found.mu[0]
 
 
+@pytest.mark.long
 def test_a_hundredth_of_the_mass_has_the_factors_of_an_independent_code():
     """At an onset the direction of the slide turns by 200 rad/s, and its acceleration depends on it a hundred times."""
     scene, phase = light(0.01), (2.0, 0.7)

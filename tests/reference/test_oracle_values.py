@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from oracle import set_valued_run, smooth_run
 from oracle_cases import CASES, scene_of
+from oracle_values import STORE
 
 import reference
 
-VALUES: list[dict[str, Any]] = json.loads(Path(__file__).with_name("oracle_values.json").read_text())
+VALUES: list[dict[str, Any]] = json.loads(STORE.read_text())
 TOLERANCE = 1e-7
 # a resolved peak is read where |v| passes the cutoff: it is as good as that instant, not as good as a maximum
 CUTOFF_LOSS = 10.0

@@ -55,16 +55,6 @@ def test_a_surface_has_the_demands_of_its_motions() -> None:
             np.testing.assert_array_equal(np.atleast_1d(estimates.error[row]), [each.error for each in listed])
 
 
-def test_phases_may_have_any_shape() -> None:
-    scene = reference.load_scene("fig3-I").with_values({"duration": 2.0})
-    flat, square = phase_grid(2), phase_grid(2).reshape(2, 2, 2)
-    listed, shaped = reference.peak_demands(scene, flat), reference.peak_demands(scene, square)
-    assert shaped.status.shape == shaped.instant.shape == (2, 2)
-    for name, estimates in listed.items():
-        np.testing.assert_array_equal(shaped[name].value, estimates.value.reshape(2, 2, *estimates.value.shape[1:]))
-    assert reference.peak_demands(scene, (0.3, 1.1))["drift"].value.shape == (1,)
-
-
 def test_labeled_demands_are_those_of_the_result() -> None:
     scene = reference.load_scene("fig3-I").with_values({"duration": 2.0})
     square = reference.peak_demands(scene, phase_grid(2).reshape(2, 2, 2))
@@ -86,11 +76,6 @@ def test_the_accelerations_are_those_of_the_amplification_factors() -> None:
     assert (np.abs(surface["acceleration"].value / ground - mu.mu) <= error).all()
     share = surface["cap_share"].value
     np.testing.assert_allclose(share, mu.cap_share, rtol=1e-3)
-
-
-@pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
-def test_the_two_sides_agree_within_their_errors_at_four_phases(name) -> None:
-    both_sides(name, 2)
 
 
 @pytest.mark.long
@@ -118,7 +103,7 @@ def test_the_two_sides_agree_within_their_errors_on_six_bodies_under_a_record() 
 @pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
 def test_base_shear_and_contact_force_are_those_of_an_independent_solution(name) -> None:
     """Equations of two bodies on a sphere, written here, by SciPy: R = sum of m a, N from the curvature."""
-    scene, phase = reference.load_scene(name).with_values({"duration": 8.0}), (2.0, 0.7)
+    scene, phase = reference.load_scene(name).with_values({"duration": 3.0}), (2.0, 0.7)
     law = None if scene.lubricated else 1e-2
     shear, contact = alone(scene, phase, law)
     answer = reference.peak_demands(scene, [phase], regularization=law)
@@ -188,15 +173,3 @@ def test_a_pair_without_an_answer_is_nan_and_costs_no_other() -> None:
     engine = multibody.peak_demands(scene, phases[lost][:1])
     assert engine.status[0] in ("rim reached", "contact lost")
     assert np.isnan(engine["drift"].value).all()
-
-
-def test_wrong_arguments_are_refused_in_one_line() -> None:
-    scene = reference.load_scene("fig3-I")
-    with pytest.raises(ValueError, match="equations") as refused:
-        reference.peak_demands(scene, [], equations="exakt")
-    assert "\n" not in str(refused.value)
-
-
-def test_no_phases_give_empty_demands() -> None:
-    surface = reference.peak_demands(reference.load_scene("fig3-I"), np.empty((0, 2)))
-    assert (len(surface), surface.status.shape) == (0, (0,))

@@ -20,7 +20,7 @@ SCENES = {
     "one body": chain(amplitudes=[[1.0, 1.0], [0.5, 0.5]]),
     "oblique, vertical too": chain(**TWO, amplitudes=[*OBLIQUE, [0.5, 0.3]]),
     "along y, links of two stiffnesses": chain(
-        masses=[1.0, 0.5, 0.5], stiffness=[[20.0, 30.0], [15.0, 25.0]], amplitudes=[[0.0, 0.0], [1.0, 0.7]]
+        masses=[1.0, 0.5, 0.5], stiffness=[[20.0, 30.0], [15.0, 25.0]], amplitudes=[[0.0, 0.0], [1.0, 0.7]], damping=0.2
     ),
 }
 LAWS = {"small": ("small", None, None), "exact": ("exact", None, None), "v_reg": ("exact", 1e-3, None)}

@@ -9,7 +9,7 @@ import reference
 from reference.problem import load_scene
 
 CUTOFF = 1e-3  # m/s
-INSTANTS = 300_001
+INSTANTS = 100_001
 CREEP = {"slow": 0.0430860971356464, "fast": 0.14661134550366858, "rate": 519.697000477915}
 CASES = {
     # a slide begins slowly, within a step at whose end it is fast
@@ -34,7 +34,7 @@ def test_a_resolved_peak_is_the_largest_of_the_instants_that_count(friction, pha
     motion = reference.trajectory(scene, phase, "small", tolerance=1e-10, times=instants)
     supremum = reference.amplification(scene, [phase], equations="small").mu[0, 1]
     expected = supremum * largest(motion, CUTOFF) / largest(motion, 0.0)
-    for tolerance in (1e-5, 1e-6, 1e-7, 1e-8):
+    for tolerance in (1e-5, 1e-7):
         answer = reference.amplification(scene, [phase], equations="small", cutoff=CUTOFF, tolerance=tolerance)
         assert answer.status[0] == "ok"
         assert answer.mu[0, 1] == pytest.approx(expected, rel=4e-6)

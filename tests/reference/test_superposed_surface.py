@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import reference
 from reference import surface
-from reference.problem import GRAVITY, Outcome, Scene, linear, load_scene, phase_grid
+from reference.problem import GRAVITY, Outcome, Scene, linear, load_scene
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (0.0, np.pi), (5.1, 3.3)])
 TWO = {"masses": [1.0, 0.5], "stiffness": [[20.0, 30.0]], "amplitudes": [[0.3, 0.1], [-0.2, 0.2]]}
@@ -118,10 +118,3 @@ def test_a_lubricated_scene_is_not_linear_in_the_small_equations():
     # and without friction it does
     still = [reference.amplification(frictionless().with_amplitude(a), PHASES, "small").mu for a in (0.15, 0.3)]
     np.testing.assert_allclose(*still, rtol=1e-9)
-
-
-def test_one_call_and_many_give_the_same():
-    scene, phases = frictionless(), phase_grid(5)
-    whole = reference.amplification(scene, phases, equations="small")
-    single = [reference.amplification(scene, [phase], equations="small").mu[0] for phase in phases]
-    np.testing.assert_allclose(single, whole.mu, rtol=1e-13)

@@ -104,6 +104,7 @@ def test_numbas_settings_in_the_folder_do_not_say_where_builds_are(tmp_path: Pat
     assert tmp_path not in Path(run.stdout.strip()).parents
 
 
+@pytest.mark.long  # it compiles
 def test_a_first_call_leaves_the_package_as_it_was(tmp_path: Path) -> None:
     package = tmp_path / "site" / "reference"
     for file in sorted((ROOT / "reference").rglob("*")):

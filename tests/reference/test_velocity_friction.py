@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 import reference
 from reference.analytical import circular_shaking
-from reference.problem import GRAVITY, DryFriction, Scene, State, linear, load_scene, no_friction, planar, untilted
+from reference.problem import GRAVITY, DryFriction, Scene, State, linear, load_scene, no_friction, untilted
 
 TOLERANCE = 1e-8
 STILL = ((0.0, 0.0), (0.0, 0.0))
@@ -113,18 +113,6 @@ def test_circular_shaking_feels_the_friction_of_its_constant_speed(equations, sl
 # limits --------------------------------------------------------------------------------------------------------------
 
 
-@BOTH
-@pytest.mark.parametrize("asked", [{}, {"cutoff": 1e-3}, {"regularization": 1e-3}], ids=str)
-def test_equal_coefficients_give_the_bits_of_plain_friction(asked, equations):
-    scene = load_scene("fig3-I").with_values({"duration": 5.0})
-    plain, equal = (
-        reference.amplification(with_law(scene, law), PHASES, equations=equations, **asked)
-        for law in (0.1, {"slow": 0.1, "fast": 0.1, "rate": 37.0})
-    )
-    np.testing.assert_array_equal(equal.mu, plain.mu)
-    np.testing.assert_array_equal(equal.error, plain.error)
-
-
 def answers(rates: list[float], law: dict[str, float], tolerance: float = 1e-9, **asked) -> np.ndarray:
     """mu (R, N) at the first phase pair."""
     scene = load_scene("fig3-I").with_values({"duration": 5.0})
@@ -173,15 +161,6 @@ def test_as_the_rate_grows_resolved_peaks_tend_to_those_of_the_fast_friction_lik
     np.testing.assert_allclose(scaled[2] - scaled[1], scaled[1] - scaled[0], rtol=0.1)
 
 
-@pytest.mark.parametrize("law", [RISING, FALLING], ids=["rising", "falling"])
-def test_as_the_rate_grows_regularized_peaks_tend_to_those_of_the_fast_friction_with_its_square(law):
-    """Where the coefficient is not yet the fast one, at speeds of 1 / rate, the law has v / v_reg of it."""
-    v_reg, rates = 1e-2, [1e3, 1e4, 1e5]
-    gap = answers(rates, law, regularization=v_reg) - plain(law["fast"], regularization=v_reg)
-    assert (np.abs(gap[:, None][0]) < 1e-3).all()
-    assert (slopes(rates, gap) < -1.5).all()
-
-
 def test_the_supremum_tends_to_that_of_the_fast_friction_like_a_power_of_the_rate_that_its_stop_decides():
     """
     On the way into the stop the slip direction turns like v^(F / (fast N - F)); below 1 / rate it does so otherwise.
@@ -204,16 +183,6 @@ def test_the_supremum_tends_to_that_of_the_fast_friction_like_a_power_of_the_rat
     assert slope[-1] == pytest.approx(expected, rel=0.06)
 
 
-@READINGS
-def test_friction_that_falls_at_once_is_that_of_a_static_and_a_kinetic_coefficient(asked):
-    """The set-valued law keeps its hold at rest as the rate grows. The regularized one loses it: v_reg is faster."""
-    first, second, third = answers([1e5, 1e6, 1e7], FALLING, 1e-8, **asked)
-    kinetic = plain(FALLING["fast"], **asked)
-    assert (np.abs(third - second) < 0.2 * np.abs(second - first) + 1e-7).all()
-    far = np.abs(third / kinetic - 1.0)
-    assert (far < 1e-5).all() if "regularization" in asked else (far > 0.1).all()
-
-
 def test_small_equations_keep_mu_when_loading_and_friction_shrink_and_the_rate_grows():
     """What is left of a difference are the friction terms with xi'' x1 / rho that (4.3) keeps: they shrink like s^2."""
     scene = load_scene("fig3-I").with_values({"duration": 5.0})
@@ -227,19 +196,6 @@ def test_small_equations_keep_mu_when_loading_and_friction_shrink_and_the_rate_g
 
 
 # what a scene does not require ---------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("law", [RISING, FALLING], ids=["rising", "falling"])
-def test_half_turns_of_the_phases_and_motions_in_a_plane_stay_symmetries(law):
-    scene = with_law(load_scene("fig3-I").with_values({"duration": 4.0}), law)
-    turns = np.pi * np.array([(0, 0), (1, 1), (1, 0), (0, 1)])
-    answer = reference.amplification(scene, np.array(PHASES[0]) + turns)
-    assert (np.abs(answer.mu - answer.mu[0]) <= answer.error + answer.error[0]).all()
-    aslant = scene.with_values({"excitation.amplitudes": [[1.2, 0.6], [1.6, 0.8]], "bodies.1.period": [1.2, 1.2]})
-    assert planar(aslant)
-    flat, full = (reference.amplification(aslant, PHASES, regularization=v_reg, full=whole)
-                  for v_reg, whole in ((1e-3, False), (1e-3, True)))  # fmt: skip
-    assert (np.abs(flat.mu - full.mu) <= flat.error + full.error).all()
 
 
 def test_what_friction_forbids_the_larger_coefficient_forbids():

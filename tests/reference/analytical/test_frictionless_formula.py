@@ -54,15 +54,15 @@ def test_motion_starts_from_rest():
 
 
 def test_amplification_is_the_maximum_of_the_motion():
-    """Against 5e4 samples: |a|^2 between two of them rises by less than 1e-6 of itself."""
+    """Against 2e4 samples: |a|^2 between two of them rises by less than 1e-5 of itself."""
     phases = np.array([PHASE, (0.0, 0.0)])
-    times = np.linspace(0.0, SCENE.duration, 50_001)
+    times = np.linspace(0.0, SCENE.duration, 20_001)
     found = frictionless_amplification(SCENE, phases)
     for phase, mu in zip(phases, found):
         _, _, acceleration = frictionless_motion(SCENE, phase, times)
         sampled = np.sqrt((acceleration**2).sum(axis=-1).max(axis=0)) / ground_peak(SCENE, [phase])[0]
         assert np.all(mu >= sampled * (1.0 - 1e-13))
-        np.testing.assert_allclose(mu, sampled, rtol=1e-6)
+        np.testing.assert_allclose(mu, sampled, rtol=1e-5)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from reference.problem import SceneError, load_family, load_scene
-from reference.problem import record_files as records
 from reference.problem import scene_file as scenes
 from reference.problem.files import read_file
 
@@ -140,10 +139,3 @@ def test_a_key_of_many_parts_is_refused_at_once(text: str) -> None:
     with pytest.raises(SceneError, match="must have at most 10 tables and lists within one another"):
         scenes.parse_scene(text.encode(), "mine.toml")
     assert time.process_time() - begin < 2.0, "minutes where the parser meets it"
-
-
-def test_the_sizes_leave_room_for_what_engineers_have() -> None:
-    body = "[[bodies]]\nmass = 1.0e5\nperiod = [0.51, 0.49]\ndamping = 0.05\nheight = 3.2\n"
-    assert 10_000 * len(body) < scenes.LARGEST
-    sample = "1234.567,-0.1234567,-0.1234567,-0.1234567\n"
-    assert 30 * 60 * 200 * len(sample) < records.LARGEST, "half an hour at 200 Hz"

@@ -13,26 +13,14 @@ from reference.problem import Scene, SceneError, builtin_scenes, load_scene, par
 # name: (line of the good file, what replaces it, key, value, words of the rule)
 BROKEN = {
     "unknown key": ("duration = 2.0", "duration = 2.0\ncolour = 3", "colour", 3, "unknown key"),
-    "unknown key in a table": ("friction = 0.1", "friction = 0.1\nfrictoin = 0.2", "isolator.frictoin", 0.2, "unknown"),
-    "unknown key in a body": ("mass = 3.0", "mass = 3.0\nweight = 1.0", "bodies.0.weight", 1.0, "unknown key"),
-    "unknown key in the loading": ("[excitation]", "[excitation]\nphase = 1", "excitation.phase", 1, "unknown key"),
     "unknown table": ("[isolator]", "[solver]\nstep = 1\n[isolator]", "solver", {"step": 1}, "unknown key"),
     "name": ("duration = 2.0", 'duration = 2.0\nname = "x"', "name", "x", "named after its file"),
     "no duration": ("duration = 2.0", "", "duration", None, "required"),
-    "no title": ('title = "two bodies"', "", "title", None, "required"),
     "no mass": ("mass = 3.0", "", "bodies.0.mass", None, "required"),
-    "no periods": ("periods = [0.9, 1.1]", "", "excitation.periods", None, "required"),
-    "no decay": ("decay = [0.3, 0.2]", "", "excitation.decay", None, "required"),
-    "title a number": ('"two bodies"', "3", "title", 3, "string"),
     "duration text": ("duration = 2.0", 'duration = "2"', "duration", "2", "number"),
-    "duration true": ("duration = 2.0", "duration = true", "duration", True, "number"),
-    "duration a date": ("duration = 2.0", "duration = 2020-01-01", "duration", None, "number"),
     "duration zero": ("duration = 2.0", "duration = 0.0", "duration", 0.0, "greater than 0"),
-    "duration negative": ("duration = 2.0", "duration = -1", "duration", -1, "greater than 0"),
     "duration nan": ("duration = 2.0", "duration = nan", "duration", None, "finite"),
-    "duration infinite": ("duration = 2.0", "duration = inf", "duration", float("inf"), "finite"),
     "friction negative": ("friction = 0.1", "friction = -0.1", "isolator.friction", -0.1, "greater than or equal to 0"),
-    "friction infinite": ("friction = 0.1", "friction = inf", "isolator.friction", float("inf"), "finite"),
     "friction of the velocity without its rate": (
         "friction = 0.1",
         "friction = {slow = 0.1, fast = 0.2}",
@@ -54,7 +42,6 @@ BROKEN = {
         50.0,
         "did you mean rate",
     ),
-    "friction a list": ("friction = 0.1", "friction = [0.1]", "isolator.friction", [0.1], "number"),
     "neither friction": ("friction = 0.1", "", "isolator", {"period": 1.0}, "exactly one of friction and lubrication"),
     "both frictions": (
         "friction = 0.1",
@@ -63,28 +50,10 @@ BROKEN = {
         None,
         "exactly one of friction",
     ),
-    "lubrication negative": ("friction = 0.1", "lubrication = -1.0", "isolator.lubrication", -1.0, "equal to 0"),
     "neither radius": ("period = 1.0", "", "isolator", {"friction": 0.1}, "exactly one of period and radius"),
     "both radii": ("period = 1.0", "period = 1.0\nradius = 0.3", "isolator", None, "exactly one of period and radius"),
-    "period zero": ("period = 1.0", "period = 0.0", "isolator.period", 0.0, "greater than 0"),
-    "radius negative": ("period = 1.0", "radius = -0.2", "isolator.radius", -0.2, "greater than 0"),
     "two supports": ("[isolator]", "[isolator]\nsupports = 2", "isolator.supports", 2, "equal to 3"),
-    "supports not whole": ("[isolator]", "[isolator]\nsupports = 4.0", "isolator.supports", 4.0, "integer"),
     "two positions": ("[isolator]", "[isolator]\nsupports = [[0, 1], [1, 0]]", "isolator.supports", None, "3 items"),
-    "position of three": (
-        "[isolator]",
-        "[isolator]\nsupports = [[0, 1], [1, 0], [1, 1, 1]]",
-        "isolator.supports.2",
-        [1, 1, 1],
-        "2 items",
-    ),
-    "position a text": (
-        "[isolator]",
-        "[isolator]\nsupports = [[0, 1], [1, 0], [1, 'x']]",
-        "isolator.supports.2.1",
-        "x",
-        "number",
-    ),
     "position far away": (
         "[isolator]",
         "[isolator]\nsupports = [[0, 1], [1, 0], [1, 1e7]]",
@@ -120,62 +89,11 @@ BROKEN = {
         [0.0, 0.0],
         "would carry nothing at rest",
     ),
-    "offset of one": ("mass = 1.0", "mass = 1.0\noffset = [1.0]", "bodies.1.offset", [1.0], "2 items"),
-    "offset a number": ("mass = 1.0", "mass = 1.0\noffset = 1.0", "bodies.1.offset", 1.0, "list"),
     "yaw in degrees": ("mass = 1.0", "mass = 1.0\nyaw = 45.0", "bodies.1.yaw", 45.0, "rad"),
-    "ring zero": ("[isolator]", "[isolator]\nring = 0.0", "isolator.ring", 0.0, "greater than 0"),
-    "isolator a number": ("[isolator]\nperiod = 1.0\nfriction = 0.1", "isolator = 1", "isolator", 1, "dictionary"),
-    "mass zero": ("mass = 3.0", "mass = 0.0", "bodies.0.mass", 0.0, "greater than 0"),
-    "mass nan": ("mass = 1.0", "mass = nan", "bodies.1.mass", None, "finite"),
-    "height negative": ("mass = 1.0", "mass = 1.0\nheight = -1.0", "bodies.1.height", -1.0, "equal to 0"),
-    "size of two": ("mass = 1.0", "mass = 1.0\nsize = [1.0, 1.0]", "bodies.1.size", [1.0, 1.0], "3 items"),
-    "size zero": ("mass = 1.0", "mass = 1.0\nsize = [1.0, 0.0, 1.0]", "bodies.1.size.1", 0.0, "greater than 0"),
     "link period of one": ("period = [1.5, 1.2]", "period = [1.5]", "bodies.1.period", [1.5], "2 items"),
-    "link period of three": ("period = [1.5, 1.2]", "period = [1, 1, 1]", "bodies.1.period", [1, 1, 1], "2 items"),
-    "link period a number": ("period = [1.5, 1.2]", "period = 1.5", "bodies.1.period", 1.5, "list"),
-    "link period negative": (
-        "period = [1.5, 1.2]",
-        "period = [1.5, -1.2]",
-        "bodies.1.period.1",
-        -1.2,
-        "greater than 0",
-    ),
-    "stiffness zero": ("period = [1.5, 1.2]", "stiffness = [0.0, 1.0]", "bodies.1.stiffness.0", 0.0, "greater than 0"),
     "one row": ("[[1.0, 0.0], [0.0, 1.0]]", "[[1.0, 0.0]]", "excitation.amplitudes", [[1.0, 0.0]], "2 items"),
-    "four rows": (
-        "[[1.0, 0.0], [0.0, 1.0]]",
-        "[[1, 0], [0, 1], [0, 0], [0, 0]]",
-        "excitation.amplitudes",
-        None,
-        "3 items",
-    ),
-    "short row": ("[[1.0, 0.0], [0.0, 1.0]]", "[[1.0, 0.0], [0.0]]", "excitation.amplitudes.1", [0.0], "2 items"),
-    "flat matrix": ("[[1.0, 0.0], [0.0, 1.0]]", "[1.0, 0.0]", "excitation.amplitudes.0", 1.0, "list"),
-    "amplitude nan": (
-        "[[1.0, 0.0], [0.0, 1.0]]",
-        "[[nan, 0.0], [0.0, 1.0]]",
-        "excitation.amplitudes.0.0",
-        None,
-        "finite",
-    ),
-    "loading period zero": (
-        "periods = [0.9, 1.1]",
-        "periods = [0.9, 0.0]",
-        "excitation.periods.1",
-        0.0,
-        "greater than 0",
-    ),
-    "three loading periods": (
-        "periods = [0.9, 1.1]",
-        "periods = [1, 2, 3]",
-        "excitation.periods",
-        [1, 2, 3],
-        "2 items",
-    ),
     "decay negative": ("decay = [0.3, 0.2]", "decay = [0.3, -0.2]", "excitation.decay.1", -0.2, "equal to 0"),
-    "decay infinite": ("decay = [0.3, 0.2]", "decay = [inf, 0.2]", "excitation.decay.0", float("inf"), "finite"),
     "limit negative": ("[isolator]", "[acceptance]\nmedian = -1.0\n[isolator]", "acceptance.median", -1.0, "greater"),
-    "failures negative": ("[isolator]", "[acceptance]\nfailed = -1\n[isolator]", "acceptance.failed", -1, "equal to 0"),
     "broken TOML": ("[isolator]", "[isolator", "file", None, "valid TOML"),
     "key twice": ("duration = 2.0", "duration = 2.0\nduration = 3.0", "file", None, "valid TOML"),
 }
@@ -250,11 +168,6 @@ def test_a_file_that_cannot_be_read_is_refused_with_the_names_of_built_in_scenes
     assert "\n" not in str(caught.value)
 
 
-def test_a_directory_is_refused(tmp_path):
-    with pytest.raises(SceneError, match="directory"):
-        load_scene(tmp_path)
-
-
 @pytest.mark.parametrize("amplitude", [0.0, -1.0, float("nan"), float("inf")])
 def test_an_impossible_amplitude_is_refused(amplitude):
     with pytest.raises(SceneError, match=r"fig3-I: amplitude = .*finite and greater than 0"):
@@ -267,22 +180,11 @@ def test_an_amplitude_for_a_loading_of_zeros_is_refused():
         parse_scene(text.encode(), "mine").with_amplitude(1.0)
 
 
-def test_tiny_amplitudes_are_scaled_to_huge_ones_without_overflow():
-    text = edited("[[1.0, 0.0], [0.0, 1.0]]", "[[1e-200, 0.0], [0.0, 1e-200]]")
-    assert parse_scene(text.encode(), "mine").with_amplitude(1e200).amplitudes.max() == 1e200
-
-
 def test_an_error_survives_the_way_home_from_a_worker_process():
     error = SceneError("mine.toml", "duration", -1.0, "must be greater than 0")
     back = pickle.loads(pickle.dumps(error))
     assert (back.file, back.key, back.value, back.rule) == ("mine.toml", "duration", -1.0, "must be greater than 0")
     assert str(back) == str(error)
-
-
-def test_long_values_are_shortened_to_one_line():
-    error = SceneError("mine.toml", "bodies", "x" * 1000 + "\n" * 50, "rule")
-    assert len(str(error)) < 150
-    assert "\n" not in str(error)
 
 
 def test_the_good_file_is_good(tmp_path: Path):

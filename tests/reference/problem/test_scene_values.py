@@ -60,7 +60,7 @@ def toml(data: dict) -> str:
 
 
 @given(scenes)
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=40, deadline=None)
 def test_a_valid_scene_goes_through_a_file_and_back_unchanged(data):
     scene = parse_scene(toml(data).encode(), "folder/random.toml")
     direct = Scene.model_validate({**data, "name": "random"})
@@ -129,7 +129,7 @@ PLACES = [
 
 @example(place=["bodies", 0], value={"\n": False})
 @given(place=st.sampled_from(PLACES), value=anything)
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=120, deadline=None)
 @example(place=["isolator", "period"], value=1e200)
 @example(place=["bodies", 1, "period", 0], value=1e-300)
 @example(place=["duration"], value=10**400)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scene_text import GOOD
 
-from reference.problem import Scene, SceneError, example_scenes, load_family, load_scene, parse_scene
+from reference.problem import Scene, SceneError, example_scenes, load_family, load_scene
 from reference.problem.acceptance import Acceptance
 
 
@@ -94,11 +94,6 @@ def test_a_wrong_value_is_one_line_with_scene_key_value_and_rule(key, value, rul
     assert str(caught.value).startswith("fig3-I: ")
     assert "\n" not in str(caught.value)
     assert len(str(caught.value)) < 700
-
-
-def test_a_misspelt_key_of_a_file_is_answered_with_the_nearest():
-    with pytest.raises(SceneError, match=r"isolator\.frictoin = 0\.2: unknown key; did you mean friction"):
-        parse_scene(GOOD.replace("friction = 0.1", "friction = 0.1\nfrictoin = 0.2").encode(), "mine.toml")
 
 
 @pytest.mark.parametrize(

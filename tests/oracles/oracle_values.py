@@ -1,5 +1,5 @@
 """
-Writes `oracle_values.json`: python tests/reference/oracle_values.py [NAME ...]; all cases take half an hour.
+Writes `oracle_values.json`: python tests/oracles/oracle_values.py [NAME ...]; all cases take half an hour.
 
 Each number comes with the difference of runs at two tolerances a hundred times apart, which is the error of the coarser
 one and so an upper estimate for the finer one that is kept.

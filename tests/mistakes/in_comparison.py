@@ -1,0 +1,5 @@
+"""Mistakes in `comparison`."""
+
+from register import Mistake
+
+MISTAKES: tuple[Mistake, ...] = ()
