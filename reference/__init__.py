@@ -15,6 +15,7 @@ load_scene      a scene from a built-in name or a TOML file
 builtin_scenes  names of the paper's own cases
 example_scenes  names of the examples with a recorded motion
 phase_grid      equally spaced phase pairs
+sensitivity     derivatives of any of these with respect to values of the scene, with errors
 phase_distribution  mean and fractiles of mu over uniform phases, from its surface
 
 Classes
@@ -83,6 +84,7 @@ if TYPE_CHECKING:
     from reference.motion import trajectory
     from reference.natural_modes import damped_modes, modes
     from reference.phase_maximum import PhaseMaximum, worst_phases
+    from reference.derivatives import sensitivity
     from reference.surface import amplification
 
 LOADED_ON_FIRST_USE = {
@@ -91,6 +93,7 @@ LOADED_ON_FIRST_USE = {
     "damped_modes": "reference.natural_modes",
     "modes": "reference.natural_modes",
     "peak_demands": "reference.demand_surface",
+    "sensitivity": "reference.derivatives",
     "trajectory": "reference.motion",
     "worst_phases": "reference.phase_maximum",
 }
@@ -119,6 +122,7 @@ __all__ = [
     "peak_demands",
     "phase_distribution",
     "phase_grid",
+    "sensitivity",
     "trajectory",
     "worst_phases",
 ]

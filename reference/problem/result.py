@@ -26,7 +26,16 @@ DRAWN = {
 }
 
 
-@dataclass(frozen=True)
+def _counts(status: NDArray[np.str_]) -> list[str]:
+    return [f"{count} {name}" for name, count in zip(*np.unique(status, return_counts=True))]
+
+
+def _list(facts: Sequence[str]) -> str:
+    shown = facts if len(facts) <= 8 else [*facts[:6], "...", facts[-1]]
+    return ", ".join(shown)
+
+
+@dataclass(frozen=True, repr=False)
 class Amplification:
     """
     Dynamic amplification factors mu_i of (5.1) for N bodies and phase pairs of any shape, (...): (M,) for a list.
@@ -68,6 +77,20 @@ class Amplification:
                 object.__setattr__(self, name, np.full(shape, np.nan))
         if self.phases.shape != (*shape, 2):
             object.__setattr__(self, "phases", np.full((*shape, 2), np.nan))
+
+    def __repr__(self) -> str:
+        points, bodies = self.status.size, self.mu.shape[-1]
+        if points == 1:
+            rows = zip(self.mu.reshape(-1), self.error.reshape(-1))
+            factors = [f"mu_{body} = {mu:.6g} ± {error:.1g}" for body, (mu, error) in enumerate(rows, start=1)]
+        else:
+            rows = zip(self.mu.reshape(-1, bodies).T, self.error.reshape(-1, bodies).T)
+            factors = [
+                f"mu_{body} {np.nanmin(mu):.4g} to {np.nanmax(mu):.4g} ± {np.nanmax(error):.1g}"
+                for body, (mu, error) in enumerate(rows, start=1)
+                if np.isfinite(mu).any()
+            ]
+        return f"<Amplification of {points} phase pair{'s'[: points != 1]}: {_list([*factors, *_counts(self.status)])}>"
 
     def reshaped(self, shape: tuple[int, ...]) -> Amplification:
         """
@@ -160,7 +183,7 @@ class Amplification:
         return draw_surface(grid, height, rf"$\mu_{{{body}}}$", axes)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Trajectory:
     """
     One motion in the plate's frame at T instants, N bodies, axes x, y, z.
@@ -216,6 +239,12 @@ class Trajectory:
         for name, shape in unknown.items():
             if not len(getattr(self, name)):
                 object.__setattr__(self, name, np.full(shape, np.nan))
+
+    def __repr__(self) -> str:
+        span = f"{len(self.time)} instants to {self.time[-1]:g} s" if len(self.time) else "no samples"
+        moved = np.linalg.norm(self.position[:, 0, :2], axis=-1).max(initial=0.0)
+        facts = [span, f"{len(self.stick)} rests", f"platform at most {1e3 * moved:.4g} mm off", self.status]
+        return f"<Trajectory of {self.scene.name}: {_list(facts)}>"
 
     @property
     def support_force(self) -> Array:

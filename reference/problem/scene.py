@@ -230,6 +230,13 @@ class Scene(Table):
             rule = "the bodies topple under their weight: take stiffer bars, a larger spread or lower bodies"
             raise MisfitError(f"bodies.{giving[0]}.bars", stated and stated.model_dump(exclude_none=True), rule)
 
+    def __repr__(self) -> str:
+        kind = "record" if isinstance(self.excitation, Record) else "two-frequency motion"
+        bodies = f"{len(self.bodies)} bod{'y' if len(self.bodies) == 1 else 'ies'}, {self.total_mass:.4g} kg"
+        return f"<Scene {self.name}: {bodies}, radius {self.radius:.4g} m, {kind}, {self.duration:g} s>"
+
+    __str__ = __repr__
+
     def with_values(self, values: Mapping[str, Any]) -> Scene:
         """
         The same scene with other values, validated like a scene file.
