@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from comparison.analyses.extremes.matrix import Entry, Extreme, Matrix
 from comparison.analyses.extremes.rows import Column, Row, scene
-from comparison.analyses.tradeoff.trade import Answered, Entry, Trade, with_pareto_fronts
+from comparison.analyses.tradeoff.trade import Answered, Trade, with_pareto_fronts
+from comparison.analyses.tradeoff.trade import Entry as Setting
 from reference.problem import load_scene
 
 MADE = {"command": "made <by a test>", "began": "then", "seconds": 1.0, "compute_seconds": 1.0, "jobs": 1,
@@ -33,7 +34,7 @@ def fake(model: str, finer: str = "") -> Column:
 def known_trade(name: str) -> Trade:
     """Two settings of one method, the second of which is dearer and worse."""
     scene, nothing = load_scene(name), (None, None)
-    one = Entry("exact", "reference, one run", "tolerance inside a step", "", 1e-3, False, False, 3, 3, 0.002,
+    one = Setting("exact", "reference, one run", "tolerance inside a step", "", 1e-3, False, False, 3, 3, 0.002,
                 (1e-9, 2e-9), (3e-8, 4e-8), nothing, 0.1)  # fmt: skip
     entries = [one, replace(one, value=1e-2, seconds=0.003, most=(1e-3, 1e-3), error_message="<b>")]
     question = Answered("exact", "exact equations", 3, "the reference", 1e-10, ["it agrees <with itself>"])
