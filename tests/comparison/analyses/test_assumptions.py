@@ -11,11 +11,8 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 from known_analyses import collected
-from matplotlib.image import imread
 
 from comparison.analyses.assumptions.command import main
-from comparison.analyses.assumptions.feature import figure_name
-from comparison.analyses.assumptions.figure import draw_assumptions
 from comparison.analyses.assumptions.validity import Assumptions, ValidityRanges, describe
 from comparison.analyses.assumptions.variations import (
     FEW,
@@ -112,13 +109,6 @@ def test_a_model_that_raises_leaves_no_value_and_says_why() -> None:
         assert np.isnan(cell.change).all()
         assert cell.error_message == "RuntimeError: the matrix is singular"
         assert not cell.holds(1, 0.05)
-
-
-def test_the_picture_shows_what_was_tried(tmp_path: Path) -> None:
-    cells = [_cell(Variation(ring, height), 0.02 * height / ring, 0.0) for ring in (0.5, 1.0) for height in (0.0, 1.0)]
-    path = tmp_path / figure_name(STATED)
-    draw_assumptions(path, STATED, [*cells, _cell(Variation(2.0, 1.0), float("nan"), 0.0)])
-    assert imread(path)[..., :3].std() > 0.1
 
 
 def test_a_scene_without_supports_is_refused_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -236,6 +226,7 @@ def test_what_shortening_changes_is_said_beside_softening_alone() -> None:
     assert ValidityRanges([STATED], nothing).lines(STATED)[-1].startswith("no value says")
 
 
+@pytest.mark.long
 def test_real_bars_that_shorten_change_more_than_softening() -> None:
     scene = STATED.with_values({"bodies.1.period": None, "bodies.1.bars": BARS, "name": "bars"}).with_amplitude(1.5)
     softened, shortened = _turning(scene, [])

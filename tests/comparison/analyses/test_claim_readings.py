@@ -42,6 +42,7 @@ def test_the_platform_alone_is_loaded_close_to_its_own_period() -> None:
     assert gaps == pytest.approx([-0.1, 0.1])
 
 
+@pytest.mark.long
 def test_the_literal_reading_tends_to_the_printed_rest() -> None:
     scene = CASES["fig3-I"](LITERAL)
     limit = amplification(scene, PHASES, "small", cutoff=1e-3, tolerance=1e-4, rest_condition="printed").mu

@@ -140,7 +140,7 @@ def test_one_scale_factor_makes_one_set_of_statistics(folder: Path, undrawn: Non
     assert {stripe["scale"] for stripe in summary["stripes"]} == {1.0}
 
 
-def test_one_motion_in_the_scene_needs_neither_suite_nor_scales(folder: Path) -> None:
+def test_one_motion_in_the_scene_needs_neither_suite_nor_scales(folder: Path, undrawn: None) -> None:
     text = SCENE[: SCENE.index("excitation")] + 'excitation = {record = "suite/m1.csv", scale = 0.5}\n'
     (folder / "mine.toml").write_text(text)
     assert run("mine.toml", "--engine", "1") == 0
@@ -241,7 +241,7 @@ def test_a_family_file_gives_the_same_as_the_options(folder: Path, undrawn: None
     assert content()["stripes"] == first
 
 
-def test_motions_that_reach_the_rim_are_counted(folder: Path) -> None:
+def test_motions_that_reach_the_rim_are_counted(folder: Path, undrawn: None) -> None:
     assert run("mine.toml", "--suite", "suite", "--scales", "1", "12", "2", "--engine", "0") == 0
     summary = content()
     assert summary["outcomes"]["rim reached"] >= 1

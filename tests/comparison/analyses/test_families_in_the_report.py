@@ -9,23 +9,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy
-from matplotlib.axes import Axes
-from matplotlib.image import imread
 from places import SCENES
 from report_texts import page_of, summary_of
 from runs import RUN, Run
 from studies import solved
 
 from comparison.analyses.demands.analysis import DemandStatistics, Extreme
-from comparison.analyses.families.analysis import family_demands, family_demands_over_phases, family_steps
+from comparison.analyses.families.analysis import family_demands, family_demands_over_phases
 from comparison.analyses.families.feature import family_panels
-from comparison.analyses.families.figure import draw_family, family_figure_name
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.registry import report_of
 from comparison.study.study import Study
-from comparison.surfaces.budget import budget
 from comparison.surfaces.distribution import Fractile
-from comparison.surfaces.waterfall import waterfall
 from reference.measures import Demands, Estimate
 from reference.measures.distribution import FRACTILES
 from reference.problem import load_family
@@ -56,33 +51,6 @@ def test_without_a_range_there_is_no_such_section(command: Callable[..., Run]) -
     run = command("fig4-viscous", "--grid", "2")
     assert "Families of scenes</h2>" not in page_of(run.report)
     assert not list((run.report / "figures").glob("*-family.png"))
-
-
-def test_the_figure_of_a_family_shows_every_step_in_percent(
-    file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    family = load_family(file)
-    study = Study(family.scenes, 4, 1e-3, fake_hierarchy(gap=0.01))  # the engine lies 1 % above the reference
-    surfaces = solved(study)
-    drawn: list[tuple[list[float], list[float], str]] = []
-    plot = Axes.plot
-
-    def told(axes: Axes, x: np.ndarray, y: np.ndarray, **look: object) -> object:
-        drawn.append((list(x), list(y), str(look.get("label", look.get("linestyle", "mean")))))
-        return plot(axes, x, y, **look)
-
-    monkeypatch.setattr(Axes, "plot", told)
-    path = tmp_path / family_figure_name(family, 1)
-    bars = {scene.name: [waterfall(study, surfaces, scene, body) for body in (1, 2)] for scene in family.scenes}
-    means = family_steps(family, bars)
-    draw_family(path, family, means, budget(study, surfaces), study.hierarchy, 1)
-    assert {tuple(x) for x, _, _ in drawn} == {(0.1, 0.15, 0.2)}
-    largest = {label: y for _, y, label in drawn if label not in ("mean", "--")}
-    assert set(largest) == {"total", *(model.title for model in study.hierarchy[1:])}
-    np.testing.assert_allclose(largest["total"], 1.0, rtol=1e-9)
-    np.testing.assert_allclose(largest["translational engine"], 1.0, rtol=1e-9)
-    np.testing.assert_array_equal(largest["exact equations"], 0.0)
-    assert imread(path).std() > 0.05, "not an empty picture"
 
 
 def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:

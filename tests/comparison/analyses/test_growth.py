@@ -79,13 +79,5 @@ def test_growth_without_an_answer_is_read_back(tmp_path: Path) -> None:
     assert growth.series[0].seconds == [0.1, None]
 
 
-def test_a_file_that_is_no_growth_is_refused_in_one_line(tmp_path: Path) -> None:
-    (tmp_path / "growth.json").write_text('{"schema": "phase-resonance/tradeoff"}')
-    with pytest.raises(
-        ValueError, match=r"growth.json: not a measured growth: .*: run python -m comparison.tradeoff --growth"
-    ):
-        STORED.load(tmp_path)
-
-
 def growth_of(*series: Series) -> MeasuredGrowth:
     return MeasuredGrowth(SCHEMA, "fig3-I", "a scene", list(series), {"command": "made up"})

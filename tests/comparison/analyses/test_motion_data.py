@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fake_models import known_demands
+from fake_models import KNOWN, known_demands, known_spectra
 from numpy.typing import NDArray
 from report_texts import summary_of
 
@@ -174,6 +174,7 @@ def test_a_motion_whose_forces_have_other_instants_is_none(name: str) -> None:
         )
 
 
+@pytest.mark.long
 def test_the_motions_of_the_default_study_stay_small() -> None:
     """Per motion: all scenes of the paper, whole, by two models of the equations and once by the spatial one."""
     sample = [stored(load_scene(name), model) for name in builtin_scenes() for model in (SMALL, REGULARIZED)]
@@ -189,14 +190,17 @@ def test_the_summary_lists_the_demands_of_every_stored_motion(finished: Path) ->
         assert "small" in models
         assert "spatial" in models
         for entry in result["demands"]:
-            assert entry["base_shear"] == {"value": 1.5, "error": 0.25}
+            for name in ("displacement", "base_shear", "contact_force_min", "contact_force_max", "friction_energy"):
+                assert entry[name] == {"value": KNOWN[name], "error": pytest.approx(0.01 * KNOWN[name])}, name
+            assert [each["value"] for each in entry["acceleration"]] == pytest.approx([2.1, 2.31])
+            alpha = 0.5 * np.pi * np.arange(4)
+            assert set(entry["phases"]) <= {*alpha.tolist()}
             assert entry["residual"] == {"value": None, "error": None, "reason": MOVING}
             assert (len(entry["acceleration"]), len(entry["drift"])) == (len(scene.bodies), len(scene.bodies) - 1)
             assert (entry["support_force_min"] is None) == (entry["model"] != "spatial")
             assert (entry["uplift"] is None) == (entry["model"] != "spatial") == (entry["energy_balance"] is not None)
-            assert entry["friction_energy"] == {"value": 1.5, "error": 0.25}
             assert entry["spectra"]["period"] == [0.1, 1.0]
-            assert entry["spectra"]["acceleration"] == [[[1.5, 1.5]] * 2] * len(scene.bodies)
+            assert entry["spectra"]["acceleration"] == known_spectra(scene).acceleration.tolist()
 
 
 def test_known_demands_have_the_shape_of_real_ones(scene) -> None:

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from known_analyses import collected
+from known_results import known_trade
 
 from comparison.analyses.tradeoff import analysis, command, measure
 from comparison.analyses.tradeoff.analysis import MeasuredTrade, TradeOff, entry
@@ -98,6 +99,7 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     assert lost.answered == 2
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("question", ["exact", "small", "regularised"])
 def test_the_error_of_the_reference_falls_with_its_tolerance(trade: Trade, question: str) -> None:
     for method in ("reference, one run", "reference, two runs and an estimate"):
@@ -106,6 +108,7 @@ def test_the_error_of_the_reference_falls_with_its_tolerance(trade: Trade, quest
         assert (errors[-1] < 1e-8).all()
 
 
+@pytest.mark.long
 def test_error_estimates_of_the_reference_hold(trade: Trade) -> None:
     controlled = [setting for setting in trade.entries if setting.controlled and setting.method.startswith("reference")]
     assert controlled
@@ -114,6 +117,7 @@ def test_error_estimates_of_the_reference_hold(trade: Trade) -> None:
             assert error <= max(error_estimate, 1e-10), setting  # the reference solution is not known better
 
 
+@pytest.mark.long
 def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -> None:
     """The check that the diagram states: codes and methods with little in common meet."""
     for method, within in (("SciPy LSODA", 1e-7), ("translational engine, two levels", 1e-5)):
@@ -125,6 +129,7 @@ def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -
     assert any("translational engine" in line for line in checks)
 
 
+@pytest.mark.long
 def test_v_reg_is_a_model_error_that_falls(trade: Trade) -> None:
     curve = [setting for setting in trade.of("exact") if "faster than v_reg" in setting.method]
     errors = np.array([setting.most for setting in curve], dtype=float)
@@ -143,8 +148,9 @@ def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
 
 
 def test_the_command_writes_what_the_report_reads(
-    trade: Trade, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    trade = known_trade("fig3-I")
     data = xr.Dataset({"mu": ("point", [1.0])})
     monkeypatch.setattr(command, "measured_trades", lambda *arguments: [MeasuredTrade(trade, data)])
     assert command.main(["fig3-I", "--quick", "--out", str(tmp_path / "out")]) == 0
@@ -169,12 +175,6 @@ def test_a_wrong_command_is_one_line(words: list[str], said: str, capsys: pytest
     assert line.count("\n") == 1
 
 
-def test_a_file_that_is_no_trade_is_refused_in_one_line(tmp_path: Path) -> None:
-    (tmp_path / FILE).write_text('{"schema": "another"}', encoding="utf-8")
-    with pytest.raises(ValueError, match="not a measured trade: schema: Input should be 'phase-resonance/tradeoff'"):
-        load(tmp_path)
-
-
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
 def test_a_pipe_in_place_of_a_trade_is_refused_in_one_line(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / FILE)
@@ -183,15 +183,8 @@ def test_a_pipe_in_place_of_a_trade_is_refused_in_one_line(tmp_path: Path) -> No
     assert "\n" not in str(refusal.value)
 
 
-def test_of_a_file_that_is_no_trade_nothing_is_quoted(tmp_path: Path) -> None:
-    (tmp_path / FILE).write_text('{"schema": "a-secret", "trades": "a-secret", "a-secret": 1}', encoding="utf-8")
-    with pytest.raises(ValueError, match="not a measured trade") as refusal:
-        load(tmp_path)
-    assert "a-secret" not in str(refusal.value)
-
-
-def test_a_trade_of_an_earlier_version_names_the_key(trade: Trade, tmp_path: Path) -> None:
-    text = STORED.as_json(TradeFile(SCHEMA, [trade])).decode().replace('"pareto_front"', '"front"')
+def test_a_trade_of_an_earlier_version_names_the_key(tmp_path: Path) -> None:
+    text = STORED.as_json(TradeFile(SCHEMA, [known_trade("fig3-I")])).decode().replace('"pareto_front"', '"front"')
     (tmp_path / FILE).write_text(text, encoding="utf-8")
     with pytest.raises(
         ValueError, match=r"trades\.0\.entries\.0\.front: .*: run python -m comparison.tradeoff$"

@@ -5,15 +5,12 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from places import ROOT
-from report_texts import page_of
-from runs import Run
 from scipy.integrate import solve_ivp
 from scipy.io import savemat
 from scipy.special import ellipk
@@ -21,8 +18,7 @@ from scipy.special import ellipk
 from comparison.analyses.validation import frame, pendulum
 from comparison.analyses.validation.command import compared, main
 from comparison.analyses.validation.files import DECAY, LARGE, Swing, read_folder
-from comparison.analyses.validation.table import ENGINE, EQUATIONS, LAW, SMOOTHED, STORED, VALID, Validation, recorded
-from comparison.runner.output import publish
+from comparison.analyses.validation.table import ENGINE, EQUATIONS, LAW, SMOOTHED, VALID, recorded
 
 MASS, STIFFNESS, DAMPING, RATIO = 3.0799, 1191.0, 0.6690, 0.24
 FREQUENCY, AMPLITUDE, RATE, GRAVITY = 1.003, 1.8e-3, 250.0, 9.80665
@@ -236,15 +232,3 @@ def test_without_files_what_is_recorded_is_printed(capsys: pytest.CaptureFixture
         assert part in text, part
     assert recorded().curves == []  # nothing of the files is in the package
     assert {side.verdict for each in recorded().quantities for side in each.sides.values()} >= {VALID, LAW}
-
-
-def test_a_table_beside_a_report_is_part_of_the_next(command: Callable[..., Run]):
-    report = command("fig3-I", "--grid", "2").report
-    assert "comparison.validation FOLDER makes it" in page_of(report)
-    table: Validation = replace(recorded(), facts=["a <fact>"])
-    publish(report, {STORED.name: STORED.as_json(table)}, "comparison.validation")
-    run = command("fig3-I", "--grid", "2")
-    assert run.code == 0, run.err
-    page = page_of(report)
-    for seen in ('id="validation"', "a &lt;fact&gt;", "half range, mm", "the ratio depends on the load"):
-        assert seen in page, seen

@@ -13,12 +13,27 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-import xarray as xr
-from distinct_models import KEYS, STEPS, differences_of, distinct_hierarchy, first_mu, grid_phases
+from distinct_models import (
+    COARSE,
+    GRID,
+    KEYS,
+    ROWS,
+    STEPS,
+    Array,
+    by_phase,
+    differences_of,
+    distinct_hierarchy,
+    distinct_study,
+    drawn,
+    grid_phases,
+    heights,
+    in_percent,
+    of_sizes,
+    pair_sizes,
+    step,
+)
 from known_analyses import analyses_are
-from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
-from numpy.typing import NDArray
 from report_texts import Tables, flat, page_of, summary_of, text_of
 from runs import RUN, Run, quick_figures
 
@@ -27,14 +42,7 @@ from comparison.registry import report_of
 from comparison.report.page_data import page_data
 from comparison.report.pdf import map_tasks
 from comparison.run import main
-from comparison.study.batches import execute_batch
-from comparison.study.study import Study
 from comparison.surfaces.figures import pairs, print_maps
-from comparison.surfaces.surfaces import labeled_surfaces
-from reference.problem import load_scene
-
-GRID, COARSE = 8, 4  # of the equations, and of the engine
-Array = NDArray[np.float64]
 
 
 @pytest.fixture(scope="module")
@@ -57,42 +65,6 @@ def tables(report: Path) -> Tables:
 def summary(report: Path) -> dict[str, Any]:
     found: dict[str, Any] = summary_of(report)
     return found
-
-
-def step(key: str, body: int, count: int = COARSE) -> Array:
-    """What a model adds to the one before it on a grid."""
-    before = KEYS[KEYS.index(key) - 1]
-    return differences_of(key, body, grid_phases(count)) - differences_of(before, body, grid_phases(count))
-
-
-def pair_sizes(pair: str, body: int, count: int = COARSE) -> Array:
-    """The signed differences of a pair of models, relative to its own first model."""
-    first, second = {
-        "total": ("small", "spatial"),
-        "translational": ("small", "translational"),
-        "like for like": ("regularised", "translational"),
-    }[pair]
-    phases = grid_phases(count)
-    size = (1.0 + differences_of(second, body, phases)) / (1.0 + differences_of(first, body, phases)) - 1.0
-    return np.asarray(size)
-
-
-def of_sizes(pair: str, body: int) -> dict[str, float]:
-    """The statistics of the table of differences, made with NumPy alone."""
-    signed, size = pair_sizes(pair, body), np.abs(pair_sizes(pair, body))
-    return {
-        "mean": signed.mean(), "standard deviation": signed.std(), "95 %": np.percentile(size, 95.0, method="hazen"),
-        "maximum": size.max(), "median size": np.median(size),
-    }  # fmt: skip
-
-
-def in_percent(value: float, plus: str = "") -> str:
-    """Two digits, or whole percents from 10 % on."""
-    size = 100.0 * abs(value)
-    return ("−" if value < 0.0 else plus) + (f"{size:.0f} %" if size >= 10.0 else f"{size:.2g} %")
-
-
-ROWS = [(pair, body) for body in (1, 2) for pair in ("total", "translational", "like for like")]
 
 
 def test_no_two_statistics_of_the_study_are_written_alike() -> None:
@@ -260,36 +232,8 @@ def test_the_terminal_has_statistics_and_times_of_the_page(
     assert flat(f"{took} of processor time") in flat(text_of(run.report / "report.pdf")[1])
 
 
-def drawn(patch: pytest.MonkeyPatch, draw: Callable[..., object], *arguments: Any) -> Figure:
-    """The figure that a function draws."""
-    figures: list[Figure] = []
-    patch.setattr(Figure, "savefig", lambda figure, *rest, **options: figures.append(figure))
-    draw(*arguments)
-    return figures[0]
-
-
-def by_phase(values: Array) -> Array:
-    """Values on a grid, alpha1 along the rows, closed at 2 pi."""
-    count = round(len(values) ** 0.5)
-    return np.pad(values.reshape(count, count), ((0, 1), (0, 1)), mode="wrap")
-
-
-@pytest.fixture(scope="module")
-def solved() -> tuple[Study, xr.Dataset]:
-    study = Study((load_scene("fig3-I"),), GRID, 1e-3, distinct_hierarchy())
-    batches = study.batches()
-    return study, labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
-
-
-def heights(key: str, body: int, count: int) -> Array:
-    phases = grid_phases(count)
-    return by_phase(first_mu(body, phases) * (1.0 + differences_of(key, body, phases)))
-
-
-def test_a_pair_of_surfaces_has_each_under_its_title(
-    solved: tuple[Study, xr.Dataset], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    study, surfaces = solved
+def test_a_pair_of_surfaces_has_each_under_its_title(monkeypatch: pytest.MonkeyPatch) -> None:
+    study, surfaces = distinct_study()
     scene = study.scenes[0]
     [pair] = [pair for pair in study.pairs(scene) if pair.key == "translational"]
     shown: list[tuple[Any, ...]] = []
@@ -316,10 +260,8 @@ def test_a_pair_of_surfaces_has_each_under_its_title(
     assert f"largest of 4 × 4: {np.abs(sizes).max():.2g} %" in difference.get_title()
 
 
-def test_maps_for_print_have_each_model_under_its_title(
-    solved: tuple[Study, xr.Dataset], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    study, surfaces = solved
+def test_maps_for_print_have_each_model_under_its_title(monkeypatch: pytest.MonkeyPatch) -> None:
+    study, surfaces = distinct_study()
     models = study.hierarchy[0], study.hierarchy[4]
     figure = drawn(monkeypatch, print_maps.draw_maps, surfaces, study.scenes[0], models, [2], [])
     maps = [axes for axes in figure.axes if axes.get_title()]
@@ -342,10 +284,8 @@ def test_what_is_not_real_is_explained_as_not_real(report: Path) -> None:
     assert tip.startswith("Not larger than five times the error estimates")
 
 
-def test_a_largest_value_names_its_grid_and_the_search(
-    solved: tuple[Study, xr.Dataset],
-) -> None:
-    study, surfaces = solved
+def test_a_largest_value_names_its_grid_and_the_search() -> None:
+    study, surfaces = distinct_study()
     searched = [
         Worst("fig3-I", "exact", "amplification", 1, value=8.765, phases=(1.0, 2.0)),
         Worst("fig3-I", "translational", "amplification", 1, value=7.654, phases=(1.1, 2.1)),

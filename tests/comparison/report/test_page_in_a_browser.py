@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from browsers import CHROMIUM, DESKTOP, FLAGS, LAPTOP, OVERLAPS, PATIENCE, PHONE, Scheme, Visit, opened, unfolded, until
-from fake_models import fake_hierarchy, silenced
+from fake_models import fake_hierarchy, known_spectra, silenced
 from known_analyses import analyses_are
 from matplotlib.image import imread
 from playwright.sync_api import Browser, Locator, Page, sync_playwright
@@ -190,6 +190,13 @@ def test_the_motions_plotted_are_those_stored(visit: Visit) -> None:
     assert path == pytest.approx(10.0 * isolator.sphere_radius / load_scene("fig3-I").radius, rel=2 * ROUNDING)
     assert rest == [2.0, 3.0]
     assert {"loop", "contact", "absolute"} <= {label.split()[0] for label in plots}
+    spectra = visit.page.evaluate("""() => [...document.querySelectorAll('[data-part=plots] .plot')]
+        .map(box => box.spec).filter(spec => spec.label.includes('spectrum'))
+        .map(spec => [spec.label, spec.series[0].x, spec.series[0].y])""")
+    values = known_spectra(load_scene("fig3-I")).acceleration[0].tolist()
+    assert [(label.split(",")[0][-4:], x, y) for label, x, y in spectra] == [
+        (f"in {axis}"[-4:], [0.1, 1.0], row) for axis, row in zip("xy", values)
+    ]
 
 
 def test_the_demands_of_both_models_stand_beside_each_other(visit: Visit) -> None:
@@ -198,8 +205,13 @@ def test_the_demands_of_both_models_stand_beside_each_other(visit: Visit) -> Non
     rows = {
         row.locator("th").inner_text(): row.locator("td").all_inner_texts() for row in table.locator("tbody tr").all()
     }
-    assert rows["largest displacement of the isolator, mm"][0] == "1500 ± 300"
-    assert "base shear, N" in rows
+    for title, cell in (
+        ("largest displacement of the isolator, mm", "150 ± 2"),
+        ("base shear, N", "5.2 ± 0.05"),
+        ("smallest contact force, N", "17 ± 0.2"),
+        ("largest contact force, N", "23 ± 0.2"),
+    ):
+        assert rows[title][0] == cell, title
     (residual,) = (cells for title, cells in rows.items() if title.startswith("residual"))
     assert residual == ["none: moving at the end: take a longer duration"] * 2 + [""]
 

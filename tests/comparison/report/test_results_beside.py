@@ -1,0 +1,200 @@
+"""What other commands leave beside a report is part of the next one, and no run loses it."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import xarray as xr
+from fake_models import fake_hierarchy
+from known_analyses import analyses_are
+from known_results import FOUND, MADE, known_trade
+from report_texts import Tables, both_pages, page_of, schema_errors, summary_of
+from runs import SMALL, Run, quick_figure, quick_figures
+
+from comparison.analyses.assumptions import figure as assumptions
+from comparison.analyses.benchmarks import table as benchmarks
+from comparison.analyses.ensemble import result as ensemble
+from comparison.analyses.ensemble.feature import ensemble_panels
+from comparison.analyses.extremes import matrix as extremes
+from comparison.analyses.tradeoff import command as tradeoff
+from comparison.analyses.tradeoff import growth
+from comparison.analyses.tradeoff.analysis import MeasuredTrade
+from comparison.analyses.tradeoff.trade import FILE as TRADES
+from comparison.analyses.validation import table as validation
+from comparison.registry import StudyResults
+from comparison.run import main
+from comparison.runner.output import publish
+
+
+def known_benchmarks() -> benchmarks.Benchmarks:
+    """One number, which the engine does not answer."""
+    numbers = {
+        "equations": benchmarks.Number(2.02423, 2e-8, benchmarks.Verdict.MET.value),
+        "smoothed": benchmarks.Number(2.02425, 3e-8, benchmarks.Verdict.MET.value),
+        "engine": benchmarks.Number(None, None, benchmarks.Verdict.NONE.value),
+    }
+    rows = [benchmarks.Row("isolation period", "s", 2.0242, 5e-5, numbers)]
+    about = "frame", "a <frame>", "a book", "links", 1e-4, "theirs is heated"
+    return benchmarks.Benchmarks([benchmarks.Benchmark(*about, rows, {"engine": "it broke"}, {"engine": 1.0})], MADE)
+
+
+def known_growth() -> growth.MeasuredGrowth:
+    """One series without a value."""
+    series = [
+        growth.with_slope("bodies", "", "engine", (2.0, 4.0, 8.0), (1.0, 4.0, 16.0)),
+        growth.with_slope("bodies", "", "slow engine", (2.0, 4.0, 8.0), (1.0, float("nan"), 16.0)),
+    ]
+    return growth.MeasuredGrowth(growth.SCHEMA, "fig3-I", "a scene", series, MADE)
+
+
+def known_ensemble() -> ensemble.StoredEnsemble:
+    """Displacements of three motions at two scales: the third reaches the rim at the larger one."""
+    known = {"motion 1": (0.1, 0.2), "motion 2": (0.2, 0.5), "motion 3": (0.3, None)}
+    curves = [
+        ensemble.StoredCurve(
+            "displacement", None, "exact", motion, (1.0, 2.0), values, (0.0, 0.0 if values[1] else None)
+        )
+        for motion, values in known.items()
+    ]
+    engine = ensemble.StoredCurve("displacement", None, "translational", "motion 2", (2.0,), (0.51,), (1e-3,))
+    low, high = (
+        [
+            ensemble.StoredFractile(share, value, None if value is None else 0.0)
+            for share, value in zip((0.16, 0.5, 0.84), values)
+        ]
+        for values in ((0.132, 0.2, 0.268), (0.296, 0.5, None))
+    )
+    stripes = [ensemble.StoredStripe("displacement", None, "m", 1.0, 3, low),
+               ensemble.StoredStripe("displacement", None, "m", 2.0, 2, high)]  # fmt: skip
+    difference = ensemble.StoredDifference("displacement", None, 0.02, 1e-4, 2e-3, 1)
+    return ensemble.StoredEnsemble(
+        schema=ensemble.SCHEMA, scene="tower", title="Tower & <town>", keys=["excitation.scale"], scales=(1.0, 2.0),
+        motions=3, bodies=1, outcomes={"ok": 5, "rim reached": 1}, stripes=stripes, curves=[*curves, engine],
+        engine=ensemble.StoredEngine("translational", [{"scene": "tower[2]", "status": "ok"}], [difference]), run=MADE,
+    )  # fmt: skip
+
+
+FILES: Mapping[str, bytes] = {
+    extremes.FILE: extremes.STORED.as_json(FOUND),
+    benchmarks.FILE: benchmarks.STORED.as_json(known_benchmarks()),
+    growth.FILE: growth.STORED.as_json(known_growth()),
+    ensemble.FILE: ensemble.STORED.as_json(known_ensemble()),
+    validation.STORED.name: validation.STORED.as_json(replace(validation.recorded(), facts=["a <fact>"])),
+}
+MAKES = ("extremes", "benchmarks", "tradeoff SCENE", "ensemble SCENE", "validation FOLDER")
+
+
+def studied(place: Path, patch: pytest.MonkeyPatch, *words: str) -> int:
+    """A small study by fake models; its exit code."""
+    patch.setattr(assumptions, "draw_assumptions", quick_figure)
+    quick_figures(patch)
+    analyses_are(patch, motions=[])
+    return main([*SMALL, *words, "--out", str(place)], fake_hierarchy(), ThreadPoolExecutor)
+
+
+@pytest.fixture(scope="module")
+def beside(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path, dict[str, bytes]]:
+    """The pages of a report alone; the report with all results beside it, and their files as they were before it."""
+    place = tmp_path_factory.mktemp("beside") / "report"
+    with pytest.MonkeyPatch.context() as patch:
+        assert studied(place, patch) == 0
+        alone = both_pages(place)
+        publish(place, FILES, "a test")
+        data = xr.Dataset({"mu": ("point", [1.0])})
+        for name in ("fig3-I", "fig3-II"):
+            patch.setattr(
+                tradeoff, "measured_trades", lambda *rest, name=name: [MeasuredTrade(known_trade(name), data)]
+            )
+            assert tradeoff.main([name, "--out", str(place)]) == 0
+        diagrams = {f"fig3-I-tradeoff.{ending}" for ending in ("nc", "png", "pdf")}
+        kept = {name: (place / name).read_bytes() for name in (*FILES, TRADES, *diagrams)}
+        for _ in range(2):  # the second loses nothing either
+            assert studied(place, patch) == 0
+    return alone, place, kept
+
+
+def test_results_beside_a_report_are_part_of_the_next(beside: tuple[str, Path, dict[str, bytes]]) -> None:
+    alone, place, kept = beside
+    pages = both_pages(place)
+    for name in MAKES:
+        line = f"python -m comparison.{name} makes it"
+        assert (line in alone, line in pages) == (True, False), name
+    for seen in (
+        'id="extremes"', "2e-07", "step limit", "hangs: &lt;forever&gt;",
+        'id="benchmarks"', "2.0242 s ± 5e-05", "2.02423 ± 2e-08", "no answer", "a &lt;frame&gt;", "heated",
+        'id="tradeoff"', "it agrees &lt;with itself&gt;", "3.0e-08, 4.0e-08", "engine: slope 2.00",
+        'id="ensemble"', "Tower &amp; &lt;town&gt;", "5 ok, 1 rim reached",
+        'id="validation"', "a &lt;fact&gt;", "half range, mm", "the ratio depends on the load",
+    ):  # fmt: skip
+        assert seen in pages, seen
+    assert pages.count("made &lt;by a test&gt;") >= 4, "every command says how it was made"
+    assert "1.0e-03, 1.0e-03" not in pages, "what is beaten is in the picture alone"
+    assert pages.count("not a scene of this study") == 1
+    assert "(fig3-II)</span>: not a scene of this study" in pages
+    assert {name: (place / name).read_bytes() for name in kept} == kept
+    assert {"extremes.png", "growth.png"} <= {file.name for file in (place / "figures").iterdir()}
+
+
+def test_results_beside_a_report_are_in_its_summary(beside: tuple[str, Path, dict[str, bytes]]) -> None:
+    _, place, _ = beside
+    assert schema_errors(place) == []
+    summary = summary_of(place)
+    assert summary["extremes"]["rows"][1]["entries"]["spatial"]["reason"] == "step limit"
+    assert summary["benchmarks"]["benchmarks"][0]["rows"][0]["published"] == 2.0242
+    assert summary["tradeoff"][0]["entries"][0]["pareto_front"] == [True, True]
+    assert summary["growth"]["series"][1]["slope"] is None
+    assert summary["ensemble"]["curves"][2]["values"] == [0.3, None]
+
+
+def test_a_panel_of_an_ensemble_is_in_the_unit_of_its_axis(beside: tuple[str, Path, dict[str, bytes]]) -> None:
+    results = StudyResults.model_validate_json((beside[1] / "summary.json").read_bytes())
+    [panel] = [each for each in ensemble_panels(results.of("ensemble")) if each["title"] == "isolator displacement"]
+    assert panel["plot"]["y"]["title"] == "isolator displacement, mm"
+    motions, [band], [engine] = (
+        [line for line in panel["plot"]["series"] if line["name"].startswith(name)]
+        for name in ("one motion", "median", "engine")
+    )
+    assert [line["y"][0] for line in motions] == pytest.approx([100.0, 200.0, 300.0])
+    assert band["name"] == "median, 16 % to 84 %"
+    assert [band[key][0] for key in ("low", "y", "high")] == pytest.approx([132.0, 200.0, 268.0])
+    assert engine["y"] == pytest.approx([510.0])
+
+
+def test_the_tables_of_an_ensemble_have_every_number_in_its_column(
+    beside: tuple[str, Path, dict[str, bytes]],
+) -> None:
+    tables = Tables(page_of(beside[1]))
+    low, high = tables.headed("demand", "scale", "16 %", "84 %")
+    assert low == {
+        "demand": "displacement", "body": "", "scale": "1", "16 %": "0.132 ± 0", "50 %": "0.2 ± 0",
+        "84 %": "0.268 ± 0", "unit": "m", "answered": "3",
+    }  # fmt: skip
+    assert (high["scale"], high["84 %"], high["answered"]) == ("2", "none", "2")
+    [engine] = tables.headed("demand", "like for like", "errors")
+    assert list(engine.values()) == ["displacement", "", "2 %", "0.01 %", "0.2 %", "1"]
+
+
+@pytest.mark.parametrize("name", [*FILES, TRADES])
+def test_a_file_that_is_no_result_is_refused_at_the_start(
+    command: Callable[..., Run], tmp_path: Path, name: str
+) -> None:
+    publish(tmp_path / "report", {name: b'{"schema": "a-secret", "a-secret": 1}'}, "a test")
+    run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
+    assert (run.code, run.out, run.err.count("\n")) == (2, "", 1)
+    assert re.search(rf"{name}: not (a|an) .*: run python -m comparison\.", run.err)
+    assert "a-secret" not in run.err, "nothing of it is quoted"
+
+
+@pytest.mark.parametrize("stripes", [False, True])
+def test_an_ensemble_without_any_answer_is_shown(command: Callable[..., Run], tmp_path: Path, stripes: bool) -> None:
+    content = json.loads(FILES[ensemble.FILE]) | {"curves": [], "outcomes": {"rim reached": 6}}
+    content["stripes"] = content["stripes"][1:] if stripes else []
+    publish(tmp_path / "report", {ensemble.FILE: json.dumps(content).encode()}, "a test")
+    run = command(*SMALL, "--only", "ensemble")
+    assert (run.code, "6 rim reached" in page_of(run.report)) == (0, True)
