@@ -9,12 +9,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from reference.problem.files import read_file
-
-# of dataclasses that are read from files: unknown keys are refused; the text below a field is its meaning
-FILE_FORMAT = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 
 LARGEST = 2**26  # bytes of a file
 
@@ -33,11 +30,7 @@ def json_text(content: Mapping[str, Any] | Sequence[Any]) -> str:
 
 @dataclass(frozen=True)
 class StoredFile(Generic[T]):
-    """
-    A JSON file of results, which one command writes and the next report beside it shows.
-
-    name: of the file. kind: dataclass that states its keys. what: what the file is, in words. command: which writes it.
-    """
+    """A JSON file of results, which one command writes and the next report beside it shows; what: in words."""
 
     name: str
     kind: type[T]
@@ -50,10 +43,8 @@ class StoredFile(Generic[T]):
 
     def load(self, folder: Path) -> T | None:
         """
-        What the command left in a folder.
-
-        folder: folder that may hold the file. Returns none if there is no such file. Raises ValueError: in one line, if
-        the file is anything else, of another version, or cannot be read, as a pipe.
+        What the command left in a folder, None without a file. Raises ValueError, one line, if the file is anything
+        else.
         """
         file = folder / self.name
         if not file.exists():

@@ -45,10 +45,17 @@ class Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, from_attributes=True, use_attribute_docstrings=True)
 
 
+class UncertainNumber(Part):
+    """A number with its error."""
+
+    value: Number
+    """null without an answer"""
+    error: Number
+    """estimated absolute error; null where it is not known"""
+
+
 RESULT = ConfigDict(
-    use_attribute_docstrings=True,
-    revalidate_instances="always",
-    json_schema_extra={"additionalProperties": False},
+    use_attribute_docstrings=True, revalidate_instances="always", json_schema_extra={"additionalProperties": False}
 )
 
 Class = TypeVar("Class")
@@ -57,9 +64,10 @@ Class = TypeVar("Class")
 @dataclass_transform(frozen_default=True)
 def result(cls: type[Class]) -> type[Class]:
     """
-    A frozen dataclass that summary.json holds as it is: the text below a field is its meaning, with the unit.
+    A frozen dataclass that summary.json or a file of its own holds as it is; unknown keys of a file are refused.
 
-    What a property adds to the file is a `computed_field`.
+    The text below a field is its meaning, with the unit. What a property adds to the file is a `computed_field`.
     """
-    cls.__pydantic_config__ = RESULT  # type: ignore[attr-defined]
+    computed = any(hasattr(value, "decorator_info") for value in vars(cls).values())  # which a file has, too
+    cls.__pydantic_config__ = {**RESULT, "extra": "ignore" if computed else "forbid"}  # type: ignore[attr-defined]
     return dataclass(frozen=True)(cls)

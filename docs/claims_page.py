@@ -12,8 +12,10 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from importlib import resources
 from pathlib import Path
 
+from claims_literal import PHASES, STEPS, LiteralClaims, Spike, spike_over_the_step
 from claims_pictures import draw_reading, draw_spike
 from claims_search import RANGES, SEARCH_GRID, Selection, best_readings, searched_readings
 from claims_settled import GRIDS, Settled, Settling
@@ -24,9 +26,10 @@ from rich.console import Console
 from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.evidence import without_value
 from comparison.analyses.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
-from comparison.analyses.claims.spike import PHASES, no_spike, spike_over_the_step
-from comparison.analyses.claims.table import GRID, SIGNS, Claims, ClaimTable
+from comparison.analyses.claims.result import ClaimTable
+from comparison.analyses.claims.table import GRID, RECORD, SIGNS
 from comparison.analyses.effective_values.forced_ratio import forced_ratios
+from comparison.json_file import json_text
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.executors import cores
 from comparison.runner.processes import process_pool
@@ -68,22 +71,34 @@ def main() -> None:
         return results
 
     def tabled(grid: int, readings: Sequence[Reading]) -> ClaimTable:
-        claims = Claims(grid, readings)
+        claims = LiteralClaims(grid, readings)
         table = claims.collect(study, None, compute(claims.tasks(study)))
         assert table is not None
         return table
 
     settling = Settling()
     settled = settling.collect(study, None, compute(settling.tasks(study))) or []
-    searched = tabled(SEARCH_GRID, searched_readings(options.search))
-    selection = Selection(searched, tabled(GRID, best_readings(searched)))
-    draw(compute)
-    (FOLDER / "claims.md").write_text(page(study, tabled(GRID, READINGS), settled, selection), encoding="utf-8")
+    readings = searched_readings(options.search)
+    searched = tabled(SEARCH_GRID, readings)
+    selection = Selection(searched, tabled(GRID, best_readings(searched, readings)))
+    spike = draw(compute)
+    record(tabled(GRID, [replace(LITERAL, amplitude=amplitude) for amplitude in AMPLITUDES]))
+    (FOLDER / "claims.md").write_text(page(study, tabled(GRID, READINGS), spike, settled, selection), encoding="utf-8")
 
 
-def draw(compute: Compute) -> None:
-    """The pictures of the readings and of the spike."""
-    claims = Claims(DRAWN)
+def record(table: ClaimTable) -> None:
+    """Write the verdicts of the literal readings for `python -m comparison.claims` and the report."""
+    verdicts = {
+        f"{amplitude:g}": {f"{c.figure}: {c.says}": (c.verdicts[k].finding, c.verdicts[k].found) for c in table.claims}
+        for k, amplitude in enumerate(AMPLITUDES)
+    }
+    place = resources.files("comparison.analyses.claims") / RECORD
+    Path(str(place)).write_text(json_text(verdicts), encoding="utf-8")
+
+
+def draw(compute: Compute) -> Spike:
+    """The pictures of the readings and of the spike; the spike at 1 m/s^2."""
+    claims = LiteralClaims(DRAWN)
     cases = [case for case in CASES if " " not in case]  # with both bodies
     tasks = {(name, case): claims.task(case, reading) for name, reading, _ in PICTURES for case in cases}
     spikes = {
@@ -94,23 +109,26 @@ def draw(compute: Compute) -> None:
     for name, reading, _ in PICTURES:
         evidence = {case: results.value(tasks[name, case], without_value) for case in cases}
         draw_reading(FOLDER / f"claims-{name}.png", reading.name, evidence)
-    drawn = {amplitude: results.value(task, no_spike) for amplitude, task in spikes.items()}
+    drawn = {amplitude: results[task].value for amplitude, task in spikes.items()}
     draw_spike(FOLDER / "claims-spike.png", drawn)
     for path in FOLDER.glob("claims-*.png"):
         with Image.open(path) as picture:
             smaller = picture.convert("RGB").quantize(COLORS, dither=Image.Dither.NONE)
         smaller.save(path, optimize=True)
+    return drawn[LITERAL.amplitude]
 
 
-def page(study: Study, table: ClaimTable, settled: Sequence[Settled], selection: Selection) -> str:
+def page(study: Study, table: ClaimTable, spike: Spike, settled: Sequence[Settled], selection: Selection) -> str:
     """The text of docs/claims.md."""
     templates = Environment(
         loader=FileSystemLoader(FOLDER), trim_blocks=True, undefined=StrictUndefined, keep_trailing_newline=True
     )
-    places = {name: table.readings.index(reading) for name, reading, _ in PICTURES}
+    places = {name: table.readings.index(reading.name) for name, reading, _ in PICTURES}
     return templates.get_template("claims.md.j2").render(
         table=table,
-        held=[table.held(column) for column in range(len(table.readings))],
+        held=table.reproduced,
+        spike=spike,
+        last_step=STEPS[-1],
         printed=places["print"],
         light=places["light-body"],
         own=places["own-period"],

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+from claims_literal import PHASES, STEPS, Spike
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
 from comparison.analyses.claims.evidence import Evidence
-from comparison.analyses.claims.spike import PHASES, Spike
 from comparison.surfaces.figures.paper import PRINT, draw_surface
 from comparison.wording import mathtext
 
@@ -70,10 +70,10 @@ def draw_spike(path: Path, spikes: Mapping[float, Spike]) -> None:
     for (amplitude, spike), values, numbers in zip(spikes.items(), *rows):
         for k, (phase, color) in enumerate(zip(PHASES, COLORS)):
             place = f"({phase[0]:g}, {phase[1]:g})"
-            values.semilogx(spike.steps, [row[k] for row in spike.counted], "o-", color=color, ms=4, label=place)
-            values.semilogx(spike.steps, [row[k] for row in spike.left_out], "o-", color=color, ms=4, mfc="white")
+            values.semilogx(STEPS, [row[k] for row in spike.counted], "o-", color=color, ms=4, label=place)
+            values.semilogx(STEPS, [row[k] for row in spike.left_out], "o-", color=color, ms=4, mfc="white")
             values.axhline(spike.limit[k], color=color, ls=":", lw=1.0)
-            numbers.loglog(spike.steps, [row[k] for row in spike.starts], "o-", color=color, ms=4)
+            numbers.loglog(STEPS, [row[k] for row in spike.starts], "o-", color=color, ms=4)
         values.set_title(f"{amplitude:g} m/s²", fontsize=10)
         values.set_ylabel(r"$\mu_1$")
         numbers.set_xlabel("step, s")

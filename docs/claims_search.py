@@ -16,7 +16,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from comparison.analyses.claims.readings import Peak, Reading, loading_around
-from comparison.analyses.claims.table import ClaimTable
+from comparison.analyses.claims.result import ClaimTable
 
 SEARCH_GRID = 8  # phases per axis of the search; the best are judged again on a finer grid
 TITLE = "searched"
@@ -91,7 +91,7 @@ class Selection:
     @property
     def held(self) -> list[int]:
         """How many claims each reading reproduces."""
-        return [self.table.held(column) for column in range(len(self.table.readings))]
+        return list(self.table.reproduced)
 
     @property
     def lines(self) -> list[str]:
@@ -109,7 +109,7 @@ class Selection:
         for column, reading in enumerate(self.again.readings):
             before = self.held[self.table.readings.index(reading)]
             lines.append(
-                f"{reading.name}: {before} on the grid that chose it, {self.again.held(column)} on "
+                f"{reading}: {before} on the grid that chose it, {self.again.reproduced[column]} on "
                 f"{self.again.grid} x {self.again.grid} phases."
             )
         lines.append(
@@ -118,18 +118,7 @@ class Selection:
         return lines
 
 
-def best_readings(table: ClaimTable) -> Sequence[Reading]:
-    """
-    The BEST readings of a search, the first found of equals.
-
-    Parameters
-    ----------
-    table : ClaimTable
-        On SEARCH_GRID.
-
-    Returns
-    -------
-    sequence of Reading
-    """
-    order = sorted(range(len(table.readings)), key=lambda column: -table.held(column))
-    return [table.readings[column] for column in order[:BEST]]
+def best_readings(table: ClaimTable, readings: Sequence[Reading]) -> Sequence[Reading]:
+    """The BEST readings of a search by their table, the first found of equals."""
+    order = sorted(range(len(readings)), key=lambda column: -table.reproduced[column])
+    return [readings[column] for column in order[:BEST]]

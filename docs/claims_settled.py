@@ -6,12 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import xarray as xr
+from claims_literal import LiteralClaims
 
 from comparison.analyses.claims.evidence import Evidence, Question
 from comparison.analyses.claims.peak_checks import views
 from comparison.analyses.claims.peaks_and_valleys import Counts
 from comparison.analyses.claims.readings import READINGS, Reading
-from comparison.analyses.claims.table import Claims, paper_complete
+from comparison.analyses.claims.table import paper_complete
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -87,7 +88,7 @@ class Settling(Analysis[list[Settled]]):
         ]
 
     def _task(self, reading: Reading, case: str, grid: int) -> Task:
-        return Claims(grid, self.readings).task(case, reading)
+        return LiteralClaims(grid, self.readings).task(case, reading)
 
     def _counts(self, evidence: Evidence, body: int) -> dict[str, Counts]:
         return views(evidence, body) if evidence.complete and not evidence.flat(body) else {}

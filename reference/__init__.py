@@ -81,10 +81,10 @@ from reference.problem.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from reference.demand_surface import peak_demands
+    from reference.derivatives import sensitivity
     from reference.motion import trajectory
     from reference.natural_modes import damped_modes, modes
     from reference.phase_maximum import PhaseMaximum, worst_phases
-    from reference.derivatives import sensitivity
     from reference.surface import amplification
 
 LOADED_ON_FIRST_USE = {

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from reference.measures import Estimate, Estimates
 from reference.problem import Amplification, Scene
+from reference.problem.scene import takes_scene
 
 STEPS = (1e-3, 4e-3, 1.6e-2)  # of the value; each derivative also takes twice its step
 
 Quantity = Callable[[Scene], "Amplification | Estimates | Estimate"]
 
 
+@takes_scene
 def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[str, Estimates]:
     """
     Derivatives of a quantity with respect to numbers in the scene, by central differences.

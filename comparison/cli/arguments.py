@@ -66,12 +66,7 @@ class CommandParser(OneLineParser):
 
 
 def jobs(options: argparse.Namespace) -> int:
-    """
-    Number of worker processes that `--jobs` asks for.
-
-    options: parsed by a `CommandParser` with `add_computing`. Raises SceneError: for a wrong number, and for `--jobs`
-    together with `--scheduler`.
-    """
+    """Number of worker processes that `--jobs` asks for. Raises SceneError."""
     if options.scheduler is not None and options.jobs is not None:
         rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
         raise SceneError("command line", "--jobs", options.jobs, rule)
@@ -79,11 +74,7 @@ def jobs(options: argparse.Namespace) -> int:
 
 
 def whole_number(option: str, text: str, least: int, most: int) -> int:
-    """
-    The value of an option that takes a whole number.
-
-    option: its name, for the message. text: as it was typed. least, most: range. Raises SceneError.
-    """
+    """The value of an option that takes a whole number. Raises SceneError."""
     rule = f"must be a whole number from {least} to {most}"
     try:
         value = int(text)
@@ -95,12 +86,7 @@ def whole_number(option: str, text: str, least: int, most: int) -> int:
 
 
 def number(option: str, text: str, least: float, most: float, unit: str) -> float:
-    """
-    The value of an option that takes a number.
-
-    option: its name, for the message. text: as it was typed. least, most: range. unit: for the message. Raises
-    SceneError.
-    """
+    """The value of an option that takes a number. Raises SceneError."""
     rule = f"must be a number from {least:g} to {most:g}, {unit}"
     try:
         value = float(text)
@@ -123,12 +109,7 @@ def writing(folder: Path, option: str = "--out") -> Iterator[None]:
 def command(
     main: Callable[Concatenate[Sequence[str], Rest], int],
 ) -> Callable[..., int]:
-    """
-    Give a command its exit codes and take its words from the command line where a program gives none.
-
-    2: wrong input. 3: something could not be written. 4: the cluster was lost. 128 + number: a signal, 130 for Ctrl-C.
-    Each is explained by one line.
-    """
+    """Give a command its exit codes 2, 3, 4 and 128 + signal, and its words where a program gives none."""
 
     @wraps(main)
     def ended(argv: Sequence[str] | None = None, *args: Rest.args, **kwargs: Rest.kwargs) -> int:

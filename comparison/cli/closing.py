@@ -16,7 +16,7 @@ from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.runner.resume import changed, command_line
 from comparison.study.levels import Level
-from comparison.surfaces.alert_result import Alert
+from comparison.surfaces.alerts import Alert
 from comparison.surfaces.headline import Headline
 from comparison.wording import percent, signed
 from reference.problem import builtin_scenes, example_scenes
@@ -53,11 +53,7 @@ def print_check(results: Results) -> None:
 
 
 def print_closing(console: Console, results: Results, options: Options, words: Sequence[str], report: Path) -> None:
-    """
-    The last lines of a run.
-
-    words: the words of the command line. report: folder of the report.
-    """
+    """The last lines of a run."""
     _print_differences(console, results)
     console.print(f"The run took {results.run.took}.", soft_wrap=True)
     for alert in _shown(results, options.check):

@@ -52,10 +52,7 @@ def computed(
     executor: Pool,
 ) -> TaskResults:
     """
-    The results of all tasks of the command "comparison.NAME": stored ones, and the others computed.
-
-    models: functions that the workers of a cluster must have in the same versions, as "package:name".
-    Raises SceneError for a wrong option and where there is no place for results, and EndedEarlyError.
+    The results of all tasks of a command: stored ones, and the others computed. Raises SceneError, EndedEarlyError.
     """
     width = jobs(options)
     out = destination(options.out)
@@ -79,10 +76,7 @@ def computed(
 @contextmanager
 def ending_early(hint: Callable[[Sequence[str]], str], words: Sequence[str], scheduler: str | None) -> Iterator[None]:
     """
-    Whatever ends the block early is an EndedEarlyError: one line that says what is kept and how to go on.
-
-    hint: says that, for the words of a command line. Exit codes: 3, a result could not be stored; 4, the cluster was
-    lost; 128 + number of the signal.
+    Whatever ends the block early is an EndedEarlyError with a line that says what is kept and, by `hint`, how to go on.
     """
     try:
         yield

@@ -49,11 +49,7 @@ def main(argv: Sequence[str]) -> int:
 
 
 def study_files(name: str) -> dict[str, bytes]:
-    """
-    The files of a new study.
-
-    name: of the study. Returns contents by the path below the directory of the study.
-    """
+    """The files of a new study, by their path in its directory."""
     folder = files("comparison.cli") / "study_template"
     texts = {file: (folder / source).read_text(encoding="utf-8") for file, source in TEMPLATE.items()}
     source = requirement()
@@ -63,11 +59,7 @@ def study_files(name: str) -> dict[str, bytes]:
 
 
 def write_directory(place: Path, contents: Mapping[str, bytes]) -> None:
-    """
-    Write files into a directory that is not there, or empty: all of them or none.
-
-    contents: by the path below the directory. Raises OSError: everything is as it was then.
-    """
+    """Write files, by path, into a directory that is not there, or empty: all of them or none. Raises OSError."""
     inside = place.is_dir()  # it stays the same directory: it may be the one in which the command was typed
     made = make_parents(place.parent)
     try:

@@ -50,11 +50,7 @@ class Options:
 
 
 def parsed(argv: Sequence[str]) -> Options:
-    """
-    Options of `python -m comparison.run`, all checked.
-
-    Raises SceneError, UsageError.
-    """
+    """Options of `python -m comparison.run`, all checked. Raises SceneError, UsageError."""
     words = _parser().parse_args(argv)
     names: list[str] = words.scenes or builtin_scenes()
     amplitude = None if words.amplitude is None else number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")

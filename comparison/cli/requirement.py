@@ -22,18 +22,7 @@ REMOTE = ("https", "http", "ssh", "git")
 
 def requirement() -> str:
     """
-    A line of requirements.txt.
-
-    Returns
-    -------
-    str
-        The address that pip has recorded, or the commit of a checkout in the repository that it is from, or the folder
-        of the checkout, known to this machine alone; the version of a package index otherwise.
-
-    Examples
-    --------
-    >>> requirement().startswith("phase-resonance")
-    True
+    A line of requirements.txt: the address that pip recorded, a commit that others can reach, a folder, or a version.
     """
     about = _recorded()
     url = str(about.get("url", ""))

@@ -79,11 +79,7 @@ def start_time() -> Clock:
 
 
 def start(module: str) -> NoReturn:
-    """
-    Import a command, run it and end the process with its exit code.
-
-    module: full name of the module whose `main()` is the command.
-    """
+    """Import a command by its full name, run its `main` and end the process with its exit code."""
     _started.append(Clock.now())
     gc.set_threshold(*COLLECTIONS)
     sys.modules["__main__"].__spec__ = __spec__  # what worker processes load again: not the whole command

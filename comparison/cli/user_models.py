@@ -63,12 +63,7 @@ def add_models(parser: CommandParser) -> None:
 
 
 def user_models(specs: Sequence[str], limit: str | None = None, scheduler: str | None = None) -> tuple[Model, ...]:
-    """
-    The models that `--model` enters.
-
-    specs: values of the option. limit: value of `--model-limit`. scheduler: value of `--scheduler`, whose workers
-    cannot import what lies on this machine. Raises SceneError.
-    """
+    """The models that `--model` enters, none with a cluster, whose workers cannot import them. Raises SceneError."""
     seconds = TIME_LIMIT if limit is None else number(LIMIT_OPTION, limit, 1.0, 1e6, "s of processor time")
     if specs and scheduler is not None:
         rule = "is a function of this machine, --scheduler computes on others: give one of the two"
@@ -91,12 +86,7 @@ def user_models(specs: Sequence[str], limit: str | None = None, scheduler: str |
 
 
 def as_words(engines: Engines) -> list[str]:
-    """
-    Engines given in Python as words of the command line.
-
-    engines: by name: the function, or where it is as "module:function[@KEY]". Raises SceneError: if a worker process
-    could not import a function by its name.
-    """
+    """Engines given in Python as words of the command line. Raises SceneError where a worker could not import one."""
     words = []
     for name, function in engines.items():
         path = function
@@ -141,11 +131,7 @@ def _looked_at(spec: str, path: str) -> dict[str, Any]:
 
 
 def look_at(path: str) -> tuple[str, dict[str, str]]:
-    """
-    Import a function. Runs inside a worker process.
-
-    path: "module:name". Returns why it cannot be used, or empty; and what its numbers depend on.
-    """
+    """Import a function inside a worker process: why it cannot be used, or "", and what its numbers depend on."""
     module, name = path.split(":")
     with silent():
         try:

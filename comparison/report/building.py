@@ -8,8 +8,7 @@ from typing import Any
 
 import xarray as xr
 
-from comparison.analyses.demands.analysis import DemandStatistics as StatisticsOfDemand
-from comparison.analyses.demands.analysis import demand_statistics
+from comparison.analyses.demands.analysis import DemandStatistics, demand_statistics
 from comparison.analyses.effective_values.forced_ratio import forced_ratios
 from comparison.analyses.families.analysis import (
     family_curves,
@@ -21,10 +20,9 @@ from comparison.analyses.families.result import FamilyResult
 from comparison.analyses.motions.analysis import StoredMotion
 from comparison.analyses.motions.page_data import significant_digits
 from comparison.analyses.motions.result import FloorSpectra, MotionDemands
-from comparison.analyses.worst_phases.result import DemandStatistics, Distribution, RecordValue
 from comparison.report.results import Results
 from comparison.report.run_result import ModelDescription, Run
-from comparison.report.scene_result import ModelOutcome, SceneResult
+from comparison.report.scene_result import ModelOutcome, RecordValue, SceneResult
 from comparison.report.section import Feature, Report
 from comparison.study.analyses import ANALYSES
 from comparison.study.models import Model, models_of
@@ -37,7 +35,6 @@ from comparison.surfaces.differences import differences
 from comparison.surfaces.distribution import distributions
 from comparison.surfaces.grid_maxima import grid_maxima
 from comparison.surfaces.headline import headline
-from comparison.surfaces.result import Completion
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share, outcome_counts
 from comparison.surfaces.unanswered import advice, unanswered
 from comparison.surfaces.waterfall import Waterfall as BodyWaterfall
@@ -57,13 +54,7 @@ def build_report(
     no_pdf: str = "",
     families: Sequence[Family] = (),
 ) -> Report:
-    """
-    Everything that the report of a run is made from.
-
-    study, surfaces: what was computed. found: what the features found, by their keys. faults: what solvers reported.
-    run: command, times, provenance. features: in the order of the page. kind: with a field for each feature that has a
-    result. no_pdf: why there is no report.pdf, "" where there is one. families: those of more than one scene.
-    """
+    """Everything that a report is made from. found: of the features, by key. kind: with a field for each of them."""
     rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
     completed = [
         each for scene in study.scenes for each in completions(study, surfaces, scene, found.get("completion"))
@@ -121,7 +112,7 @@ def _scene(
     parts: Mapping[str, Sequence[Any]],
     waterfalls: Sequence[BodyWaterfall],
     motions: Sequence[StoredMotion],
-    statistics: Sequence[StatisticsOfDemand],
+    statistics: Sequence[DemandStatistics],
 ) -> SceneResult:
     headlines = [headline(study, surfaces, scene, bars, parts["differences"]) for bars in waterfalls]
     return SceneResult(
@@ -138,17 +129,15 @@ def _scene(
         budget=list(parts["budget"]),
         headlines=headlines,
         waterfalls=list(waterfalls),
-        completions=[Completion.model_validate(surface) for surface in parts["completions"]],
-        distributions=[]
-        if scene.recorded
-        else [Distribution.model_validate(each) for each in distributions(study, surfaces, scene)],
+        completions=list(parts["completions"]),
+        distributions=[] if scene.recorded else distributions(study, surfaces, scene),
         grid_maxima=grid_maxima(study, surfaces, scene),
         values=_values(study, surfaces, scene) if scene.recorded else [],
         limits=list(parts["limits"]),
         effective=list(parts["effective"]),
         forced=forced_ratios(scene),
         demands=_demands(surfaces, scene, motions),
-        demand_statistics=[DemandStatistics.model_validate(each) for each in statistics],
+        demand_statistics=list(statistics),
     )
 
 
@@ -213,7 +202,7 @@ def _family(
     family: Family,
     waterfalls: Mapping[str, Sequence[BodyWaterfall]],
     motions: Sequence[StoredMotion],
-    statistics: Mapping[str, Sequence[StatisticsOfDemand]],
+    statistics: Mapping[str, Sequence[DemandStatistics]],
 ) -> FamilyResult:
     of_phases = any(statistics[scene.name] for scene in family.scenes)
     demands = family_demands_over_phases(family, statistics) if of_phases else family_demands(family, motions)

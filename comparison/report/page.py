@@ -22,7 +22,7 @@ from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report
 from comparison.report.surface_sections import applied_models
 from comparison.study.study import Study
-from comparison.surfaces.alert_result import Alert
+from comparison.surfaces.alerts import Alert
 from comparison.surfaces.waterfall import Waterfall
 from comparison.surfaces.waterfall_chart import Scale, charts, scales
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
@@ -32,10 +32,7 @@ SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions
 
 def pages(figures: Path, report: Report) -> dict[str, str]:
     """
-    index.html, which answers the question, and verification.html, which verifies the tool.
-
-    figures: folder with the pictures of the report. report: all that is shown. Returns pages by file name. Each needs
-    no other file and no network.
+    index.html, which answers the question, and verification.html, which verifies the tool; each needs no other file.
     """
     study, results = report.study, report.results
     axes = scales([waterfall for scene in results.scenes for waterfall in scene.waterfalls])

@@ -33,11 +33,7 @@ def why_no_pdf() -> str:
 
 
 def write_pdf(path: Path, report: Report) -> None:
-    """
-    Write report.pdf, the same bytes for the same results.
-
-    Scenes and bodies with the largest differences are shown where there are more than fit; the others are counted.
-    """
+    """Write report.pdf, the same bytes for the same results, with the scenes and bodies of the largest differences."""
     import typst  # an optional extra
 
     results, shown = report.results, largest_headlines(report.results)

@@ -17,7 +17,7 @@ from comparison.report.run_result import ModelDescription, Run
 from comparison.report.scene_result import SceneResult
 from comparison.result_types import Part, Text
 from comparison.surfaces.acceptance import Limit
-from comparison.surfaces.alert_result import Alert
+from comparison.surfaces.alerts import Alert
 from comparison.surfaces.unanswered import Unanswered
 
 SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"

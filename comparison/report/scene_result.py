@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from comparison.analyses.demands.analysis import DemandStatistics
 from comparison.analyses.effective_values.analysis import Effective
 from comparison.analyses.effective_values.forced_ratio import ForcedRatio
 from comparison.analyses.motions.result import MotionDemands
-from comparison.analyses.worst_phases.result import DemandStatistics, Distribution, RecordValue
-from comparison.result_types import Number, Part, Text
+from comparison.result_types import Number, Part, Text, result
 from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.budget import BudgetEntry
+from comparison.surfaces.completion import Completion
 from comparison.surfaces.differences import Difference
+from comparison.surfaces.distribution import Distribution
 from comparison.surfaces.grid_maxima import GridMaximum
 from comparison.surfaces.headline import Headline
-from comparison.surfaces.result import Completion
 from comparison.surfaces.waterfall import Waterfall
 from reference.problem.acceptance import Acceptance
 
@@ -36,6 +37,22 @@ class ModelOutcome(Part):
     """the same over the isolator's travel; null without a travel"""
     cost: float
     """compute time, s"""
+
+
+@result
+class RecordValue:
+    """mu of one model and body under a recorded motion."""
+
+    model: str
+    """key of the model"""
+    body: int
+    """number of the body; 1 is the platform"""
+    mu: Number
+    """value; null without an answer"""
+    error: Number
+    """estimated absolute error of it"""
+    status: str
+    """named outcome"""
 
 
 class SceneResult(Part):

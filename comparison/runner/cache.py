@@ -61,9 +61,7 @@ class Key:
 
 
 class Cache:
-    """
-    The results below `folder`, which is made with the first of them. `kept` counts those read or written here, by kind.
-    """
+    """The results below `folder`, made with the first of them; `kept`: how many were read or written, by kind."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -119,14 +117,7 @@ class Cache:
 
 
 def store_beside(out: Path) -> Path:
-    """
-    Where the results of a report are kept.
-
-    Examples
-    --------
-    >>> store_beside(Path("report")).name
-    'report.tiles'
-    """
+    """Where the results of a report are kept."""
     return out.with_name(f"{out.name}.tiles")
 
 

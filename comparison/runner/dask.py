@@ -38,11 +38,7 @@ _ONE = threading.Lock()
 
 @contextmanager
 def cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
-    """
-    An executor for as long as the block lasts; the cluster itself is left as it was.
-
-    Raises SceneError, one line, if there is no such scheduler or a worker would compute `models` with other code.
-    """
+    """An executor on a cluster, which is left as it was. Raises SceneError if none answers or has other code."""
 
     def refusal(rule: str) -> SceneError:
         return SceneError("command line", "--scheduler", address, rule)

@@ -16,11 +16,7 @@ class TimeUpError(BaseException):
 
 
 class Deadline:
-    """
-    Raises TimeUpError in the block when the time is up, whatever the main thread does then.
-
-    begin: `time.monotonic()` when the run began; seconds: how long it may take, None for as long as it takes.
-    """
+    """Raises TimeUpError in the block `seconds`, if any, after `begin`, by `time.monotonic()`."""
 
     def __init__(self, begin: float, seconds: float | None) -> None:
         self._end = None if seconds is None else begin + seconds - EARLY

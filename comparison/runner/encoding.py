@@ -25,12 +25,7 @@ ARRAY, BYTES = "array", "bytes"  # keys of what stands beside the JSON
 
 
 def encoded(value: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
-    """
-    `value` as JSON; what is binary is appended to `arrays` and referred to by its number.
-
-    Raises TypeError for anything but None, booleans, numbers, text, bytes, enumerations, numeric arrays, and lists,
-    tuples, mappings with text as keys and dataclasses of these.
-    """
+    """`value` as JSON; what is binary is appended to `arrays` and referred to by its number. Raises TypeError."""
     if isinstance(value, Enum):
         return encoded(value.value, arrays)
     if isinstance(value, np.generic):

@@ -44,9 +44,8 @@ def _environment(packages: Iterable[str], sources: Iterable[str]) -> dict[str, s
 
 def engine_fingerprint(module: str) -> dict[str, str]:
     """
-    What the numbers of an engine that a user supplies depend on, from the full name of its module.
-
-    Hashes of the source of the module's package and of what the module imports, and versions of what is installed.
+    What the numbers of a user's engine depend on: hashes of the source behind its module, versions of what is
+    installed.
     """
     package = module.split(".")[0]
     spec = find_spec(package)

@@ -60,9 +60,7 @@ class Own:
 
 def destination(path: Path, option: str = "--out") -> Path:
     """
-    The folder that a path of the command line means, with no symbolic link or ".." left in it.
-
-    Raises SceneError, one line, if no folder can be made there, or what is there cannot be replaced.
+    The folder that a path means, with no symbolic link or ".." left in it. Raises SceneError where none can be made.
     """
 
     def refusal(rule: str) -> SceneError:
@@ -179,10 +177,7 @@ def publish(
     folder: Path, files: Mapping[str, bytes], command: str, say: Callable[[str], None] = on_stderr
 ) -> list[Path]:
     """
-    Write files of a command, the full name of its module, into a folder; the files written, in the order given.
-
-    A file of the same name is replaced if the study wrote it. Otherwise the new one gets another name, and `say` is
-    told. Raises OSError.
+    Write files of a command into a folder; one that is not the study's own stays, and `say` is told. Raises OSError.
     """
     folder.mkdir(parents=True, exist_ok=True)
     written = []
@@ -257,9 +252,7 @@ def read_manifest(folder: Path) -> dict[str, Own]:
 
 
 def write_manifest(folder: Path, manifest: Mapping[str, Own]) -> None:
-    """
-    Say which files of a folder are the study's own. Raises OSError, FileExistsError over a manifest that is not ours.
-    """
+    """Say which files of a folder are the study's own. Raises OSError, also over a manifest that is not ours."""
     if os.path.lexists(folder / MANIFEST) and not read_manifest(folder):
         raise FileExistsError(errno.EEXIST, "not a manifest of this study", str(folder / MANIFEST))
     write_atomically(folder / MANIFEST, _as_json(manifest))

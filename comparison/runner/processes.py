@@ -164,11 +164,7 @@ class _Process:
 
 
 def _serve(pipe: Connection, collections: tuple[int, int, int], safe_path: str | None) -> None:
-    """
-    What a process does until its parent closes the pipe or ends.
-
-    collections: thresholds of garbage collection; safe_path: what SAFE_PATH is for the processes that a task starts.
-    """
+    """What a process does until its parent closes the pipe or ends; safe_path: for the processes that a task starts."""
     _set_safe_path(safe_path)
     gc.set_threshold(*collections)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the whole group; the parent alone decides
@@ -226,9 +222,7 @@ def _end_with_parent() -> None:
 @contextmanager
 def _safe_path() -> Iterator[str | None]:
     """
-    A process started meanwhile imports nothing from the working directory, where Python would look first.
-
-    It then searches the path of this process. Yields what SAFE_PATH was.
+    A process started meanwhile searches the path of this one, not the working directory first. Yields SAFE_PATH before.
     """
     before = os.environ.get(SAFE_PATH)
     _set_safe_path("1")

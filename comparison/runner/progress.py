@@ -16,11 +16,7 @@ PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
 
 
 def wide_console() -> Console:
-    """
-    Standard output: as wide as the terminal, or PLAIN_WIDTH columns where there is none.
-
-    Every text is printed as it is: brackets and colons in names and titles are no markup.
-    """
+    """Standard output, as wide as the terminal or PLAIN_WIDTH columns; texts are no markup."""
     width = None if sys.stdout.isatty() else PLAIN_WIDTH
     return Console(highlight=False, markup=False, emoji=False, width=width)
 

@@ -46,11 +46,7 @@ def changed(
 
 
 def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
-    """
-    How much is kept where, and the command for the rest: the same one, without what would throw it away.
-
-    batches: number of batches of a study; without it there are other tasks only.
-    """
+    """How much is kept where, and the command for the rest; batches: number of those of a study."""
     rest = changed(words, flags=["--fresh"])
     tasks = cache.kept[RESULT]
     if batches is None:
@@ -61,12 +57,5 @@ def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batche
 
 
 def without_scheduler(words: Sequence[str]) -> list[str]:
-    """
-    The words of a command line without the cluster: the same numbers from the processes of this machine.
-
-    Examples
-    --------
-    >>> without_scheduler(["fig3-I", "--scheduler", "tcp://a:1", "--grid", "4"])
-    ['fig3-I', '--grid', '4']
-    """
+    """The words of a command line without the cluster: the same numbers from the processes of this machine."""
     return changed(words, options=["--scheduler"])

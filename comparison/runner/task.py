@@ -50,11 +50,7 @@ class Divisible(Protocol):
 
 @dataclass(frozen=True)
 class Task:
-    """
-    `function(argument)`, in a worker process. Pure and picklable; cached by `key`.
-
-    function: importable by its name; the type that it declares to return is what the cache reads back.
-    """
+    """`function(argument)`, in a worker process, pure and picklable; cached by `key` as the type that it declares."""
 
     function: Callable[[Any], Any]
     argument: Any

@@ -14,12 +14,7 @@ from comparison.runner.processes import process_pool
 def workers(
     jobs: int, scheduler: str | None, models: set[str], executor: Pool = process_pool
 ) -> Iterator[tuple[int, Pool]]:
-    """
-    The number of workers and what runs them, started once for all that the command computes in the block.
-
-    models: functions that the workers of a cluster must have in the same versions, as "package:name". Raises SceneError
-    if the cluster does not answer or would compute with other code.
-    """
+    """The number of workers and what runs them, for all that a command computes in the block. Raises SceneError."""
     if scheduler is not None:
         with cluster(scheduler, models) as remote:
             yield remote.width, remote

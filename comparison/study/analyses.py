@@ -54,12 +54,7 @@ def refuse_unknown_analyses(scene: Scene) -> None:
 def selected(
     only: Sequence[str] | None, skip: Sequence[str] | None, also: Sequence[str] | None = None
 ) -> tuple[str, ...]:
-    """
-    The analyses that are made, in the order of ANALYSES.
-
-    only: these and what they need; all but those of ON_REQUEST if None. skip: not these, nor what needs them. also:
-    these besides.
-    """
+    """The analyses that are made, in order: `only` or all but those on request, with what they need, less `skip`."""
     kept = set(ANALYSES).difference(ON_REQUEST) if only is None else set(only)
     kept |= set(also or ())
     kept |= {NEEDS[name] for name in kept & NEEDS.keys()}

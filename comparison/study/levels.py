@@ -37,12 +37,7 @@ class Level:
 
 
 def levels_of(study: Study, first: Mapping[str, int]) -> list[Level]:
-    """
-    The levels of a study, from coarse to fine; each begins with the phase pairs of the one before.
-
-    study: the whole question. first: the level that an analysis is first made at, by its key. Returns the last is the
-    study itself. A level that would add nothing is left out.
-    """
+    """The levels of a study, from coarse to fine; first: the level that an analysis is first made at, by its key."""
     made = [key for key in first if study.selecting(key).scenes]
     studies: list[Study] = []
     for number, most in enumerate(MOST, start=1):

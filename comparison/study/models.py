@@ -318,11 +318,7 @@ SOFTENED_SPATIAL = _softened(SPATIAL, with_unloaded_bars_in_space)
 
 
 def with_softened_bars(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:
-    """
-    The hierarchy with the step that softens bars, where a scene has bars without it.
-
-    Returns the step comes last: like for like and all models before it have the stiffness without load.
-    """
+    """The hierarchy with the step that softens bars at its end, where a scene has bars without it."""
     functions = {model.amplification for model in hierarchy}
     steps = (SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL)
     added = (model for model in steps if model.amplification in functions and any(map(model.applies, scenes)))

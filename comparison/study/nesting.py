@@ -15,18 +15,6 @@ def nested_grids(grid: int) -> tuple[int, ...]:
     """
     Grids from coarse to fine, each a part of the next, the last one with `grid` phases per axis: halvings come first.
 
-    Parameters
-    ----------
-    grid : int
-        Phases per axis.
-
-    Returns
-    -------
-    tuple of int
-        Phases per axis. Those of grids that have a common part of the chain share it.
-
-    Examples
-    --------
     >>> nested_grids(48), nested_grids(96), nested_grids(7)
     ((2, 4, 8, 16, 48), (2, 4, 8, 16, 32, 96), (7,))
     """
@@ -42,17 +30,6 @@ def levels(grid: int) -> NDArray[np.intp]:
     """
     Which of `nested_grids` is the first with each phase of an axis.
 
-    Parameters
-    ----------
-    grid : int
-        Phases per axis.
-
-    Returns
-    -------
-    ndarray, (grid,)
-
-    Examples
-    --------
     >>> levels(8).tolist()
     [0, 2, 1, 2, 0, 2, 1, 2]
     """

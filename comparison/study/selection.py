@@ -35,9 +35,8 @@ class Selection:
         also: Sequence[str] | None = None,
     ) -> Selection:
         """
-        What the command line asks for, and where it asks for nothing, what each scene file does.
-
-        A scene that is not the paper's has the paper's claims and errata only where `only` names them.
+        What the command line asks for, else each scene file; claims and errata are the paper's unless asked for by
+        name.
         """
         by_scene, unnamed, on_request = {}, set(OF_THE_PAPER), set(ON_REQUEST)
         for scene in scenes:

@@ -81,11 +81,7 @@ class Study:
         }
 
     def compared(self, scene: Scene) -> list[Model]:
-        """
-        The models that are compared on a scene, in order.
-
-        Without the engines that a user has supplied, which are compared in a pair of their own.
-        """
+        """The models that are compared on a scene, in order, without engines of the user."""
         left_out = self.left_out(scene)
         return [model for model in steps_of(scene, self.hierarchy) if model.key not in left_out]
 
@@ -138,11 +134,7 @@ class Study:
         return np.concatenate(self.solved_by_level(scene, model))
 
     def batches(self) -> list[Batch]:
-        """
-        The whole work, model by model, and of each from coarse to fine: a finer study begins with the same batches.
-
-        The cut depends on the study alone, never on the number of workers: a result must not depend on scheduling.
-        """
+        """The whole work, model by model, from coarse to fine; the cut does not depend on the number of workers."""
         return [
             batch
             for model in self.hierarchy

@@ -39,14 +39,7 @@ UNKNOWN_ERROR = np.nan  # of an engine that states none
 
 def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> Amplification:
     """
-    What an supplied function answers, in the form of `multibody.amplification`.
-
-    phases: (M, 2), rad. engine: "function": where it is, as "module:name". All else only tells its versions apart in
-    the cache. **settings: those of the reference's model with the same law and the tolerance asked. The function gets
-    those it names. Returns NaN in `error` where the function states none, in `instant` and `displacement` where it has
-    none. `cost` is measured here, with the processes that the function starts. Raises ValueError, TypeError,
-    RuntimeError: if the function answers in another form, or ends the process. What it raises itself is not caught; a
-    note says in which line of the user's files.
+    What a supplied function answers, in the form of `multibody.amplification`; it gets the settings that it names.
     """
     with silent():
         function = user_function(engine["function"])
@@ -63,12 +56,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
 
 
 def note_line(error: BaseException, file: Path | None) -> None:
-    """
-    Add to an exception where in the user's files it arose, as a note.
-
-    file: the file of the engine. Files of its folder and of the folders in it are the user's, but for this project and
-    for installed packages. Without one there is no note.
-    """
+    """Add to an exception where in the user's files, those beside the engine's, it arose."""
     if file is None:
         return
     folder = file.parent
@@ -92,12 +80,7 @@ def _file_of(function: Callable[..., Any]) -> Path | None:
 
 
 def user_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
-    """
-    The function of a user-supplied engine.
-
-    path: "module:name", or the function. Raises TypeError: if it cannot be called with a scene and phases. What the
-    module raises on import is not caught.
-    """
+    """The function, or the one at "module:name". Raises TypeError if it cannot be called with a scene and phases."""
     if isinstance(path, str):
         module, name = path.split(":")
         function: Any = import_module(module)
@@ -113,13 +96,7 @@ def user_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
 
 
 def user_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit: float = TIME_LIMIT) -> Model:
-    """
-    The model of a user-supplied engine.
-
-    name: key and title. engine: as `amplification` takes it. like: key of the reference's model with the same law,
-    whose settings the function is called with. limit: most processor time of one call, s. Returns the last of a
-    hierarchy: no step of another model leads over it.
-    """
+    """The model of a user-supplied engine, called with the settings of the reference's model `like`, for `limit` s."""
     model = next(known for known in MODEL_HIERARCHY if known.key == like)
     return Model(
         key=name,
@@ -214,11 +191,7 @@ def _processor_time() -> float:
 
 @contextmanager
 def silent() -> Iterator[None]:
-    """
-    Drop what the block prints, also from compiled code, and give it nothing to read.
-
-    Only in a worker process: the files of a process belong to all its threads.
-    """
+    """Drop what the block prints, also from compiled code, and give it nothing to read; in a worker process only."""
     if multiprocessing.parent_process() is None:
         yield
         return

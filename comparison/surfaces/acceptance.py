@@ -61,12 +61,7 @@ class Limit:
 def checked_limits(
     study: Study, surfaces: xr.Dataset, rows: Sequence[Difference], lacking: Sequence[Unanswered]
 ) -> list[Limit]:
-    """
-    Every limit that the scenes of a study state, compared with what was found.
-
-    rows: differences of the pairs of models that could be compared. lacking: models without a value somewhere. Returns
-    in the order of scenes and keys. A scene that states no limit has none.
-    """
+    """Every limit that the scenes of a study state, compared with what was found, in the order of scenes and keys."""
     limits = []
     for scene in study.scenes:
         gaps = [gap for gap in lacking if gap.scene == scene.name]

@@ -7,16 +7,41 @@ from typing import Literal, NamedTuple
 
 import xarray as xr
 
+from comparison.result_types import Part, Text
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit
-from comparison.surfaces.alert_result import Alert
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share
 from comparison.surfaces.unanswered import Unanswered
 from reference.problem import Scene
 
 NEARLY_ALL = 0.9  # of the travel, that a reader must know of
 WIDE = 0.5  # of rho: a displacement of the platform from the middle that a reader must know of
+
+
+class Alert(Part):
+    """What a reader must know before trusting a number."""
+
+    level: Literal["red", "amber"]
+    """red: a model refused or a limit is broken; amber: a number is missing or to be read with care"""
+    kind: Literal["refused", "limit", "lacking", "fault", "swing", "travel"]
+    """model without any value, broken acceptance limit, phase pairs without a value, error message of a solver, wide
+    swing of the platform"""
+    scene: Text
+    """name of the scene"""
+    text: Text
+    """what is the matter"""
+    help: Text
+    """what helps; empty where nothing is known to"""
+
+    @property
+    def line(self) -> str:
+        """All that in one line."""
+        return ". ".join(f"{part[0].upper()}{part[1:]}" if number else part for number, part in enumerate(self._parts))
+
+    @property
+    def _parts(self) -> list[str]:
+        return [f"{self.scene}: {self.text}", *([self.help] if self.help else [])]
 
 
 class Fault(NamedTuple):
@@ -38,13 +63,7 @@ def alerts(
     limits: Sequence[Limit],
     faults: Sequence[Fault],
 ) -> list[Alert]:
-    """
-    Every alert of a run, red before amber, otherwise in the order of the kinds and scenes.
-
-    Red: a model has no value at any phase pair, or an acceptance limit is broken. Amber: a model lacks a value at some
-    phase pairs, a solver reported an error, or a platform moves so far that the report says so: over half of rho, or
-    nearly its travel.
-    """
+    """Every alert of a run: red, where a model has no value or a limit is broken, before amber."""
     faulty = [Alert(level="amber", kind="fault", scene=fault.scene, text=fault.text, help="") for fault in faults]
     moving = [*_swings(study, surfaces), *_travels(study, surfaces)]
     listed = [*_gaps(unanswered), *_broken(limits), *faulty, *moving]

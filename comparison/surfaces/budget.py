@@ -97,11 +97,7 @@ def known_to_all(steps: Sequence[Step]) -> tuple[int, NDArray[np.bool_]]:
 
 
 def closure(steps: Sequence[Step]) -> float:
-    """
-    Largest |sum of the steps - total| over the points where every model has a value, relative to mu of the first.
-
-    Rounding if the budget is sound; NaN without such a point.
-    """
+    """Largest |sum of the steps - total| relative to mu of the first model: rounding; NaN without a common point."""
     coarsest = max(step.stride for step in steps)
     *sizes, total = (step.every(coarsest, step.size) for step in steps)
     gap = np.abs(np.sum(sizes, axis=0) - total)

@@ -13,12 +13,15 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
+from pydantic import Field, computed_field
 from scipy.interpolate import RBFInterpolator
 
+from comparison.result_types import Number, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -53,35 +56,49 @@ class HeldOut:
     error: Array
 
 
-@dataclass(frozen=True)
+@result
 class Completion:
     """
-    One body's surface of one model on all phases of the study, or why there is none.
+    One body's surface of a model that is computed on fewer phases than the study has, completed through a finer model.
 
-    With the confidence `CONFIDENCE` at most `share` of the phase pairs that were not computed are off by more than
-    `error`. The surface may be drawn (`accepted`) where `error` is at most the tolerance asked of the model. Its
-    difference from the first model may be drawn (`difference_accepted`) where `error` is at most a fifth of that
-    difference, exceeded at 5 % of the phases: the five-fold rule.
+    It is the finer model plus the interpolated difference of the two. With the confidence stated at most a share of the
+    phase pairs that were not computed is off by more than the error. The completed values are the variable `completed`
+    of surfaces.nc.
     """
 
-    scene: str
-    model: str  # key of the model that is completed
-    through: str  # key of the model before it that has all phases; "" without one
-    body: int  # from 1
-    computed: int  # phase pairs where both models have a value
-    held_out: int  # phase pairs with a value that were computed and not used
-    error: float  # largest error at those, relative to the model's mu; NaN without an interpolation
-    model_error: float  # largest error estimate of the model itself at those, relative
-    share: float  # at most so many of the phase pairs are off by more than `error`
-    confidence: float  # of that statement
-    asked: float  # largest `error` of a surface that is drawn: the tolerance
-    difference: float  # 95 % of the absolute differences from the first model are below this, relative to its mu
-    reason: str  # why the surface may not be drawn, "" where it may
-    mu: Array  # (K, K) completed; NaN everywhere where it may not be drawn, and where the finer model has no value
+    scene: Text
+    """name of the scene"""
+    model: str
+    """key of the model that is completed"""
+    through: str
+    """key of the finer model; empty without one"""
+    body: int
+    """number of the body; 1 is the platform"""
+    computed: int
+    """phase pairs where both models have a value"""
+    held_out: int
+    """phase pairs with a value that were chosen at random, computed and not used; 0 where nothing was interpolated"""
+    error: Number
+    """largest error at the held-out phase pairs, relative to the model's own mu; null where nothing was interpolated"""
+    model_error: Number
+    """largest error estimate of the model itself at these, relative"""
+    share: float
+    """at most so many of the phase pairs that were not computed are off by more than the error"""
+    confidence: float
+    """of this statement"""
+    asked: float
+    """largest error with which the surface may be drawn: the tolerance asked of the model"""
+    difference: Number
+    """95 % of the absolute differences of the completed surface from the first model are below this, relative to it"""
+    reason: Text
+    """why the surface may not be drawn; empty where it may"""
+    mu: Annotated[Any, Field(exclude=True)] = None
+    """(K, K) completed; NaN everywhere where it may not be drawn, and where the finer model has no value"""
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def accepted(self) -> bool:
-        """Whether the surface may be drawn as completed."""
+        """Whether the surface may be drawn as completed: the error is at most what was asked."""
         return not self.reason
 
     @property
@@ -93,9 +110,10 @@ class Completion:
             f"{100.0 * self.share:.2g} % of the phase pairs between the dots are off by more"
         )
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def difference_accepted(self) -> bool:
-        """Whether its difference from the first model may be drawn as completed."""
+        """Whether its difference from the first model may be drawn, too: the error is at most a fifth of it."""
         return self.accepted and RESOLVED * self.error <= self.difference
 
 
@@ -166,19 +184,8 @@ def held_out_places(study: Study, scene: Scene, model: Model) -> Indices:
 
 def largest_share(held_out: int) -> float:
     """
-    The share of phase pairs that may be off by more than the largest error at so many held-out ones.
+    The share of phase pairs that may be off by more than the largest error at so many held-out ones, with CONFIDENCE.
 
-    Parameters
-    ----------
-    held_out : int
-
-    Returns
-    -------
-    float
-        With the confidence `CONFIDENCE`.
-
-    Examples
-    --------
     >>> round(largest_share(59), 3), largest_share(0)
     (0.05, 1.0)
     """
@@ -189,12 +196,8 @@ def completions(
     study: Study, surfaces: xr.Dataset, scene: Scene, held_out: Mapping[tuple[str, str], HeldOut] | None
 ) -> list[Completion]:
     """
-    A completion for every body of every model that lacks phases of the study, in the order of models and bodies.
-
-    The model before it is the nearest in the hierarchy that is compared and has all phases. A spatial model on 8 x 8
-    phases or fewer is listed, too: it is not to be drawn as a surface even where the study has no more.
-
-    held_out: what `CompletedSurfaces` collected; None where nothing was held out.
+    A completion for every body of every model that lacks phases, or is spatial on few, in the order of models and
+    bodies.
     """
     if scene.recorded:
         return []
@@ -322,10 +325,7 @@ def _completion(
 
 def interpolated(values: Array, phase: Array, every: Array) -> Array:
     """
-    A function of both phases that is known at some phase pairs, by thin plates.
-
-    values: (K, K), at `phase`; NaN where it is not known. phase: (K,), the phases of either axis, rad. every: (L,),
-    those at which the values are wanted, rad.
+    Values (K, K) known at phases (K,), NaN where not, interpolated by thin plates at the phases `every` (L,), rad.
     """
     known = np.isfinite(values.ravel())
     made: Array = RBFInterpolator(_torus(phase)[known], values.ravel()[known])(_torus(every))
@@ -333,10 +333,6 @@ def interpolated(values: Array, phase: Array, every: Array) -> Array:
 
 
 def _torus(phase: Array) -> Array:
-    """
-    The phase pairs of a square grid as places on a torus in four dimensions, (K^2, 4), alpha2 running fastest.
-
-    A function of these places has the period 2 pi in both phases.
-    """
+    """The phase pairs of a square grid on a torus in four dimensions, (K^2, 4): functions of it are periodic."""
     alpha1, alpha2 = (axis.ravel() for axis in np.meshgrid(phase, phase, indexing="ij"))
     return np.stack([np.cos(alpha1), np.sin(alpha1), np.cos(alpha2), np.sin(alpha2)], axis=1)

@@ -2,50 +2,55 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import xarray as xr
 
+from comparison.result_types import Number, UncertainNumber, result
 from comparison.study.models import models_of
 from comparison.study.study import Study
 from comparison.surfaces.steps import known_mu
 from comparison.surfaces.surfaces import asked_of
-from reference.measures import Estimate, phase_distribution
+from reference.measures import phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
 from reference.problem import Scene
 
 CURVE = np.linspace(0.01, 0.99, 50)  # probabilities of the drawn curve
 
 
-@dataclass(frozen=True)
+@result
 class Fractile:
     """The value that mu stays below with a probability."""
 
     probability: float
-    value: float
-    error: float
+    """probability"""
+    value: Number
+    """fractile of mu"""
+    error: Number
+    """estimated absolute error, sampling included; null where it is not known"""
 
 
-@dataclass(frozen=True)
+@result
 class Distribution:
-    """The distribution of one model and body."""
+    """mu of one model and body over phases that are independent and uniform."""
 
-    model: str  # key
-    body: int  # from 1
-    points: int  # phase pairs
-    unknown: float  # share of them without an answer
-    mean: Estimate
+    model: str
+    """key of the model"""
+    body: int
+    """number of the body; 1 is the platform"""
+    points: int
+    """phase pairs that it was taken from"""
+    unknown: float
+    """share of them without an answer"""
+    mean: UncertainNumber
+    """mean over all phases; its error includes that of sampling"""
     fractiles: tuple[Fractile, ...]
-    curve: tuple[float, ...]  # mu at the probabilities CURVE
+    """by rising probability"""
+    curve: tuple[Number, ...]
+    """mu at 50 probabilities from 0.01 to 0.99"""
 
 
 def distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Distribution]:
-    """
-    One for each model and body with an answer, in this order.
-
-    scene: with phases.
-    """
+    """One for each model and body with an answer, in this order."""
     listed = []
     for model in models_of(scene, study.hierarchy):
         for body in range(1, len(scene.bodies) + 1):
@@ -57,5 +62,6 @@ def distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Dist
             taken = phase_distribution(mu, error)
             fractiles = tuple(Fractile(p, each.value, each.error) for p, each in zip(FRACTILES, taken.fractiles))
             curve = tuple(fractile(known, p) for p in CURVE)
-            listed.append(Distribution(model.key, body, taken.points, taken.unknown, taken.mean, fractiles, curve))
+            mean = UncertainNumber.model_validate(taken.mean)
+            listed.append(Distribution(model.key, body, taken.points, taken.unknown, mean, fractiles, curve))
     return listed

@@ -89,12 +89,7 @@ class Headline:
 
 
 def headline(study: Study, surfaces: xr.Dataset, scene: Scene, bars: Waterfall, rows: Sequence[Difference]) -> Headline:
-    """
-    The headline of one body.
-
-    bars: of this body. rows: of the study. Returns its mean is the total of the bars, its largest difference the
-    largest that the page shows of the first and any engine model.
-    """
+    """The headline of one body: its mean is the total of the bars, its largest difference theirs."""
     body, largest = bars.body, bars.largest
     pair = next(pair for pair in study.pairs(scene) if pair.key == "total")
     hierarchy = steps(study, surfaces, scene.name, body)

@@ -17,11 +17,8 @@ def independent_phases(
     study: Study, scene: Scene, models: Sequence[Model], known: NDArray[np.bool_], stride: int
 ) -> int:
     """
-    Number of orbits of phase pairs under the symmetries that all the models have.
-
-    models: the models compared. Two phase pairs count once only if every model gives both the same mu. known: (K, K),
-    the phase pairs that count. stride: they are every so many-th of the study's phases. Returns the same with and
-    without --full, which computes mirror images but does not make them independent.
+    Number of orbits of the `known` phase pairs (K, K) under the symmetries of all models, with and without --full
+    alike.
     """
     if scene.recorded:
         return int(known.any())

@@ -79,9 +79,7 @@ class Step:
 
     def mean(self, where: NDArray[np.bool_], stride: int) -> tuple[float, float]:
         """
-        Mean and standard deviation of the signed size at those of every `stride`-th phase of the study.
-
-        This is the one statistic that stands for a difference as a whole: means of steps add up to that of the total.
+        Mean and standard deviation of the signed size at those of every `stride`-th phase: means add up to the total's.
         """
         if not where.any():
             return float("nan"), float("nan")
@@ -106,9 +104,7 @@ def known(mu: Array, error: Array) -> Array:
 
 def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model, body: int, per: Model) -> Step:
     """
-    The difference of two models in one body, as a share of mu of the model `per`, which must be above 0.
-
-    A value whose error is above half of it counts as missing.
+    The difference of two models in one body, as a share of mu of `per`; a value whose error is above half is missing.
     """
     row, of_model = surfaces.get_index("scene").get_loc(scene), surfaces.get_index("model").get_loc
     stride = int(max(surfaces["stride"].values[row, of_model(model.key)] for model in (first, second, per)))

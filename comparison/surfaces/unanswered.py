@@ -95,11 +95,7 @@ class ComparedStudy(Study):
 
 
 def compared_study(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
-    """
-    The study whose comparisons leave out, scene by scene, every model that nowhere has a value of all bodies.
-
-    A value whose error is above half of it counts as missing. Where fewer than two models are left, all stay.
-    """
+    """The study whose comparisons leave out models without any usable value, unless fewer than two would be left."""
     without_results = {}
     for scene in study.scenes:
         steps = steps_of(scene, study.hierarchy)

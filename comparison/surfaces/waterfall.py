@@ -80,12 +80,7 @@ class Waterfall:
 
 
 def waterfall(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Waterfall:
-    """
-    The waterfall of one body.
-
-    The error of a mean is the mean of the errors: error estimates of neighboring phase pairs have the same cause and do
-    not average out.
-    """
+    """The waterfall of one body. The error of a mean is the mean of the errors, which have the same cause nearby."""
     hierarchy = steps(study, surfaces, scene.name, body)
     stride, known = known_to_all(hierarchy)
     bars = tuple(_mean(step, known, stride) for step in hierarchy)
@@ -103,12 +98,7 @@ def waterfall(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Wa
 
 
 def largest_difference(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> LargestDifference:
-    """
-    The largest absolute difference of any engine model and the first model, over all phase pairs where both have one.
-
-    A model on fewer phases may miss a ridge that the model before it shows: the largest difference is not always that
-    of the last model. Without an engine model it is that of the last model.
-    """
+    """The largest absolute difference of any engine model (without one, of the last model) and the first model."""
     models = study.compared(scene)
     later = [model for model in models[1:] if model.side == "engine"] or models[-1:]
     totals = [step(surfaces, scene.name, "total", models[0], model, body, per=models[0]) for model in later]

@@ -40,12 +40,7 @@ class Bar:
 
 
 def bars_of(bars: Sequence[WaterfallBar], total: WaterfallBar, scale: Scale) -> list[Bar]:
-    """
-    The bars of one waterfall, each beginning where the one before it ends, and the total from zero.
-
-    bars, total: relative sizes. scale: the axis. Returns one per step, then the total. A step without a value has no
-    bar and moves nothing.
-    """
+    """The bars of a waterfall, each beginning where the one before it ends, and the total from zero."""
     drawn, start = [], 0.0
     for bar in bars:
         drawn.append(_bar(bar, bar.model, start, scale))

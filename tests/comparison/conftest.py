@@ -14,7 +14,7 @@ from known_analyses import analyses_are, known_others
 from runs import Here, Run, quick_figure, quick_figures
 
 from comparison.analyses.assumptions import figure as assumptions
-from comparison.analyses.errata.analysis import Effect
+from comparison.analyses.errata.analysis import Effect, with_effects
 from comparison.cli import user_models
 from comparison.run import main
 from comparison.study.models import Model
@@ -69,7 +69,7 @@ def _write_finished(place: Path) -> None:
     ]
     words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(place)]
     with pytest.MonkeyPatch.context() as patch:
-        analyses_are(patch, errata=effects, motions=known_motions, **known_others())
+        analyses_are(patch, errata=with_effects(effects), motions=known_motions, **known_others())
         assert main(words, _spatial_named(fake_hierarchy()), ThreadPoolExecutor) == 0
 
 

@@ -16,8 +16,7 @@ import comparison.registry
 from comparison.analyses.claims.checks import Finding, Verdict
 from comparison.analyses.claims.claims import CLAIMS
 from comparison.analyses.claims.readings import READINGS
-from comparison.analyses.claims.spike import Spike
-from comparison.analyses.claims.table import ClaimTable
+from comparison.analyses.claims.table import table_of
 from comparison.analyses.trends import trend
 from comparison.runner.analysis import Analysis
 from comparison.runner.executors import Pool
@@ -88,8 +87,7 @@ def known_others() -> dict[str, Any]:
     """Three claims under two readings; one trend that falls like s^2 and one that is nothing but noise."""
     held, drawn = Verdict(Finding.REPRODUCED, "periodic 4 and 3"), Verdict(Finding.AS_DRAWN, "drawn 4 and 3")
     no, unanswered = Verdict(Finding.NOT, "|x_2 - y_2| up to 0"), Verdict(Finding.OPEN, "fig3-I: rim reached")
-    spike = Spike((2e-3, 1e-3), ((4.0, 5.0, 6.0),) * 2, ((2.0, 3.0, 2.5),) * 2, ((1, 1, 2), (1, 2, 4)), (2.0, 3.0, 2.5))
-    table = ClaimTable(CLAIMS[3:6], READINGS[2:4], 16, [[held, drawn], [no, held], [no, unanswered]], spike)
+    table = table_of(CLAIMS[3:6], READINGS[2:4], 16, [(held, drawn), (no, held), (no, unanswered)])
     sizes = np.array([[4e-3, 1e-3, 2.5e-4]])
     return {
         "claims": table,

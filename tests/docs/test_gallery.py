@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import importlib.util
-import json
 from pathlib import Path
 from types import ModuleType
 
@@ -35,9 +34,7 @@ def test_an_example_runs_and_draws_its_picture(example: Path, gallery: ModuleTyp
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
-def test_an_example_has_its_picture_in_the_gallery(
-    example: Path, gallery: ModuleType
-) -> None:
+def test_an_example_has_its_picture_in_the_gallery(example: Path, gallery: ModuleType) -> None:
     script = gallery.script_of(example)
     ast.parse(script)
     assert len(script.splitlines()) < MAX_LINES
@@ -45,7 +42,3 @@ def test_an_example_has_its_picture_in_the_gallery(
     assert f"(gallery/{example.stem}.png)" in page
     assert f"../examples/{example.name}" in page
     assert (ROOT / "docs" / "gallery" / f"{example.stem}.png").stat().st_size > 5000
-
-
-
-

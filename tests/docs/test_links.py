@@ -31,8 +31,6 @@ def test_the_links_of_a_page_lead_to_files_and_headings(page: Path) -> None:
             assert heading in anchors(place), target
 
 
-
-
 def test_every_page_is_reached_from_the_first_one() -> None:
     """A page that no list of contents names would never be read."""
     tables = re.compile(r"```\{toctree\}\n(?P<options>(?::[^\n]*\n)*)\n?(?P<entries>.*?)```", flags=re.DOTALL)

@@ -51,7 +51,8 @@ def test_the_derivative_along_two_values_is_the_sum_of_both() -> None:
     missed = np.abs(0.08 * friction.value + scale.value - both.value)
     error = 0.08 * friction.error + scale.error + both.error
     assert np.abs(0.08 * friction.value).min() > 5.0 * np.abs(both.value).max(), "two large parts that nearly cancel"
-    assert (missed <= error).all() and (error < 1e-4 * np.abs(scale.value)).all()
+    assert (missed <= error).all()
+    assert (error < 1e-4 * np.abs(scale.value)).all()
 
 
 def test_a_run_without_an_answer_has_no_derivative() -> None:

@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.analyses.assumptions.feature import figure_name
-from comparison.analyses.assumptions.validity import Assumptions, ValidityRanges
+from comparison.analyses.assumptions.validity import Assumptions, lines
 from comparison.analyses.assumptions.variations import CLOSE_ENOUGH, DURATION, MANY, PHASES, AssumptionCell
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
@@ -108,5 +108,5 @@ def _print(console: Console, scene: Scene, cells: Sequence[AssumptionCell]) -> N
         )
     console.print(table)
     console.print(f"{sum(cell.cost for cell in cells):.0f} s of compute")
-    for line in ValidityRanges([scene], cells).lines(scene):
+    for line in lines(scene, cells):
         console.print(line)

@@ -8,40 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.assumptions.validity import Assumption, Assumptions, ValidityRanges
+from comparison.analyses.assumptions.validity import Assumptions, Validity, uneven_lines
 from comparison.analyses.assumptions.variations import AssumptionCell, ValidityRange, ranges
 from comparison.report.drawings import drawing_task, drawn
 from comparison.report.section import Feature, Report, Section
-from comparison.result_types import Part, Phases
 from comparison.runner.task import Task
 from comparison.surfaces.figures.file_names import figure_file
 from comparison.surfaces.figures.pictures import Files, inlined, smaller
 from reference.problem import Scene
-
-
-class AssumptionsResult(Part):
-    """How far the paper's assumptions hold."""
-
-    assumptions: list[Assumption]
-    """what the paper assumes"""
-    phases: list[Phases]
-    """phase pairs (alpha1, alpha2), rad"""
-    duration: float
-    """duration of the motion, s"""
-    cells: list[AssumptionCell]
-    """one per scene and variation"""
-    ranges: list[ValidityRange]
-    """what the cells allow to say"""
-
-
-def _listed(found: ValidityRanges) -> AssumptionsResult:
-    return AssumptionsResult(
-        assumptions=list(found.assumptions),
-        phases=[(first, second) for first, second in found.phases],
-        duration=found.duration,
-        cells=list(found.cells),
-        ranges=ranges(found.scenes, found.cells),
-    )
 
 
 @dataclass(frozen=True)
@@ -66,11 +40,17 @@ def figure_name(scene: Scene) -> str:
     return figure_file(scene.name, "assumptions")
 
 
+def _varied(report: Report) -> list[tuple[Scene, Sequence[AssumptionCell]]]:
+    """The scenes whose assumptions were varied, with their cells."""
+    found: Validity | None = report.results.of("assumptions")
+    cells = found.cells if found else ()
+    of_scenes = [(scene, [cell for cell in cells if cell.scene == scene.name]) for scene in report.study.scenes]
+    return [(scene, of_scene) for scene, of_scene in of_scenes if of_scene]
+
+
 def _tasks(report: Report) -> list[Task]:
     """One figure for each scene whose assumptions were varied."""
-    found: ValidityRanges | None = report.found.get("assumptions")
-    scenes = found.scenes if found else []
-    return [drawing_task(draw_assumption_figure, AssumptionFigure(scene, found.cells)) for scene in scenes]  # type: ignore[union-attr]
+    return [drawing_task(draw_assumption_figure, AssumptionFigure(*pair)) for pair in _varied(report)]
 
 
 def _draw(figures: Path, report: Report) -> None:
@@ -98,26 +78,24 @@ def _range(each: ValidityRange) -> str:
 
 
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:
-    found: ValidityRanges = report.found["assumptions"]
     pictures = [
         {
             "title": scene.title,
             "name": scene.name,
             "picture": inlined(smaller((figures / figure_name(scene)).read_bytes())),
-            "ranges": _table(ranges([scene], found.cells)),
-            "lines": found.uneven_lines(scene),
+            "ranges": _table(ranges([scene], cells)),
+            "lines": uneven_lines(scene, cells),
         }
-        for scene in found.scenes
+        for scene, cells in _varied(report)
     ]
     return {"assumption_pictures": pictures}
 
 
 FEATURE = Feature(
     "assumptions",
-    AssumptionsResult,
+    Validity,
     "how far the paper's assumptions hold; null without a spatial model",
     analysis=Assumptions(),
-    summary=lambda found: _listed(found),
     section=Section(
         "assumptions",
         "How far the paper's assumptions hold",

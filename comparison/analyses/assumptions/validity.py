@@ -23,7 +23,7 @@ from comparison.analyses.assumptions.variations import (
     ranges,
     variation_tasks,
 )
-from comparison.result_types import result
+from comparison.result_types import Phases, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -96,29 +96,35 @@ ASSUMPTIONS = (
 )
 
 
+@result
+class Validity:
+    """How far the paper's assumptions hold."""
+
+    assumptions: tuple[Assumption, ...]
+    """what the paper assumes"""
+    phases: tuple[Phases, ...]
+    """phase pairs (alpha1, alpha2), rad"""
+    duration: float
+    """duration of the motion, s"""
+    cells: tuple[AssumptionCell, ...]
+    """one per scene and variation"""
+    ranges: tuple[ValidityRange, ...]
+    """what the cells allow to say"""
+
+
+def lines(scene: Scene, cells: Sequence[AssumptionCell]) -> list[str]:
+    """One line per body, share and direction, and those of uneven variations and loaded bars."""
+    return [describe(validity) for validity in ranges([scene], cells)] + uneven_lines(scene, cells)
+
+
+def uneven_lines(scene: Scene, cells: Sequence[AssumptionCell]) -> list[str]:
+    """One line per uneven variation, and one on bars under load, from the cells of a scene."""
+    uneven = [describe_torsion(scene, cell) for cell in cells if cell.variation.is_uneven]
+    return uneven + describe_shortening(scene, [cell for cell in cells if cell.variation in UNDER_LOAD])
+
+
 @dataclass(frozen=True)
-class ValidityRanges:
-    """How far the assumptions hold in some scenes: the cells computed and what they say, for the report."""
-
-    scenes: Sequence[Scene]
-    cells: Sequence[AssumptionCell]
-    assumptions: Sequence[Assumption] = ASSUMPTIONS
-    phases: Sequence[Sequence[float]] = tuple(map(tuple, PHASES.tolist()))  # rad
-    duration: float = DURATION  # s
-
-    def lines(self, scene: Scene) -> list[str]:
-        """One line per body, share and direction, and those of uneven variations and loaded bars."""
-        return [describe(validity) for validity in ranges([scene], self.cells)] + self.uneven_lines(scene)
-
-    def uneven_lines(self, scene: Scene) -> list[str]:
-        """One line per uneven variation, and one on bars under load."""
-        uneven = [cell for cell in self.cells if cell.scene == scene.name and cell.variation.is_uneven]
-        loaded = [cell for cell in self.cells if cell.scene == scene.name and cell.variation in UNDER_LOAD]
-        return [describe_torsion(scene, cell) for cell in uneven] + describe_shortening(scene, loaded)
-
-
-@dataclass(frozen=True)
-class Assumptions(Analysis[ValidityRanges]):
+class Assumptions(Analysis[Validity]):
     """How far the assumptions hold in the scenes of a study: a few variations, or as many as a command asks for."""
 
     key, stage = "assumptions", "assumptions"
@@ -128,11 +134,14 @@ class Assumptions(Analysis[ValidityRanges]):
         """The translational model and every variation of the spatial one, for every scene to which both apply."""
         return variation_tasks(study, self.stage, self.variations)
 
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ValidityRanges | None:
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Validity | None:
         """The cells; None if no scene has both models of the engine."""
         cells = assumption_cells(self.tasks(study), results)
-        names = {cell.scene for cell in cells}
-        return ValidityRanges([scene for scene in study.scenes if scene.name in names], cells) if cells else None
+        if not cells:
+            return None
+        phases = tuple((float(first), float(second)) for first, second in PHASES)
+        scenes = [scene for scene in study.scenes if any(cell.scene == scene.name for cell in cells)]
+        return Validity(ASSUMPTIONS, phases, DURATION, tuple(cells), tuple(ranges(scenes, cells)))
 
 
 def describe(validity: ValidityRange) -> str:
@@ -160,11 +169,7 @@ def describe(validity: ValidityRange) -> str:
 
 
 def describe_shortening(scene: Scene, loaded: Sequence[AssumptionCell]) -> list[str]:
-    """
-    One line for people on assumption (iv): what it changes that bars shorten as they sway.
-
-    loaded: of UNDER_LOAD, in that order; or none. Returns empty without cells.
-    """
+    """One line on assumption (iv): what it changes that bars shorten as they sway; none without both of UNDER_LOAD."""
     if len(loaded) != len(UNDER_LOAD):
         return []
     softened, shortened = (1.0 + np.array(cell.change) for cell in loaded)

@@ -206,11 +206,7 @@ def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = 
 
 
 def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[AssumptionCell]:
-    """
-    Every variation against the translational model of its scene.
-
-    tasks: `variation_tasks`. results: their results.
-    """
+    """Every variation against the translational model of its scene."""
     answers = [(task.argument, results.value(task, _without_value)) for task in tasks]
     held_against = {scene.name: answer for (scene, _, variation, _), answer in answers if variation is None}
     return [
@@ -221,11 +217,7 @@ def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[Assump
 
 
 def varied(task: Arguments) -> Solved:
-    """
-    One variation at PHASES. Runs inside a worker process.
-
-    task: as in `variation_arguments`.
-    """
+    """One variation at PHASES. Runs inside a worker process."""
     scene, model, variation, tolerance = task
     short = scene.with_values({"duration": min(scene.duration, DURATION)})
     changed = short if variation is None else variation.of(short)
@@ -276,9 +268,7 @@ def _rows(array: Array) -> Rows:
 
 def ranges(scenes: Sequence[Scene], cells: Sequence[AssumptionCell]) -> list[ValidityRange]:
     """
-    Where every mu_i stays within each share of WITHIN.
-
-    Over rings at the stated heights, over heights at the stated ring, over offsets and over angles at both.
+    Where every mu_i stays within each share of WITHIN: over rings, heights, offsets and angles, all else as stated.
     """
     validity = []
     for scene in scenes:

@@ -151,7 +151,7 @@ def _row(case: Case, published: Published, place: int, answers: Mapping[str, Ans
 
     def judged(side: str, value: float, error: float) -> Number:
         verdict = _verdict(case, published, value, error, smoothed if side == ENGINE else None)
-        return Number(finite_or_none(value), finite_or_none(error), verdict.value)
+        return Number(finite_or_none(value), finite_or_none(error), verdict)
 
     return Row(
         published.quantity,

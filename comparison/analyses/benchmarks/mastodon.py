@@ -22,11 +22,7 @@ LIMITS = (-432.0, 330.0, -197.0, 152.0)  # mm: smallest and largest along x, the
 
 
 def mastodon(path: Path) -> Case:
-    """
-    The benchmark with the input motion of a file.
-
-    path: CSV with the columns time [s], ax, ay and az, the vertical one. Raises SceneError.
-    """
+    """The benchmark with the input motion of a CSV file: time, s, ax, ay and the vertical az. Raises SceneError."""
     try:
         samples = csv_samples(read_file(path, LARGEST).decode("utf-8-sig"))
     except (OSError, UnicodeDecodeError) as error:

@@ -21,22 +21,14 @@ STILL = 1e-3  # of the largest speed: slower turns are creep, not swings
 
 
 def positions_at(motion: Trajectory, times: ArrayLike) -> Array:
-    """
-    Position of the platform along x at some instants.
-
-    times: (T,), s. Returns NaN behind the end of a motion that ended early.
-    """
+    """Position of the platform along x at some instants, s; NaN behind the end of the motion."""
     instants = np.asarray(times, dtype=float)
     values: Array = _along(motion, 0)(instants)
     return np.where(instants <= motion.time[-1] * (1.0 + ROUNDING), values, np.nan)
 
 
 def turning_points(motion: Trajectory) -> Array:
-    """
-    Positions of the platform along x where its velocity changes sign.
-
-    Returns in the order of time. Where the last swing ends in rest or creep, the last one is where it ends.
-    """
+    """Where the platform's velocity along x changes sign, m; at last where a swing ends in rest or creep."""
     speed = motion.velocity[:, 0, 0]
     moving = np.flatnonzero(np.abs(speed) > STILL * np.abs(speed).max())
     sign = np.sign(speed[moving])
@@ -50,21 +42,13 @@ def turning_points(motion: Trajectory) -> Array:
 
 
 def path_length(motion: Trajectory, begin: float, end: float) -> float:
-    """
-    Way that the platform slides.
-
-    begin, end: s.
-    """
+    """Way that the platform slides between two instants."""
     dense = np.stack([_along(motion, axis)(_dense(motion, begin, end)) for axis in (0, 1)])
     return float(np.hypot(*np.diff(dense)).sum())
 
 
 def extremes(motion: Trajectory, axis: int, begin: float = 0.0) -> tuple[float, float]:
-    """
-    Smallest and largest position of the platform.
-
-    axis: 0 for x, 1 for y. begin: s, from this instant to the end.
-    """
+    """Smallest and largest position of the platform along x (0) or y (1) from an instant on."""
     dense = _along(motion, axis)(_dense(motion, begin, float(motion.time[-1])))
     return float(dense.min()), float(dense.max())
 
@@ -75,11 +59,7 @@ def ranges(motion: Trajectory) -> list[float]:
 
 
 def half_range(motion: Trajectory, begin: float) -> float:
-    """
-    Amplitude of the platform's oscillation along x.
-
-    begin: s, from this instant to the end: a whole period.
-    """
+    """Amplitude of the platform's oscillation along x from an instant on: a whole period."""
     lowest, highest = extremes(motion, 0, begin)
     return 0.5 * (highest - lowest)
 
@@ -92,22 +72,7 @@ def period(motion: Trajectory) -> float:
 
 def natural_periods(motion: Trajectory) -> Array:
     """
-    Natural periods of a linear chain from its free motion along x.
-
-    Parameters
-    ----------
-    motion : Trajectory
-        Of N bodies on still ground, without friction or held by it.
-
-    Returns
-    -------
-    ndarray, s
-        Longest first; those of the bodies that move.
-
-    Notes
-    -----
-    The accelerations are -A x with one matrix A, which is fitted to all instants. Its eigenvalues are the squared
-    frequencies.
+    Natural periods, s, longest first, of a chain that moves freely along x: the accelerations are -A x with one A.
     """
     place, acceleration = motion.position[:, :, 0], motion.absolute_acceleration[:, :, 0]
     moving = np.abs(place).max(axis=0) > STILL * np.abs(place).max()

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
-from typing import Annotated, Any
+from typing import Any
 
-from pydantic import AfterValidator, Field
-
-from comparison.json_file import FILE_FORMAT, StoredFile
+from comparison.json_file import StoredFile
+from comparison.result_types import result
 
 FILE, PAGE = "benchmarks.json", "benchmarks.md"
 EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"  # sides; smoothed: with the engine's friction
@@ -33,33 +31,24 @@ MEANING = {
     Verdict.OFF: "beyond both errors, and not explained",
     Verdict.NONE: "no value was computed",
 }
-VerdictName = Annotated[
-    str,
-    AfterValidator(lambda name: Verdict(name).value),
-    Field(json_schema_extra={"enum": [verdict.value for verdict in Verdict]}),
-]
 
 
-@dataclass(frozen=True)
+@result
 class Number:
     """What one side computes of a published number."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     value: float | None
     """in the unit of the published number; null without an answer"""
     error: float | None
     """estimated absolute error; null where it is not known"""
-    verdict: VerdictName
+    verdict: Verdict
     """met: within both errors; friction: the equations with the engine's friction law give the same; model: the source
     models something else; NOT MET: neither; no answer: no value"""
 
 
-@dataclass(frozen=True)
+@result
 class Row:
     """One published number."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     quantity: str
     """what it is"""
@@ -73,11 +62,9 @@ class Row:
     """by side: equations, smoothed (the equations with the engine's friction law), engine"""
 
 
-@dataclass(frozen=True)
+@result
 class Benchmark:
     """The published numbers of one scene."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     name: str
     """name of the scene"""
@@ -99,15 +86,9 @@ class Benchmark:
     """by side: processor time, s"""
 
 
-@dataclass(frozen=True)
+@result
 class Benchmarks:
-    """
-    All benchmarks.
-
-    run: how it was made; empty until a command says so.
-    """
-
-    __pydantic_config__ = FILE_FORMAT
+    """All benchmarks."""
 
     benchmarks: Sequence[Benchmark]
     """one per scene"""
@@ -115,11 +96,7 @@ class Benchmarks:
     """command, times, provenance"""
 
     def counts(self) -> dict[str, int]:
-        """
-        Numbers of the equations and of the engine by verdict.
-
-        Returns from the best verdict to the worst, zeros included.
-        """
+        """Numbers of the equations and of the engine by verdict, from the best to the worst, zeros included."""
         seen = Counter(
             row.numbers[side].verdict for each in self.benchmarks for row in each.rows for side in (EQUATIONS, ENGINE)
         )

@@ -7,7 +7,6 @@ Those that count peaks and valleys are in `peak_checks`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 from comparison.analyses.claims.evidence import Evidence
 from comparison.analyses.claims.readings import EPSILON
 from comparison.analyses.claims.smoothness import Bend
+from comparison.result_types import Text, result
 
 Array = NDArray[np.float64]
 
@@ -41,12 +41,14 @@ class Finding(StrEnum):
         return self in (Finding.REPRODUCED, Finding.AS_DRAWN)
 
 
-@dataclass(frozen=True)
+@result
 class Verdict:
-    """What a check found under one reading, and the measured answer in words."""
+    """What the surfaces of one reading say about a claim."""
 
     finding: Finding
-    found: str
+    """reproduced, as drawn, not reproduced, cannot hold, or no answer"""
+    found: Text
+    """numbers behind it"""
 
 
 Check = Callable[[Mapping[str, Evidence]], Verdict]

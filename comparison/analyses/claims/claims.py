@@ -37,9 +37,7 @@ from comparison.analyses.claims.readings import EPSILON
 @dataclass(frozen=True)
 class Claim:
     """
-    One statement. figure: what it is about. says: the statement, close to its words. rule: when it counts as
-    reproduced. cases: whose evidence the check needs. proof: why it cannot hold, "" where it can; impossible: whether
-    what the proof assumes is so.
+    One statement. rule: when it counts as reproduced. proof: why it cannot hold; impossible: whether that applies.
     """
 
     figure: str

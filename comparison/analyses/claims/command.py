@@ -9,7 +9,8 @@ from rich.table import Table
 
 from comparison.analyses.claims.checks import Finding
 from comparison.analyses.claims.readings import EVERY_READING, READINGS
-from comparison.analyses.claims.table import GRID, SIGNS, Claims, ClaimTable
+from comparison.analyses.claims.result import ClaimTable
+from comparison.analyses.claims.table import GRID, SIGNS, Claims
 from comparison.analyses.effective_values.forced_ratio import forced_ratios
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, whole_number
 from comparison.cli.computing import computed
@@ -63,24 +64,23 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 def print_claims(console: Console, table: ClaimTable, words: bool = False) -> None:
     """Print the verdicts and, with `words`, what every check found; the best readings; claims that none reproduces."""
     for number, reading in enumerate(table.readings, start=1):
-        console.print(f"{number:2d}: {reading.name}: {table.held(number - 1)} of {table.stated}")
-        console.print(f"    {reading.origin}")
+        console.print(f"{number:2d}: {reading}: {table.reproduced[number - 1]} of {table.stated}")
+        console.print(f"    {table.origins[number - 1]}")
     grid = Table("about", "claim", *map(str, range(1, len(table.readings) + 1)), box=None, pad_edge=False)
-    for claim, row in zip(table.claims, table.verdicts):
-        grid.add_row(claim.figure, claim.says, *(MARKS[verdict.finding] for verdict in row))
+    for claim in table.claims:
+        grid.add_row(claim.figure, claim.says, *(MARKS[verdict.finding] for verdict in claim.verdicts))
     console.print(grid)
     console.print("; ".join(f"{mark} {finding}" for finding, mark in MARKS.items()))
     for claim in table.claims:
         if claim.proof:
             console.print(f"{claim.figure}: {claim.says}: cannot hold. {claim.proof}")
     if words:
-        for place, claim in enumerate(table.claims):
+        for claim in table.claims:
             console.print(f"{claim.figure}: {claim.says} ({claim.rule})")
-            for numbers, verdict in table.found(place):
+            for verdict, numbers in claim.found.items():
                 console.print(f"   {SIGNS[verdict.finding]:6s} {', '.join(map(str, numbers))}: {verdict.found}")
-    console.print(f"Most claims are reproduced under: {'; '.join(reading.name for reading in table.best)}.")
-    never = [f"{claim.figure}: {claim.says}" for claim in table.never]
-    console.print(f"Under no reading: {'; '.join(never) or 'none'}.")
+    console.print(f"Most claims are reproduced under: {'; '.join(table.best)}.")
+    console.print(f"Under no reading: {'; '.join(table.never) or 'none'}.")
 
 
 def print_ratios(console: Console, study: Study) -> None:

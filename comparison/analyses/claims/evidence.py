@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -9,11 +10,10 @@ from numpy.typing import NDArray
 
 import reference
 from comparison.analyses.claims.cases import CASES
-from comparison.analyses.claims.literal import literal_peaks
-from comparison.analyses.claims.readings import Reading, has_stops, settings
+from comparison.analyses.claims.readings import Reading, settings
 from comparison.analyses.claims.smoothness import Bend, bends
 from comparison.runner.task import TaskResult
-from reference.problem import Amplification, Outcome, Scene, exponents, ground_peak, phase_grid
+from reference.problem import Amplification, Scene, exponents, ground_peak, phase_grid
 from reference.problem.reductions import half_turn
 from reference.problem.symmetry import surface
 
@@ -27,29 +27,19 @@ MOTIONS = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, whose motio
 
 @dataclass(frozen=True)
 class Evidence:
-    """
-    One case under one reading, by the printed equations (4.3)-(4.4).
+    """One case under one reading, by the printed equations (4.3)-(4.4)."""
 
-    mu: (n, n, N) on phases 2 pi k / n, NaN where a point has no answer. error: largest absolute error estimate; 0 of
-    the literal integration, which has none.
-    statuses: the outcomes met. bends: sharpest bend of each body's surface. apart: max |x_i - y_i| over the largest of
-    |x_i| and |y_i|, for each body over MOTIONS. swing: max (x_1^2 + y_1^2) / rho^2 over the same. resonance: for each
-    harmonic its period and the natural period closest to it, s. twins: whether mu is the same where both phases are
-    shifted by pi. ground: sharpest bend of the denominator of (5.1). numerators: of each body's numerator, where the
-    case is lubricated. error_message: why there is nothing, or "".
-    """
-
-    mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))
-    error: float = float("nan")
-    statuses: tuple[str, ...] = ()
-    bends: tuple[Bend, ...] = ()
-    apart: tuple[float, ...] = ()
-    swing: float = float("nan")
-    resonance: tuple[tuple[float, float], ...] = ()
-    twins: bool = False
-    ground: Bend | None = None
-    numerators: tuple[Bend, ...] = ()
-    error_message: str = ""
+    mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))  # (n, n, N), NaN without an answer
+    error: float = float("nan")  # largest absolute error estimate
+    statuses: tuple[str, ...] = ()  # the outcomes met
+    bends: tuple[Bend, ...] = ()  # sharpest bend of each body's surface
+    apart: tuple[float, ...] = ()  # max |x_i - y_i| over the largest of |x_i| and |y_i|, for each body over MOTIONS
+    swing: float = float("nan")  # max (x_1^2 + y_1^2) / rho^2 over MOTIONS
+    resonance: tuple[tuple[float, float], ...] = ()  # period of each harmonic and the closest natural period, s
+    twins: bool = False  # whether mu is the same where both phases are shifted by pi
+    ground: Bend | None = None  # sharpest bend of the denominator of (5.1)
+    numerators: tuple[Bend, ...] = ()  # of each body's numerator, where the case is lubricated
+    error_message: str = ""  # why there is nothing
 
     def flat(self, body: int) -> bool:
         """Whether a surface varies by less than its errors, or so little that it shows no resonance."""
@@ -75,49 +65,43 @@ class Question:
         """The case under the reading."""
         return CASES[self.case](self.reading)
 
-    @property
-    def literal(self) -> bool:
-        """Whether it is integrated by `literal`: where friction has no corner, (4.6) says nothing."""
-        return self.reading.peak == "literal (4.6)" and has_stops(self.scene)
-
 
 def gathered(question: Question) -> Evidence:
     """Surface, bends and motions of one case under one reading. Runs inside a worker process."""
-    scene, literal = question.scene, question.literal
+    scene = question.scene
     law = settings(scene, question.reading)
 
     def solved(scene: Scene, phases: Array, tolerance: float = TOLERANCE) -> Amplification:
         return reference.amplification(scene, phases, equations="small", tolerance=tolerance, **law)
 
-    def factors(phases: Array) -> Array:
-        return literal_peaks(scene, phases).mu if literal else solved(scene, phases, SHARP).mu
+    mu, error, statuses = surface(scene, question.grid, solved)
+    surfaces = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses))
+    if not surfaces.complete or len(scene.bodies) == 1:
+        return surfaces
+    motions = _motion(scene, law.get("regularization"))
+    return with_facts(surfaces, scene, lambda phases: solved(scene, phases, SHARP).mu, *motions)
+
+
+def with_facts(
+    surfaces: Evidence, scene: Scene, factors: Callable[[Array], Array], apart: tuple[float, ...], swing: float
+) -> Evidence:
+    """The surfaces with their bends and with facts of the scene and its motion; factors: mu at phases (M, 2)."""
 
     def ground(phases: Array) -> Array:
         return ground_peak(scene, phases)[:, None]
 
-    grid = question.grid
-    if literal:
-        mu, error, statuses = factors(phase_grid(grid)).reshape(grid, grid, -1), np.zeros(1), [str(Outcome.OK)]
-    else:
-        mu, error, statuses = surface(scene, grid, solved)
-    surfaces = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses))
-    if not surfaces.complete:
-        return replace(surfaces, statuses=(*statuses, str(Outcome.RIM_REACHED))) if literal else surfaces
-    if len(scene.bodies) == 1:
-        return surfaces
-    apart, swing = _literal_motion(scene) if literal else _motion(scene, law.get("regularization"))
+    grid = len(surfaces.mu)
     peaks = ground(phase_grid(grid)).reshape(grid, grid, 1)
+    numerators = bends(surfaces.mu * peaks, lambda at: factors(at) * ground(at)) if scene.lubricated else ()
     return replace(
         surfaces,
-        bends=tuple(bends(mu, factors)),
+        bends=tuple(bends(surfaces.mu, factors)),
         apart=apart,
         swing=swing,
         resonance=_resonance(scene),
         twins=bool(half_turn(scene)),
         ground=bends(peaks, ground)[0],
-        numerators=tuple(bends(mu * peaks, lambda phases: factors(phases) * ground(phases)))
-        if scene.lubricated
-        else (),
+        numerators=tuple(numerators),
     )
 
 
@@ -134,11 +118,6 @@ def _motion(scene: Scene, v_reg: float | None) -> tuple[tuple[float, ...], float
         apart = np.maximum(apart, np.abs(place[..., 0] - place[..., 1]).max(axis=0) / np.where(reach > 0, reach, 1.0))
         swing = max(swing, float((place[:, 0] ** 2).sum(axis=-1).max()) / scene.radius**2)
     return tuple(map(float, apart)), swing
-
-
-def _literal_motion(scene: Scene) -> tuple[tuple[float, ...], float]:
-    motions = literal_peaks(scene, np.array(MOTIONS))
-    return tuple(map(float, motions.apart.max(axis=0))), float(motions.swing.max())
 
 
 def _resonance(scene: Scene) -> tuple[tuple[float, float], ...]:

@@ -27,10 +27,7 @@ STEPS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 @dataclass(frozen=True)
 class Relief:
     """
-    What prominence finds on a surface (n, m).
-
-    tops: (row, column) of every peak, highest first. regions: (n, m), number of the peak that steepest ascent over all
-    lesser maxima leads to; -1 on a flat surface.
+    Peaks (row, column), highest first; and for each point the number of the peak that steepest ascent leads to, or -1.
     """
 
     tops: Sequence[tuple[int, int]]
@@ -59,11 +56,7 @@ def periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
 
 
 def drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
-    """
-    Peaks and valleys on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges. Arguments as of `periodic`.
-
-    Only valleys between two peaks count: what lies beyond the outermost peak separates it from nothing.
-    """
+    """Peaks, and valleys between two peaks, on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges."""
     return _bounded(np.pad(mu, ((0, 1), (0, 1)), mode="wrap"), error, share)
 
 
@@ -93,11 +86,7 @@ def _bounded(mu: Array, error: float, share: float) -> Counts:
 
 
 def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> Relief:
-    """
-    The peaks of a surface (n, m). One whose range is within its errors is flat: it has no peak at all.
-
-    closed: whether the surface is periodic in both directions. Other arguments as of `periodic`.
-    """
+    """The peaks of a surface (n, m), `closed` if periodic; none where its range is within its errors."""
     span = float(np.ptp(mu))
     if not span > 2.0 * error:
         return Relief([], np.full(mu.shape, -1))

@@ -25,23 +25,19 @@ class Reading:
     """
     One way to fill in what the paper leaves open, and changes of what it states.
 
-    amplitude: m/s^2, of the largest entry of (5.4). duration: s. peak: the supremum of (5.1) with its one-sided limits
-    at stops; or only what is reached at rest or while sliding faster than SPEED; or the peak of the motion with
-    friction linear below SPEED; or that of `literal`. lubrication: f_c, s/m. values: dotted keys of every scene and
-    their values in place of those printed; dry friction is left out in the lubricated scene. factors: dotted keys and
-    what multiplies the printed values. title: what the changes are. reason: why anyone would read the paper so.
-    searched: how many readings had been tried before this one was picked; 0 where it was not picked by its verdicts.
+    peak: the supremum of (5.1) with its one-sided limits at stops; or only what is reached at rest or while sliding
+    faster than SPEED; or the peak with friction linear below SPEED; or (4.6) literally, as recorded.
     """
 
-    amplitude: float = 1.0
-    duration: float = 20.0
+    amplitude: float = 1.0  # m/s^2, of the largest entry of (5.4)
+    duration: float = 20.0  # s
     peak: Peak = "resolved"
-    lubrication: float = 0.5
-    values: tuple[tuple[str, float | tuple[float, ...]], ...] = ()
-    factors: tuple[tuple[str, float], ...] = ()
-    title: str = ""
-    reason: str = ""
-    searched: int = 0
+    lubrication: float = 0.5  # f_c, s/m
+    values: tuple[tuple[str, float | tuple[float, ...]], ...] = ()  # dotted keys; not dry friction where lubricated
+    factors: tuple[tuple[str, float], ...] = ()  # dotted keys and what multiplies the printed values
+    title: str = ""  # what the changes are
+    reason: str = ""  # why anyone would read the paper so
+    searched: int = 0  # how many readings had been tried where it was picked by its verdicts
 
     @property
     def name(self) -> str:
@@ -117,7 +113,7 @@ EVERY_READING = (
 
 def settings(scene: Scene, reading: Reading) -> dict[str, Any]:
     """What the reading asks of `reference.amplification`: nothing where friction has no corner."""
-    if not has_stops(scene) or reading.peak in ("supremum", "literal (4.6)"):
+    if not has_stops(scene) or reading.peak == "supremum":
         return {}
     return {"cutoff" if reading.peak == "resolved" else "regularization": SPEED}
 

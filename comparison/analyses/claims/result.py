@@ -2,20 +2,12 @@
 
 from __future__ import annotations
 
-from comparison.analyses.claims.spike import Spike
-from comparison.result_types import Part, Text
+from comparison.analyses.claims.checks import Verdict
+from comparison.result_types import result
 
 
-class ClaimVerdict(Part):
-    """What the surfaces of one reading say about a claim."""
-
-    finding: str
-    """reproduced, as drawn, not reproduced, cannot hold, or no answer"""
-    found: Text
-    """numbers behind it"""
-
-
-class Claim(Part):
+@result
+class CheckedClaim:
     """One statement of the paper about its figures."""
 
     figure: str
@@ -28,26 +20,38 @@ class Claim(Part):
     """whether it is a weaker form of a claim, which is not counted"""
     proof: str
     """why it cannot hold; empty where it can"""
-    verdicts: list[ClaimVerdict]
+    verdicts: tuple[Verdict, ...]
     """one per reading"""
 
+    @property
+    def found(self) -> dict[Verdict, list[int]]:
+        """What its checks found, each different answer once, with the numbers of its readings from 1 on."""
+        groups: dict[Verdict, list[int]] = {}
+        for number, verdict in enumerate(self.verdicts, start=1):
+            groups.setdefault(verdict, []).append(number)
+        return groups
 
-class Claims(Part):
+
+@result
+class ClaimTable:
     """The paper's statements about its figures, compared with readings of the scenes."""
 
     grid: int
     """phases per axis"""
-    readings: list[str]
+    readings: tuple[str, ...]
     """names of the readings"""
-    origins: list[str]
+    origins: tuple[str, ...]
     """why anyone would read the paper so, and by what selection each was found"""
-    spike: Spike
-    """what the step does to the literal reading"""
-    reproduced: list[int]
+    reproduced: tuple[int, ...]
     """how many claims each reading reproduces"""
-    best: list[str]
+    best: tuple[str, ...]
     """readings that reproduce most"""
-    never: list[str]
+    never: tuple[str, ...]
     """claims that no reading reproduces"""
-    claims: list[Claim]
+    claims: tuple[CheckedClaim, ...]
     """one per statement"""
+
+    @property
+    def stated(self) -> int:
+        """How many claims the paper makes."""
+        return sum(not claim.weaker for claim in self.claims)

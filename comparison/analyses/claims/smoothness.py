@@ -47,12 +47,7 @@ class Bend:
 
 
 def bends(mu: Array, solve: Callable[[Array], Array]) -> list[Bend]:
-    """
-    The sharpest bend of every body's surface.
-
-    mu: (n, n, N), finite, at phases 2 pi k / n. solve: mu (M, N) at phases (M, 2), rad, known much better than the
-    bends that are left at the end, 1e-4 of mu.
-    """
+    """The sharpest bend of every body's surface mu (n, n, N); solve: mu (M, N) at phases (M, 2), rad, to 1e-4."""
     n, _, bodies = mu.shape
     step = 2.0 * np.pi / n
     starts = [(body, *start) for body in range(bodies) for start in _sharpest(mu[..., body])]

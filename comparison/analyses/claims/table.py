@@ -7,8 +7,12 @@ table says which, names the reading that reproduces most, and lists what none re
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import ClassVar
 
 import xarray as xr
 
@@ -17,7 +21,7 @@ from comparison.analyses.claims.checks import Finding, Verdict
 from comparison.analyses.claims.claims import CLAIMS, Claim
 from comparison.analyses.claims.evidence import Evidence, Question, gathered, without_value
 from comparison.analyses.claims.readings import LITERAL, READINGS, Reading, without_effect
-from comparison.analyses.claims.spike import Spike, no_spike, spike_over_the_step
+from comparison.analyses.claims.result import CheckedClaim, ClaimTable
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -25,52 +29,8 @@ from comparison.study.study import Study
 from reference.problem import builtin_scenes
 
 GRID = 16  # phases per axis: 24 change a count here and there, and none of the claims that no reading reproduces
+RECORD = "literal.json"  # verdicts by amplitude, m/s^2, and claim
 COARSE = 2  # every second phase for surfaces that are only correlated with another
-
-
-@dataclass(frozen=True)
-class ClaimTable:
-    """
-    Verdicts, one row for each of `claims`, in each one column for each of `readings`, on `grid` phases per axis.
-
-    spike: what the step does to the literal reading.
-    """
-
-    claims: Sequence[Claim]
-    readings: Sequence[Reading]
-    grid: int
-    verdicts: Sequence[Sequence[Verdict]]
-    spike: Spike = field(default_factory=Spike)
-
-    def held(self, column: int) -> int:
-        """How many of the paper's own claims a reading reproduces."""
-        return sum(row[column].finding.holds for claim, row in zip(self.claims, self.verdicts) if not claim.weaker)
-
-    @property
-    def stated(self) -> int:
-        """How many claims the paper makes."""
-        return sum(not claim.weaker for claim in self.claims)
-
-    @property
-    def best(self) -> list[Reading]:
-        """The readings that reproduce most."""
-        held = [self.held(column) for column in range(len(self.readings))]
-        return [reading for reading, count in zip(self.readings, held) if count == max(held)]
-
-    @property
-    def never(self) -> list[Claim]:
-        """The claims that no reading reproduces."""
-        return [claim for claim, row in zip(self.claims, self.verdicts) if not any(v.finding.holds for v in row)]
-
-    def found(self, row: int) -> list[tuple[list[int], Verdict]]:
-        """What the checks of a claim found, each different answer once, with the numbers of its readings from 1 on."""
-        groups: dict[Verdict, list[int]] = {}
-        for number, verdict in enumerate(self.verdicts[row], start=1):
-            groups.setdefault(verdict, []).append(number)
-        return [(numbers, verdict) for verdict, numbers in groups.items()]
-
-
-SPIKE = Task(spike_over_the_step, LITERAL, "claims")
 
 
 @dataclass(frozen=True)
@@ -82,27 +42,42 @@ class Claims(Analysis[ClaimTable]):
     readings: Sequence[Reading] = READINGS
     claims: Sequence[Claim] = CLAIMS
 
+    recorded: ClassVar[bool] = True  # whether the verdicts of the literal readings are those of RECORD
+
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each case under each reading; none unless the study has every scene of the paper."""
         if not paper_complete(study):
             return []
-        asked = questions(self.readings, self.claims, self.grid)
-        return [*(Task(gathered, question, self.stage) for question in asked), SPIKE]
+        return [self.asking(question) for question in self.questions()]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ClaimTable | None:
         """The table; None unless the study has every scene of the paper."""
         if not paper_complete(study):
             return None
         columns = [
-            {case: results.value(self.task(case, reading), without_value) for case in _cases(self.claims)}
+            None
+            if self._is_recorded(reading)
+            else {case: results.value(self.task(case, reading), without_value) for case in _cases(self.claims)}
             for reading in self.readings
         ]
-        table = tabulated(self.claims, self.readings, self.grid, columns)
-        return replace(table, spike=results.value(SPIKE, no_spike))
+        return tabulated(self.claims, self.readings, self.grid, columns)
 
     def task(self, case: str, reading: Reading) -> Task:
         """What computes a case under a reading."""
-        return Task(gathered, _question(case, reading, self.grid), self.stage)
+        return self.asking(_question(case, reading, self.grid))
+
+    def asking(self, question: Question) -> Task:
+        """What gathers the evidence of a question."""
+        return Task(gathered, question, self.stage)
+
+    def questions(self) -> list[Question]:
+        """What has to be computed, each only once, the longest first."""
+        computed = [reading for reading in self.readings if not self._is_recorded(reading)]
+        every = [_question(case, reading, self.grid) for case in _cases(self.claims) for reading in computed]
+        return sorted(dict.fromkeys(every), key=lambda question: -question.reading.amplitude)
+
+    def _is_recorded(self, reading: Reading) -> bool:
+        return self.recorded and reading.peak == LITERAL.peak
 
 
 def paper_complete(study: Study) -> bool:
@@ -111,16 +86,54 @@ def paper_complete(study: Study) -> bool:
 
 
 def tabulated(
-    claims: Sequence[Claim], readings: Sequence[Reading], grid: int, columns: Sequence[Mapping[str, Evidence]]
+    claims: Sequence[Claim],
+    readings: Sequence[Reading],
+    grid: int,
+    columns: Sequence[Mapping[str, Evidence] | None],
 ) -> ClaimTable:
-    """The table from the evidence by case, one mapping for each reading; grid: phases per axis."""
-    return ClaimTable(claims, readings, grid, [[claim.verdict(column) for column in columns] for claim in claims])
+    """The table from the evidence by case, one mapping for each reading, None for one whose verdicts are recorded."""
+    rows = [
+        tuple(
+            recorded_verdict(reading, claim) if column is None else claim.verdict(column)
+            for reading, column in zip(readings, columns)
+        )
+        for claim in claims
+    ]
+    return table_of(claims, readings, grid, rows)
 
 
-def questions(readings: Sequence[Reading], claims: Sequence[Claim], grid: int) -> list[Question]:
-    """What has to be computed, each only once, the longest first; grid: phases per axis."""
-    every = [_question(case, reading, grid) for case in _cases(claims) for reading in readings]
-    return sorted(dict.fromkeys(every), key=lambda question: -question.reading.amplitude)
+def table_of(
+    claims: Sequence[Claim], readings: Sequence[Reading], grid: int, rows: Sequence[tuple[Verdict, ...]]
+) -> ClaimTable:
+    """The table of verdicts, a row for each claim with a verdict for each reading."""
+    held = tuple(
+        sum(verdict.finding.holds for claim, verdict in zip(claims, column) if not claim.weaker)
+        for column in zip(*rows)
+    )
+    names = tuple(reading.name for reading in readings)
+    return ClaimTable(
+        grid,
+        names,
+        tuple(reading.origin for reading in readings),
+        held,
+        tuple(name for name, count in zip(names, held) if count == max(held)),
+        tuple(f"{c.figure}: {c.says}" for c, row in zip(claims, rows) if not any(v.finding.holds for v in row)),
+        tuple(CheckedClaim(c.figure, c.says, c.rule, c.weaker, c.proof, row) for c, row in zip(claims, rows)),
+    )
+
+
+@cache
+def _record() -> dict[str, dict[str, tuple[str, str]]]:
+    record: dict[str, dict[str, tuple[str, str]]] = json.loads(
+        (resources.files("comparison.analyses.claims") / RECORD).read_bytes()
+    )
+    return record
+
+
+def recorded_verdict(reading: Reading, claim: Claim) -> Verdict:
+    """What a literal reading says of a claim on 16 x 16 phases, as docs/claims_page.py computed it."""
+    finding, found = _record()[f"{reading.amplitude:g}"][f"{claim.figure}: {claim.says}"]
+    return Verdict(Finding(finding), found)
 
 
 def _cases(claims: Sequence[Claim]) -> list[str]:

@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.result_types import Number, Phases, UncertainNumber, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -23,7 +24,7 @@ from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from comparison.surfaces.distribution import CURVE, Fractile
 from comparison.surfaces.surfaces import NOT_ASKED
-from reference.measures import Estimate, Estimates, phase_distribution
+from reference.measures import Estimates, phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import PER_BODY, QUANTITIES, demands_of_motions
 from reference.problem import Scene, phase_axis, phase_grid
@@ -45,29 +46,42 @@ class DemandBatch:
     status: list[str]
 
 
-@dataclass(frozen=True)
-class Extreme:
+@result
+class PhaseExtreme:
     """The largest or smallest value on the phases that were computed."""
 
-    value: float
-    error: float
-    phases: tuple[float, float]  # rad
+    value: Number
+    """largest or smallest value, in the unit of the demand"""
+    error: Number
+    """estimated absolute error; null where it is not known"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
 
 
-@dataclass(frozen=True)
+@result
 class DemandStatistics:
-    """One demand of one model over uniform phases; under a record its one value."""
+    """One demand of one model over phases that are independent and uniform; under a record its one value."""
 
-    model: str  # key
-    quantity: str  # field of `Demands`
-    body: int  # from 1; 0 where the demand is of the isolator
-    points: int  # phase pairs
-    unknown: float  # share of them without an answer
-    mean: Estimate
+    model: str
+    """key of the model"""
+    quantity: str
+    """key in `demands`, with the unit stated there"""
+    body: int
+    """number of the body; 0 where the demand is of the isolator"""
+    points: int
+    """phase pairs that it was taken from"""
+    unknown: float
+    """share of them without an answer"""
+    mean: UncertainNumber
+    """mean over all phases; its error includes that of sampling"""
     fractiles: tuple[Fractile, ...]
-    lowest: Extreme
-    highest: Extreme
-    curve: tuple[float, ...]  # the demand at the probabilities CURVE
+    """by rising probability"""
+    lowest: PhaseExtreme
+    """smallest value"""
+    highest: PhaseExtreme
+    """largest value"""
+    curve: tuple[Number, ...]
+    """the demand at 50 probabilities from 0.01 to 0.99"""
 
     def fractile(self, probability: float) -> float:
         """The value at one of FRACTILES."""
@@ -177,11 +191,7 @@ def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset
 
 
 def demand_statistics(study: Study, demands: xr.Dataset, scene: Scene) -> list[DemandStatistics]:
-    """
-    One for each demand, body and model with an answer.
-
-    demands: from `DemandSurfaces`. Returns in the order of QUANTITIES; none for a scene without this analysis.
-    """
+    """One for each demand, body and model with an answer, in the order of QUANTITIES."""
     if scene.name not in demands["scene"]:
         return []
     return [
@@ -205,13 +215,13 @@ def _statistics(
     if not known.any():
         return
     taken = phase_distribution(value, np.where(np.isfinite(error), error, np.inf))
-    mean = Estimate(taken.mean.value, taken.mean.error if np.isfinite(taken.mean.error) else np.nan)
+    error_of_mean = taken.mean.error
 
-    def extreme(index: int) -> Extreme:
+    def extreme(index: int) -> PhaseExtreme:
         row, column = np.unravel_index(index, value.shape)
         phases = phase_axis(study.grid)[axis]
         pair = (np.nan, np.nan) if scene.recorded else (float(phases[row]), float(phases[column]))
-        return Extreme(float(value[row, column]), float(error[row, column]), pair)
+        return PhaseExtreme(float(value[row, column]), float(error[row, column]), pair)
 
     yield DemandStatistics(
         model=model.key,
@@ -219,7 +229,7 @@ def _statistics(
         body=body,
         points=taken.points,
         unknown=taken.unknown,
-        mean=mean,
+        mean=UncertainNumber(value=taken.mean.value, error=error_of_mean if np.isfinite(error_of_mean) else np.nan),
         fractiles=tuple(Fractile(p, each.value, each.error) for p, each in zip(FRACTILES, taken.fractiles)),
         lowest=extreme(int(np.nanargmin(value))),
         highest=extreme(int(np.nanargmax(value))),

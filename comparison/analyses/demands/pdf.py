@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 
-from comparison.analyses.motions.result import MotionDemands, UncertainNumber
-from comparison.analyses.worst_phases.result import DemandStatistics, PhaseExtreme
+from comparison.analyses.demands.analysis import DemandStatistics, PhaseExtreme
+from comparison.analyses.motions.result import MotionDemands
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
+from comparison.result_types import UncertainNumber
 from comparison.wording import shortened
 
 HEADINGS = (
@@ -20,9 +21,7 @@ MILLI = 1e3
 
 def demand_rows(results: Results) -> list[list[str]]:
     """
-    Cells under HEADINGS of the first and the last model of every scene.
-
-    Over all phases where the study has these, else over the stored motions; a scene without either has no row.
+    Cells under HEADINGS of the first and the last model of every scene, over all phases or over the stored motions.
     """
     titles = {model.key: model.title for model in results.models}
     with_demands = [scene for scene in results.scenes if scene.demand_statistics or scene.demands]

@@ -169,11 +169,7 @@ def _stiffness(scene: Scene, motion: Trajectory) -> float:
 
 
 def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
-    """
-    The contact force is what accelerates all bodies together; split along and across the sphere's normal.
-
-    Median over the instants of fast sliding.
-    """
+    """Ratio of the contact force across and along the sphere's normal: median over the instants of fast sliding."""
     if np.isnan(radius):
         return float("nan")
     force = np.einsum("i,tik->tk", scene.masses, motion.absolute_acceleration)

@@ -162,11 +162,7 @@ class Ensemble(Analysis[EnsembleResult]):
 
 
 def refuse_unfit(family: Family, label: str) -> None:
-    """
-    Whether a family can be an ensemble.
-
-    label: its file, for the message. Raises SceneError: unless every scene has a recorded motion.
-    """
+    """Raise SceneError unless every scene has a recorded motion; label: the file, for the message."""
     for scene in family.scenes:
         if not scene.recorded:
             rule = "an ensemble needs recorded motions: give --suite, or a record in the scene"
@@ -199,11 +195,7 @@ def _outcome(task: Arguments, failed: TaskResult) -> str:
 
 
 def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
-    """
-    Fractiles of every demand at every scale.
-
-    A motion without an answer counts as larger than all others: it reached the rim, or is not known to demand less.
-    """
+    """Fractiles of every demand at every scale. A motion without an answer counts as larger than all others."""
     for quantity in quantities(points):
         for scale in sorted({point.scale for point in points}):
             numbers = [point.estimate(quantity) for point in points if point.scale == scale]
@@ -225,21 +217,8 @@ def quantities(points: Sequence[Point]) -> list[Quantity]:
 
 def uncertain_fractile(numbers: Sequence[Estimate], share: float) -> Estimate:
     """
-    Fractile of numbers with errors; NaN numbers count as infinite.
+    Fractile of numbers with errors; NaN numbers count as infinite. Its error is the largest change within the errors.
 
-    Parameters
-    ----------
-    numbers : sequence of Estimate
-    share : float
-        Part of the numbers below it, 0 to 1.
-
-    Returns
-    -------
-    Estimate
-        NaN where it falls on a number that is not known. Its error is the largest change within the errors.
-
-    Examples
-    --------
     >>> numbers = [Estimate(1.0, 0.1), Estimate(2.0, 0.2), Estimate(float("nan"), float("nan"))]
     >>> median = uncertain_fractile(numbers, 0.5)
     >>> median.value, round(median.error, 12), uncertain_fractile(numbers, 0.75).value

@@ -91,11 +91,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 
 
 def asked_family(options: argparse.Namespace) -> Family:
-    """
-    The scene with every motion of `--suite` at every scale of `--scales`; what is not given stays as the file has it.
-
-    Raises SceneError.
-    """
+    """The scene with every motion of `--suite` at every scale of `--scales`. Raises SceneError."""
     data = scene_tables(scene_text(options.scene), options.scene)
     loading: Any = data.get("excitation")
     if options.suite is not None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Literal
 
 from comparison.analyses.ensemble.analysis import FRACTILES, EnsembleResult, Point, Quantity, quantities
-from comparison.json_file import FILE_FORMAT, StoredFile, finite_or_none
+from comparison.json_file import StoredFile, finite_or_none
+from comparison.result_types import result
 from comparison.study.models import TRANSLATIONAL
 from reference.measures import Estimate
 from reference.measures.peak_demands import unit_of
@@ -16,11 +17,9 @@ FILE, PICTURE = "ensemble.json", "ensemble.png"
 SCHEMA: Literal["phase-resonance/ensemble"] = "phase-resonance/ensemble"
 
 
-@dataclass(frozen=True)
+@result
 class StoredFractile:
     """A fractile of a demand over the motions."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     share: float
     """part of the motions below it"""
@@ -30,11 +29,9 @@ class StoredFractile:
     """largest change within the errors of the motions"""
 
 
-@dataclass(frozen=True)
+@result
 class StoredStripe:
     """A demand at one scale over all motions."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     quantity: str
     """demand"""
@@ -52,11 +49,9 @@ class StoredStripe:
     """why the other motions do not have it, and how many each"""
 
 
-@dataclass(frozen=True)
+@result
 class StoredCurve:
     """A demand of one motion over its scale factors."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     quantity: str
     """demand"""
@@ -74,11 +69,9 @@ class StoredCurve:
     """error estimates of the values"""
 
 
-@dataclass(frozen=True)
+@result
 class StoredDifference:
     """How far the engine is from the equations in one demand."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     quantity: str
     """demand"""
@@ -94,11 +87,9 @@ class StoredDifference:
     """motions that both sides have"""
 
 
-@dataclass(frozen=True)
+@result
 class StoredEngine:
     """The engine at its subset."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     model: str
     """key of the model"""
@@ -108,11 +99,9 @@ class StoredEngine:
     """one for each demand"""
 
 
-@dataclass(frozen=True)
+@result
 class StoredEnsemble:
     """Content of the file."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     schema: Literal["phase-resonance/ensemble"]
     """what the file is"""
@@ -144,11 +133,7 @@ STORED = StoredFile(FILE, StoredEnsemble, "an ensemble", "python -m comparison.e
 
 
 def stored(result: EnsembleResult, run: Mapping[str, Any]) -> StoredEnsemble:
-    """
-    The content of the file.
-
-    run: command, times, provenance.
-    """
+    """The content of the file."""
     scene, names = result.family.scenes[0], quantities(result.points)
     stripes = [
         StoredStripe(

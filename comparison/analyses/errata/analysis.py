@@ -7,7 +7,7 @@ in which the loading is strongest: mu_i with the erratum over mu_i without it, m
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -215,8 +215,26 @@ class Effect:
     """what went wrong, or empty"""
 
 
-class Errata(Analysis[list[Effect]]):
-    """Every measurable erratum in every scene, in the order scene, erratum."""
+@result
+class MeasuredErratum:
+    """One erratum of the print."""
+
+    where: str
+    """place in the paper"""
+    printed: str
+    """what is printed"""
+    corrected: str
+    """what it should be"""
+    why: str
+    """reason"""
+    none: str
+    """why it has no measurable effect, or empty"""
+    effects: tuple[Effect, ...]
+    """one per scene with phases"""
+
+
+class Errata(Analysis[list[MeasuredErratum]]):
+    """Every erratum, measured in every scene where it can be."""
 
     key, stage, level = "errata", "errata", 2
 
@@ -229,9 +247,15 @@ class Errata(Analysis[list[Effect]]):
             if erratum.measure
         ]
 
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effect]:
-        """The effects, in the order of the tasks."""
-        return [results.value(task, _without_value) for task in self.tasks(study)]
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredErratum]:
+        """Every erratum with its effects, in the order of the paper."""
+        return with_effects([results.value(task, _without_value) for task in self.tasks(study)])
+
+
+def with_effects(effects: Sequence[Effect]) -> list[MeasuredErratum]:
+    """Every erratum with its effects."""
+    of = [tuple(effect for effect in effects if effect.erratum == number) for number in range(len(ERRATA))]
+    return [MeasuredErratum(e.where, e.printed, e.corrected, e.why, e.none, row) for e, row in zip(ERRATA, of)]
 
 
 def measured(task: tuple[Scene, int]) -> Effect:

@@ -2,47 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from comparison.analyses.errata.analysis import ERRATA, Effect, Errata
+from comparison.analyses.errata.analysis import Effect, Errata, MeasuredErratum
 from comparison.report.section import Feature, Report, Section
-from comparison.result_types import Part
 from comparison.wording import percent
-
-
-class MeasuredErratum(Part):
-    """One erratum of the print."""
-
-    where: str
-    """place in the paper"""
-    printed: str
-    """what is printed"""
-    corrected: str
-    """what it should be"""
-    why: str
-    """reason"""
-    none: str
-    """why it has no measurable effect, or empty"""
-    effects: list[Effect]
-    """one per scene with phases"""
-
-
-def _listed(effects: Sequence[Effect]) -> list[MeasuredErratum]:
-    return [
-        MeasuredErratum(
-            where=erratum.where,
-            printed=erratum.printed,
-            corrected=erratum.corrected,
-            why=erratum.why,
-            none=erratum.none,
-            effects=[effect for effect in effects if effect.erratum == number],
-        )
-        for number, erratum in enumerate(ERRATA)
-    ]
 
 
 def _effects(erratum: MeasuredErratum) -> list[str]:
@@ -72,7 +40,6 @@ FEATURE = Feature(
     list[MeasuredErratum],
     "in the order of the paper; null where they were not asked for",
     analysis=Errata(),
-    summary=_listed,
     section=Section(
         "errata",
         "Errata of the paper",

@@ -25,11 +25,7 @@ FAILURES = {Outcome.TIME_LIMIT: "hangs:", Outcome.WORKER_DIED: "crashes:"}  # of
 
 @dataclass(frozen=True)
 class Extremes(Analysis[Matrix]):
-    """
-    Every model at every extreme. The cells have scenes of their own: the study chooses nothing.
-
-    limit: most processor time of one cell, s, rounded up.
-    """
+    """Every model at every extreme, in scenes of their own; limit: most processor time of one cell, s, rounded up."""
 
     key, stage = "extremes", "extremes"
     rows: Sequence[Row]
@@ -68,15 +64,11 @@ class Extremes(Analysis[Matrix]):
 def _failed(cell: Cell, failed: TaskResult) -> Entry:
     """In place of a verdict: the model has failed with its process."""
     reason = f"{FAILURES.get(failed.outcome, 'raises')} {failed.error_message}"
-    return Entry(Verdict.FAILED.value, reason, failed.outcome.value, None, None, None)
+    return Entry(Verdict.FAILED, reason, failed.outcome.value, None, None, None)
 
 
 def reduced(every: Sequence[Row]) -> list[Row]:
-    """
-    The extremes for a quick look: those that take a fraction of a second.
-
-    Returns without the rows that take long, and mostly without the models of the engine.
-    """
+    """The extremes that take a fraction of a second, mostly without the models of the engine."""
     chosen = [
         replace(row, columns=tuple(key for key in row.columns if key in REFERENCE or row.group in BRIEF))
         for row in every

@@ -56,9 +56,5 @@ CAUSES: dict[tuple[str, str], dict[str, str]] = {
 
 
 def cause(row: Row, model: str) -> str:
-    """
-    Why a model may have no answer.
-
-    model: key of the model. Returns one sentence, or nothing if no reason is known.
-    """
+    """Why a model may have no answer, in one sentence; empty if no reason is known."""
     return CAUSES.get((row.group, row.title), {}).get(model, "")

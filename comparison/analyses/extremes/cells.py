@@ -34,11 +34,7 @@ class Cell:
 
 
 def cells(rows: Sequence[Row], columns: Sequence[Column] = COLUMNS) -> list[Cell]:
-    """
-    Every model that each extreme concerns.
-
-    Returns row by row.
-    """
+    """Every model that each extreme concerns, row by row."""
     return [Cell(row, column) for row in rows for column in columns if _concerns(row, column)]
 
 
@@ -49,9 +45,7 @@ def _concerns(row: Row, column: Column) -> bool:
 
 def solve_cell(cell: Cell) -> Entry:
     """
-    Ask the model, ask for more accuracy until that confirms or contradicts the answer, and judge.
-
-    cell: extreme and model. Returns the verdict. Whatever the model raises is one, too.
+    Ask the model, ask for more accuracy until that confirms or contradicts the answer, and judge. Nothing is raised.
     """
     row, column = cell.row, cell.column
     tolerance = float(row.settings.get("tolerance", column.tolerance))
@@ -67,7 +61,7 @@ def solve_cell(cell: Cell) -> Entry:
     total = time.process_time() - begin
     known = cause(row, column.key) if verdict.verdict == Verdict.LIMIT else ""
     reason = " ".join(f"{verdict.reason}: {known}".split()) if known else " ".join(verdict.reason.split())
-    return Entry(verdict.verdict.value, reason, verdict.status, error, round(seconds, 3), round(total, 3))
+    return Entry(verdict.verdict, reason, verdict.status, error, round(seconds, 3), round(total, 3))
 
 
 def _finer_replies(cell: Cell, answered_by: str, tolerance: float) -> Iterator[Reply]:
@@ -116,12 +110,7 @@ def _ask(row: Row, function: str, settings: Mapping[str, Any]) -> Reply:
 
 
 def read_scene(stated: Mapping[str, Any]) -> Scene:
-    """
-    A scene as a file would give it: keys without a value are absent.
-
-    stated: tables and keys of a scene file, values that are None among them. Raises SceneError: if a value is against a
-    rule.
-    """
+    """The scene of tables and keys, None standing for an absent key. Raises SceneError."""
     try:
         return Scene.model_validate({**_without_none(stated), "name": "extreme"})
     except ValidationError as error:

@@ -55,11 +55,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 def judged_matrix(
     extremes: Extremes, options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> Matrix:
-    """
-    The matrix with all that is known of its run; stored cells are not judged again.
-
-    extremes: the cells. executor: what makes the processes of this machine, or an executor in their place.
-    """
+    """The matrix with all that is known of its run; stored cells are not judged again."""
     begin = time.monotonic()
     tasks = extremes.tasks()
     results = computed("extremes", options, words, tasks, MODELS, console, executor)

@@ -31,12 +31,7 @@ def amplification(
     max_work: float = multibody.MAX_WORK,
 ) -> Amplification:
     """
-    As `multibody.amplification`, without reductions and with few levels.
-
-    phases: (M, 2), rad. model: "translational" or "spatial". regularization: v_reg, m/s; None in a lubricated scene.
-    tolerance: relative error asked of every mu. contact_stiffness: N/m, at the first level. The next ones come to that
-    of the study by equal factors. step: s, the largest at the first level, halved from level to level. max_work: steps
-    of the engine that a point may take.
+    As `multibody.amplification`, in full and with few levels, from a contact stiffness, N/m, or a largest step, s.
     """
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:

@@ -84,9 +84,8 @@ def _lines(matrix: Matrix) -> list[Line]:
 
 
 def _field(axes: Axes, place: int, line: int, entry: Entry) -> None:
-    verdict = Verdict(entry.verdict)
-    dark = verdict == Verdict.FAILED
-    axes.add_patch(Rectangle((place + 0.02, line + 0.06), 0.96, 0.88, color=COLORS[verdict], lw=0))
+    dark = entry.verdict == Verdict.FAILED
+    axes.add_patch(Rectangle((place + 0.02, line + 0.06), 0.96, 0.88, color=COLORS[entry.verdict], lw=0))
     axes.text(
         place + 0.5, line + 0.52, describe(entry), ha="center", va="center", fontsize=6.5,
         color="white" if dark else "#1b1f24",

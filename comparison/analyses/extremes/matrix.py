@@ -4,32 +4,21 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import groupby
-from typing import Annotated, Any
-
-from pydantic import AfterValidator, Field
+from typing import Any
 
 from comparison.analyses.extremes.verdicts import Verdict
-from comparison.json_file import FILE_FORMAT, StoredFile
+from comparison.json_file import StoredFile
+from comparison.result_types import result
 
 FILE, PICTURE = "extremes.json", "extremes.png"
 
 
-VerdictName = Annotated[
-    str,
-    AfterValidator(lambda name: Verdict(name).value),
-    Field(json_schema_extra={"enum": [verdict.value for verdict in Verdict]}),
-]
-
-
-@dataclass(frozen=True)
+@result
 class Entry:
     """One cell of the matrix."""
 
-    __pydantic_config__ = FILE_FORMAT
-
-    verdict: VerdictName
+    verdict: Verdict
     """converged: error confirmed by a finer run; refused: against a rule or outside the model; limit: the model says
     that it cannot; FAILED: all else"""
     reason: str
@@ -45,11 +34,9 @@ class Entry:
     """processor time of the cell with its finer runs, s; null without an answer"""
 
 
-@dataclass(frozen=True)
+@result
 class Extreme:
     """One row of the matrix: one extreme."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     group: str
     """the quantity"""
@@ -59,16 +46,9 @@ class Extreme:
     """what came of it, by key of the model; none for a model that the extreme does not concern"""
 
 
-@dataclass(frozen=True)
+@result
 class Matrix:
-    """
-    Every model at the extremes of every quantity, judged by finer runs.
-
-    columns: titles of the models by key. rows: one for each extreme. run: how it was made; empty until a command says
-    so.
-    """
-
-    __pydantic_config__ = FILE_FORMAT
+    """Every model at the extremes of every quantity, judged by finer runs."""
 
     columns: Mapping[str, str]
     """titles of the models by key"""
@@ -78,11 +58,7 @@ class Matrix:
     """command, times, provenance, and whether it is the reduced form"""
 
     def counts(self) -> dict[str, int]:
-        """
-        Number of cells of each verdict.
-
-        Returns from the best verdict to the worst, zeros included.
-        """
+        """Number of cells of each verdict, from the best to the worst, zeros included."""
         seen = Counter(entry.verdict for row in self.rows for entry in row.entries.values())
         return {verdict.value: seen[verdict.value] for verdict in Verdict}
 
@@ -91,11 +67,7 @@ class Matrix:
         return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]
 
     def listed(self, verdict: str) -> list[tuple[Extreme, str, Entry]]:
-        """
-        The cells of one verdict.
-
-        verdict: a `Verdict`. Returns row, title of the column, entry.
-        """
+        """Row, title of the column and entry of the cells of one verdict."""
         return [
             (row, self.columns[key], entry)
             for row in self.rows

@@ -112,11 +112,7 @@ ALL = tuple(column.key for column in COLUMNS)
 
 
 def user_column(model: Model) -> Column:
-    """
-    The column of an engine of the user.
-
-    model: as `study.user_models.user_model` makes it. Returns confirmed by the equations with the same law.
-    """
+    """The column of an engine of the user, confirmed by the equations with the same law."""
     law = {key: value for key, value in model.settings.items() if key != "engine"}
     like = str(model.like) if model.like in ALL else "exact"
     finer = ((EQUATIONS, law, 1e-8), (EQUATIONS, law, 1e-6))
@@ -143,13 +139,7 @@ def scene(
     **isolator: Any,
 ) -> dict[str, Any]:
     """
-    The plain scene, `fig3-I` at twice its amplitude, with one quantity or a few changed.
-
-    amplitudes: of x, y and upward motion for either harmonic, m/s^2. periods: (2,), of the harmonics, s. decay: (2,),
-    of the harmonics, 1/s. duration: s. masses: (N,), kg, from below. link: (2,), periods of the links in x and y, s.
-    damping: (2,), of the links: ratio of critical, or coefficients along x and y, N s/m. storey: height from body to
-    body, m. **isolator: keys of the isolator's table. Returns as in a scene file; a value of None stands for an absent
-    key.
+    The plain scene, `fig3-I` at twice its amplitude, as in a scene file, with a few quantities changed; None: no key.
     """
     if "radius" not in isolator:
         isolator = {"period": 1.0, **isolator}
@@ -183,11 +173,7 @@ def _upward(amplitude: float) -> list[list[float]]:
 
 
 def rows() -> Iterator[Row]:
-    """
-    Every extreme.
-
-    Returns in the order of the matrix.
-    """
+    """Every extreme, in the order of the matrix."""
     yield from _friction_laws()
     yield from _numerics_of_the_engine()
     yield from _sizes()

@@ -73,13 +73,7 @@ class Judged:
 
 
 def judged(reply: Reply, finer: Sequence[Reply], tolerance: float, invalid: bool, right: Sequence[str]) -> Judged:
-    """
-    The verdict on an answer.
-
-    finer: other answers to the same question, the most trusted first. tolerance: relative error that was asked.
-    invalid: whether the input is against the rules. right: outcomes that may stand in place of an answer; any named one
-    if empty. Returns that of the worst phase pair.
-    """
+    """The verdict on the worst phase pair of an answer; finer: answers to the same question, the most trusted first."""
     if reply.raised:
         return Judged(Verdict.FAILED, f"raises {reply.raised}")
     if reply.invalid:

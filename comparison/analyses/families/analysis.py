@@ -69,11 +69,7 @@ def family_curves(study: Study, surfaces: xr.Dataset, family: Family) -> list[Fa
 
 
 def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) -> list[FamilyStep]:
-    """
-    One per bar and body, then the total of the body.
-
-    waterfalls: by name of the scene, one per body.
-    """
+    """One per bar and body, then the total of the body."""
     steps = []
     for body in range(1, family.bodies + 1):
         bars = [_bars(waterfalls[scene.name][body - 1]) for scene in family.scenes]
@@ -127,11 +123,7 @@ def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[Fami
 def family_demands_over_phases(
     family: Family, statistics: Mapping[str, Sequence[DemandStatistics]]
 ) -> list[FamilyDemand]:
-    """
-    One per model, quantity and body, from all phases instead of stored motions.
-
-    statistics: by name of the scene.
-    """
+    """One per model, quantity and body, from all phases instead of stored motions."""
     found = {
         (scene.name, row.model, row.quantity, row.body): row
         for scene in family.scenes
@@ -149,12 +141,7 @@ def family_demands_over_phases(
 
 
 def listed_demands(demands: Demands) -> Iterator[tuple[str, int, Estimate]]:
-    """
-    Every demand of a motion.
-
-    Returns field of `Demands`; body from 1, 0 where the demand is of the isolator, of a drift the upper body; the
-    number.
-    """
+    """Field of `Demands`, body (0: the isolator; of a drift the upper one) and number of every demand of a motion."""
     for field in fields(demands):
         estimates = getattr(demands, field.name)
         if isinstance(estimates, Estimate):

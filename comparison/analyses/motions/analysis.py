@@ -118,12 +118,7 @@ def _engines_at(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Place,
 
 
 def motion_arguments(study: Study, surfaces: xr.Dataset) -> list[Arguments]:
-    """
-    Every place of every scene with every model, in the order scene, place, model.
-
-    A model too expensive for every phase of the study moves at its own phases only, and where a difference is largest
-    the engine moves by the model that has it.
-    """
+    """Every place with every model that moves there, in the order scene, place, model."""
     axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])
     return [
         (scene, model, model.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))

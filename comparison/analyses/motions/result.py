@@ -2,16 +2,7 @@
 
 from __future__ import annotations
 
-from comparison.result_types import Number, Part, Phases, Text
-
-
-class UncertainNumber(Part):
-    """A number with its error."""
-
-    value: Number
-    """null without an answer"""
-    error: Number
-    """estimated absolute error; null where it is not known"""
+from comparison.result_types import Number, Part, Phases, Text, UncertainNumber
 
 
 class Residual(UncertainNumber):

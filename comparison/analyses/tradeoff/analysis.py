@@ -40,11 +40,7 @@ class MeasuredTrade:
 
 @dataclass(frozen=True)
 class TradeOff(Analysis[list[MeasuredTrade]]):
-    """
-    Error against compute time of every setting, in every scene with phases.
-
-    quick: fewer points and values. supplied: engines of the user.
-    """
+    """Error against compute time of every setting in every scene with phases; quick: fewer points and values."""
 
     key, stage = "tradeoff", "trade-off"
     quick: bool = False
@@ -116,10 +112,7 @@ def key(function: Function) -> str:
 
 def functions(scene: Scene, quick: bool, others: Sequence[Setting] = ()) -> dict[str, tuple[Function, int, float]]:
     """
-    Every function that is called for a scene, once each.
-
-    scene: scene with phases. quick: fewer points and values. others: measured besides those of the scene. Returns by
-    its key: function, number of phase pairs, about how many s each takes.
+    Every function called for a scene, by its key, with the number of its phase pairs and about how long each takes, s.
     """
     points = {question.key: question.quick if quick else question.points for question in asked(scene)}
     measured = [*settings(scene, quick), *others]
@@ -134,12 +127,7 @@ def functions(scene: Scene, quick: bool, others: Sequence[Setting] = ()) -> dict
 
 
 def entry(setting: Setting, measured: Measured, reference_solution: Array) -> Entry:
-    """
-    What one setting gave.
-
-    setting: method and value of its parameter. measured: M phase pairs under it. reference_solution: (M, N), mu of the
-    same phase pairs that the errors are against. Returns not yet compared with other settings.
-    """
+    """What one setting gave at M phase pairs, against mu (M, N) of the reference solution there."""
     error = np.abs(measured.mu / reference_solution - 1.0)
     error_estimate = measured.error_estimate / np.abs(measured.mu)
     points, bodies = measured.mu.shape

@@ -103,12 +103,7 @@ def _stored(out: Path) -> list[Trade]:
 def measured_trades(
     scenes: Sequence[Scene], options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> list[MeasuredTrade]:
-    """
-    The trades of the scenes with all that is known of their run; what is stored is not measured again.
-
-    executor: what makes the processes of this machine, or an executor in their place. Returns in the order of the
-    scenes.
-    """
+    """The trades of the scenes with all that is known of their run; what is stored is not measured again."""
     supplied = user_models(options.model, options.model_limit, options.scheduler)
     tradeoff, study = TradeOff(options.quick, supplied), Study(tuple(scenes), 1, TOLERANCE)
     tasks, width = tradeoff.tasks(study), jobs(options)

@@ -15,10 +15,7 @@ DISCONTINUOUS = 1.0  # the engine's own default
 
 def factors_at_constant_step(scene: Scene, phases: ArrayLike, solver: str, step: float, v_reg: float) -> Array:
     """
-    mu of the translational model at a constant step.
-
-    phases: (M, 2), rad. solver: an integrator of `multibody.single_run`. step: s. v_reg: m/s. Returns NaN where the
-    engine gives up.
+    mu (M, N) of the translational model by an integrator of `multibody.single_run`; NaN where the engine gives up.
     """
     pairs = checked_phases(phases)
     peaks = np.full((len(pairs), len(scene.bodies)), np.nan)

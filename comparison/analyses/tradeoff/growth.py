@@ -15,7 +15,8 @@ import numpy as np
 import xarray as xr
 
 from comparison.analyses.tradeoff.measure import Measurement, measure, sample, without_value
-from comparison.json_file import FILE_FORMAT, StoredFile, finite_or_none
+from comparison.json_file import StoredFile, finite_or_none
+from comparison.result_types import result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -84,11 +85,9 @@ QUANTITIES = (
 )
 
 
-@dataclass(frozen=True)
+@result
 class Series:
     """What one model costs over the values of one quantity."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     quantity: str
     """what grows"""
@@ -107,11 +106,9 @@ class Series:
     """standard error of the slope"""
 
 
-@dataclass(frozen=True)
+@result
 class MeasuredGrowth:
     """Content of the file."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     schema: Literal["phase-resonance/growth"]
     """what the file is"""
@@ -129,11 +126,7 @@ STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "python -m compar
 
 
 def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]) -> Series:
-    """
-    The series with its slope.
-
-    values, seconds: as in `Series`; NaN where there is no measurement.
-    """
+    """The series with its slope; NaN where there is no measurement."""
     slope, uncertainty = fitted_slope(values, seconds)
     numbers = finite_or_none(slope), finite_or_none(uncertainty)
     return Series(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *numbers)
@@ -141,20 +134,8 @@ def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], se
 
 def fitted_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
     """
-    Exponent of seconds over values, and its standard error.
+    Exponent of seconds over the larger half of the values before the first NaN, and its standard error; NaN for two.
 
-    Parameters
-    ----------
-    values, seconds : sequence of float
-        NaN where there is no measurement.
-
-    Returns
-    -------
-    tuple of float
-        Of the larger half of the values up to the first without a measurement, three at least; NaN for fewer.
-
-    Examples
-    --------
     >>> [round(number, 6) for number in fitted_slope([1, 2, 4, 8], [3, 12, 48, 192])]
     [2.0, 0.0]
     """

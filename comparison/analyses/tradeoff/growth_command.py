@@ -39,8 +39,6 @@ def measured_growth(
 ) -> MeasuredGrowth:
     """
     All series of a scene with what is known of their run; what is stored is not measured again, but for the workers.
-
-    executor: what makes the processes of this machine, or an executor in their place.
     """
     begin = time.monotonic()
     growth, study = Growth(), Study((scene,), 1, TOLERANCE)

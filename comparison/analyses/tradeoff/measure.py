@@ -62,20 +62,8 @@ class Measured:
 
 def sample(points: int) -> Array:
     """
-    The phase pairs that are measured; a smaller sample is the beginning of a larger one.
+    The phase pairs that are measured, rad; a smaller sample is the beginning of a larger one.
 
-    Parameters
-    ----------
-    points : int
-        Number of pairs.
-
-    Returns
-    -------
-    ndarray, (points, 2)
-        rad.
-
-    Examples
-    --------
     >>> bool((sample(3) == sample(5)[:3]).all())
     True
     """
@@ -83,12 +71,7 @@ def sample(points: int) -> Array:
 
 
 def measure(measurement: Measurement) -> Measured:
-    """
-    Call the function, warm. Runs inside a worker process.
-
-    measurement: scene, function and phase pairs. Returns without values, and with the reason, where the function
-    raises.
-    """
+    """Call the function, warm, inside a worker process; where it raises there are no values, but the reason."""
     path, settings = measurement.function
     if path not in _warm:
         _warm.add(path)
@@ -118,11 +101,7 @@ def without_value(measurement: Measurement, failed: TaskResult) -> Measured:
 
 
 def joined(parts: Sequence[Measured]) -> Measured:
-    """
-    The measurements of one function, in the order of their phase pairs, as one.
-
-    parts: at least one. Returns times added up; the first of the error messages.
-    """
+    """The measurements of one function as one: times added up, and the first error message."""
     return Measured(
         np.concatenate([part.mu for part in parts]),
         np.concatenate([part.error_estimate for part in parts]),

@@ -92,13 +92,7 @@ def constants_of(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...
 
 
 def motion(scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg: float) -> tuple[Array, Array]:
-    """
-    A motion by SciPy.
-
-    phase: (2,), rad. method: of `scipy.integrate.solve_ivp`. tolerance: relative tolerance of a step. v_reg: m/s.
-    times: s: the solver's own steps, SAMPLES, and closer ones near the peaks. states: Positions, m, and velocities,
-    m/s. Raises ValueError: if the solver fails.
-    """
+    """Instants, s, close near the peaks, and states (T, 4 N) of a motion by SciPy. Raises ValueError if it fails."""
     run = solve_ivp(
         slope, (0.0, scene.duration), np.zeros(4 * len(scene.bodies)), method, dense_output=True,
         args=constants_of(scene, phase, v_reg), rtol=tolerance, atol=tolerance * ABSOLUTE,
@@ -119,11 +113,7 @@ def motion(scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg:
 
 
 def accelerations(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
-    """
-    Sizes of the absolute accelerations of a motion.
-
-    phase: (2,), rad. times: (T,), s. states: (T, 4 N), as of `motion`. v_reg: m/s.
-    """
+    """Sizes of the absolute accelerations of a motion, (T, N)."""
     constants, count = constants_of(scene, phase, v_reg), len(scene.bodies)
     a = slopes(times, states, constants)[:, 2 * count :].reshape(-1, count, 2)
     x, v = states[:, :2], states[:, 2 * count : 2 * count + 2]
@@ -145,11 +135,6 @@ def factors(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: 
 
 
 def factors_by_scipy(scene: Scene, phases: ArrayLike, method: str, tolerance: float, v_reg: float) -> Array:
-    """
-    mu by `scipy.integrate.solve_ivp`.
-
-    phases: (M, 2), rad. method: of `solve_ivp`. tolerance: relative tolerance of a step. v_reg: m/s. Raises ValueError:
-    if the solver fails at a phase pair.
-    """
+    """mu (M, N) by `scipy.integrate.solve_ivp`. Raises ValueError if that fails at a phase pair."""
     pairs: Array = checked_phases(phases)
     return np.array([factors(scene, phase, *motion(scene, phase, method, tolerance, v_reg), v_reg) for phase in pairs])

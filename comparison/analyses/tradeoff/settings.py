@@ -109,11 +109,7 @@ def asked(scene: Scene) -> list[Question]:
 
 
 def settings(scene: Scene, quick: bool = False) -> list[Setting]:
-    """
-    Every setting that is measured for a scene.
-
-    quick: every other one of the expensive ones.
-    """
+    """Every setting that is measured for a scene; quick: every other one of the expensive ones."""
     keys = {question.key for question in asked(scene)}
     every = [*_reference(scene), *_scipy(quick), *_engine(quick)]
     return [setting for setting in every if setting.question in keys]
@@ -209,11 +205,7 @@ def _constant(quick: bool) -> list[Setting]:
 
 
 def user_settings(models: Sequence[Model]) -> list[Setting]:
-    """
-    Engines of the user at the tolerances that they take, or as they are.
-
-    models: as `study.user_models.user_model` makes them.
-    """
+    """Engines of the user at the tolerances that they take, or as they are."""
     keys = {question.key for question in QUESTIONS}
     measured = []
     for model in models:

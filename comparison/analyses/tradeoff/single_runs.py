@@ -25,14 +25,7 @@ def reference_run(
     equations: str = "exact",
     regularization: float | None = None,
 ) -> tuple[Array, float]:
-    """
-    One run of the reference for each phase pair.
-
-    The solver has no largest step: events and this tolerance alone make its steps.
-
-    phases: (M, 2), rad. inside: tolerance inside a step. equations: "small" or "exact". regularization: v_reg, m/s;
-    None: set-valued friction. mu: NaN without an answer. step: Mean step, s.
-    """
+    """mu of one run of the reference for each phase pair at a tolerance inside a step, and the mean step, s."""
     pairs = checked_phases(phases)
     system, demand = checked_demand(scene, equations, regularization, 1e-6, None, "consistent")
     peaks = peaks_at(system, pairs, demand, inside)
@@ -50,11 +43,8 @@ def engine_run(
     newton: float | None = None,
 ) -> Array:
     """
-    One run of the engine for each phase pair, at its USUAL_LEVEL but for the arguments.
-
-    phases: (M, 2), rad. model: "translational" or "spatial". regularization: v_reg, m/s. step: factor on the largest
-    step and on the turn allowed in one. penetration: of the contact under the weight, in rho: the inverse of its
-    stiffness. newton: relative tolerance of Newton's iteration. Returns mu, NaN without an answer.
+    mu of one run of the engine for each phase pair at its USUAL_LEVEL; step: factor on the largest one; penetration: in
+    rho.
     """
     pairs = checked_phases(phases)
     usual = multibody.levels(scene, model, 1e-3, regularization)[USUAL_LEVEL]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -12,7 +11,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.json_file import FILE_FORMAT, StoredFile
+from comparison.json_file import StoredFile
+from comparison.result_types import result
 
 Array = NDArray[np.float64]
 
@@ -20,11 +20,9 @@ FILE = "tradeoff.json"
 SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"
 
 
-@dataclass(frozen=True)
+@result
 class Entry:
     """One setting of a method, measured."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     question: str
     """key of the question that it answers"""
@@ -60,11 +58,9 @@ class Entry:
     """what went wrong, or empty"""
 
 
-@dataclass(frozen=True)
+@result
 class Answered:
     """One question with its reference solution."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     key: str
     """key of the question"""
@@ -80,11 +76,9 @@ class Answered:
     """how the reference solution was checked"""
 
 
-@dataclass(frozen=True)
+@result
 class Trade:
     """The measured trade of one scene."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     scene: str
     """name of the scene"""
@@ -115,22 +109,8 @@ class Trade:
 
 def quantile(errors: Array, share: float) -> float | None:
     """
-    The error that a share of the points does not exceed: one that occurred, never a value between two.
+    The error that a share of the points does not exceed: one that occurred; None if no error is known.
 
-    Parameters
-    ----------
-    errors : ndarray, (M,)
-        NaN where unknown.
-    share : float
-        From 0 to 1.
-
-    Returns
-    -------
-    float or None
-        None if no error is known.
-
-    Examples
-    --------
     >>> quantile(np.array([1.0, 2.0, 3.0, np.nan]), 0.5)
     2.0
     """
@@ -142,17 +122,6 @@ def on_pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]
     """
     Which pairs are not beaten: no other is at least as good in both and better in one.
 
-    Parameters
-    ----------
-    cost, error : sequence of float
-        Of each; infinite where unknown.
-
-    Returns
-    -------
-    list of bool
-
-    Examples
-    --------
     >>> on_pareto_front([1.0, 2.0, 3.0], [1e-2, 1e-3, 1e-2])
     [True, True, False]
     """
@@ -165,11 +134,7 @@ def on_pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]
 
 
 def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
-    """
-    The entries with `pareto_front` filled in.
-
-    bodies: number of bodies N. Returns compared within each question, among those that answer it at every point.
-    """
+    """The entries with `pareto_front` filled in, compared with those that answer their question at every point."""
     marks: dict[int, list[bool]] = {place: [False] * bodies for place in range(len(entries))}
     for question in {entry.question for entry in entries}:
         complete = [
@@ -185,11 +150,9 @@ def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
     return [Entry(**{**vars(entry), "pareto_front": tuple(marks[place])}) for place, entry in enumerate(entries)]
 
 
-@dataclass(frozen=True)
+@result
 class TradeFile:
     """Content of the file."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     schema: Literal["phase-resonance/tradeoff"]
     """what the file is"""
@@ -210,12 +173,7 @@ def labeled(
     entries: Sequence[Entry], mu: Sequence[Array], reference_solution: Sequence[Array], error_estimate: Sequence[Array],
     phases: Array,
 ) -> xr.Dataset:  # fmt: skip
-    """
-    Every value by setting, point and body.
-
-    entries: one for each setting. mu, reference_solution, error_estimate: (P, N), for each setting; a question with
-    fewer points leaves the rest NaN. phases: (M, 2), the whole sample, rad.
-    """
+    """Every value (P, N) by setting, point and body; a question with fewer points leaves the rest NaN."""
     count, bodies = len(phases), mu[0].shape[1]
 
     def padded(values: Sequence[Array]) -> Array:

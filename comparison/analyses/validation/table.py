@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from importlib import resources
 from typing import Any
 
 from pydantic import TypeAdapter
 
-from comparison.json_file import FILE_FORMAT, StoredFile
+from comparison.json_file import StoredFile
+from comparison.result_types import result
 
 EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"  # sides; smoothed: with the engine's friction law
 VALID, LAW, INPUT, NONE = "within u_val", "law", "input", "no answer"
@@ -22,11 +22,9 @@ MEANING = {
 }
 
 
-@dataclass(frozen=True)
+@result
 class Comparison:
     """One quantity by one side."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     value: float | None
     """S; null without an answer"""
@@ -40,11 +38,9 @@ class Comparison:
     """within u_val, law, input, no answer"""
 
 
-@dataclass(frozen=True)
+@result
 class Quantity:
     """One measured quantity."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     experiment: str
     """frame or pendulum, and the run"""
@@ -66,11 +62,9 @@ class Quantity:
     """by side: equations, smoothed (the equations with the engine's friction law), engine"""
 
 
-@dataclass(frozen=True)
+@result
 class Curve:
     """One line of a plot; empty in the table that the package holds."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     panel: str
     """title of its plot"""
@@ -84,11 +78,9 @@ class Curve:
     """along the second axis"""
 
 
-@dataclass(frozen=True)
+@result
 class Validation:
     """All measured quantities. Every uncertainty is expanded, about 95 %."""
-
-    __pydantic_config__ = FILE_FORMAT
 
     quantities: Sequence[Quantity]
     """in the order of the experiments"""

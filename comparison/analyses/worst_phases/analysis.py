@@ -111,10 +111,7 @@ class WorstPhases(Analysis[list[Worst]]):
 
 def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
     """
-    The largest mu over all phases of a model or, where it was not searched, of another one near it.
-
-    models: keys of the models of the scene in their order. Returns of the model, else of the next one that was
-    searched, else of the last one before; None without any.
+    The largest mu over all phases of a model, else of the next one that was searched, else of the last one before.
     """
     searched = {
         worst.model: worst

@@ -10,13 +10,7 @@ LONGEST = 200  # bytes of a name before its ending: file systems allow 255 in al
 
 
 def figure_file(scene: str, *parts: str, ending: str = ".png") -> str:
-    """
-    Name of a file that belongs to a scene.
-
-    scene: name of the scene, in which there may be dots, as in "frame[friction=0.02]". parts: what the figure shows, as
-    "body1", "total". Returns the parts joined by hyphens; a longer name than file systems allow is cut and ends in a
-    hash of the whole.
-    """
+    """Name of a file of a scene: the parts joined by hyphens; where too long, cut and with a hash of the whole."""
     stem = "-".join([scene, *parts])
     written = stem.encode(errors="surrogateescape")
     if len(written) > LONGEST:

@@ -61,11 +61,7 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
 
 
 def draw_surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[float, float], name: str) -> None:
-    """
-    One gray surface in the manner of the paper.
-
-    phase: rad, with both ends. limits: of the height axis. name: of the height.
-    """
+    """One gray surface in the manner of the paper; phase: rad, with both ends; name: of the height."""
     assert isinstance(axes, Axes3D)
     low, high = limits if limits[0] < limits[1] else (0.9 * limits[0] - 0.1, 1.1 * limits[1] + 0.1)
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")

@@ -24,11 +24,7 @@ SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures 
 
 @dataclass(frozen=True)
 class Picture:
-    """
-    One picture of a scene: a pair of models or the budget, of one body; or all bodies in the manner of the paper.
-
-    study, surfaces: those of the scene alone.
-    """
+    """One picture of a scene, with the study and the surfaces of that scene alone."""
 
     kind: Literal["pair", "budget", "paper"]
     study: Study

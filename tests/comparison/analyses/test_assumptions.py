@@ -13,7 +13,8 @@ from fake_models import fake_hierarchy
 from known_analyses import collected
 
 from comparison.analyses.assumptions.command import main
-from comparison.analyses.assumptions.validity import Assumptions, ValidityRanges, describe
+from comparison.analyses.assumptions.validity import Assumptions, describe
+from comparison.analyses.assumptions.validity import lines as lines_of
 from comparison.analyses.assumptions.variations import (
     FEW,
     PHASES,
@@ -143,7 +144,7 @@ def test_where_motions_raise_the_factors_stay() -> None:
     reason = "no motion: ModuleNotFoundError: No module named 'comparison.nowhere'"
     assert solved.error_message == reason
     cell = replace(_cell(uneven, 0.03, 0.02), error_message=reason)
-    assert ValidityRanges([STATED], [_cell(Variation(), 0.0, 0.0), cell]).lines(STATED)[-1].endswith(f"({reason})")
+    assert lines_of(STATED, [_cell(Variation(), 0.0, 0.0), cell])[-1].endswith(f"({reason})")
 
 
 def _turning(scene: Scene, variations: Sequence[Variation]) -> list[AssumptionCell]:
@@ -183,7 +184,7 @@ def test_what_uneven_bodies_change_is_said_with_their_torsion() -> None:
     even = _cell(Variation(), 0.002, 0.001)
     moved = replace(_cell(Variation(offset=0.1), 0.03, 0.02), torsion=((1e-3, 5e-3), (2e-3, 4e-3), (0.0, 0.0)))
     unknown = _cell(Variation(yaw=0.2), 0.002, 0.002)
-    lines = ValidityRanges([STATED], [even, moved, unknown]).lines(STATED)
+    lines = lines_of(STATED, [even, moved, unknown])
     moving = "with the stated offsets, no longer with centers of mass moved along x and along y by 0.1 m"
     assert f"mu_1 stays within 1 % {moving}" in lines
     assert "mu_1 stays within 1 % with bodies and links turned by up to 0.2 rad, the largest tried" in lines
@@ -220,10 +221,10 @@ def test_bars_under_load_are_varied_only_where_they_give_way() -> None:
 def test_what_shortening_changes_is_said_beside_softening_alone() -> None:
     cells = [_cell(variation, size, size, 1e-3) for variation, size in zip(UNDER_LOAD, (-0.1, -0.082))]
     even = _cell(Variation(), 0.0, 0.0)
-    lines = ValidityRanges([STATED], [even, *cells]).lines(STATED)
+    lines = lines_of(STATED, [even, *cells])
     assert lines[-1].endswith("change mu_1 by up to 2 ± 0.1 %, mu_2 by up to 0 ± 0 %")
     nothing = [even, cells[0], _cell(UNDER_LOAD[1], float("nan"), 0.0)]
-    assert ValidityRanges([STATED], nothing).lines(STATED)[-1].startswith("no value says")
+    assert lines_of(STATED, nothing)[-1].startswith("no value says")
 
 
 @pytest.mark.long

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from claims_literal import STEPS, literal_peaks, spike_over_the_step
+from claims_literal import gathered as gathered_literally
 
 from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.evidence import Question, gathered
-from comparison.analyses.claims.literal import literal_peaks
 from comparison.analyses.claims.peaks_and_valleys import Counts, profiled
 from comparison.analyses.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, Reading
-from comparison.analyses.claims.spike import spike_over_the_step
 from comparison.analyses.effective_values.forced_ratio import forced_ratios
 from reference import amplification, load_scene, modes
 from reference.problem import ground_peak, phase_grid
@@ -66,7 +66,7 @@ def test_the_literal_reading_rests_where_nothing_slides() -> None:
 def test_the_spike_is_counted_once_for_every_beginning_of_slip() -> None:
     spike = spike_over_the_step(Reading(1.0, duration=3.0, peak="literal (4.6)"))
     counted, left_out, starts = map(np.array, (spike.counted, spike.left_out, spike.starts))
-    assert counted.shape == left_out.shape == starts.shape == (len(spike.steps), 3)
+    assert counted.shape == left_out.shape == starts.shape == (len(STEPS), 3)
     assert (counted >= left_out).all()
     assert (starts > 0).all()
 
@@ -123,6 +123,6 @@ def test_the_fold_of_the_denominator_is_in_viscous_surfaces() -> None:
 
 
 def test_grids_of_phases_are_those_of_the_surfaces() -> None:
-    evidence = gathered(Question("fig3-I", LITERAL, 4))
+    evidence = gathered_literally(Question("fig3-I", LITERAL, 4))
     expected = literal_peaks(CASES["fig3-I"](LITERAL), phase_grid(4)).mu.reshape(4, 4, 2)
     assert np.array_equal(evidence.mu, expected)

@@ -22,7 +22,7 @@ from comparison.analyses.claims.command import main
 from comparison.analyses.claims.evidence import Evidence, Question
 from comparison.analyses.claims.readings import EVERY_READING, READINGS, Reading, without_effect
 from comparison.analyses.claims.smoothness import Bend
-from comparison.analyses.claims.table import Claims, questions, tabulated
+from comparison.analyses.claims.table import Claims, tabulated
 from comparison.cli import computing
 from comparison.runner.task import Task
 from comparison.study.study import Study
@@ -162,16 +162,17 @@ def test_the_table_names_the_best_reading() -> None:
     columns = [{"fig3-I": replace(ONE_AXIS, swing=reading.amplitude)} for reading in readings]
     wanted = [_planted("1 2"), _planted("2"), _planted("none"), replace(_planted("3"), weaker=True)]
     table = tabulated(wanted, readings, N, columns)
-    assert [table.held(column) for column in range(3)] == [1, 2, 0], "the weaker one does not count"
-    assert table.best == [readings[1]]
-    assert [claim.says for claim in table.never] == ["none"]
-    assert [(numbers, verdict.finding.holds) for numbers, verdict in table.found(0)] == [([1, 2], True), ([3], False)]
+    assert table.reproduced == (1, 2, 0), "the weaker one does not count"
+    assert table.best == (readings[1].name,)
+    assert table.never == ("Fig. 0: none",)
+    found = table.claims[0].found.items()
+    assert [(numbers, verdict.finding.holds) for verdict, numbers in found] == [([1, 2], True), ([3], False)]
 
 
 def test_readings_share_every_surface_they_can() -> None:
     wet = CASES["fig4-viscous"](Reading())
     assert without_effect(Reading(peak="regularised"), wet) == without_effect(Reading(peak="supremum"), wet)
-    asked = questions(READINGS, CLAIMS, N)
+    asked = Claims(N).questions()
     assert len(asked) == len({(question.scene.digest(), question.reading.peak, question.grid) for question in asked})
     assert len(asked) < len(CASES) * len(READINGS)
     assert {reading.peak for reading in EVERY_READING} >= {"supremum", "resolved", "regularised"}
@@ -185,7 +186,7 @@ def test_a_case_that_fails_is_named_and_the_others_answered(monkeypatch: pytest.
 
     monkeypatch.setattr(table_module, "gathered", gathered)
     table = collected(Claims(N, READINGS[:2]), PAPERS)
-    findings = {claim.says: row[0] for claim, row in zip(table.claims, table.verdicts)}
+    findings = {claim.says: claim.verdicts[0] for claim in table.claims}
     assert findings["mu_1 is similar to case II"].found == "fig4-dry: solver failed: RuntimeError: singular"
     assert findings["mu_1 has two peaks separated by a valley"].finding.holds
 
@@ -196,8 +197,9 @@ def test_what_a_solver_complains_about_is_why_a_claim_is_open(monkeypatch: pytes
 
     monkeypatch.setattr(reference, "amplification", broken)
     table = collected(Claims(4, READINGS[:1]), PAPERS)
-    assert not any(row[0].finding.holds for row in table.verdicts)
-    reasons = [row[0].found for row in table.verdicts if row[0].finding == Finding.OPEN]
+    verdicts = [claim.verdicts[0] for claim in table.claims]
+    assert not any(verdict.finding.holds for verdict in verdicts)
+    reasons = [verdict.found for verdict in verdicts if verdict.finding == Finding.OPEN]
     assert len(reasons) > 10
     assert all("solver failed: ZeroDivisionError: no ground" in reason for reason in reasons)
 
@@ -246,7 +248,7 @@ def test_the_command_goes_on_where_it_stopped(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     asked: list[Question] = []
-    total = len(questions(READINGS, CLAIMS, 16))
+    total = len(Claims(16).questions())
 
     def gathered(question: Question) -> Evidence:
         asked.append(question)
@@ -281,4 +283,4 @@ def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
 def test_four_peaks_are_a_matter_of_the_drawing() -> None:
     """1 m/s^2, resolved peak: two ridges on the square that closes; cut open they are the paper's four and three."""
     table = collected(Claims(16, [Reading()], [_claim("Fig. 3a", "four"), _claim("Fig. 3c", "two")]), PAPERS)
-    assert [row[0].finding for row in table.verdicts] == [Finding.AS_DRAWN] * 2
+    assert [claim.verdicts[0].finding for claim in table.claims] == [Finding.AS_DRAWN] * 2

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from claims_literal import LiteralClaims, gathered, literal_peaks
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 from second_integration import LITERAL as LITERAL_LAW
@@ -15,8 +16,7 @@ from second_integration import SET_VALUED, by_scipy, fast, ground_tops, stepped
 
 from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.claims import CLAIMS
-from comparison.analyses.claims.evidence import MOTIONS, Evidence, gathered
-from comparison.analyses.claims.literal import literal_peaks
+from comparison.analyses.claims.evidence import MOTIONS, Evidence
 from comparison.analyses.claims.readings import (
     LIGHT_BODY,
     LITERAL,
@@ -28,7 +28,7 @@ from comparison.analyses.claims.readings import (
     without_effect,
 )
 from comparison.analyses.claims.smoothness import bends
-from comparison.analyses.claims.table import Claims
+from comparison.analyses.claims.table import recorded_verdict
 from reference import amplification
 from reference.problem import GRAVITY, Scene
 
@@ -115,12 +115,14 @@ def test_a_second_integration_gives_every_claim_the_same_verdict(reading: Readin
     first, second = {}, {}
     for case in ALL_CASES:
         asked = without_effect(reading, CASES[case](reading))
-        first[case], second[case] = gathered(Claims(GRID).task(case, reading).argument), _second(case, asked)
+        first[case], second[case] = gathered(LiteralClaims(GRID).task(case, reading).argument), _second(case, asked)
     verdicts = {(c.figure, c.says): (c.verdict(first), c.verdict(second)) for c in CLAIMS}
     lines = [f"{key}: {a.finding} {a.found} | {b.found}" for key, (a, b) in verdicts.items()]
     print("", reading.name, *lines, sep="\n")
     differing = {key: pair for key, pair in verdicts.items() if pair[0].finding is not pair[1].finding}
     assert not differing
+    if reading.peak == LITERAL.peak:
+        assert all(recorded_verdict(reading, claim) == claim.verdict(first) for claim in CLAIMS)
 
 
 PROBES = np.array([(0.3, 1.1), (4.0, 5.5)])

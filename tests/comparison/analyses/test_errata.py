@@ -35,12 +35,12 @@ def test_effects_come_in_order_and_a_measure_that_fails_is_named(monkeypatch: py
         Erratum("c", "p", "c", "w", breaks),
     ]
     monkeypatch.setattr(errata, "ERRATA", planted)
-    effects = collected(Errata(), _study("fig3-I", "fig3-II"))
-    places = [(effect.scene, effect.erratum) for effect in effects]
-    assert places == [("fig3-I", 0), ("fig3-I", 2), ("fig3-II", 0), ("fig3-II", 2)]
-    assert effects[0].change == ((0.5, 0.5), (0.5, 0.5))
-    assert effects[1].error_message == "RuntimeError: singular"
-    assert effects[2].change == (), "a scene the erratum does not touch"
+    halved, harmless, broken = [row.effects for row in collected(Errata(), _study("fig3-I", "fig3-II"))]
+    assert [(effect.scene, effect.erratum) for effect in halved] == [("fig3-I", 0), ("fig3-II", 0)]
+    assert harmless == ()
+    assert halved[0].change == ((0.5, 0.5), (0.5, 0.5))
+    assert halved[1].change == (), "a scene the erratum does not touch"
+    assert broken[0].error_message == "RuntimeError: singular"
 
 
 def test_the_report_and_the_summary_show_the_effects(finished: Path) -> None:

@@ -260,7 +260,7 @@ def test_a_matrix_of_an_earlier_version_is_refused_in_one_line(content: str, rea
 def test_a_matrix_with_a_verdict_that_is_none_is_refused(tmp_path: Path):
     matrix = Matrix({"fake": "a fake"}, [_extreme("fine", 1e-7)], {"command": "a test"})
     (tmp_path / FILE).write_bytes(STORED.as_json(matrix))
-    with pytest.raises(ValueError, match="'fine' is not a valid Verdict"):
+    with pytest.raises(ValueError, match="verdict: Input should be 'converged', 'refused', 'limit' or 'FAILED'"):
         STORED.load(tmp_path)
 
 

@@ -9,17 +9,28 @@ spike of one step. Its height does not fade as the step becomes shorter.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.problem import GRAVITY, Scene, exponents, ground_peak
+import reference
+from comparison.analyses.claims import evidence
+from comparison.analyses.claims.cases import CASES
+from comparison.analyses.claims.evidence import MOTIONS, Evidence, Question, with_facts
+from comparison.analyses.claims.readings import LITERAL, SPEED, Reading, has_stops
+from comparison.analyses.claims.table import Claims
+from comparison.runner.task import Task
+from reference.problem import GRAVITY, Outcome, Scene, exponents, ground_peak, phase_grid
 from reference.solver.compiled import cached_entry_point
 
 Array = NDArray[np.float64]
 
 STEP = 1e-3  # s, 540 steps in the shortest period of the loading
+STEPS = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4)  # s, of the spike
+CASE = "fig3-I"
+PHASES = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5))  # rad
 
 
 class LiteralPeaks(NamedTuple):
@@ -125,3 +136,56 @@ def _motions(
                     x[i, axis] += h * v[i, axis]
             z1, z2 = z1 * growth[0], z2 * growth[1]
     return square, apart, reach, swing, spikes
+
+
+def gathered(question: Question) -> Evidence:
+    """Surface, bends and motions of one case under one reading. Runs inside a worker process."""
+    scene, grid = question.scene, question.grid
+    if question.reading.peak != "literal (4.6)" or not has_stops(scene):
+        return evidence.gathered(question)
+
+    def factors(phases: Array) -> Array:
+        return literal_peaks(scene, phases).mu
+
+    surfaces = Evidence(factors(phase_grid(grid)).reshape(grid, grid, -1), 0.0, (str(Outcome.OK),))
+    if not surfaces.complete:
+        return replace(surfaces, statuses=(*surfaces.statuses, str(Outcome.RIM_REACHED)))
+    if len(scene.bodies) == 1:
+        return surfaces
+    motions = literal_peaks(scene, np.array(MOTIONS))
+    apart = tuple(map(float, motions.apart.max(axis=0)))
+    return with_facts(surfaces, scene, factors, apart, float(motions.swing.max()))
+
+
+class LiteralClaims(Claims):
+    """The claims with the literal readings computed, not as recorded."""
+
+    recorded = False
+
+    def asking(self, question: Question) -> Task:
+        """What gathers the evidence of a question, by the literal integration where the reading asks for it."""
+        return Task(gathered, question, self.stage)
+
+
+@dataclass(frozen=True)
+class Spike:
+    """
+    mu_1 of the literal integration over its step.
+
+    counted, left_out: for each of STEPS mu_1 at each of PHASES, with and without the instants at which slip begins.
+    starts: how many these are. limit: mu_1 of the reference, with (4.6) as its condition of rest alone.
+    """
+
+    counted: list[list[float]]
+    left_out: list[list[float]]
+    starts: list[list[int]]
+    limit: list[float]
+
+
+def spike_over_the_step(reading: Reading = LITERAL) -> Spike:
+    """The spike under a reading."""
+    scene, phases = CASES[CASE](reading), np.array(PHASES)
+    runs = [[literal_peaks(scene, phases, step, spike) for step in STEPS] for spike in (True, False)]
+    limit = reference.amplification(scene, phases, "small", cutoff=SPEED, tolerance=1e-4, rest_condition="printed")
+    counted, left_out = ([run.mu[:, 0].tolist() for run in each] for each in runs)
+    return Spike(counted, left_out, [run.spikes.tolist() for run in runs[0]], limit.mu[:, 0].tolist())
