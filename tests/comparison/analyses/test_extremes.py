@@ -25,7 +25,7 @@ from comparison.analyses.extremes.engine import amplification
 from comparison.analyses.extremes.figure import draw_extremes
 from comparison.analyses.extremes.matrix import FILE, STORED, Entry, Extreme, Matrix, describe
 from comparison.analyses.extremes.rows import COLUMNS, PLAIN_RADIUS, Row, rows, scene
-from comparison.analyses.extremes.verdicts import Reply, Verdict
+from comparison.analyses.extremes.verdicts import Reply, Verdict, judged
 from comparison.runner.cache import Cache
 from comparison.runner.executors import Pool, TimeLimitError, WorkerDiedError
 from comparison.runner.processes import process_pool
@@ -311,3 +311,10 @@ def test_a_value_that_says_nothing_is_not_confirmed() -> None:
     assert answers(Reply(error=mu, **(said | {"status": (Outcome.OK.value,)})))
     assert answers(Reply(error=mu, **(said | {"status": (Outcome.RIM_REACHED.value,)})))
     assert not answers(Reply(error=mu, **(said | {"status": (Outcome.STEP_LIMIT.value,)})))
+
+
+@pytest.mark.parametrize(("off", "verdict"), [(0.9, "converged"), (1.5, "FAILED")])
+def test_an_error_half_of_what_it_should_be_fails(off: float, verdict: str) -> None:
+    mu, claimed = np.array([[1.0, 2.0]]), 1e-3
+    reply = Reply(mu * [1.0, 1.0 + off * claimed], claimed * mu, ("ok",))
+    assert judged(reply, [Reply(mu, 1e-6 * mu, ("ok",))], 1e-2, False, ()).verdict == verdict

@@ -12,6 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from distinct_models import differences_of, distinct_hierarchy, grid_phases
 from fake_models import busy, errors_in, fake_hierarchy
 from places import SCENES
 from report_texts import summary_of
@@ -170,3 +171,19 @@ def test_the_processor_time_of_an_ended_process_is_counted() -> None:
     burn = "import time\nwhile time.process_time() < 0.5: pass"
     subprocess.run([sys.executable, "-c", burn], check=True)
     assert Clock.now().since(before).processor >= 0.45, "processor time is counted in steps"
+
+
+def test_the_film_is_of_the_largest_difference(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", "--grid", "4", "--only", "surfaces", hierarchy=distinct_hierarchy())
+    words = shlex.split(next(line for line in run.out.splitlines() if "multibody.animate" in line))
+    phases = grid_phases(4)
+    sizes = {
+        (key, body, place): abs(size)
+        for key in ("translational", "spatial")
+        for body in (1, 2)
+        for place, size in enumerate(differences_of(key, body, phases))
+    }
+    model, _, place = max(sizes, key=sizes.__getitem__)
+    at = words.index("--phases")
+    assert [float(word) for word in words[at + 1 : at + 3]] == pytest.approx(phases[place].tolist(), abs=1e-4)
+    assert words[-2:] == ["--model", model]

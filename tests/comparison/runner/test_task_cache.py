@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import time
 from collections.abc import Callable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
@@ -25,7 +26,7 @@ from comparison.registry import ANALYSES, first_tasks
 from comparison.runner.cache import Cache
 from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
-from comparison.runner.task import Task, TaskResult, fingerprint
+from comparison.runner.task import Task, TaskResult, execute, fingerprint
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import Outcome, builtin_scenes, load_scene
@@ -176,3 +177,7 @@ def test_effective_values_without_a_motion_are_not_kept_for_good(tmp_path: Path)
         Task(broken, 1, "effective values", 0.1), TaskResult(Effective("s", "small", error_message="it ended"), 0.1)
     )
     assert not list(tmp_path.glob("*/*"))
+
+
+def test_the_cost_of_a_task_is_its_own_processor_time() -> None:
+    assert 0.0 <= execute(Task(len, "abc", "test")).cost < 0.1 < time.process_time()

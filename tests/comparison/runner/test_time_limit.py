@@ -14,9 +14,12 @@ from comparison.runner.cache import Cache
 from comparison.runner.executors import TimeLimitError
 from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
-from comparison.runner.task import Task, TaskResult
+from comparison.runner.task import GIVEN_UP, Task, TaskResult
 from comparison.runner.task_results import TaskResults
-from reference.problem import Outcome
+from comparison.study.study import Study
+from comparison.study.user_models import user_model
+from comparison.surfaces.tasks import surface_tasks
+from reference.problem import Outcome, load_scene
 
 pytest.importorskip("resource", reason="the system limits no processor time")
 
@@ -134,3 +137,13 @@ def test_what_cannot_be_sent_from_a_worker_is_named(tmp_path: Path) -> None:
     assert "lambda" in value.error_message
     assert usual.error_message == "RuntimeError: singular"
     assert other.value == 2
+
+
+def test_a_batch_that_was_given_up_is_not_stored(tmp_path: Path) -> None:
+    """Two calls of an engine that hangs, and the one at work by then, are stored; the last is asked again next time."""
+    model = user_model("mine", {"function": "user_engines:plain"})
+    tasks = surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, [model]))
+    results = _run(tasks, tmp_path, Limited, jobs=1)
+    assert [result.outcome for result in results] == [Outcome.TIME_LIMIT] * 4
+    assert [result.error_message for result in results] == [*["no answer within 60 s"] * 3, GIVEN_UP]
+    assert TaskResults(Cache(tmp_path / "cache")).missing(tasks) == tasks[3:]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from fake_models import fake_hierarchy
-from report_texts import summary_of
+from report_texts import Tables, page_of, summary_of
 from runs import Run
 
 GRID = ["fig3-I", "--grid", "4", "--jobs", "2"]
@@ -100,3 +100,14 @@ def test_check_passes_no_limit_without_a_comparison(command: Callable[..., Run])
         "limit broken: fig3-I: acceptance.median: nothing to compare (translational engine: no value at any" in run.err
     )
     assert "nan" not in run.err
+
+
+def test_what_is_not_ok_and_what_has_no_value_are_counted_apart(command: Callable[..., Run]) -> None:
+    """One phase pair of 16 has no value, four miss the tolerance."""
+    run = command(*GRID, hierarchy=fake_hierarchy("patchy"))
+    for row in summary_of(run.report)["scenes"][0]["differences"]:
+        assert (row["not_ok"], row["unanswered"], row["asked"]) == (5, 1, 16)
+    for row in Tables(page_of(run.report)).headed("not ok", "no value"):
+        assert (row["not ok"], row["no value"], row["phase pairs"]) == ("5", "1", "16")
+    rows = [line.split() for line in run.out.splitlines() if line.split()[:1] == ["fig3-I"] and "like" in line]
+    assert [row[-1] for row in rows] == ["5", "5"]
