@@ -56,7 +56,7 @@ MISTAKES = (
     Mistake(SURFACES + "differences.py", "in (0.5, 0.95, 1.0)", "in (0.5, 0.9, 1.0)",
             "90 % are called 95 %.", (NUMBERS + "every_statistic_of_a_pair_stands_in_its_own_column",)),
     Mistake(SURFACES + "differences.py", '.any("model")', '.all("model")',
-            "A point that one model lacks counts as ok.", (LOST + "lost_points_are_counted_in_the_closing_table",)),
+            "A point that one model lacks counts as ok.", (LOST + "what_is_not_ok_and_what_has_no_value_are_counted_apart",)),
     Mistake(SURFACES + "differences.py", "unanswered=int((~valid).sum())", "unanswered=int(not_ok.sum())",
             "A value that missed its tolerance counts as none.", (LOST + "what_is_not_ok_and_what_has_no_value_are_counted_apart",)),
     Mistake(SURFACES + "budget.py", "rms=float(np.sqrt((size**2).mean()))", "rms=float(size.mean())",

@@ -48,12 +48,6 @@ def test_a_range_and_other_files_are_one_study(command: Callable[..., Run], file
         assert (run.report / "figures" / f"mine-body{body}-family.png").exists()
 
 
-def test_without_a_range_there_is_no_such_section(command: Callable[..., Run]) -> None:
-    run = command("fig4-viscous", "--grid", "2")
-    assert "Families of scenes</h2>" not in page_of(run.report)
-    assert not list((run.report / "figures").glob("*-family.png"))
-
-
 def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
     """The smooth fake model: mu_1 = 3 + cos a1 + sin a2, so 1, 3 and 5 on a 4 x 4 grid; the engine 1 % above."""
     family = load_family(file)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import shlex
 import subprocess
 import sys
@@ -115,19 +114,6 @@ def test_a_long_name_of_a_scene_cuts_no_number(capsys: pytest.CaptureFixture[str
         shown = capsys.readouterr().out
         assert all(cell in shown for cell in ("like for like", *numbers)), shown
         assert "".join(line.split()[0] for line in shown.splitlines()[3:] if line.strip()) == name
-
-
-def test_a_check_without_limits_says_so_in_the_last_line(
-    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8").split("[acceptance]")[0]
-    (tmp_path / "free.toml").write_text(text, encoding="utf-8")
-    both = io.StringIO()
-    monkeypatch.setattr(sys, "stdout", both)
-    monkeypatch.setattr(sys, "stderr", both)
-    words = [str(tmp_path / "free.toml"), "--grid", "2", "--check", "--out", str(tmp_path / "report")]
-    assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
-    assert both.getvalue().splitlines()[-1] == "--check: no scene states [acceptance] limits: nothing was checked"
 
 
 def test_a_record_has_no_grid_to_refine(command: Callable[..., Run]) -> None:
