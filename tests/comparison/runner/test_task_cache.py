@@ -16,6 +16,7 @@ from fake_models import fake_hierarchy
 from known_analyses import collected
 from light_tasks import dies, doubled, raises
 from rich.console import Console
+from runs import no_executor
 
 from comparison.analyses.claims.table import paper_complete
 from comparison.analyses.effective_values.analysis import Effective
@@ -50,10 +51,6 @@ def broken(task: object) -> tuple[Effect, ...]:
     return Effect("s", 0), Effect("s", 1, error_message="it broke")
 
 
-def forbidden(jobs: int) -> Executor:
-    raise AssertionError("nothing should have been computed")
-
-
 def _task(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Task:
     return Task(motion, task, "motions", 0.1, task[0])
 
@@ -66,7 +63,7 @@ def _run(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolE
 
 def test_an_answer_is_kept_to_the_last_bit(tmp_path: Path) -> None:
     task = _task()
-    runs = [_run(task, tmp_path), _run(task, tmp_path, forbidden)]
+    runs = [_run(task, tmp_path), _run(task, tmp_path, no_executor)]
     assert [results.parts["motions"].stored for results in runs] == [0, 1]
     first, second = (results[task].value for results in runs)
     assert pickle.dumps(first) == pickle.dumps(second) == pickle.dumps(motion(task.argument))
@@ -122,7 +119,7 @@ def test_what_is_damaged_in_one_bit_is_computed_again(tmp_path: Path) -> None:
     text = file.read_bytes()
     file.write_bytes(text[:-1] + bytes([text[-1] ^ 1]))
     assert _run(task, tmp_path).parts["motions"].stored == 0
-    assert _run(task, tmp_path, forbidden).parts["motions"].stored == 1, "and mended"
+    assert _run(task, tmp_path, no_executor).parts["motions"].stored == 1, "and mended"
 
 
 def test_a_task_that_fails_has_its_reason_and_costs_no_other(

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 from light_tasks import doubled, hangs_in_compiled_code, is_kept_waiting, raises, waits_for_ever
 from rich.console import Console
+from runs import no_executor
 
 from comparison.runner.cache import Cache
 from comparison.runner.executors import TimeLimitError
@@ -42,10 +43,6 @@ def _calls(folder: Path) -> dict[str, int]:
     return {name: names.count(name) for name in names}
 
 
-def forbidden(jobs: int) -> Executor:
-    raise AssertionError("nothing should have been computed")
-
-
 @pytest.mark.usefixtures("patient")
 def test_a_hang_ends_at_its_limit_and_costs_no_other_task(tmp_path: Path) -> None:
     others = [Task(doubled, str(tmp_path / f"other{number}"), "test", 0.1, timeout=60.0) for number in range(6)]
@@ -71,8 +68,8 @@ def test_a_repeated_run_waits_for_a_hang_only_if_it_allows_more(tmp_path: Path) 
         return Task(doubled, str(tmp_path / "hanging"), "test", 1.0, timeout=timeout)
 
     (first,) = _run([task(1.0)], tmp_path, Limited)
-    (again,) = _run([task(1.0)], tmp_path, forbidden)
-    (shorter,) = _run([task(0.5)], tmp_path, forbidden)
+    (again,) = _run([task(1.0)], tmp_path, no_executor)
+    (shorter,) = _run([task(0.5)], tmp_path, no_executor)
     assert first == again == shorter
     (longer,) = _run([task(2.0)], tmp_path, Limited)
     assert longer.error_message == "no answer within 2 s"
