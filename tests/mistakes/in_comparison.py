@@ -201,7 +201,7 @@ MISTAKES = (
             "The highest value of the first model is called that of the engine.",
             (NUMBERS + "a_largest_value_names_its_grid_and_the_search",)),
     Mistake(REPORT + "building.py", "(alpha1[place.row], alpha2[place.column])", "(alpha1[place.column], alpha2[place.row])",
-            "Stored motions are at swapped phases.", (OF + "motion_data.py::test_the_summary_lists_the_demands_of_every_stored_motion",)),
+            "Stored motions are at swapped phases.", (TESTS + "report/test_pdf.py::test_the_demands_of_the_stored_motions_are_in_a_table",)),
     Mistake(REPORT + "results.py", "sum(verdict is True for", "sum(verdict is not False for",
             "An unknown difference counts as one beyond the uncertainties.",
             (OF + "measured_peaks.py::test_what_is_not_known_exceeds_nothing",)),

@@ -106,9 +106,12 @@ def test_without_the_package_one_line_says_how_to_get_it(
 
 
 def test_the_demands_of_the_stored_motions_are_in_a_table(tmp_path: Path) -> None:
-    report = studied([load_scene("fig3-I")], fake_hierarchy(), 2)
+    report = studied([load_scene("fig3-I")], fake_hierarchy(), 4)
     motions = known_motions(report.study, report.surfaces)
     report = report_of(report.study, report.surfaces, {"motions": motions}, [], RUN)
+    at = [(0.5 * np.pi * motion.place.row, 0.5 * np.pi * motion.place.column) for motion in motions]
+    assert any(alpha1 != alpha2 for alpha1, alpha2 in at)
+    np.testing.assert_allclose([motion.phases for motion in report.results.scenes[0].demands], at)
     numbers = ["150", "", "5.2", "2.1", "2.31", "37", "17"]  # lengths in mm; the residual is not known
     rows = demand_rows(report.results)
     assert [row[2:] for row in rows] == [numbers, numbers]

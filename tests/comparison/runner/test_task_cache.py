@@ -141,6 +141,7 @@ def test_a_task_that_fails_has_its_reason_and_costs_no_other(
         2,
     ]
     assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[:2], "the next run tries them again"
+    assert len(list(tmp_path.glob("*/*.result"))) == 1, "no file is left of them"
     assert results.parts["errata"].tasks == 3
 
 
