@@ -108,7 +108,7 @@ def assert_consistent(
     broken = [
         line
         for name, limit in stated.items()
-        for compared, _, measure in [name.partition("_maximum")]
+        for compared, measure, _ in [name.partition("_maximum")]
         for line in _broken(surfaces, scene, asked[name], compared, bool(measure), limit)
     ]
     gaps = unanswered(study, surfaces)

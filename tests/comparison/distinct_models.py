@@ -32,7 +32,7 @@ STEPS = {
     "exact": (0.033, 0.010, -0.0077, 0.0027, 1.7e-5),
     "resolved": (-0.039, 0.11, 0.011, -0.017, 2.3e-5),
     "regularised": (-0.0075, 0.0085, -0.0036, 0.0066, 3.1e-5),
-    "translational": (0.0022, -0.0019, 0.0011, 0.0017, 7.3e-5),
+    "translational": (0.0022, -0.0019, 0.0011, 0.0017, 7.3e-4),
     "spatial": (-0.057, -0.088, 0.021, 0.026, 1.9e-4),
 }
 KEYS = tuple(STEPS)
@@ -44,7 +44,11 @@ def first_mu(body: int, phases: Array) -> Array:
     """mu of the first model at phases (P, 2); alpha1 and alpha2 are no mirror images."""
     alpha1, alpha2 = phases.T
     return (
-        1.3 + 0.9 * body + 0.5 * np.cos(alpha1 - 0.3 * body) + 0.21 * np.sin(alpha2 + 0.2) + 0.13 * np.cos(2 * alpha2)
+        1.3
+        + 0.9 * body
+        + 0.5 * np.cos(alpha1 - 0.3 * body + 1.4)
+        + 0.21 * np.sin(alpha2 + 0.2)
+        + 0.13 * np.cos(2 * alpha2)
     )
 
 

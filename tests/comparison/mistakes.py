@@ -1,92 +1,39 @@
-"""
-Mistakes in the real programs: a copy of their source with one line wrong, or a wrong scene, or a false claim.
-
-A copy of the reference runs in a process of its own and is interpreted, not compiled: that takes a second or two per
-phase pair and some seconds of motion, where compiling would take minutes.
-"""
+"""Mistakes in the real programs: a scene that is read wrongly, or a step and tolerances that are too coarse."""
 
 from __future__ import annotations
 
-import json
-import os
-import shutil
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 import multibody
-import reference
+from comparison.study.batches import imported
 from reference.problem import Amplification, Scene, ground_peak
 
 NEWTON = 1e-5  # tolerance of the coarse engine's iteration
 PENETRATION = 1e-6  # of rho, of its contact
-SOURCES = Path(reference.__file__).parent
-IN_THE_COPY = """
-import json, sys
-import interpreted
-interpreted.prepare()
-from reference import amplification
-from reference.problem import Scene
-asked = json.load(sys.stdin)
-found = amplification(Scene.model_validate_json(asked["scene"]), asked["phases"], **asked["settings"])
-parts = {name: getattr(found, name).tolist() for name in ("mu", "error", "status", "instant")}
-print(json.dumps({**parts, "cost": found.cost}))
-"""
-
-
-def misspelt(
-    scene: Scene, phases: NDArray[np.float64], tolerance: float, file: str, right: str, wrong: str, **settings: Any
-) -> Amplification:
-    """The reference with `wrong` in place of `right`, which stands once in `file` (below reference/)."""
-    text = (SOURCES / file).read_text(encoding="utf-8")
-    assert text.count(right) == 1, f"{file}: {right!r} must stand there once: the test follows the source"
-    with tempfile.TemporaryDirectory() as folder:
-        shutil.copytree(SOURCES, Path(folder) / "reference", ignore=shutil.ignore_patterns("__pycache__"))
-        (Path(folder) / "reference" / file).write_text(text.replace(right, wrong), encoding="utf-8")
-        asked = {
-            "scene": scene.model_dump_json(exclude_none=True),
-            "phases": np.asarray(phases).tolist(),
-            "settings": {**settings, "tolerance": tolerance},
-        }
-        done = subprocess.run(
-            [sys.executable, "-c", IN_THE_COPY],
-            input=json.dumps(asked),
-            capture_output=True,
-            text=True,
-            check=False,
-            cwd=folder,
-            env={
-                **os.environ,
-                "PYTHONPATH": os.pathsep.join([folder, str(Path(__file__).parent)]),
-                "NUMBA_DISABLE_JIT": "1",
-            },
-        )
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout)
-    arrays = {name: np.array(answer[name]) for name in ("mu", "error", "status", "instant")}
-    return Amplification(**arrays, cost=answer["cost"])
 
 
 def misread(
     scene: Scene,
     phases: NDArray[np.float64],
     tolerance: float,
+    program: str,
     stiffness: float = 1.0,
     mass: float = 1.0,
+    friction: float = 1.0,
     **settings: Any,
 ) -> Amplification:
-    """The engine with every link `stiffness` times as stiff, or the last body `mass` times as heavy, as stated."""
+    """A program with every link `stiffness` times as stiff as stated, the last body `mass` times as heavy."""
     data: dict[str, Any] = scene.model_dump(exclude_none=True)
     for body, link in zip(data["bodies"][1:], scene.stiffness):
         body.pop("period", None)
         body["stiffness"] = (stiffness * link).tolist()
     data["bodies"][-1]["mass"] *= mass
-    return multibody.amplification(Scene.model_validate(data), phases, tolerance=tolerance, **settings)
+    data["isolator"]["friction"] *= friction
+    answer: Amplification = imported(program)(Scene.model_validate(data), phases, tolerance=tolerance, **settings)
+    return answer
 
 
 def coarse(

@@ -17,3 +17,9 @@ def scene_text(name: str = "fig3-I", *replaced: tuple[str, str]) -> str:
         assert text.count(old) == 1, old
         text = text.replace(old, new)
     return text
+
+
+def limited_scene(folder: Path, limits: str, name: str = "limited.toml") -> str:
+    """The file of a scene with these limits."""
+    (folder / name).write_text(scene_text().split("[acceptance]")[0] + limits, encoding="utf-8")
+    return str(folder / name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -55,3 +55,8 @@ def quick_figures(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(budget, "draw_budget", quick_figure)
     patch.setattr(paper, "draw_paper_figure", quick_figure)
     patch.setattr(print_maps, "draw_maps", lambda *arguments: QUICK_MAPS)
+
+
+def no_executor(jobs: int) -> Executor:
+    """Where every result is stored."""
+    raise AssertionError("nothing should have been computed")

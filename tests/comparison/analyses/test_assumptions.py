@@ -3,6 +3,7 @@ first variation that fails, and the real models show that turning fades with the
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +13,7 @@ import pytest
 from fake_models import fake_hierarchy
 from known_analyses import collected
 
+from comparison.analyses.assumptions import command
 from comparison.analyses.assumptions.command import main
 from comparison.analyses.assumptions.validity import Assumptions, describe
 from comparison.analyses.assumptions.validity import lines as lines_of
@@ -235,3 +237,25 @@ def test_real_bars_that_shorten_change_more_than_softening() -> None:
         assert set(cell.status) == {"ok"}
     gap = np.abs(np.array(shortened.change) - np.array(softened.change))[:, 1]
     assert (gap > 3.0 * shortened.error_estimate(2)).any()
+
+
+def test_the_command_prints_the_change_of_every_body(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    cells = [
+        AssumptionCell(
+            "fig3-I", variation, ((0.01 * number, -0.02 * number),), ((1e-4 * number, 2e-4 * number),), ("ok",)
+        )
+        for number, variation in enumerate((Variation(ring=0.5), Variation(height=2.0, supports=3)), start=1)
+    ]  # fmt: skip
+    monkeypatch.setattr(command, "computed", lambda *rest: None)
+    monkeypatch.setattr(Assumptions, "collect", lambda *rest: ValidityRanges([STATED], cells))
+    assert command.main(["fig3-I", "--out", str(tmp_path / "report"), "--figures", str(tmp_path / "drawn")]) == 0
+    rows = [re.split(r"\s{2,}", line.strip()) for line in capsys.readouterr().out.splitlines()]
+    radius = STATED.support_radius or 0.0
+    for cells_of_row in (
+        [f"{0.5 * radius:g}", "1", "4", "0", "0", "1.000", "2.000", "0.010", "0.020", "ok"],
+        [f"{radius:g}", "2", "3", "0", "0", "2.000", "4.000", "0.020", "0.040", "ok"],
+    ):
+        assert cells_of_row in rows
+    assert {file.suffix for file in (tmp_path / "drawn").iterdir()} == {".png", ".pdf", ".json"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +17,8 @@ from runs import Run
 
 import reference
 from comparison.analyses.demands.analysis import PREFIX, DemandSurfaces, demand_statistics, with_demands
+from comparison.analyses.demands.feature import demand_panels
+from comparison.report.plots import DEMANDS
 from comparison.study.models import EXACT, REGULARIZED, SMALL
 from comparison.study.study import Study
 from reference.measures import Demands
@@ -150,3 +153,19 @@ def test_without_them_the_report_says_how_to_get_them(finished: Path) -> None:
     summary = summary_of(finished)
     assert [scene["demand_statistics"] for scene in summary["scenes"]] == [[], []]
     assert not [name for name in xr.load_dataset(finished / "surfaces.nc") if str(name).startswith(PREFIX)]
+
+
+def test_panels_are_in_the_units_of_their_axes(study: Study, demands: xr.Dataset) -> None:
+    scene, models = study.scenes[0], [SimpleNamespace(key=model.key, title=model.title) for model in MODELS]
+    rows = demand_statistics(study, demands, scene)
+    shown = SimpleNamespace(recorded=False, name=scene.name, demand_statistics=rows)
+    panels = demand_panels(shown, SimpleNamespace(models=models))  # type: ignore[arg-type]
+    assert len(panels) > 5
+    for (quantity, body, title, unit, _), panel in zip(
+        [each for each in DEMANDS if any((row.quantity, row.body) == each[:2] for row in rows)], panels, strict=True
+    ):
+        assert panel["plot"]["x"]["title"] == f"{title}, {unit}"
+        factor = {("mm", "m"): 1e3}.get((unit, demands[quantity].attrs["units"]), 1.0)
+        row = next(row for row in rows if (row.model, row.quantity, row.body) == ("small", quantity, body))
+        assert panel["plot"]["series"][0]["x"] == pytest.approx([factor * value for value in row.curve])
+        assert panel["plot"]["series"][0]["name"] == "small equations"

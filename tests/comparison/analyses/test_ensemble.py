@@ -147,16 +147,6 @@ def test_one_motion_in_the_scene_needs_neither_suite_nor_scales(folder: Path, un
     assert (content()["motions"], content()["scales"]) == (1, [0.5])
 
 
-def test_no_cell_of_the_table_is_a_formula(folder: Path, undrawn: None) -> None:
-    (folder / "suite" / "m1.csv").rename(folder / "suite" / "=1+cmd.csv")
-    (folder / "mine.toml").rename(folder / "=2*3.toml")
-    run("=2*3.toml", "--suite", "suite", "--scales", "1", "2", "2", "--engine", "0")
-    for line in csv.reader(Path("out/ensemble.csv").read_text().splitlines()):
-        assert not any(cell.startswith(("=", "@", "+")) for cell in line), line
-        assert not any(cell.startswith("-") and not cell[1:2].isdigit() for cell in line), line
-    assert "'=2*3[" in Path("out/ensemble.csv").read_text()
-
-
 def test_the_columns_of_the_table_are_the_shares_that_they_name() -> None:
     """Eleven motions, 0, 1 ... 10: k - 1/2 of 11 lie below the k-th."""
     points = [demanding(float(number), 0.0, Estimate(1.0, 0.0)) for number in range(11)]

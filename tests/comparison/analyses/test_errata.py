@@ -15,7 +15,7 @@ from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPR
 from comparison.study.models import V_REG
 from comparison.study.study import Study
 from reference import amplification, trajectory
-from reference.problem import Scene, load_scene
+from reference.problem import Amplification, Scene, load_scene
 
 
 def _study(*names: str) -> Study:
@@ -112,3 +112,15 @@ def test_the_motion_along_x_equal_beta_y_stays_there() -> None:
     scene = load_scene("fig4-dry").with_values({"duration": 6.0})
     place = trajectory(scene, PHASES[0], equations="small").position
     assert np.abs(place[..., 0] - place[..., 1]).max() < 1e-9 * np.abs(place[..., 0]).max()
+
+
+def test_the_change_is_that_of_the_printed_form(monkeypatch: pytest.MonkeyPatch) -> None:
+    """mu = 3 as printed, with friction as large as the normal force, and mu = 2 mended."""
+
+    def known(scene: Scene, phases: np.ndarray, **settings: object) -> Amplification:
+        mu = np.full((len(phases), 2), 3.0 if scene.friction_coefficient == 1.0 else 2.0)
+        return Amplification(mu, 0.0 * mu, np.full(len(mu), "ok"), np.full(len(mu), np.nan), 0.0)
+
+    monkeypatch.setattr(errata.reference, "amplification", known)
+    place = next(number for number, erratum in enumerate(ERRATA) if erratum.where == "after (2.5)")
+    assert measured((load_scene("fig3-I"), place)).change == ((0.5, 0.5),) * 2

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ import pytest
 from known_results import PLAIN, fake
 from matplotlib.image import imread
 from rich.console import Console
+from runs import no_executor
 
 import reference
 from comparison.analyses.extremes.analysis import Extremes, reduced
@@ -25,7 +26,7 @@ from comparison.analyses.extremes.engine import amplification
 from comparison.analyses.extremes.figure import draw_extremes
 from comparison.analyses.extremes.matrix import FILE, STORED, Entry, Extreme, Matrix, describe
 from comparison.analyses.extremes.rows import COLUMNS, PLAIN_RADIUS, Row, rows, scene
-from comparison.analyses.extremes.verdicts import Reply, Verdict
+from comparison.analyses.extremes.verdicts import Reply, Verdict, judged
 from comparison.runner.cache import Cache
 from comparison.runner.executors import Pool, TimeLimitError, WorkerDiedError
 from comparison.runner.processes import process_pool
@@ -175,19 +176,15 @@ def test_the_command_writes_the_matrix_and_computes_once(tmp_path, capsys):
     assert matrix.run["command"].startswith("python -m comparison.extremes --models small ")
     assert {row.group for row in matrix.rows} == {"amplitude, m/s^2"}
     assert (tmp_path / "report" / "extremes.png").read_bytes().startswith(b"\x89PNG")
-    assert main(words, forbidden) == 0
+    assert main(words, no_executor) == 0
     assert f"3 of 3 tasks are in {tmp_path / 'report'}.tiles: only the others are computed." in capsys.readouterr().out
     again = STORED.load(tmp_path / "report")
     assert (again.rows, again.run["stored_before"]) == (matrix.rows, 3)
     with pytest.raises(AssertionError, match="computed"):
-        main([*words, "--fresh"], forbidden)
+        main([*words, "--fresh"], no_executor)
     capsys.readouterr()
     assert main(words, ThreadPoolExecutor) == 0
     assert "tasks are in" not in capsys.readouterr().out, "what --fresh dropped is computed by the next run"
-
-
-def forbidden(jobs: int) -> Executor:
-    raise AssertionError("nothing should have been computed")
 
 
 def test_a_failed_cell_is_an_exit_code_and_in_the_picture(tmp_path, monkeypatch, capsys):
@@ -199,12 +196,12 @@ def test_a_failed_cell_is_an_exit_code_and_in_the_picture(tmp_path, monkeypatch,
 
 @pytest.mark.parametrize("words", [["--jobs", "0"], ["--limit", "-1"], ["--rows", "no such extreme"]])
 def test_a_wrong_option_is_one_line(words, tmp_path, capsys):
-    assert main([*words, "--out", str(tmp_path / "report")], forbidden) == 2
+    assert main([*words, "--out", str(tmp_path / "report")], no_executor) == 2
     assert capsys.readouterr().err.count("\n") == 1
 
 
 def test_the_selection_of_analyses_is_not_that_of_the_extremes(tmp_path, capsys):
-    assert main(["--only", "friction", "--out", str(tmp_path / "report")], forbidden) == 2
+    assert main(["--only", "friction", "--out", str(tmp_path / "report")], no_executor) == 2
     line = "--only = 'friction': selects analyses of a study; the extremes are chosen with --rows TEXT\n"
     assert capsys.readouterr().err == f"command line: {line}"
 
@@ -311,3 +308,10 @@ def test_a_value_that_says_nothing_is_not_confirmed() -> None:
     assert answers(Reply(error=mu, **(said | {"status": (Outcome.OK.value,)})))
     assert answers(Reply(error=mu, **(said | {"status": (Outcome.RIM_REACHED.value,)})))
     assert not answers(Reply(error=mu, **(said | {"status": (Outcome.STEP_LIMIT.value,)})))
+
+
+@pytest.mark.parametrize(("off", "verdict"), [(0.9, "converged"), (1.5, "FAILED")])
+def test_an_error_half_of_what_it_should_be_fails(off: float, verdict: str) -> None:
+    mu, claimed = np.array([[1.0, 2.0]]), 1e-3
+    reply = Reply(mu * [1.0, 1.0 + off * claimed], claimed * mu, ("ok",))
+    assert judged(reply, [Reply(mu, 1e-6 * mu, ("ok",))], 1e-2, False, ()).verdict == verdict

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from runs import RUN, Run
 from studies import solved
 
 from comparison.analyses.demands.analysis import DemandStatistics, Extreme
-from comparison.analyses.families.analysis import family_demands, family_demands_over_phases
+from comparison.analyses.families.analysis import FamilyDemand, family_demands, family_demands_over_phases
 from comparison.analyses.families.feature import family_panels
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.registry import report_of
@@ -45,12 +46,6 @@ def test_a_range_and_other_files_are_one_study(command: Callable[..., Run], file
     assert "3 values of isolator.friction" in page
     for body in (1, 2):
         assert (run.report / "figures" / f"mine-body{body}-family.png").exists()
-
-
-def test_without_a_range_there_is_no_such_section(command: Callable[..., Run]) -> None:
-    run = command("fig4-viscous", "--grid", "2")
-    assert "Families of scenes</h2>" not in page_of(run.report)
-    assert not list((run.report / "figures").glob("*-family.png"))
 
 
 def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
@@ -153,3 +148,34 @@ def test_of_many_named_values_some_are_named_on_the_axis(file: Path) -> None:
     assert len(ticks(12)) == 12
     assert [tick[1] for tick in ticks(220)][:3] == ["0, 0.5", "19, 0.5", "38, 0.5"]
     assert len(ticks(220)) <= 12
+
+
+def test_panels_of_a_family_are_in_the_units_of_their_axes() -> None:
+    known = {"displacement": (0, "isolator displacement, mm", 1e3), "base_shear": (0, "base shear, N", 1.0),
+             "drift": (2, "drift of the lowest story, mm", 1e3)}  # fmt: skip
+    demands = [
+        FamilyDemand("small", name, body, (0.2 + body, 0.5), (0.1, 0.4), (0.3, 0.6), (3, 3))
+        for name, (body, *_) in known.items()
+    ]
+    family = SimpleNamespace(
+        name="mine", key="isolator.friction", values=[0.1, 0.2], scenes=["a"], curves=[], steps=[], demands=demands,
+        demands_over_phases=False,
+    )  # fmt: skip
+    results = SimpleNamespace(
+        scenes=[SimpleNamespace(name="a", title="A", bodies=2)],
+        models=[SimpleNamespace(key="small", title="small equations", effect="")],
+        of={"families": [family]}.get,
+    )
+    [listed] = family_panels(results)  # type: ignore[arg-type]
+    shown = {
+        panel["plot"]["y"]["title"]: panel["plot"]["series"][0]
+        for panel in listed["panels"]
+        if "of the stored" in panel["title"]
+    }
+    assert len(shown) == 3
+    for body, title, factor in known.values():
+        line = shown[title]
+        numbers = [0.2 + body, 0.5], [0.1, 0.4], [0.3, 0.6]
+        for key, values in zip(("y", "low", "high"), numbers):
+            assert line[key] == pytest.approx([factor * value for value in values]), (title, key)
+        assert (line["name"], line["x"]) == ("small equations", [0.1, 0.2])

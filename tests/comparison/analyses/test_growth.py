@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from known_analyses import collected
 
+from comparison.analyses.tradeoff import command as tradeoff
 from comparison.analyses.tradeoff import growth_command as command
 from comparison.analyses.tradeoff.growth import (
     QUANTITIES,
@@ -81,3 +82,29 @@ def test_growth_without_an_answer_is_read_back(tmp_path: Path) -> None:
 
 def growth_of(*series: Series) -> MeasuredGrowth:
     return MeasuredGrowth(SCHEMA, "fig3-I", "a scene", list(series), {"command": "made up"})
+
+
+def test_the_command_writes_and_prints_the_growth(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    bodies = with_slope("bodies", "", "exact", (2.0, 4.0, 8.0), (0.5, 2.0, 8.0))
+    workers = with_slope("workers", "", "exact", (1.0, 2.0), (3.0, float("nan")))
+    monkeypatch.setattr(command, "computed", lambda *rest: None)
+    monkeypatch.setattr(Growth, "collect", lambda *rest: [bodies])
+    monkeypatch.setattr(command, "by_workers", lambda *rest: workers)
+    assert tradeoff.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0
+    found = STORED.load(tmp_path)
+    assert found is not None
+    assert found.series == [bodies, workers]
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["bodies", "exact", "2", "0.5"] in rows
+    assert ["bodies", "exact", "8", "8", "2.00", "±", "0.00"] in rows, "the slope stands in the last row"
+    assert ["workers", "exact", "2", "no", "answer"] in rows
+
+
+def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[object] = []
+    monkeypatch.setattr(command, "measure", calls.append)
+    series = command.by_workers(SCENE, ThreadPoolExecutor, 3)
+    assert list(series.values) == [1.0, 2.0, 3.0]
+    assert len(calls) == 3 * command.CALLS + 2 * (1 + 2 + 3), "the same work for all, and two calls to warm each up"

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from known_analyses import collected
@@ -14,7 +15,8 @@ from report_texts import page_of, schema_errors, summary_of
 from runs import Run
 
 import reference
-from comparison.analyses.measured.analysis import MeasuredPeaks
+from comparison.analyses.measured.analysis import MeasuredPeaks, _beside
+from comparison.report.results import Results
 from comparison.study.models import EXACT, MODEL_HIERARCHY, RESOLVED, SMALL, TRANSLATIONAL
 from comparison.study.study import Study
 from comparison.study.user_models import user_model
@@ -135,3 +137,14 @@ def test_the_report_shows_measured_peaks(command: Callable[..., Run], tmp_path: 
     assert line in page
     assert line in done.out
     assert line in (done.report / "summary.md").read_text(encoding="utf-8")
+
+
+def test_what_is_not_known_exceeds_nothing():
+    scene = PLAIN.with_values({"measured": [peak("mu", 1.0, 0.1, 1)]})
+    [stated] = scene.measured
+    known = {"near": (1.15, 0.1), "far": (0.75, 0.1), "none": (math.nan, math.nan)}
+    found = _beside(scene, stated, [(key, {("mu", 1): (*numbers, "ok")}) for key, numbers in known.items()])
+    assert [each.exceeds for each in found.computed] == [False, True, None], "0.15 < 0.1 + 0.1 < 0.25"
+    assert [each.difference for each in found.computed[:2]] == pytest.approx([0.15, -0.25])
+    line = Results.measurements.fget(SimpleNamespace(of={"measured": [found]}.get))
+    assert line.endswith("1 of 3 differences exceed the uncertainties")

@@ -206,3 +206,11 @@ def test_the_summary_lists_the_demands_of_every_stored_motion(finished: Path) ->
 def test_known_demands_have_the_shape_of_real_ones(scene) -> None:
     real, known = demands(reference.trajectory(scene, PHASE)), known_demands(scene, False)
     assert [type(value) for value in vars(real).values()] == [type(value) for value in vars(known).values()]
+
+
+def test_supports_stand_off_the_center_of_an_eccentric_platform(scene) -> None:
+    """Seen from a center of mass that is moved along x, every support stands as far the other way."""
+    even, moved = (
+        contact_geometry(each)["supports"] for each in (scene, scene.with_values({"bodies.0.offset": [0.1, -0.05]}))
+    )
+    np.testing.assert_allclose(np.subtract(moved, even), np.broadcast_to([-0.1, 0.05], np.shape(even)), atol=1e-12)

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from scipy.io import savemat
 from scipy.special import ellipk
 
-from comparison.analyses.validation import frame, pendulum
+from comparison.analyses.validation import assess, frame, pendulum
 from comparison.analyses.validation.command import compared, main
 from comparison.analyses.validation.files import DECAY, LARGE, Swing, read_folder
 from comparison.analyses.validation.table import ENGINE, EQUATIONS, LAW, SMOOTHED, VALID, recorded
@@ -232,3 +232,15 @@ def test_without_files_what_is_recorded_is_printed(capsys: pytest.CaptureFixture
         assert part in text, part
     assert recorded().curves == []  # nothing of the files is in the package
     assert {side.verdict for each in recorded().quantities for side in each.sides.values()} >= {VALID, LAW}
+
+
+def test_a_comparison_error_is_within_all_uncertainties():
+    """0.03, 0.04 and 0.12 make 0.13: 0.125 is within, 0.135 is not; any two of them make less than 0.127."""
+    one, inputs = np.ones(2), np.array([0.04, 0.04])
+    data = assess.Data(("a", "b"), ("mm", "mm"), ("predicted",) * 2, one, np.array([0.12, 0.12]))
+    answers = {EQUATIONS: assess.Answer(np.array([1.1285, 1.135]), np.array([0.03, 0.03]))}
+    first, second = assess.quantities("run", data, inputs, answers, lambda k, allowed: (LAW, "why"))
+    assert [each.sides[EQUATIONS].verdict for each in (first, second)] == [VALID, LAW]
+    assert [each.sides[EQUATIONS].error for each in (first, second)] == pytest.approx([0.1285, 0.135])
+    assert first.sides[EQUATIONS].validation == pytest.approx(0.13)
+    assert (first.cause, second.cause) == ("", "why")

@@ -107,16 +107,6 @@ def test_out_never_destroys_what_is_not_a_report(
     assert (foreign / "chapter1.txt").read_text(encoding="utf-8") == "years of work"
 
 
-def test_out_refuses_a_report_that_holds_a_file_of_the_user(command: Callable[..., Run], tmp_path: Path) -> None:
-    run = command("fig3-I", "--grid", "2")
-    assert run.code == 0
-    (run.report / "notes.txt").write_text("mine", encoding="utf-8")
-    again = command("fig3-I", "--grid", "2")
-    assert again.code == 2
-    assert "the report there also holds 'notes.txt', which would be lost: move it away" in again.err
-    assert (run.report / "notes.txt").read_text(encoding="utf-8") == "mine"
-
-
 def test_out_refuses_a_file_and_the_working_directory(
     command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import shlex
 import subprocess
 import sys
@@ -12,6 +11,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from distinct_models import differences_of, distinct_hierarchy, grid_phases
 from fake_models import busy, errors_in, fake_hierarchy
 from places import SCENES
 from report_texts import summary_of
@@ -116,19 +116,6 @@ def test_a_long_name_of_a_scene_cuts_no_number(capsys: pytest.CaptureFixture[str
         assert "".join(line.split()[0] for line in shown.splitlines()[3:] if line.strip()) == name
 
 
-def test_a_check_without_limits_says_so_in_the_last_line(
-    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8").split("[acceptance]")[0]
-    (tmp_path / "free.toml").write_text(text, encoding="utf-8")
-    both = io.StringIO()
-    monkeypatch.setattr(sys, "stdout", both)
-    monkeypatch.setattr(sys, "stderr", both)
-    words = [str(tmp_path / "free.toml"), "--grid", "2", "--check", "--out", str(tmp_path / "report")]
-    assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
-    assert both.getvalue().splitlines()[-1] == "--check: no scene states [acceptance] limits: nothing was checked"
-
-
 def test_a_record_has_no_grid_to_refine(command: Callable[..., Run]) -> None:
     assert after_report(command("synthetic-pair", hierarchy=fake_hierarchy()))[2:] == []
 
@@ -170,3 +157,19 @@ def test_the_processor_time_of_an_ended_process_is_counted() -> None:
     burn = "import time\nwhile time.process_time() < 0.5: pass"
     subprocess.run([sys.executable, "-c", burn], check=True)
     assert Clock.now().since(before).processor >= 0.45, "processor time is counted in steps"
+
+
+def test_the_film_is_of_the_largest_difference(command: Callable[..., Run]) -> None:
+    run = command("fig3-I", "--grid", "4", "--only", "surfaces", hierarchy=distinct_hierarchy())
+    words = shlex.split(next(line for line in run.out.splitlines() if "multibody.animate" in line))
+    phases = grid_phases(4)
+    sizes = {
+        (key, body, place): abs(size)
+        for key in ("translational", "spatial")
+        for body in (1, 2)
+        for place, size in enumerate(differences_of(key, body, phases))
+    }
+    model, _, place = max(sizes, key=sizes.__getitem__)
+    at = words.index("--phases")
+    assert [float(word) for word in words[at + 1 : at + 3]] == pytest.approx(phases[place].tolist(), abs=1e-4)
+    assert words[-2:] == ["--model", model]

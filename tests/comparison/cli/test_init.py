@@ -21,7 +21,6 @@ from places import ROOT
 import reference
 from comparison.cli import requirement as source
 from comparison.cli.init import TEMPLATE, main, study_files
-from comparison.cli.start import main as script
 
 
 @pytest.fixture
@@ -238,10 +237,3 @@ def test_a_full_disk_leaves_nothing_behind(
     assert "DIRECTORY" in err
     assert "No space left on device" in err
     assert sorted(tmp_path.rglob("*")) == before
-
-
-def test_the_script_lists_it(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr(sys, "argv", ["phase-resonance"])
-    with pytest.raises(SystemExit):
-        script()
-    assert "  init " in capsys.readouterr().out

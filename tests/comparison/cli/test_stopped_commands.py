@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from known_results import PLAIN, fake
+from runs import no_executor
 
 from comparison.analyses.extremes import command as extremes
 from comparison.analyses.extremes.matrix import PICTURE, STORED
@@ -42,10 +43,6 @@ class Interrupted(ThreadPoolExecutor):
         return super().submit(*words, **options)
 
 
-def forbidden(jobs: int) -> Executor:
-    raise AssertionError("nothing should have been computed")
-
-
 def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     tmp_path: Path, run: Callable[..., int], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -70,4 +67,4 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     assert run(ThreadPoolExecutor) == 1
     assert judged() == whole
     assert STORED.load(Path("report")).run["stored_before"] == int(stopped[1])
-    assert run(forbidden) == 1, "nothing is computed twice"
+    assert run(no_executor) == 1, "nothing is computed twice"

@@ -32,7 +32,7 @@ from distinct_models import (
 from known_analyses import analyses_are
 from known_results import FOUND
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
-from places import scene_text
+from places import limited_scene, scene_text
 from report_texts import summary_of
 from runs import quick_figures
 from studies import solved
@@ -73,11 +73,10 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A study with limits that are broken, each by another number."""
     folder = tmp_path_factory.mktemp("limited")
     limits = "[acceptance]\nmedian = 1e-6\nmaximum = 2e-6\nratio = 1.0\n[acceptance.total]\nmaximum = 3e-6\n"
-    (folder / "limited.toml").write_text(scene_text("fig3-I").split("[acceptance]")[0] + limits, encoding="utf-8")
     with pytest.MonkeyPatch.context() as patch:
         quick_figures(patch)
         analyses_are(patch, motions=[])
-        words = [str(folder / "limited.toml"), "--grid", str(GRID), "--skip", "assumptions"]
+        words = [limited_scene(folder, limits), "--grid", str(GRID), "--skip", "assumptions"]
         assert main([*words, "--out", str(folder / "report")], distinct_hierarchy(), ThreadPoolExecutor) == 0
     return folder / "report"
 
@@ -154,9 +153,16 @@ def test_every_column_of_the_summary_holds_what_its_head_says(report: Path) -> N
         assert row["beyond u_D"] == in_percent(stored["beyond_error"])
         assert row["no value"] == f"0 of {COARSE**2}"
     for body, row in enumerate(causes, start=1):
-        steps = [in_percent(step(key, body).mean(), "+") for key in KEYS[1:]]
-        total = in_percent(differences_of("spatial", body, grid_phases(COARSE)).mean(), "+")
-        assert [cell.strip("()") for cell in row.values()] == ["limited", str(body), *steps, total, str(COARSE**2)]
+        cells = []
+        for key in (*KEYS[1:], TOTAL):
+            before, after = (KEYS[0], KEYS[-1]) if key == TOTAL else (KEYS[KEYS.index(key) - 1], key)
+            levels = [1.0 + differences_of(each, body, grid_phases(COARSE)) for each in (before, after)]
+            error = np.hypot(*(STEPS[each][-1] * level for each, level in zip((before, after), levels))).mean()
+            mean = (levels[1] - levels[0]).mean()
+            text = in_percent(mean, "+")
+            cells.append(text if abs(mean) > 5.0 * error else f"({text})")
+        assert list(row.values()) == ["limited", str(body), *cells, str(COARSE**2)]
+        assert 0 < sum(cell.startswith("(") for cell in cells) < len(cells)
     names = [name.replace("$v_{\\mathrm{reg}}$", "v_reg") for name in TITLES]
     assert list(causes[0]) == ["scene", "body", *names, "phase pairs"]
 

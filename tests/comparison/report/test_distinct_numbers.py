@@ -34,7 +34,7 @@ from distinct_models import (
 )
 from known_analyses import analyses_are
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
-from report_texts import Tables, flat, page_of, summary_of, text_of
+from report_texts import Tables, data_of, flat, page_of, summary_of, text_of
 from runs import RUN, Run, quick_figures
 
 from comparison.analyses.worst_phases.analysis import Worst
@@ -44,13 +44,36 @@ from comparison.report.pdf import map_tasks
 from comparison.run import main
 from comparison.surfaces.figures import pairs, print_maps
 
+EFFECTS = (
+    "geometry",
+    "the instant of stopping",
+    "friction smoothed near rest",
+    "elastic contact",
+    "turning of the bodies",
+)
+
+
+def with_error(size: float, error: float) -> str:
+    """A share with the digits that its error leaves, and the error where these show it."""
+    if error <= 0.01 * abs(size):
+        return in_percent(size, "+")
+    digits = max(0, -int(np.floor(np.log10(100.0 * error))))
+    sign = "−" if size < 0.0 else "+"
+    return f"{sign}{100.0 * abs(size):.{digits}f} ± {100.0 * error:.{digits}f} %"
+
+
+SEARCHED = [
+    Worst("fig3-I", "exact", "amplification", 1, 8.765, 1e-4, (1.0, 2.0), "smooth", runner_up=8.5, climbs=4, reached=3),
+    Worst("fig3-I", "exact", "displacement", 1, 0.123, 2e-5, (3.0, 4.0), "kink", runner_up=0.11, climbs=6, reached=5),
+]
+
 
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("distinct") / "report"
     with pytest.MonkeyPatch.context() as patch:
         quick_figures(patch)
-        analyses_are(patch, motions=[])
+        analyses_are(patch, motions=[], worst_phases=SEARCHED)
         words = ["fig3-I", "--grid", str(GRID), "--skip", "assumptions", "--out", str(place)]
         assert main(words, distinct_hierarchy(), ThreadPoolExecutor) == 0
     return place
@@ -302,3 +325,41 @@ def test_a_largest_value_names_its_grid_and_the_search() -> None:
     data = json.loads(page_data(report))["scenes"][0]["models"]
     assert data["small"]["worst"] == [[1.0, 2.0, 8.765, "exact"], None]
     assert data["spatial"]["worst"] == [[1.1, 2.1, 7.654, "translational"], None]
+
+
+def test_outcomes_costs_and_largest_values_are_in_their_columns(tables: Tables) -> None:
+    for row, key in zip(tables.headed("model", "s per point"), KEYS, strict=True):
+        count = (COARSE if key in ("translational", "spatial") else GRID) ** 2
+        assert (row["ok"], row["phase pairs"], row["s per point"]) == (str(count), str(count), "0.001")
+        assert row["processor time, s"] == f"{0.001 * count:.1f}"
+    shown = tables.headed("quantity", "next maximum")
+    assert [list(row.values())[3:] for row in shown] == [
+        ["8.765", "1.0e-04", "1.0000", "2.0000", "on a smooth maximum", "8.5", "3 of 4"],
+        ["0.123", "2.0e-05", "3.0000", "4.0000", "on an edge of the surface", "0.11", "5 of 6"],
+    ]
+    assert [row["quantity"] for row in shown] == ["μ1", "displacement, m"]
+
+
+def test_the_page_draws_the_surfaces_under_their_models(report: Path) -> None:
+    [scene] = data_of(report)["scenes"]
+    for key in KEYS:
+        count = COARSE if key in ("translational", "spatial") else GRID
+        for body in (1, 2):
+            shown = np.array(scene["models"][key]["mu"][body - 1])
+            np.testing.assert_allclose(shown, heights(key, body, count)[:-1, :-1], rtol=1e-6)  # 7 digits
+    pairs_shown = {pair["title"]: (pair["first"], pair["second"]) for pair in scene["pairs"]}
+    assert pairs_shown == {
+        "total": ("small", "spatial"),
+        "translational": ("small", "translational"),
+        "like for like": ("regularised", "translational"),
+    }
+
+
+def test_the_pdf_has_every_bar_and_number(report: Path) -> None:
+    text = text_of(report / "report.pdf")[1]
+    for body in (1, 2):
+        for key, effect in zip(KEYS[1:], EFFECTS, strict=True):
+            before = KEYS[KEYS.index(key) - 1]
+            levels = [1.0 + differences_of(each, body, grid_phases(COARSE)) for each in (before, key)]
+            error = np.hypot(*(STEPS[each][-1] * level for each, level in zip((before, key), levels))).mean()
+            assert f"{effect} {with_error(step(key, body).mean(), error)}" in text, (body, key)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from report_texts import flat, page_of, text_of
 from runs import RUN, Run, quick_figures
 from studies import solved
 
-from comparison.analyses.demands.pdf import demand_rows
+from comparison.analyses.demands.pdf import HEADINGS, demand_rows
 from comparison.registry import report_of
 from comparison.report import pdf
 from comparison.report.section import Report
@@ -105,9 +106,12 @@ def test_without_the_package_one_line_says_how_to_get_it(
 
 
 def test_the_demands_of_the_stored_motions_are_in_a_table(tmp_path: Path) -> None:
-    report = studied([load_scene("fig3-I")], fake_hierarchy(), 2)
+    report = studied([load_scene("fig3-I")], fake_hierarchy(), 4)
     motions = known_motions(report.study, report.surfaces)
     report = report_of(report.study, report.surfaces, {"motions": motions}, [], RUN)
+    at = [(0.5 * np.pi * motion.place.row, 0.5 * np.pi * motion.place.column) for motion in motions]
+    assert any(alpha1 != alpha2 for alpha1, alpha2 in at)
+    np.testing.assert_allclose([motion.phases for motion in report.results.scenes[0].demands], at)
     numbers = ["150", "", "5.2", "2.1", "2.31", "37", "17"]  # lengths in mm; the residual is not known
     rows = demand_rows(report.results)
     assert [row[2:] for row in rows] == [numbers, numbers]
@@ -142,3 +146,23 @@ def test_what_the_pdf_leaves_out_it_counts(tmp_path: Path) -> None:
     data = pdf.pdf_data(report.results, [], [])
     assert data["records"][0][0] == f"{name[:39]}…"
     assert data["demands"][0][0] == f"{name[:39]}…"
+
+
+def test_demands_over_phases_have_their_columns_and_units() -> None:
+    values = {("displacement", 0): 0.12, ("residual", 0): 0.034, ("base_shear", 0): 5.6, ("acceleration", 1): 7.8,
+              ("acceleration", 2): 9.1, ("drift", 2): 0.023, ("contact_force_min", 0): 45.0}  # fmt: skip
+    rows = [
+        SimpleNamespace(
+            model="small", quantity=quantity, body=body,
+            highest=SimpleNamespace(value=value, error=0.002), lowest=SimpleNamespace(value=0.5 * value, error=0.002),
+        )
+        for (quantity, body), value in values.items()
+    ]  # fmt: skip
+    scene = SimpleNamespace(name="mine", demand_statistics=rows, demands=[], bodies=2)
+    models = [SimpleNamespace(key="small", title="small equations")]
+    [cells] = demand_rows(SimpleNamespace(scenes=[scene], models=models))  # type: ignore[arg-type]
+    assert dict(zip(HEADINGS, cells, strict=True)) == {
+        "scene": "mine", "model": "small equations", "isolator, mm": "120", "residual, mm": "34 ± 2",
+        "base shear, N": "5.6", "platform, m/s²": "7.8", "top, m/s²": "9.1", "drift, mm": "23",
+        "contact force, N": "22.5",
+    }  # fmt: skip

@@ -25,8 +25,7 @@ from comparison.report.summary_text import summary_text
 from comparison.runner.progress import progress, wide_console
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import figure_file, with_ending
-from comparison.surfaces.figures.paper import draw_paper_figure, paper_figure_name
-from reference.problem import Family, Scene, load_family, load_scene
+from reference.problem import Family, Scene, load_scene
 
 
 def _written(folder: Path, name: str, title: str = "plain", friction: str = "0.1") -> str:
@@ -35,19 +34,6 @@ def _written(folder: Path, name: str, title: str = "plain", friction: str = "0.1
     text = "\n".join(lines).replace("friction = 0.1", f"friction = {friction}")
     (folder / name).write_text(text, encoding="utf-8")
     return str(folder / name)
-
-
-def test_members_of_a_family_have_figures_of_their_own(tmp_path: Path) -> None:
-    family = load_family(_written(tmp_path, "fam.toml", friction="{values = [0.02, 0.04]}"))
-    study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
-    surfaces = solved(study)
-    folder = tmp_path / "figures"
-    folder.mkdir()
-    for scene in study.scenes:
-        draw_paper_figure(folder / paper_figure_name(scene), study, surfaces, scene)
-    assert sorted(file.name for file in folder.iterdir()) == [
-        f"fam[friction={value}]-paper.{ending}" for value in ("0.02", "0.04") for ending in ("pdf", "png")
-    ]
 
 
 def test_a_name_with_dots_keeps_them_and_a_long_one_is_cut() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import time
 from collections.abc import Callable
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
@@ -15,6 +16,7 @@ from fake_models import fake_hierarchy
 from known_analyses import collected
 from light_tasks import dies, doubled, raises
 from rich.console import Console
+from runs import no_executor
 
 from comparison.analyses.claims.table import paper_complete
 from comparison.analyses.effective_values.analysis import Effective
@@ -25,7 +27,7 @@ from comparison.registry import ANALYSES, first_tasks
 from comparison.runner.cache import Cache
 from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
-from comparison.runner.task import Task, TaskResult, fingerprint
+from comparison.runner.task import Task, TaskResult, execute, fingerprint
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import Outcome, builtin_scenes, load_scene
@@ -49,10 +51,6 @@ def broken(task: object) -> tuple[Effect, ...]:
     return Effect("s", 0), Effect("s", 1, error_message="it broke")
 
 
-def forbidden(jobs: int) -> Executor:
-    raise AssertionError("nothing should have been computed")
-
-
 def _task(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Task:
     return Task(motion, task, "motions", 0.1, task[0])
 
@@ -65,7 +63,7 @@ def _run(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolE
 
 def test_an_answer_is_kept_to_the_last_bit(tmp_path: Path) -> None:
     task = _task()
-    runs = [_run(task, tmp_path), _run(task, tmp_path, forbidden)]
+    runs = [_run(task, tmp_path), _run(task, tmp_path, no_executor)]
     assert [results.parts["motions"].stored for results in runs] == [0, 1]
     first, second = (results[task].value for results in runs)
     assert pickle.dumps(first) == pickle.dumps(second) == pickle.dumps(motion(task.argument))
@@ -121,7 +119,7 @@ def test_what_is_damaged_in_one_bit_is_computed_again(tmp_path: Path) -> None:
     text = file.read_bytes()
     file.write_bytes(text[:-1] + bytes([text[-1] ^ 1]))
     assert _run(task, tmp_path).parts["motions"].stored == 0
-    assert _run(task, tmp_path, forbidden).parts["motions"].stored == 1, "and mended"
+    assert _run(task, tmp_path, no_executor).parts["motions"].stored == 1, "and mended"
 
 
 def test_a_task_that_fails_has_its_reason_and_costs_no_other(
@@ -143,6 +141,7 @@ def test_a_task_that_fails_has_its_reason_and_costs_no_other(
         2,
     ]
     assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[:2], "the next run tries them again"
+    assert len(list(tmp_path.glob("*/*.result"))) == 1, "no file is left of them"
     assert results.parts["errata"].tasks == 3
 
 
@@ -176,3 +175,7 @@ def test_effective_values_without_a_motion_are_not_kept_for_good(tmp_path: Path)
         Task(broken, 1, "effective values", 0.1), TaskResult(Effective("s", "small", error_message="it ended"), 0.1)
     )
     assert not list(tmp_path.glob("*/*"))
+
+
+def test_the_cost_of_a_task_is_its_own_processor_time() -> None:
+    assert 0.0 <= execute(Task(len, "abc", "test")).cost < 0.1 < time.process_time()

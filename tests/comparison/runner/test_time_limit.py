@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import time
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 from light_tasks import doubled, hangs_in_compiled_code, is_kept_waiting, raises, waits_for_ever
 from rich.console import Console
+from runs import no_executor
 
 from comparison.runner.cache import Cache
 from comparison.runner.executors import TimeLimitError
 from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
-from comparison.runner.task import Task, TaskResult
+from comparison.runner.task import GIVEN_UP, Task, TaskResult
 from comparison.runner.task_results import TaskResults
-from reference.problem import Outcome
+from comparison.study.study import Study
+from comparison.study.user_models import user_model
+from comparison.surfaces.tasks import surface_tasks
+from reference.problem import Outcome, load_scene
 
 pytest.importorskip("resource", reason="the system limits no processor time")
 
@@ -37,10 +41,6 @@ def _run(tasks: list[Task], folder: Path, make: object = process_pool, jobs: int
 def _calls(folder: Path) -> dict[str, int]:
     names = [mark.name.split("-")[0] for mark in folder.iterdir() if mark.is_file()]
     return {name: names.count(name) for name in names}
-
-
-def forbidden(jobs: int) -> Executor:
-    raise AssertionError("nothing should have been computed")
 
 
 @pytest.mark.usefixtures("patient")
@@ -68,8 +68,8 @@ def test_a_repeated_run_waits_for_a_hang_only_if_it_allows_more(tmp_path: Path) 
         return Task(doubled, str(tmp_path / "hanging"), "test", 1.0, timeout=timeout)
 
     (first,) = _run([task(1.0)], tmp_path, Limited)
-    (again,) = _run([task(1.0)], tmp_path, forbidden)
-    (shorter,) = _run([task(0.5)], tmp_path, forbidden)
+    (again,) = _run([task(1.0)], tmp_path, no_executor)
+    (shorter,) = _run([task(0.5)], tmp_path, no_executor)
     assert first == again == shorter
     (longer,) = _run([task(2.0)], tmp_path, Limited)
     assert longer.error_message == "no answer within 2 s"
@@ -134,3 +134,13 @@ def test_what_cannot_be_sent_from_a_worker_is_named(tmp_path: Path) -> None:
     assert "lambda" in value.error_message
     assert usual.error_message == "RuntimeError: singular"
     assert other.value == 2
+
+
+def test_a_batch_that_was_given_up_is_not_stored(tmp_path: Path) -> None:
+    """Two calls of an engine that hangs, and the one at work by then, are stored; the last is asked again next time."""
+    model = user_model("mine", {"function": "user_engines:plain"})
+    tasks = surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, [model]))
+    results = _run(tasks, tmp_path, Limited, jobs=1)
+    assert [result.outcome for result in results] == [Outcome.TIME_LIMIT] * 4
+    assert [result.error_message for result in results] == [*["no answer within 60 s"] * 3, GIVEN_UP]
+    assert TaskResults(Cache(tmp_path / "cache")).missing(tasks) == tasks[3:]

@@ -16,7 +16,7 @@ from light_tasks import counted
 from rich.console import Console
 
 from comparison.runner.cache import Cache
-from comparison.runner.executors import ExecutorLostError, Pool
+from comparison.runner.executors import ExecutorLostError, Pool, executing
 from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
 from comparison.runner.sweep import Sweep
@@ -114,3 +114,33 @@ def test_a_lent_executor_that_breaks_ends_the_run_in_one_line(tmp_path: Path, br
             Runner(results, Console(quiet=True), 1, lent).run(tasks)
     assert "\n" not in str(error_message.value)
     assert results.missing(tasks) == tasks[0 if broken_before else 1 :], "what had arrived was kept"
+
+
+def test_an_executor_ends_with_the_block_that_it_was_made_for() -> None:
+    ended: list[tuple[bool, bool]] = []
+
+    class Told(ThreadPoolExecutor):
+        def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+            ended.append((wait, cancel_futures))
+            super().shutdown(wait, cancel_futures=cancel_futures)
+
+    with executing(Told, 1) as made:
+        assert made.submit(len, "abc").result() == 3
+    with pytest.raises(ZeroDivisionError), executing(Told, 1):
+        raise ZeroDivisionError
+    assert ended == [(True, False), (False, True)], "without waiting after an exception"
+
+
+def test_a_run_that_is_stopped_abandons_its_workers() -> None:
+    abandoned = []
+
+    class Told(ThreadPoolExecutor):
+        def abandon(self) -> None:
+            abandoned.append(True)
+
+    def stopped(task: Task, result: TaskResult) -> None:
+        raise KeyboardInterrupt
+
+    with Told(1) as workers, pytest.raises(KeyboardInterrupt):
+        Sweep([Task(len, "abc", "test")], workers, 1, stopped).run()
+    assert abandoned == [True]

@@ -196,3 +196,10 @@ def test_an_odd_grid_is_computed_in_full() -> None:
     assert (sources(scene, 5) == np.arange(25)).all()
     plain = replace(EXACT, symmetric=never)
     assert len(Study((scene,), GRID, 1e-3, [plain]).solved(scene, plain)) == GRID**2
+
+
+@pytest.mark.parametrize(("asked", "of_equations"), [(1e-3, 1e-6), (1e-8, 1e-8)])
+def test_the_equations_are_asked_for_more(asked: float, of_equations: float) -> None:
+    found = {batch.model: batch.settings["tolerance"] for batch in Study((short(),), 1, asked).batches()}
+    assert found["small"] == found["regularised"] == of_equations
+    assert found["translational"] == found["spatial"] == asked

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy, silenced
-from places import SCENES
+from places import limited_scene
 from report_texts import page_of, summary_of
 from runs import Run
 from studies import solved
@@ -23,13 +23,6 @@ from reference.problem import load_scene
 
 GRID = ["--grid", "4"]
 WHY = "step limit: refused before any step: 3 times the work, shorten the duration to 7 s"
-
-
-def _limited(folder: Path, acceptance: str) -> str:
-    """A scene with other limits."""
-    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8").split("[acceptance]")[0]
-    (folder / "mine.toml").write_text(text + acceptance, encoding="utf-8")
-    return str(folder / "mine.toml")
 
 
 def _solved(*silent: str) -> Study:
@@ -90,7 +83,7 @@ def test_a_refused_model_breaks_only_the_limit_of_answers(command: Callable[...,
 
 def test_limits_may_be_stated_for_every_pair(command: Callable[..., Run], tmp_path: Path) -> None:
     limits = "[acceptance.total]\nmaximum = 0.02\n[acceptance.translational]\nmedian = 1e-3\n"
-    scene = _limited(tmp_path, limits + "[acceptance.like_for_like]\nratio = 1e3\n")
+    scene = limited_scene(tmp_path, limits + "[acceptance.like_for_like]\nratio = 1e3\n", "mine.toml")
     run = command(scene, *GRID, "--check", hierarchy=fake_hierarchy(gap=0.01))
     assert run.code == 1
     assert run.err.splitlines() == [
@@ -104,13 +97,15 @@ def test_limits_may_be_stated_for_every_pair(command: Callable[..., Run], tmp_pa
 
 
 def test_the_translational_limit_may_be_of_the_total(command: Callable[..., Run], tmp_path: Path) -> None:
-    scene = _limited(tmp_path, "[acceptance]\nfailed = 99\n[acceptance.translational]\nmedian = 1e-3\n")
+    scene = limited_scene(
+        tmp_path, "[acceptance]\nfailed = 99\n[acceptance.translational]\nmedian = 1e-3\n", "mine.toml"
+    )
     run = command(scene, *GRID, "--check", hierarchy=silenced("spatial", gap=0.01))
     assert "body 1: acceptance.translational.median: 0.01 found, 0.001 allowed" in run.err
 
 
 def test_a_check_without_limits_says_that_nothing_was_checked(command: Callable[..., Run], tmp_path: Path) -> None:
-    scene = _limited(tmp_path, "")
+    scene = limited_scene(tmp_path, "", "mine.toml")
     run = command(scene, *GRID, "--check", hierarchy=silenced("spatial"))
     assert (run.code, run.err) == (0, "--check: no scene states [acceptance] limits: nothing was checked\n")
     assert "No scene states acceptance limits" in page_of(run.report)
@@ -137,7 +132,7 @@ def test_a_check_without_limits_says_that_nothing_was_checked(command: Callable[
 def test_a_wrong_limit_is_one_line_with_the_nearest_key(
     command: Callable[..., Run], tmp_path: Path, limits: str, said: str
 ) -> None:
-    run = command(_limited(tmp_path, limits), "--check", hierarchy=fake_hierarchy("forbidden"))
+    run = command(limited_scene(tmp_path, limits, "mine.toml"), "--check", hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert said in run.err
     assert run.err.count("\n") == 1

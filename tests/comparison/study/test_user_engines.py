@@ -17,7 +17,7 @@ import user_engines
 import xarray as xr
 from fake_models import fake_hierarchy, smooth
 from known_analyses import collected
-from places import ROOT, SCENES, scene_text
+from places import ROOT, limited_scene, scene_text
 from report_texts import data_of, page_of, summary_of
 from runs import Run
 from studies import solved
@@ -321,13 +321,6 @@ def test_the_headline_begins_with_the_users_engine(function: str, said: str) -> 
         assert "the two codes" not in sentence, "it would be taken for the engine of the user"
 
 
-def acceptance(limits: str, folder: Path) -> str:
-    """A scene file with these limits."""
-    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8")
-    (folder / "limited.toml").write_text(text.split("[acceptance]")[0] + limits, encoding="utf-8")
-    return str(folder / "limited.toml")
-
-
 def test_check_counts_the_missing_values_of_every_model(command: Callable[..., Run]) -> None:
     engine = ("--model", "none=user_engines:without_values")
     run = command("fig3-I", "--grid", "2", *engine, "--check", hierarchy=fake_hierarchy(gap=5e-5))
@@ -347,35 +340,32 @@ def test_a_value_with_an_error_as_large_as_itself_is_missing(command: Callable[.
     assert "vague: only values with errors above half of them at any of 4 phase pairs" in run.out
 
 
-@pytest.mark.parametrize("limit", ["median", "maximum", "ratio"])
-def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tmp_path: Path, limit: str) -> None:
+def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tmp_path: Path) -> None:
     engines = ("--model", "good=user_engines:with_error", "--model", "bad=user_engines:off_with_error")
-    tables = "".join(
-        f"[acceptance.{name}]\n{limit} = {2.0 if limit == 'ratio' else 0.02}\n" for name in ("good", "bad")
-    )
-    run = command(acceptance(tables, tmp_path), "--grid", "2", *engines, *ONLY, "--check")
-    found = 21.0 if limit == "ratio" else 0.021  # it claims 1e-3
-    allowed = 2 if limit == "ratio" else 0.02
+    limits = {"median": 0.02, "maximum": 0.02, "ratio": 2.0}
+    table = "".join(f"{key} = {value}\n" for key, value in limits.items())
+    tables = "".join(f"[acceptance.{name}]\n{table}" for name in ("good", "bad"))
+    run = command(limited_scene(tmp_path, tables), "--grid", "2", *engines, *ONLY, "--check")
     assert run.code == 1
     assert run.err.splitlines() == [
-        f"limit broken: limited: body {body}: acceptance.bad.{limit}: {found:g} found, {allowed} allowed"
+        f"limit broken: limited: body {body}: acceptance.bad.{key}: {found} found, {limits[key]:g} allowed"
+        for key, found in (("median", "0.021"), ("maximum", "0.021"), ("ratio", "21"))  # it claims 1e-3
         for body in (1, 2)
     ]
     junit = (run.report / "junit.xml").read_text(encoding="utf-8")
-    assert f'name="acceptance.good.{limit} = {allowed}"' in junit
-    assert 'tests="3" failures="1"' in junit
-    summary = summary_of(run.report)
-    assert summary["scenes"][0]["acceptance"]["bad"][limit] == allowed
+    assert all(f'name="acceptance.good.{key} = {value:g}"' in junit for key, value in limits.items())
+    assert 'tests="7" failures="3"' in junit
+    assert summary_of(run.report)["scenes"][0]["acceptance"]["bad"] == {**limits}
 
 
 def test_one_body_beyond_a_limit_breaks_it(command: Callable[..., Run], tmp_path: Path) -> None:
-    scene = acceptance("[acceptance.mine]\nmedian = 0.02\n", tmp_path)
+    scene = limited_scene(tmp_path, "[acceptance.mine]\nmedian = 0.02\n")
     run = command(scene, "--grid", "2", "--model", "mine=user_engines:off_in_the_second_body", *ONLY, "--check")
     assert run.err == "limit broken: limited: body 2: acceptance.mine.median: 0.021 found, 0.02 allowed\n"
 
 
 def test_a_limit_in_units_of_errors_needs_all_of_them(command: Callable[..., Run], tmp_path: Path) -> None:
-    scene = acceptance("[acceptance.mine]\nratio = 2.0\n", tmp_path)
+    scene = limited_scene(tmp_path, "[acceptance.mine]\nratio = 2.0\n")
     for function in ("plain", "with_one_error"):
         run = command(scene, "--grid", "2", "--model", f"mine=user_engines:{function}", *ONLY, "--check")
         assert run.code == 1
@@ -383,7 +373,7 @@ def test_a_limit_in_units_of_errors_needs_all_of_them(command: Callable[..., Run
 
 
 def test_limits_of_an_absent_engine_are_refused(command: Callable[..., Run], tmp_path: Path) -> None:
-    scene = acceptance("[acceptance.mine]\nmedian = 0.02\n", tmp_path)
+    scene = limited_scene(tmp_path, "[acceptance.mine]\nmedian = 0.02\n")
     run = command(scene, "--grid", "2", *ONLY, "--check", hierarchy=fake_hierarchy("forbidden"))
     assert (run.code, run.err.count("\n")) == (2, 1)
     assert "acceptance.mine = {'median': 0.02}: this study has no engine of this name" in run.err

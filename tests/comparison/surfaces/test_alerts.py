@@ -47,20 +47,6 @@ def test_a_missing_point_is_amber_behind_a_broken_limit(command: Callable[..., R
     assert "Limit broken: fig3-I: acceptance.failed: 2 points without an answer" in run.out
 
 
-def test_every_broken_limit_is_one_alert_for_each_body(command: Callable[..., Run]) -> None:
-    run = command(*GRID, "--check", hierarchy=fake_hierarchy(gap=5e-4))
-    broken = [alert for alert in listed(run) if alert["kind"] == "limit"]
-    lines = [f"limit broken: {alert['scene']}: {alert['text']}" for alert in broken]
-    assert lines == run.err.splitlines()
-    assert {line.split(": ")[2] for line in lines} == {"body 1", "body 2"}
-
-
-def test_a_fault_of_a_solver_is_an_alert_with_its_message(command: Callable[..., Run]) -> None:
-    run = command(*GRID, hierarchy=fake_hierarchy("raising"))
-    texts = [alert["text"] for alert in listed(run) if alert["kind"] == "fault"]
-    assert texts == [f"{model} engine: RuntimeError: the matrix is singular" for model in ("spatial", "translational")]
-
-
 def test_a_travel_that_is_nearly_used_up_is_said_with_its_share(command: Callable[..., Run], tmp_path: Path) -> None:
     share = amplification(load_scene("fig3-I"), phase_grid(2)).cap_share.max()
     file = tmp_path / "limited.toml"

@@ -83,6 +83,9 @@ def test_the_share_is_stored_joined_labeled_and_said(tmp_path: Path) -> None:
             np.testing.assert_allclose(joined.displacement, answer.displacement, rtol=1e-9)
     surfaces = labeled_surfaces(study, batches, answers)
     largest = max(answer.displacement.max() for answer in answers) / scene.radius
+    units = {name: surfaces[name].attrs["units"] for name in ("displacement", "cap_share", "mu", "instant", "cost")}
+    assert units == {"displacement": "m", "cap_share": "1", "mu": "1", "instant": "s", "cost": "s"}
+    np.testing.assert_allclose(surfaces["displacement"], scene.radius * surfaces["cap_share"], rtol=1e-12)
     assert largest_cap_share(surfaces, scene.name, MODEL_HIERARCHY[0].key) == largest > 0.5
     swings = [alert for alert in alerts(study, surfaces, [], [], []) if alert.kind == "swing"]
     assert [alert.level for alert in swings] == ["amber"]

@@ -43,14 +43,6 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("quick")
-def test_every_difference_and_budget_has_a_picture() -> None:
-    study, surfaces = _solved()
-    files = collected(Pictures(), study, surfaces)
-    shown = [name for name in files if name.endswith(".png") and not name.endswith("paper.png")]
-    assert len(shown) == 2 * 2 * 4, "three differences and the budget, of two bodies in two scenes"
-
-
-@pytest.mark.usefixtures("quick")
 def test_what_no_worker_draws_is_drawn_at_home() -> None:
     study, surfaces = _solved()
     assert collected(Pictures(), study, surfaces, lambda jobs: Broken()) == collected(Pictures(), study, surfaces)
@@ -68,12 +60,3 @@ def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None
     assert whole > 0
     assert drawn_anew(*_solved()) == 0
     assert drawn_anew(*_solved(gap=0.02)) == whole
-
-
-def test_a_real_figure_is_a_file() -> None:
-    study, surfaces = _solved()
-    budget = next(task for task in Pictures().tasks(study, surfaces) if task.argument.kind == "budget")
-    files = budget.function(budget.argument)
-    assert [name for name, content in files if len(content) > 1000] == [
-        "fig3-I-body1-budget.png",
-    ]
