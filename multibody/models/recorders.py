@@ -17,10 +17,7 @@ def add_recorders(
     plate: Any = None,
 ) -> Recorders:
     """
-    Motion of `nodes`, then of the coordinates of objects `linear`; gap and slip at `contact_nodes`, force and normal of
-    `contacts`, motion of node `plate`.
-
-    One sensor for all coordinates of an object takes less time than one for each of its nodes.
+    One sensor of the motion of nodes and coordinates, of gap, slip, force and normal of contacts, and of the plate.
     """
     kind = exudyn.OutputVariableType
 

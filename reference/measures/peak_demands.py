@@ -147,9 +147,7 @@ class PeakDemands(Mapping[str, Estimates]):
 
 def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], Trajectory]) -> PeakDemands:
     """
-    Demands of the motion that `move` computes for every phase pair (2,) of `phases` (..., 2), rad.
-
-    A pair without an answer is NaN; its status says why. The other pairs do not depend on it.
+    Demands of the motion that `move` computes for every phase pair of `phases` (..., 2), rad; NaN without an answer.
     """
     pairs, shape = flat_phases(phases)
     clock = time.process_time()

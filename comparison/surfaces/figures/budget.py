@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure
@@ -33,7 +32,6 @@ def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, bo
     """Write one map per step, and of the total, to `path`, PNG: % of the first model's mu_i."""
     bars = steps(study, surfaces, scene.name, body)
     figure = Figure(figsize=(13.0, 3.4), dpi=110)
-    FigureCanvasAgg(figure)
     heading = f"{scene.title} ({scene.name}), body {body}: what each model adds (dots: not resolved)"
     figure.suptitle(verbatim(heading), fontsize=12, y=0.98)
     sizes = np.abs(np.concatenate([step.size[np.isfinite(step.size)] for step in bars] or [np.zeros(0)]))

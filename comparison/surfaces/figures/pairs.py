@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from numpy.typing import NDArray
@@ -39,7 +38,6 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
     """Write the two surfaces on one height scale and the map of their relative difference to `path`, PNG."""
     both = [common_phases(surfaces, scene.name, [r.key]).sel(model=r.key, body=body) for r in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
-    FigureCanvasAgg(figure)
     figure.suptitle(
         verbatim(f"{scene.title} ({scene.name}), body {body}: {pair.title} difference"), fontsize=12, y=0.98
     )

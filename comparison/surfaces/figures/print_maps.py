@@ -10,7 +10,6 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -46,7 +45,6 @@ def draw_maps(
     """
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, HEIGHT), dpi=RESOLUTION)
-        FigureCanvasAgg(figure)
         for column, body in enumerate(bodies[:2]):
             done = next((c for c in completed if (c.model, c.body, c.accepted) == (models[1].key, body, True)), None)
             _row(figure, 0.5 * column, surfaces, scene, models, body, done)
