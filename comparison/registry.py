@@ -19,13 +19,14 @@ from comparison.analyses.errata import feature as errata
 from comparison.analyses.extremes import feature as extremes
 from comparison.analyses.families import feature as families
 from comparison.analyses.measured import feature as measured
-from comparison.analyses.motions.analysis import Motions
+from comparison.analyses.motions import feature as motions
 from comparison.analyses.scaling import feature as scaling
 from comparison.analyses.tradeoff import feature as tradeoff
 from comparison.analyses.validation import feature as validation
 from comparison.analyses.worst_phases import feature as worst_phases
 from comparison.report.building import build_report
 from comparison.report.results import Results
+from comparison.report.scene_result import SceneResult
 from comparison.report.section import Feature, Report
 from comparison.report.surface_sections import (
     BUDGET,
@@ -46,7 +47,7 @@ from comparison.surfaces.figures.pictures import Pictures
 
 FEATURES: tuple[Feature, ...] = (
     SURFACES,
-    Feature("motions", analysis=Motions()),
+    motions.FEATURE,
     families.FEATURE,
     worst_phases.FEATURE,
     demands.FEATURE,
@@ -80,6 +81,13 @@ _FIELDS: dict[str, Any] = {
     for feature in FEATURES
     if feature.result is not None
 }
+_OF_SCENES: dict[str, Any] = {
+    name: (each.kind, Field(description=each.meaning))
+    for feature in FEATURES
+    for name, each in feature.scene_fields.items()
+}
+_Scene = create_model("SceneResult", __base__=SceneResult, __doc__=SceneResult.__doc__, **_OF_SCENES)
+_FIELDS["scenes"] = list[_Scene], Field(description="in the order of the command")  # type: ignore[valid-type]
 StudyResults: type[Results] = create_model("Results", __base__=Results, __doc__=Results.__doc__, **_FIELDS)
 
 

@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import xarray as xr
 
 from comparison.report.results import Results
+from comparison.report.scene_result import SceneResult
 from comparison.runner.analysis import Analysis
 from comparison.runner.cache import Key
 from comparison.runner.task import Task
 from comparison.study.study import Study
 from comparison.surfaces.completion import Completion
+from reference.problem import Scene
 
 
 @dataclass(frozen=True)
@@ -75,8 +77,21 @@ class Section:
         return self.title if results.phased else self.title_recorded or self.title
 
 
-def _unchanged(found: Any) -> Any:
-    return found
+@dataclass(frozen=True)
+class Findings:
+    """What a run found: by its study, in its surfaces, and by its features."""
+
+    study: Study
+    surfaces: xr.Dataset
+    found: Mapping[str, Any]  # by key of the feature
+
+
+class SceneField(NamedTuple):
+    """A field of the results of every scene."""
+
+    kind: Any
+    meaning: str
+    of: Callable[[Findings, Scene], Any]
 
 
 @dataclass(frozen=True)
@@ -86,8 +101,8 @@ class Feature:
 
     key: its field of the results, and its name for --only and --skip unless `selected_as` is another. result: type of
     that field, None where the results hold none. meaning: of the field. analysis: what computes it in a study; or
-    load: what reads it from the folder of the report, where a command left it. summary: what was found, as the results
-    hold it.
+    load: what reads it from the folder of the report, where a command left it. summary: the field of what was found and
+    the results of the scenes, unless it is what was found. scene_fields: of every scene, by name.
     """
 
     key: str
@@ -95,7 +110,8 @@ class Feature:
     meaning: str = ""
     analysis: Analysis[Any] | None = None
     load: Callable[[Path], Any] | None = None
-    summary: Callable[[Any], Any] = _unchanged
+    summary: Callable[[Findings, Sequence[SceneResult]], Any] | None = None
+    scene_fields: Mapping[str, SceneField] = field(default_factory=dict)
     section: Section | None = None
     selected_as: str = ""
 
