@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
-import xarray as xr
 from pydantic import Field, create_model
 
 from comparison.analyses.assumptions import feature as assumptions
@@ -27,7 +27,7 @@ from comparison.analyses.worst_phases import feature as worst_phases
 from comparison.report.building import build_report
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
-from comparison.report.section import Feature, Report
+from comparison.report.section import Feature
 from comparison.report.surface_sections import (
     BUDGET,
     DIFFERENCES,
@@ -41,7 +41,6 @@ from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.study.levels import Level, levels_of
 from comparison.study.study import Study
-from comparison.surfaces.alerts import Fault
 from comparison.surfaces.completion import CompletedSurfaces
 from comparison.surfaces.figures.pictures import Pictures
 
@@ -91,16 +90,7 @@ _FIELDS["scenes"] = list[_Scene], Field(description="in the order of the command
 StudyResults: type[Results] = create_model("Results", __base__=Results, __doc__=Results.__doc__, **_FIELDS)
 
 
-def report_of(
-    study: Study,
-    surfaces: xr.Dataset,
-    found: Mapping[str, Any],
-    faults: Sequence[Fault],
-    run: Mapping[str, Any],
-    **more: Any,
-) -> Report:
-    """Everything that the report of a run is made from: `build_report` with every feature."""
-    return build_report(study, surfaces, found, faults, run, FEATURES, StudyResults, **more)
+report_of = partial(build_report, features=FEATURES, kind=StudyResults)
 
 
 def chosen_analyses(study: Study) -> list[Analysis[Any]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -47,18 +47,16 @@ class Section:
     """
     One section of the page, below its heading.
 
-    template: its file in comparison/analyses or comparison/report/templates. shows: fields of the results; where all
-    of them are None the section is left out, and `absent` says which command makes it. context: what the template
+    shows: fields of the results; where all of them are None the section is left out, and `absent` says which command
+    makes it. name, template (in comparison/analyses or comparison/report/templates), shows: those of the feature unless
+    they are given. context: what the template
     reads, from the report and the folder of its figures. tasks: drawings for the workers. draw: writes its pictures
     into the folder of the figures. title_recorded: title where no scene has phases, "" for the same. folded: whether
     the reader opens it. verifies: whether it verifies the tool rather than answers the question, and so stands in
     verification.html.
     """
 
-    name: str
     title: str
-    template: str
-    shows: tuple[str, ...] = ()
     absent: str = ""
     context: Callable[[Report, Path], Mapping[str, Any]] = _nothing
     tasks: Callable[[Report], list[Task]] | None = None
@@ -66,6 +64,9 @@ class Section:
     title_recorded: str = ""
     folded: bool = True
     verifies: bool = False
+    name: str = ""
+    template: str = ""
+    shows: tuple[str, ...] = ()
 
     def present(self, results: Results) -> bool:
         """Whether the section was asked for and the results hold any of what it shows."""
@@ -114,6 +115,13 @@ class Feature:
     scene_fields: Mapping[str, SceneField] = field(default_factory=dict)
     section: Section | None = None
     selected_as: str = ""
+
+    def __post_init__(self) -> None:
+        if self.section:
+            own = self.section
+            template = own.template or f"{self.key}/section.html.j2"
+            shows = own.shows or (() if self.result is None else (self.key,))
+            object.__setattr__(self, "section", replace(own, name=self.key, template=template, shows=shows))
 
     @property
     def selection(self) -> str:

@@ -74,5 +74,8 @@ FEATURE = Feature(
             lambda findings, scene: demand_statistics(findings.study, findings.found.get("demands"), scene),
         )
     },
-    section=Section("demands", "Demands over all phases", "demands/section.html.j2", context=_context),
+    section=Section(
+        "Demands over all phases",
+        context=_context,
+    ),
 )

@@ -35,10 +35,9 @@ FEATURE = Feature(
         ),
     },
     section=Section(
-        "effective",
         "Effective values",
-        "effective_values/section.html.j2",
         context=_context,
         verifies=True,
+        template="effective_values/section.html.j2",
     ),
 )

@@ -119,10 +119,7 @@ FEATURE = Feature(
     "families of scenes in which one value runs; null without any",
     summary=family_results,
     section=Section(
-        "families",
         "Families of scenes",
-        "families/section.html.j2",
-        ("families",),
         "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
         lambda report, figures: {"family_panels": family_panels(report.results)},
         draw=_draw,
