@@ -7,8 +7,7 @@ from typing import Any, get_args
 
 import xarray as xr
 
-from comparison.report.results import Results
-from comparison.report.run_result import ModelDescription, Run
+from comparison.report.results import ModelDescription, Results, Run
 from comparison.report.scene_result import ModelOutcome, RecordValue
 from comparison.report.section import Feature, Findings, Report
 from comparison.study.analyses import ANALYSES

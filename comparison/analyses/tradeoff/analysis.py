@@ -26,6 +26,7 @@ from reference.problem import Scene
 Array = NDArray[np.float64]
 
 CHUNK = 3.0  # s of work in one task, about
+STATED = ("question", "method", "parameter", "unit", "value", "controlled", "model_error")  # of a setting
 CHEAP = 0.01  # s per point of a reference solution of its own, about
 OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
 
@@ -132,13 +133,7 @@ def entry(setting: Setting, measured: Measured, reference_solution: Array) -> En
     error_estimate = measured.error_estimate / np.abs(measured.mu)
     points, bodies = measured.mu.shape
     return Entry(
-        question=setting.question,
-        method=setting.method,
-        parameter=setting.parameter,
-        unit=setting.unit,
-        value=setting.value,
-        controlled=setting.controlled,
-        model_error=setting.model_error,
+        **{name: getattr(setting, name) for name in STATED},
         points=points,
         answered=int(np.isfinite(error).all(axis=1).sum()),
         seconds=measured.seconds / points,
