@@ -42,10 +42,7 @@ class _Uncollected(Compiler):  # type: ignore[misc]
 
 
 def build_folder(sources: Path) -> Path | None:
-    """
-    Where builds from a file or folder are kept: below NUMBA_CACHE_DIR or in the user's cache; None if neither is
-    writable.
-    """
+    """Where builds of a file or folder are kept: below NUMBA_CACHE_DIR or in the user's cache; None if in neither."""
     # not numba's own setting: a file in the working directory may have made it, and builds are run
     named = os.environ.get("NUMBA_CACHE_DIR")
     parent = Path(named) if named else user_cache()

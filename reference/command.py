@@ -79,9 +79,7 @@ def run_command(main: Callable[[], int]) -> NoReturn:
 
 @contextmanager
 def stoppable() -> Iterator[None]:
-    """
-    The first signal that ends a process, unless it is ignored, raises StoppedError in the block; others change nothing.
-    """
+    """The first signal that ends a process, unless ignored, raises StoppedError in the block; others change nothing."""
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread may handle signals
         return

@@ -228,9 +228,7 @@ def checked_demand(
 
 
 def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
-    """
-    Time in which forces change, s: the shortest of periods, decay and the time in which the loading crosses the cap.
-    """
+    """Time in which forces change, s: the shortest of periods, decay and the loading's way across the cap."""
     frequencies = [2.0 * np.pi / loading_period(scene), float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
     if not scene.recorded:
         frequencies += (-exponents(scene).real).tolist()

@@ -102,10 +102,7 @@ def waterfall(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Wa
 def independent_phases(
     study: Study, scene: Scene, models: Sequence[Model], known: NDArray[np.bool_], stride: int
 ) -> int:
-    """
-    Number of orbits of the `known` phase pairs (K, K) under the symmetries of all models, with and without --full
-    alike.
-    """
+    """Number of orbits of the `known` phase pairs (K, K) under the symmetries of all models, whatever --full says."""
     if scene.recorded:
         return int(known.any())
     reduced = replace(study, full=False)

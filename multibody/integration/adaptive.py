@@ -123,9 +123,7 @@ def run_adaptively(
     stop: float = math.inf,
     keep: bool = False,
 ) -> EngineRun:
-    """
-    Run from `start` at 0 to `end`, not beyond `stop`; ground: plate's acceleration (T, 3) at times (T,), in units.
-    """
+    """Run from `start` at 0 to `end`, not beyond `stop`; ground: plate's acceleration (T, 3) at times (T,)."""
     result = begin_run(engine.model, stop)
     if not budget.allows(min(end, stop), level):
         return result.terminated(Outcome.STEP_LIMIT, 0.0)

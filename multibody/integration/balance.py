@@ -39,9 +39,7 @@ CURRENT = exudyn.ConfigurationType.Current
 def balanced_start(
     model: EngineModel, start: EngineState, acceleration: Array, penetration: float
 ) -> EngineState | None:
-    """
-    The equilibrium near `start` under the plate's acceleration (3,); None if there is none, `start` if none is needed.
-    """
+    """The equilibrium near `start` under the plate's acceleration (3,), or `start` if none is needed; else None."""
     if model.kinematics is None:
         return start
     pressed = model.bearing_penetration or penetration
@@ -101,7 +99,7 @@ class _Balance:
 
     def under_loading(self, equilibrium: Array, closed: Mask) -> Array | None:
         """
-        Coordinates (n,) at which the loading deforms what is stiff, from the equilibrium, with contacts (K,) closed.
+        Coordinates (n,) at which the loading deforms what is stiff, from the equilibrium, by closed contacts (K,).
         """
         mass = self._mass(equilibrium)
         stiff = self.kinematics.stiff_rates(equilibrium, np.ones_like(closed))
@@ -117,10 +115,7 @@ class _Balance:
         return [first, first + 1, first + 5] if self.model.rim == math.inf else []
 
     def _solved(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
-        """
-        Coordinates at which forces `held` (n, t) alone are missing, moved from `begin` in the directions `moved` (n,
-        s).
-        """
+        """Coordinates at which forces `held` (n, t) alone are missing, from `begin` along `moved` (n, s)."""
         moved, _ = np.linalg.qr(moved)
         coordinates, missing = begin, np.zeros(held.shape[1])
         before = math.inf

@@ -68,10 +68,7 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
 
 
 def _of_start(peaks: Peaks, level: Level, model: EngineModel) -> Array:
-    """
-    Error (N,) by links that swing at the start: all of what they add to the first sample, if the peak is twice that at
-    most.
-    """
+    """Error (N,) by links that swing at the start: what they add to the first sample, unless the peak is larger."""
     if model.depressions is None or peaks.first is None:
         return np.zeros_like(peaks.value)
     starting = peaks.instant < STARTING_TIME * math.sqrt(level.penetration)
@@ -81,10 +78,7 @@ def _of_start(peaks: Peaks, level: Level, model: EngineModel) -> Array:
 
 
 def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safety: float = SAFETY_TWO_LEVELS) -> Array:
-    """
-    Error (N,) by rounding of the contact forces, beside a softer contact: two runs that round by x and 4 x differ by 3
-    x.
-    """
+    """Error (N,) by rounding of contact forces, beside a softer contact: rounding by x and 4 x differs by 3 x."""
     stiffer = softer.penetration / level.penetration
     if stiffer < COMPLIANCE_RATIO * (1.0 - 1e-9):
         return np.full_like(peaks.value, level.rounding)
@@ -130,9 +124,7 @@ def widened_by_impacts(errors: Array, peaks: list[Peaks], run: EngineRun, before
 
 
 def widened_without_convergence(errors: Array, run: EngineRun) -> Array:
-    """
-    Errors (N,), none less than the peak itself where any shows no convergence: levels with impacts agree by chance.
-    """
+    """Errors (N,), none less than the peak where any shows no convergence: levels with impacts agree by chance."""
     peaks = run.peaks.value
     if (errors <= MAX_CONVERGED_ERROR * peaks).all():
         return errors
@@ -146,9 +138,7 @@ def from_sharing(run: EngineRun, per_load: Array | None) -> Array:
 
 
 def measured_per_load(run: EngineRun, stiffer: EngineRun) -> Array:
-    """
-    Change of each peak over the load that warping takes, (N,), from a stiffer run, with a safety factor and a floor.
-    """
+    """Change of each peak over the load that warping takes, (N,), from a stiffer run, with safety and a floor."""
     added = stiffer.warping_load - run.warping_load
     if stiffer.outcome != Outcome.OK or stiffer.lifts_off or added < run.warping_load:
         return np.full(len(run.peaks.value), ERROR_PER_WARPING_LOAD)
@@ -157,9 +147,7 @@ def measured_per_load(run: EngineRun, stiffer: EngineRun) -> Array:
 
 
 def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:
-    """
-    Error (N,) that the contact's compliance leaves in `stiff`, from a softer run; never less than its share of rho.
-    """
+    """Error (N,) that the contact's compliance leaves in `stiff`, from a softer run; at least its share of rho."""
     if soft.outcome != Outcome.OK:
         return np.full_like(stiff.value, np.inf)
     change: Array = SAFETY_TWO_LEVELS * np.abs(stiff.value - soft.peaks.value) * (1.0 + lag(level, model))

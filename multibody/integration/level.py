@@ -254,10 +254,7 @@ def for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
 
 
 def contact_change(scene: Scene, model: EngineModel) -> float:
-    """
-    Bound of the change of the contact's force within a brief motion from rest, in weights, by speed and way along the
-    cap.
-    """
+    """Bound of the change of the contact's force within a brief motion from rest, in weights, by speed and way."""
     if model.ground.shakes(2):
         return math.inf
     speed = 2.0 * math.sqrt(2.0) * scene.largest_acceleration / GRAVITY * scene.duration / model.units.time

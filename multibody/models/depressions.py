@@ -26,9 +26,7 @@ class Depressions:
     vertical: NDArray[np.int_]  # (K,) or (0,), index of each sphere's vertical coordinate
 
     def centers(self, coordinates: Array) -> tuple[Array, Array]:
-        """
-        Centers (T, K, 3) of the spheres from those of the depressions, in the axes of the plate and of the platform.
-        """
+        """Centers (T, K, 3) of the spheres from those of the depressions, in axes of the plate and of the platform."""
         turned = rotation(coordinates[:, 3:6])
         local = np.column_stack([self.ring, np.zeros(len(self.ring))]) - self.center
         place = coordinates[:, None, :3] + self.center + np.einsum("tij,kj->tki", turned, local)
@@ -69,9 +67,7 @@ class Depressions:
         return np.asarray(outside.any(axis=1))
 
     def motion_at_contacts(self, coordinates: Array) -> tuple[Array, Array]:
-        """
-        Normals (K, 3) at the points of contact, and the Jacobian (K, 3, 6) of these over the platform's velocities.
-        """
+        """Normals (K, 3) at the points of contact, and their Jacobian (K, 3, 6) over the platform's velocities."""
         normals = self._normals(coordinates)
         levers = self._spheres(coordinates) + self.radius * normals - coordinates[:3] - self.center
         jacobian = np.concatenate([np.tile(np.eye(3), (len(levers), 1, 1)), -cross_matrix(levers)], axis=2)

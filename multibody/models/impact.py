@@ -42,10 +42,7 @@ class ImpactLaw:
     rigid: Mask  # (N - 1,), links that are rigid in tension and bending
 
     def after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
-        """
-        Velocities (n,) after an impact, and which contacts (K,) are open then; closed: that carry load; hit: that are
-        hit.
-        """
+        """Velocities (n,) after an impact, and which contacts (K,) are open then, from those closed and those hit."""
         count = PER_BODY * len(self.masses)
         turning = self._turning(coordinates)
         speeds = turning @ velocities[:count]
@@ -186,9 +183,7 @@ class ImpactLaw:
         return turned[link] @ [-below[0], -below[1], half], turned[link + 1] @ [-above[0], -above[1], -half]
 
     def _impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
-        """
-        Impulses (K, 3), along the normal and across it, by sweeps; rebound: least speed along the normal afterwards.
-        """
+        """Impulses (K, 3), along the normal and across it, by sweeps; rebound: least normal speed afterwards."""
         impulses = np.zeros_like(before)
         scale = float(np.abs(before).max(initial=0.0))
         friction = self.friction.at(np.hypot(before[:, 1], before[:, 2])).tolist()

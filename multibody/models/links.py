@@ -157,9 +157,7 @@ def _ends(mbs: Any, bodies: list[Any], centers: Array, rod: Array, below: float)
 
 
 def set_link_stiffness(mbs: Any, connector: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
-    """
-    Give a link its stiffness in shear, (2, 2), and twist, and `stiff` otherwise; carried: (3,), mass and its moments.
-    """
+    """Give a link its stiffness in shear, (2, 2), and twist, else `stiff`; carried: (3,), mass and its moments."""
     mass, along_x, along_y = carried
     matrix = np.diag([0.0, 0.0, stiff, stiff, stiff, twist])
     matrix[:2, :2] = shear
@@ -202,9 +200,7 @@ def _set_bars(
 
 
 def fastest_of_bars(links: list[Link], masses: Array, tensors: Array, centers: Array) -> float:
-    """
-    Largest angular frequency that bars which give way make of bodies that nothing else holds; 0 without such bars.
-    """
+    """Largest angular frequency that bars which give way make of bodies held by nothing else; 0 without bars."""
     if all(link.bars is None for link in links):
         return 0.0
     size = PER_BODY * len(masses)

@@ -16,9 +16,7 @@ def add_recorders(
     contacts: list[Any],
     plate: Any = None,
 ) -> Recorders:
-    """
-    One sensor of the motion of nodes and coordinates, of gap, slip, force and normal of contacts, and of the plate.
-    """
+    """One sensor of motion of nodes and coordinates, of gap, slip, force and normal of contacts, of the plate."""
     kind = exudyn.OutputVariableType
 
     def at(node: Any, quantity: Any) -> Any:

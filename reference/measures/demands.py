@@ -187,9 +187,7 @@ def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
 
 
 def squares_and_summits(time: Array, place: Array, velocity: Array) -> tuple[Array, Array]:
-    """
-    Squared length of `place` (T, 2) at the instants, and the largest from each to the next, its rate linear between.
-    """
+    """Squared length of `place` (T, 2) at the instants, and the largest from each to the next, by linear rates."""
     square, rate = (place**2).sum(axis=1), (place * velocity).sum(axis=1)
     before, behind = rate[:-1], rate[1:]
     turns = (before > 0.0) & (behind < 0.0)

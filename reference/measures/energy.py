@@ -40,9 +40,7 @@ class Energy(NamedTuple):
 
 
 def energy_of(motion: Trajectory) -> Energy:
-    """
-    Powers and stored energy of a motion; NaN but for friction where bodies turn; small equations move on a paraboloid.
-    """
+    """Powers and stored energy of a motion, NaN but for friction where bodies turn; small ones are on a paraboloid."""
     scene, place, velocity = motion.scene, motion.position, motion.velocity
     masses = scene.masses
     height, climb = place[:, :, 2], velocity[:, :, 2]

@@ -181,9 +181,7 @@ def predicted(surface: Surface, search: LocalSearch, square: Points) -> tuple[Ar
 
 
 def _largest(function: Callable[[Array, Array], Array], readings: list[Array]) -> tuple[Array, float]:
-    """
-    Where a function on the square [-1, 1]^2 is largest, (2,), and its value, by ever finer readings along the axes.
-    """
+    """Where a function on the square [-1, 1]^2 is largest, (2,), and its value, by ever finer readings."""
 
     def largest_along_second(first: Array) -> tuple[Array, Array]:
         second, half = np.zeros((len(first), 1)), 1.0

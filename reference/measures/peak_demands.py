@@ -146,9 +146,7 @@ class PeakDemands(Mapping[str, Estimates]):
 
 
 def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], Trajectory]) -> PeakDemands:
-    """
-    Demands of the motion that `move` computes for every phase pair of `phases` (..., 2), rad; NaN without an answer.
-    """
+    """Demands of the motions that `move` computes for phase pairs (..., 2), rad; NaN without an answer."""
     pairs, shape = flat_phases(phases)
     clock = time.process_time()
     status = np.full(len(pairs), Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")

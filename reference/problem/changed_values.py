@@ -10,9 +10,7 @@ from reference.problem.scene_error import SceneError, keys_of, unknown_key
 
 
 def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapping[str, Sequence[str]]) -> None:
-    """
-    Set one value by its dotted key in tables with these valid keys; None leaves an optional key out. Raises SceneError.
-    """
+    """Set one value by its dotted key in tables with these valid keys; None leaves it out. Raises SceneError."""
     parts = key.split(".")
     place: Any = data
     for depth, part in enumerate(parts):

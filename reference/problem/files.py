@@ -33,10 +33,7 @@ NEW = "new"  # in a staging directory: what is being written
 
 
 def read_file(file: str | Path, largest: int) -> bytes:
-    """
-    The content of a regular file, linked or not, of at most `largest` bytes. Raises OSError; ValueError if it is no
-    path.
-    """
+    """The content of a regular file of at most `largest` bytes. Raises OSError; ValueError if it is no path."""
     flags = (getattr(os, name, 0) for name in ("O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY"))
     handle = os.open(file, os.O_RDONLY | sum(flags))
     try:

@@ -38,9 +38,7 @@ OF_TWO_FREQUENCIES = ("amplitudes", "periods", "decay")
 
 
 def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
-    """
-    The tables of a scene file with the samples of its record, by paths relative to the file `label`. Raises SceneError.
-    """
+    """The tables of a scene file with the samples of its record, relative to the file `label`. Raises SceneError."""
     table = data.get("excitation")
     if not (isinstance(table, dict) and "record" in table):
         return data

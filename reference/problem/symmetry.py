@@ -26,9 +26,7 @@ def half_turns(scene: Scene) -> NDArray[np.intp]:
 
 
 def sources(scene: Scene, grid: int) -> NDArray[np.intp]:
-    """
-    For every phase pair 2 pi k / grid the index of the pair that is solved for it, (grid^2,), alpha2 running fastest.
-    """
+    """For every phase pair 2 pi k / grid the index of the pair solved for it, (grid^2,), alpha2 running fastest."""
     steps = np.stack(np.divmod(np.arange(grid**2), grid), axis=-1)
     shifts = half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
     images = (steps[:, None] + shifts) % grid
@@ -38,9 +36,7 @@ def sources(scene: Scene, grid: int) -> NDArray[np.intp]:
 
 
 def distinct(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
-    """
-    The fewest phase pairs (P, 2), rad, that give a surface on 2 pi k / grid, and which of them stands at each point.
-    """
+    """The fewest phase pairs (P, 2), rad, for a surface on 2 pi k / grid, and which of them stands at each point."""
     solved, taken = np.unique(sources(scene, grid), return_inverse=True)
     return phase_grid(grid)[solved], taken.reshape(grid, grid)
 

@@ -153,9 +153,7 @@ def first_passage(system: System, work: Work, event: int, way: float, begin: flo
 
 @compiled
 def passed(system: System, work: Work, event: int, way: float, low: float, high: float) -> float:
-    """
-    Where `beyond` becomes positive between low and high: regula falsi (Illinois), by bisection where that is slow.
-    """
+    """Where `beyond` becomes positive between low and high, by regula falsi (Illinois) or, if slow, bisection."""
     at_low, at_high = beyond(system, work, event, way, low), beyond(system, work, event, way, high)
     rose = fell = False
     width, secants = high - low, 0

@@ -53,9 +53,7 @@ DIVERGED = 1e3  # change of angle or logarithm of the speed that ends the iterat
 
 @compiled
 def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> int:
-    """
-    One step of length h in tau, which fills the stages and the end; `tolerance` bounds the last change of the angle.
-    """
+    """One step of length h in tau: the stages and the end; `tolerance` bounds the last change of the angle."""
     guess_turning(system, work, h)
     start_waves(system, work, work.time)
     before, slow = 0.0, True

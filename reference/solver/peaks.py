@@ -129,9 +129,7 @@ def interpolation_error(system: System, work: Work, contact: int, h: float, body
 
 @compiled
 def take_peaks(system: System, work: Work, contact: int, h: float, low: float, high: float) -> bool:
-    """
-    Raise work.best (N,) by the largest |total|^2 over [low, high] of the step; whether any is near the largest so far.
-    """
+    """Raise work.best (N,) by the largest |total|^2 over [low, high] of the step; whether one is near the largest."""
     large = False
     for i in range(work.x.shape[0]):
         x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))

@@ -268,7 +268,7 @@ def _rows(array: Array) -> Rows:
 
 def ranges(scenes: Sequence[Scene], cells: Sequence[AssumptionCell]) -> list[ValidityRange]:
     """
-    Where every mu_i stays within each share of WITHIN: over rings, heights, offsets and angles, all else as stated.
+    Where every mu_i stays within each share of WITHIN, over rings, heights, offsets and angles, all else as stated.
     """
     validity = []
     for scene in scenes:

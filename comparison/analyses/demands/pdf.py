@@ -20,9 +20,7 @@ MILLI = 1e3
 
 
 def demand_rows(results: Results) -> list[list[str]]:
-    """
-    Cells under HEADINGS of the first and the last model of every scene, over all phases or over the stored motions.
-    """
+    """Cells under HEADINGS of the first and last model of every scene, over all phases or the stored motions."""
     titles = {model.key: model.title for model in results.models}
     with_demands = [scene for scene in results.scenes if scene.of("demand_statistics") or scene.of("demands")]
     return [

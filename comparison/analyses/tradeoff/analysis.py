@@ -113,7 +113,7 @@ def key(function: Function) -> str:
 
 def functions(scene: Scene, quick: bool, others: Sequence[Setting] = ()) -> dict[str, tuple[Function, int, float]]:
     """
-    Every function called for a scene, by its key, with the number of its phase pairs and about how long each takes, s.
+    Every function called for a scene, by its key, with its number of phase pairs and about how long each takes, s.
     """
     points = {question.key: question.quick if quick else question.points for question in asked(scene)}
     measured = [*settings(scene, quick), *others]
@@ -163,10 +163,7 @@ def _answered(question: Question, reference_solution: Measured, entries: Sequenc
 
 
 def _agreements(question: Question, entries: Sequence[Entry]) -> list[str]:
-    """
-    How far the most accurate setting of other methods agrees with the reference solution; of the same one where there
-    is none.
-    """
+    """How far the most accurate setting of other methods, else of the same one, agrees with the reference solution."""
     candidates = [
         setting
         for setting in entries

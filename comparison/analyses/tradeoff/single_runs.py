@@ -43,10 +43,7 @@ def engine_run(
     penetration: float | None = None,
     newton: float | None = None,
 ) -> Array:
-    """
-    mu of one run of the engine for each phase pair at its USUAL_LEVEL; step: factor on the largest one; penetration: in
-    rho.
-    """
+    """mu of one run of the engine for each phase pair at USUAL_LEVEL; step: a factor; penetration: over rho."""
     pairs = checked_phases(phases)
     usual = multibody.levels(scene, model, 1e-3, regularization)[USUAL_LEVEL]
     level = replace(
@@ -62,9 +59,7 @@ def engine_run(
 
 
 def constant_step_run(scene: Scene, phases: ArrayLike, solver: str, step: float, v_reg: float) -> Array:
-    """
-    mu (M, N) of the translational model by an integrator of `multibody.single_run`; NaN where the engine gives up.
-    """
+    """mu (M, N) of the translational model by an integrator of `multibody.single_run`; NaN where it gives up."""
     pairs = checked_phases(phases)
     peaks = np.full((len(pairs), len(scene.bodies)), np.nan)
     for row, phase in enumerate(pairs):

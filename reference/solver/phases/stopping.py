@@ -77,9 +77,7 @@ def stretched_length(system: System, work: Work) -> float:
 
 @compiled
 def break_within(system: System, work: Work, demand: Demand, h: float) -> tuple[float, int]:
-    """
-    Length of the step up to the loading's next kink or to v_reg, 0 for a begin there, and what the contact does then.
-    """
+    """Length of the step up to the loading's next kink or to v_reg, 0 at its begin, and what the contact does then."""
     limit = next_break(system, work, demand)
     if work.turning[CLOCK, STAGES - 1] > limit + MIN_STEP * demand.period:
         portion = first_crossing(system, work, row(work.turning, CLOCK), work.time, limit)
