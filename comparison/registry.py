@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
-import xarray as xr
 from pydantic import Field, create_model
 
 from comparison.analyses.assumptions import feature as assumptions
@@ -19,14 +19,15 @@ from comparison.analyses.errata import feature as errata
 from comparison.analyses.extremes import feature as extremes
 from comparison.analyses.families import feature as families
 from comparison.analyses.measured import feature as measured
-from comparison.analyses.motions.analysis import Motions
+from comparison.analyses.motions import feature as motions
 from comparison.analyses.scaling import feature as scaling
 from comparison.analyses.tradeoff import feature as tradeoff
 from comparison.analyses.validation import feature as validation
 from comparison.analyses.worst_phases import feature as worst_phases
 from comparison.report.building import build_report
 from comparison.report.results import Results
-from comparison.report.section import Feature, Report
+from comparison.report.scene_result import SceneResult
+from comparison.report.section import Feature
 from comparison.report.surface_sections import (
     BUDGET,
     DIFFERENCES,
@@ -40,13 +41,12 @@ from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.study.levels import Level, levels_of
 from comparison.study.study import Study
-from comparison.surfaces.alerts import Fault
 from comparison.surfaces.completion import CompletedSurfaces
 from comparison.surfaces.figures.pictures import Pictures
 
 FEATURES: tuple[Feature, ...] = (
     SURFACES,
-    Feature("motions", analysis=Motions()),
+    motions.FEATURE,
     families.FEATURE,
     worst_phases.FEATURE,
     demands.FEATURE,
@@ -80,19 +80,17 @@ _FIELDS: dict[str, Any] = {
     for feature in FEATURES
     if feature.result is not None
 }
+_OF_SCENES: dict[str, Any] = {
+    name: (each.kind, Field(description=each.meaning))
+    for feature in FEATURES
+    for name, each in feature.scene_fields.items()
+}
+_Scene = create_model("SceneResult", __base__=SceneResult, __doc__=SceneResult.__doc__, **_OF_SCENES)
+_FIELDS["scenes"] = list[_Scene], Field(description="in the order of the command")  # type: ignore[valid-type]
 StudyResults: type[Results] = create_model("Results", __base__=Results, __doc__=Results.__doc__, **_FIELDS)
 
 
-def report_of(
-    study: Study,
-    surfaces: xr.Dataset,
-    found: Mapping[str, Any],
-    faults: Sequence[Fault],
-    run: Mapping[str, Any],
-    **more: Any,
-) -> Report:
-    """Everything that the report of a run is made from: `build_report` with every feature."""
-    return build_report(study, surfaces, found, faults, run, FEATURES, StudyResults, **more)
+report_of = partial(build_report, features=FEATURES, kind=StudyResults)
 
 
 def chosen_analyses(study: Study) -> list[Analysis[Any]]:

@@ -91,11 +91,7 @@ def magnified(values: Array, seen: float) -> float:
 
 
 def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
-    """
-    From each support to its contact point in plan, (F, K, 2), m, for the platform's `shift` and `turns` (F, 3).
-
-    The point lies on the sphere of radius r, in the direction from the depression's center to the sphere's.
-    """
+    """From each support to its contact point in plan, (F, K, 2), m, for the platform's `shift` and `turns` (F, 3)."""
     supports = _supports(scene)
     arms = np.column_stack([supports - scene.offsets[0], np.full(len(supports), -(scene.bodies[0].height or 0.0))])
     matrices = Rotation.from_euler("XYZ", turns).as_matrix()
@@ -106,11 +102,7 @@ def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
 
 
 def drawn_boxes(scene: Scene) -> tuple[Array, Array, float]:
-    """
-    Heights (N,) and sizes (N, 3), m, of the boxes as they are drawn, and the factor on the heights.
-
-    Heights begin at zero. The boxes stay apart as long as an edge moves by no more than MAX_DIP of their distance.
-    """
+    """Heights (N,), from zero, and sizes (N, 3), m, of the boxes as they are drawn, and the factor on the heights."""
     width = 2.0 * (scene.support_radius or scene.isolator.ring or RING)
     sizes: Array = np.array([body.size or [width, width, THICKNESS * width] for body in scene.bodies])
     width = float(sizes[:, :2].max())

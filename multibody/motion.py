@@ -225,11 +225,7 @@ def _attitude(model: EngineModel, motion: Motion, time: NDArray[np.float64]) -> 
 
 
 def _intervals(time: NDArray[np.float64], holds: NDArray[np.bool_], around: int = 0) -> list[tuple[float, float]]:
-    """
-    First and last instant of every unbroken run of rows in which something holds.
-
-    around: 1 for the instants of the rows before and behind, at which it ceases to hold.
-    """
+    """First and last instant of every unbroken run of rows in which something holds, `around` rows beyond."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], holds.astype(int), [0]])))
     last = len(time) - 1
     return [

@@ -42,11 +42,7 @@ class _Uncollected(Compiler):  # type: ignore[misc]
 
 
 def build_folder(sources: Path) -> Path | None:
-    """
-    Where the builds from a file, or from all Python files below a folder, are kept.
-
-    Below NUMBA_CACHE_DIR if the user set it, otherwise in the user's cache. None if neither can be written.
-    """
+    """Where builds of a file or folder are kept: below NUMBA_CACHE_DIR or in the user's cache; None if in neither."""
     # not numba's own setting: a file in the working directory may have made it, and builds are run
     named = os.environ.get("NUMBA_CACHE_DIR")
     parent = Path(named) if named else user_cache()
@@ -59,11 +55,7 @@ def build_folder(sources: Path) -> Path | None:
 
 
 def cached_on_disk(sources: str | Path, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """
-    Decorate a function that numba compiles on its first call, with options of `numba.njit`, and keeps on disk.
-
-    sources: the file or folder with all that the function calls, usually `__file__`.
-    """
+    """Decorate a function that numba compiles and keeps on disk; sources: all that it calls, usually `__file__`."""
     folder = build_folder(Path(sources))
 
     def decorate(function: Callable[..., Any]) -> Any:
@@ -80,13 +72,7 @@ def cached_on_disk(sources: str | Path, **options: Any) -> Callable[[Callable[..
 
 @cache
 def user_cache() -> Path | None:
-    """
-    The user's cache directory of this project, created if needed. All that is in it may be deleted at any time.
-
-    As the system has it: `~/.cache/phase-resonance` or below XDG_CACHE_HOME on Linux, `~/Library/Caches` on macOS,
-    `%LOCALAPPDATA%` on Windows. If it cannot be written, a private directory among the temporary files. None if that
-    cannot be written either.
-    """
+    """The user's cache of this project, made if needed, else a private temporary directory; None without either."""
     return _writable(platformdirs.user_cache_path(NAME, appauthor=False)) or _private_temporary()
 
 

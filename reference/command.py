@@ -79,11 +79,7 @@ def run_command(main: Callable[[], int]) -> NoReturn:
 
 @contextmanager
 def stoppable() -> Iterator[None]:
-    """
-    The first signal that ends a process raises StoppedError in the block; more of them do not disturb the end.
-
-    A signal that is ignored, as under nohup, stays so.
-    """
+    """The first signal that ends a process, unless ignored, raises StoppedError in the block; others change nothing."""
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread may handle signals
         return

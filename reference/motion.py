@@ -166,11 +166,7 @@ def _motion(scene: Scene, phase: Array, system: System, run: _Run, asked: Array 
 
 
 def _friction_power(scene: Scene, place: Array, velocity: Array, motion: Samples) -> Array:
-    """
-    Power that friction dissipates, (T,), W, of a platform at `place` with `velocity` (T, 3).
-
-    Friction is what the normal force leaves of the force on all bodies, which Newton's law gives.
-    """
+    """Power that friction dissipates, (T,), W: what the normal force leaves of the force on all bodies."""
     force = np.einsum("i,tia->ta", scene.masses, motion.total)
     force[:, 2] += scene.total_mass * GRAVITY
     normal = np.array([0.0, 0.0, 1.0]) - place / scene.radius

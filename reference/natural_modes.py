@@ -97,11 +97,7 @@ class DampedModes:
 
 
 def linear_stiffness(scene: Scene) -> Array:
-    """
-    Stiffness below each body, (N, 2), N/m, columns x and y: m_sum g / rho of (4.3) under the platform, then the links.
-
-    C0 of (4.8) has k_i + k_{i+1} on its diagonal and -k_{i+1} beside it; M0 is diag(m_i).
-    """
+    """Stiffness below each body, (N, 2), N/m: m_sum g / rho of (4.3) under the platform, then C0 of (4.8)."""
     pendulum = scene.total_mass * GRAVITY / scene.radius
     return np.vstack([np.full((1, 2), pendulum), scene.stiffness])
 

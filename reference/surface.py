@@ -201,11 +201,7 @@ def checked_demand(
     rest_condition: str,
     axes: int = 2,
 ) -> tuple[System, Demand]:
-    """
-    The scene in compiled form and what is asked of its runs. Raises ValueError, one line, for a wrong argument.
-
-    Arguments as of `amplification`; axes: 1 for a motion in the plane of x and z.
-    """
+    """The scene in compiled form and what is asked of its runs, as of `amplification`. Raises ValueError, one line."""
     checked_choice("equations", equations, ("exact", "small"))
     checked_choice("rest_condition", rest_condition, ("consistent", "printed"))
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
@@ -232,12 +228,7 @@ def checked_demand(
 
 
 def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
-    """
-    Time in which forces change, s, given the size of the loading, m/s^2, and the chain's fastest vibration, rad/s.
-
-    The shortest of the loading's and the pendulum's periods, the softest link's, VIBRATIONS_PER_TIME_SCALE of the
-    fastest, the decay of the loading, and the time in which it drives the platform across the cap.
-    """
+    """Time in which forces change, s: the shortest of periods, decay and the loading's way across the cap."""
     frequencies = [2.0 * np.pi / loading_period(scene), float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
     if not scene.recorded:
         frequencies += (-exponents(scene).real).tolist()

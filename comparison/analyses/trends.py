@@ -28,10 +28,7 @@ AGREES = 0.15  # of an exponent with its theory: the largest parameter is not ye
 
 
 class Slope(NamedTuple):
-    """
-    size ~ parameter^exponent, +- uncertainty; NaN where too few values are known. points: how many were used, of how
-    many phase pairs.
-    """
+    """size ~ parameter^exponent, +- uncertainty, NaN where too few values are known; points used, of phase pairs."""
 
     exponent: float
     uncertainty: float

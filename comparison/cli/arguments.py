@@ -25,12 +25,8 @@ Rest = ParamSpec("Rest")
 STORED_RESULTS = "report whose stored results, in DIR.tiles, are used and added to"  # --out of what writes nothing else
 
 
-class WriteError(RuntimeError):
-    """A file of the user that could not be written. `str(error)` is one line."""
-
-
 class EndedEarlyError(RuntimeError):
-    """A command that ended with `code` before its work was done. `str(error)` is one line that says how to go on."""
+    """A command that ended with `code` before its work was done. `str(error)` is one line that says why."""
 
     def __init__(self, code: int, line: str) -> None:
         super().__init__(line)
@@ -99,11 +95,12 @@ def number(option: str, text: str, least: float, most: float, unit: str) -> floa
 
 @contextmanager
 def writing(folder: Path, option: str = "--out") -> Iterator[None]:
-    """Raise WriteError, one line, where the block cannot write into the folder that `option` names."""
+    """End the command with code 3 and one line where the block cannot write into the folder that `option` names."""
     try:
         yield
     except OSError as error:
-        raise WriteError(f"command line: {option} = {str(folder)!r}: could not be written: {error}") from None
+        line = f"command line: {option} = {str(folder)!r}: could not be written: {error}"
+        raise EndedEarlyError(3, line) from None
 
 
 def command(
@@ -118,9 +115,6 @@ def command(
         except (SceneError, UsageError) as error:
             print(error, file=sys.stderr)
             return 2
-        except WriteError as error:
-            print(error, file=sys.stderr)
-            return 3
         except EndedEarlyError as error:
             print(error, file=sys.stderr)
             return error.code

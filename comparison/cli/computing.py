@@ -51,9 +51,7 @@ def computed(
     console: Console,
     executor: Pool,
 ) -> TaskResults:
-    """
-    The results of all tasks of a command: stored ones, and the others computed. Raises SceneError, EndedEarlyError.
-    """
+    """The results of all tasks of a command: stored ones, and others computed. Raises SceneError, EndedEarlyError."""
     width = jobs(options)
     out = destination(options.out)
     refuse_foreign_store(out)
@@ -75,9 +73,7 @@ def computed(
 
 @contextmanager
 def ending_early(hint: Callable[[Sequence[str]], str], words: Sequence[str], scheduler: str | None) -> Iterator[None]:
-    """
-    Whatever ends the block early is an EndedEarlyError with a line that says what is kept and, by `hint`, how to go on.
-    """
+    """Whatever ends the block early is an EndedEarlyError that says what is kept and, by `hint`, how to go on."""
     try:
         yield
     except KeyboardInterrupt as stop:

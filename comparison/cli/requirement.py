@@ -21,9 +21,7 @@ REMOTE = ("https", "http", "ssh", "git")
 
 
 def requirement() -> str:
-    """
-    A line of requirements.txt: the address that pip recorded, a commit that others can reach, a folder, or a version.
-    """
+    """A line of requirements.txt: the address that pip recorded, a commit that others reach, a folder or a version."""
     about = _recorded()
     url = str(about.get("url", ""))
     if "vcs_info" in about:

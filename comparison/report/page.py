@@ -31,9 +31,7 @@ SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions
 
 
 def pages(figures: Path, report: Report) -> dict[str, str]:
-    """
-    index.html, which answers the question, and verification.html, which verifies the tool; each needs no other file.
-    """
+    """index.html, which answers the question, and verification.html, which verifies the tool, each whole by itself."""
     study, results = report.study, report.results
     axes = scales([waterfall for scene in results.scenes for waterfall in scene.waterfalls])
     answers = {

@@ -8,8 +8,7 @@ from typing import Any
 
 from comparison.analyses.assumptions.validity import ASSUMPTIONS
 from comparison.analyses.demands.pdf import HEADINGS, demand_rows, demands_note
-from comparison.report.results import VALIDATED, Results
-from comparison.report.run_result import ModelDescription
+from comparison.report.results import VALIDATED, ModelDescription, Results
 from comparison.report.scene_result import ModelOutcome, SceneResult
 from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.headline import Headline

@@ -1,11 +1,9 @@
-"""The results of one scene."""
+"""The results of one scene; the registry adds the fields of its features."""
 
 from __future__ import annotations
 
-from comparison.analyses.demands.analysis import DemandStatistics
-from comparison.analyses.effective_values.analysis import Effective
-from comparison.analyses.effective_values.forced_ratio import ForcedRatio
-from comparison.analyses.motions.result import MotionDemands
+from typing import Any
+
 from comparison.result_types import Number, Part, Text, result
 from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.budget import BudgetEntry
@@ -94,11 +92,7 @@ class SceneResult(Part):
     """one per model and body under a recorded motion; empty for a scene with phases"""
     limits: list[Limit]
     """every acceptance limit that the scene states"""
-    effective: list[Effective]
-    """the scene, then every model"""
-    forced: list[ForcedRatio]
-    """one per axis, harmonic and body above the platform; empty under a recorded motion"""
-    demands: list[MotionDemands]
-    """one per stored phase pair and model; empty without stored motions"""
-    demand_statistics: list[DemandStatistics]
-    """one per demand, body and model; empty unless demands of every phase pair were asked for"""
+
+    def of(self, key: str) -> Any:
+        """What a feature found of the scene."""
+        return getattr(self, key)

@@ -102,41 +102,22 @@ def _outcomes(results: Results) -> list[dict[str, Any]]:
     ]
 
 
-SURFACES = Feature(
+def _feature(key: str, title: str, **about: Any) -> Feature:
+    return Feature(key, section=Section(title, template=f"sections/{key}.html.j2", **about))
+
+
+SURFACES = _feature(
     "surfaces",
-    section=Section(
-        "surfaces",
-        "Surfaces and motions",
-        "sections/surfaces.html.j2",
-        context=_surfaces,
-        title_recorded="Values and motions under the records",
-        folded=False,
-    ),
+    "Surfaces and motions",
+    context=_surfaces,
+    title_recorded="Values and motions under the records",
+    folded=False,
 )
-DIFFERENCES = Feature(
-    "differences",
-    section=Section("differences", "Differences", "sections/differences.html.j2", context=_differences),
+DIFFERENCES = _feature("differences", "Differences", context=_differences)
+BUDGET = _feature("budget", "Causes of the difference", context=_budget)
+OUTCOMES = _feature("outcomes", "Outcomes and cost", context=_costs)
+MODELS = _feature("models", "Models compared", context=_models)
+VERIFICATION = _feature(
+    "verification", "Tests of each code alone", context=lambda report, figures: {"checks": CHECKS}, verifies=True
 )
-BUDGET = Feature(
-    "budget",
-    section=Section("budget", "Causes of the difference", "sections/budget.html.j2", context=_budget),
-)
-OUTCOMES = Feature(
-    "outcomes",
-    section=Section("outcomes", "Outcomes and cost", "sections/outcomes.html.j2", context=_costs),
-)
-MODELS = Feature(
-    "models",
-    section=Section("models", "Models compared", "sections/models.html.j2", context=_models),
-)
-VERIFICATION = Feature(
-    "verification",
-    section=Section(
-        "verification",
-        "Tests of each code alone",
-        "sections/verification.html.j2",
-        context=lambda report, figures: {"checks": CHECKS},
-        verifies=True,
-    ),
-)
-PROVENANCE = Feature("provenance", section=Section("provenance", "Provenance", "sections/provenance.html.j2"))
+PROVENANCE = _feature("provenance", "Provenance")

@@ -43,10 +43,7 @@ def _environment(packages: Iterable[str], sources: Iterable[str]) -> dict[str, s
 
 
 def engine_fingerprint(module: str) -> dict[str, str]:
-    """
-    What the numbers of a user's engine depend on: hashes of the source behind its module, versions of what is
-    installed.
-    """
+    """What the numbers of a user's engine depend on: hashes of source behind its module, versions of packages."""
     package = module.split(".")[0]
     spec = find_spec(package)
     names = {package if spec is not None and spec.origin is not None else module}  # a folder alone has no source

@@ -59,9 +59,7 @@ class Own:
 
 
 def destination(path: Path, option: str = "--out") -> Path:
-    """
-    The folder that a path means, with no symbolic link or ".." left in it. Raises SceneError where none can be made.
-    """
+    """The folder that a path means, without symbolic links and "..". Raises SceneError where none can be made."""
 
     def refusal(rule: str) -> SceneError:
         return SceneError("command line", option, str(path), rule)
@@ -176,9 +174,7 @@ def clear_dead(out: Path) -> None:
 def publish(
     folder: Path, files: Mapping[str, bytes], command: str, say: Callable[[str], None] = on_stderr
 ) -> list[Path]:
-    """
-    Write files of a command into a folder; one that is not the study's own stays, and `say` is told. Raises OSError.
-    """
+    """Write files of a command into a folder; one that is not the study's stays, and `say` is told. Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     with locked(folder.resolve().parent):

@@ -221,9 +221,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _safe_path() -> Iterator[str | None]:
-    """
-    A process started meanwhile searches the path of this one, not the working directory first. Yields SAFE_PATH before.
-    """
+    """A process started meanwhile does not search the working directory first. Yields what SAFE_PATH was."""
     before = os.environ.get(SAFE_PATH)
     _set_safe_path("1")
     try:

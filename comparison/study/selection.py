@@ -34,10 +34,7 @@ class Selection:
         skip: Sequence[str] | None,
         also: Sequence[str] | None = None,
     ) -> Selection:
-        """
-        What the command line asks for, else each scene file; claims and errata are the paper's unless asked for by
-        name.
-        """
+        """What the command line asks for, else each scene file; claims and errata of others only if named."""
         by_scene, unnamed, on_request = {}, set(OF_THE_PAPER), set(ON_REQUEST)
         for scene in scenes:
             refuse_unknown_analyses(scene)

@@ -38,9 +38,7 @@ UNKNOWN_ERROR = np.nan  # of an engine that states none
 
 
 def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> Amplification:
-    """
-    What a supplied function answers, in the form of `multibody.amplification`; it gets the settings that it names.
-    """
+    """What a supplied function answers, in the form of `multibody.amplification`, asked with the settings it names."""
     with silent():
         function = user_function(engine["function"])
         begin = _processor_time()

@@ -195,10 +195,7 @@ def largest_share(held_out: int) -> float:
 def completions(
     study: Study, surfaces: xr.Dataset, scene: Scene, held_out: Mapping[tuple[str, str], HeldOut] | None
 ) -> list[Completion]:
-    """
-    A completion for every body of every model that lacks phases, or is spatial on few, in the order of models and
-    bodies.
-    """
+    """A completion for every body of every model that lacks phases, or is spatial on few, in their order."""
     if scene.recorded:
         return []
     surfaces = surfaces[["mu", "error", "stride"]]
@@ -324,9 +321,7 @@ def _completion(
 
 
 def interpolated(values: Array, phase: Array, every: Array) -> Array:
-    """
-    Values (K, K) known at phases (K,), NaN where not, interpolated by thin plates at the phases `every` (L,), rad.
-    """
+    """Values (K, K) at phases (K,), NaN where not known, by thin plates at the phases `every` (L,), rad."""
     known = np.isfinite(values.ravel())
     made: Array = RBFInterpolator(_torus(phase)[known], values.ravel()[known])(_torus(every))
     return made.reshape(len(every), len(every))

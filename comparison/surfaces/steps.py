@@ -78,9 +78,7 @@ class Step:
         return float(self.alpha1[row // self.stride]), float(self.alpha2[column // self.stride])
 
     def mean(self, where: NDArray[np.bool_], stride: int) -> tuple[float, float]:
-        """
-        Mean and standard deviation of the signed size at those of every `stride`-th phase: means add up to the total's.
-        """
+        """Mean and standard deviation of the signed size at every `stride`-th phase: means of steps add up."""
         if not where.any():
             return float("nan"), float("nan")
         sizes = self.every(stride, self.size)[where]
@@ -104,7 +102,7 @@ def known(mu: Array, error: Array) -> Array:
 
 def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model, body: int, per: Model) -> Step:
     """
-    The difference of two models in one body, as a share of mu of `per`; a value whose error is above half is missing.
+    The difference of two models in one body, as a share of mu of `per`; values with errors above half are missing.
     """
     row, of_model = surfaces.get_index("scene").get_loc(scene), surfaces.get_index("model").get_loc
     stride = int(max(surfaces["stride"].values[row, of_model(model.key)] for model in (first, second, per)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,6 +16,13 @@ from comparison.study.study import Study
 from reference.problem import Scene, phase_axis
 
 NOT_APPLICABLE = "not applicable"  # status of a model that the scene gives nothing to add
+MEANING = {  # unit and meaning of the variables
+    "mu": ("1", "dynamic amplification factor (5.1)"),
+    "error": ("1", "estimated absolute error of mu"),
+    "instant": ("s", "time when the outcome arose"),
+    "displacement": ("m", "largest horizontal displacement of the platform"),
+    "cap_share": ("1", "largest horizontal displacement of the platform over rho"),
+}
 NOT_ASKED = "not asked"  # status of the phases between those of a model that computes every k-th
 
 
@@ -31,70 +39,49 @@ def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[B
     models = [model.key for model in study.hierarchy]
     bodies = max(len(scene.bodies) for scene in study.scenes)
     plane = (len(names), len(models), study.grid**2)
-    mu = np.full((*plane, bodies), np.nan)
-    error = np.full((*plane, bodies), np.nan)
-    instant = np.full(plane, np.nan)
-    displacement = np.full(plane, np.nan)
-    status = np.full(plane, NOT_APPLICABLE, dtype=object)
-    for index, scene in enumerate(study.scenes):
-        status[index, [models.index(model.key) for model in models_of(scene, study.hierarchy)]] = NOT_ASKED
-    solved = {
-        (scene.name, model.key): study.solved(scene, model)
-        for scene in study.scenes
-        for model in models_of(scene, study.hierarchy)
-    }
-    cost = np.zeros(plane[:2])
+    values = {name: np.full((*plane, bodies), np.nan) for name in ("mu", "error")}
+    values |= {name: np.full(plane, np.nan) for name in ("instant", "displacement")}
+    status, cost, solved = np.full(plane, NOT_APPLICABLE, dtype=object), np.zeros(plane[:2]), {}
+    for row, scene in enumerate(study.scenes):
+        for model in models_of(scene, study.hierarchy):
+            status[row, models.index(model.key)] = NOT_ASKED
+            solved[scene.name, model.key] = study.solved(scene, model)
     for batch, answer in zip(batches, answers, strict=True):
         where = names.index(batch.scene.name), models.index(batch.model)
         span = solved[batch.scene.name, batch.model][batch.first : batch.first + len(batch.phases)]
-        count = len(batch.scene.bodies)
-        mu[where][span, :count] = answer.mu
-        error[where][span, :count] = answer.error
-        instant[where][span] = answer.instant
-        displacement[where][span] = answer.displacement
+        for name, array in values.items():
+            found = getattr(answer, name)
+            array[where][(span, slice(found.shape[1])) if found.ndim > 1 else span] = found
         status[where][span] = answer.status
         cost[where] += answer.cost
     for row, scene in enumerate(study.scenes):
         for model in models_of(scene, study.hierarchy):
             column, place, source = models.index(model.key), study.places(model, scene), study.sources(scene, model)
-            for array in (mu, error, instant, displacement, status):
+            for array in (*values.values(), status):
                 array[row, column, place] = array[row, column, source]
-    square = (len(names), len(models), study.grid, study.grid)
-    axis = phase_axis(study.grid)
-    surface, point = ("scene", "model", "body", "alpha1", "alpha2"), ("scene", "model", "alpha1", "alpha2")
-
-    def per_body(array: np.ndarray) -> np.ndarray:
-        return np.moveaxis(array.reshape(*square, bodies), -1, 2)
-
+    values["cap_share"] = values["displacement"] / np.array([scene.radius for scene in study.scenes])[:, None, None]
+    square, axis = (len(names), len(models), study.grid, study.grid), phase_axis(study.grid)
+    point = ("scene", "model", "alpha1", "alpha2")
+    variables: dict[str, Any] = {"status": (point, status.reshape(square), {"long_name": "named outcome of the point"})}
+    for name, array in values.items():
+        about = dict(zip(("units", "long_name"), MEANING[name]))
+        if array.ndim > len(plane):
+            by_body = np.moveaxis(array.reshape(*square, bodies), -1, 2)
+            variables[name] = ("scene", "model", "body", "alpha1", "alpha2"), by_body, about
+        else:
+            variables[name] = point, array.reshape(square), about
+    strides = [[study.stride(model, scene) for model in study.hierarchy] for scene in study.scenes]
+    of_scenes = {
+        "recorded": ([scene.recorded for scene in study.scenes], "whether it has no phases"),
+        "bodies": ([len(scene.bodies) for scene in study.scenes], "bodies of the scene"),
+        "digest": ([scene.digest() for scene in study.scenes], "hash of the scene"),
+    }
     return xr.Dataset(
         {
-            "mu": (surface, per_body(mu), {"units": "1", "long_name": "dynamic amplification factor (5.1)"}),
-            "error": (surface, per_body(error), {"units": "1", "long_name": "estimated absolute error of mu"}),
-            "status": (point, status.reshape(square), {"long_name": "named outcome of the point"}),
-            "instant": (point, instant.reshape(square), {"units": "s", "long_name": "time when the outcome arose"}),
-            "displacement": (
-                point,
-                displacement.reshape(square),
-                {"units": "m", "long_name": "largest horizontal displacement of the platform"},
-            ),
-            "cap_share": (
-                point,
-                (displacement / np.array([scene.radius for scene in study.scenes])[:, None, None]).reshape(square),
-                {"units": "1", "long_name": "largest horizontal displacement of the platform over rho"},
-            ),
+            **variables,
             "cost": (("scene", "model"), cost, {"units": "s", "long_name": "compute time of the surface"}),
-            "stride": (
-                ("scene", "model"),
-                [[study.stride(model, scene) for model in study.hierarchy] for scene in study.scenes],
-                {"long_name": "the model has every k-th phase"},
-            ),
-            "recorded": (
-                "scene",
-                [scene.recorded for scene in study.scenes],
-                {"long_name": "whether it has no phases"},
-            ),
-            "bodies": ("scene", [len(scene.bodies) for scene in study.scenes], {"long_name": "bodies of the scene"}),
-            "digest": ("scene", [scene.digest() for scene in study.scenes], {"long_name": "hash of the scene"}),
+            "stride": (("scene", "model"), strides, {"long_name": "the model has every k-th phase"}),
+            **{name: ("scene", listed, {"long_name": meaning}) for name, (listed, meaning) in of_scenes.items()},
         },
         coords={
             "scene": names,

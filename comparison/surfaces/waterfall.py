@@ -7,6 +7,8 @@ The mean of a sum is the sum of the means, so that the bars end at the total; me
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -15,9 +17,9 @@ from numpy.typing import NDArray
 from pydantic import computed_field
 
 from comparison.result_types import Number, Phases, Text, result
+from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.budget import known_to_all, steps
-from comparison.surfaces.independent import independent_phases
 from comparison.surfaces.steps import RESOLVED, Step, step
 from reference.problem import Scene
 
@@ -95,6 +97,23 @@ def waterfall(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Wa
         independent=independent_phases(study, scene, models, known, stride),
         largest=largest_difference(study, surfaces, scene, body),
     )
+
+
+def independent_phases(
+    study: Study, scene: Scene, models: Sequence[Model], known: NDArray[np.bool_], stride: int
+) -> int:
+    """Number of orbits of the `known` phase pairs (K, K) under the symmetries of all models, whatever --full says."""
+    if scene.recorded:
+        return int(known.any())
+    reduced = replace(study, full=False)
+    axis = np.arange(0, study.grid, stride)
+    places = (study.grid * axis[:, None] + axis)[known]
+    orbits = np.empty((len(places), len(models)), dtype=np.intp)
+    for column, model in enumerate(models):
+        orbit = np.full(study.grid**2, -1)
+        orbit[reduced.places(model, scene)] = reduced.sources(scene, model)
+        orbits[:, column] = orbit[places]
+    return len(np.unique(orbits, axis=0))
 
 
 def largest_difference(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> LargestDifference:

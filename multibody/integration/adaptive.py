@@ -123,11 +123,7 @@ def run_adaptively(
     stop: float = math.inf,
     keep: bool = False,
 ) -> EngineRun:
-    """
-    Run from `start` at time 0 to `end`; ground: plate's acceleration (T, 3) at times (T,), in units of the model.
-
-    stop: do not go on after this instant. Up to there the steps are those of a run to `end`.
-    """
+    """Run from `start` at 0 to `end`, not beyond `stop`; ground: plate's acceleration (T, 3) at times (T,)."""
     result = begin_run(engine.model, stop)
     if not budget.allows(min(end, stop), level):
         return result.terminated(Outcome.STEP_LIMIT, 0.0)
@@ -266,11 +262,7 @@ def absolute_accelerations(model: EngineModel, motion: Motion, ground: Callable[
 def _record(
     result: EngineRun, motion: Motion, size: Array, model: EngineModel, level: Level, keep: bool, read: bool = True
 ) -> bool:
-    """
-    Add an accepted chunk to the result, up to where the model's validity ends; whether it goes on.
-
-    read: whether its accelerations may be peaks.
-    """
+    """Add an accepted chunk, read for peaks or not, up to where the model's validity ends; whether the run goes on."""
     outcome, row, instant = termination(motion, model)
     if keep:
         result.chunks.append(motion.until(row))
@@ -318,11 +310,7 @@ def _record_settling(result: EngineRun, time: Array, size: Array, displacement: 
 
 
 def _step_ratio(motion: Motion, engine: Engine, size: Array, peaks: Array, step: float, level: Level) -> Array:
-    """
-    Each step over what is allowed there, (T,).
-
-    size: of the absolute accelerations, (T, N). peaks: (N,), so far.
-    """
+    """Each step over what is allowed there, (T,), from accelerations (T, N) and the peaks so far, (N,)."""
     per_change = step / level.slip_change
     step_ratio = _slip_change(motion, engine, per_change)
     if engine.model.friction is not None:
@@ -365,11 +353,7 @@ def _behind_kinks(motion: Motion, size: Array, engine: Engine, peaks: Array, per
 
 
 def _record_warping(result: EngineRun, motion: Motion, model: EngineModel, level: Level) -> None:
-    """
-    Record the largest load that warping takes while all contacts are closed: elastic supports would take none.
-
-    While a support is open the others do warp the ring, and for some time after it has closed. That load is no error.
-    """
+    """Record the largest load that warping takes while all contacts are closed: elastic supports would take none."""
     if model.warping_displacement is None:
         return
     displacement = model.warping_displacement(motion.coordinates)

@@ -39,11 +39,7 @@ CURRENT = exudyn.ConfigurationType.Current
 def balanced_start(
     model: EngineModel, start: EngineState, acceleration: Array, penetration: float
 ) -> EngineState | None:
-    """
-    The equilibrium near `start`; None if there is none, and `start` itself for a model that needs none.
-
-    acceleration: of the plate at time zero, (3,), in units of the model.
-    """
+    """The equilibrium near `start` under the plate's acceleration (3,), or `start` if none is needed; else None."""
     if model.kinematics is None:
         return start
     pressed = model.bearing_penetration or penetration
@@ -103,9 +99,7 @@ class _Balance:
 
     def under_loading(self, equilibrium: Array, closed: Mask) -> Array | None:
         """
-        Coordinates (n,) at which the loading deforms what is stiff, from the equilibrium (n,); closed: (K,).
-
-        Springs hold the spheres in every direction in which they can move.
+        Coordinates (n,) at which the loading deforms what is stiff, from the equilibrium, by closed contacts (K,).
         """
         mass = self._mass(equilibrium)
         stiff = self.kinematics.stiff_rates(equilibrium, np.ones_like(closed))
@@ -121,11 +115,7 @@ class _Balance:
         return [first, first + 1, first + 5] if self.model.rim == math.inf else []
 
     def _solved(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
-        """
-        Coordinates at which forces `held` (n, t) alone are missing to the balance, from `begin` (n,).
-
-        moved: (n, s), independent directions. Contacts that are not closed, (K,), touch without force.
-        """
+        """Coordinates at which forces `held` (n, t) alone are missing, from `begin` along `moved` (n, s)."""
         moved, _ = np.linalg.qr(moved)
         coordinates, missing = begin, np.zeros(held.shape[1])
         before = math.inf

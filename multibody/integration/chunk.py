@@ -44,12 +44,7 @@ def loaded_slip(contact: Array, row: int) -> float:
 def slip_changes(
     accelerations: Array, platform: NDArray[np.int_], contact: Array, per_change: float, corner: float
 ) -> Array:
-    """
-    Change of the slip velocity in one step over what is allowed, (T,).
-
-    The size of the acceleration of the coordinates `platform` (3,) times `per_change`, over the smallest slip speed of
-    the contacts that carry load, or `corner` where they are slower.
-    """
+    """Change of the slip velocity in one step over what is allowed, (T,), by the slowest contact that carries load."""
     step_ratio = np.empty(len(accelerations))
     before_x = before_y = before_z = 0.0
     for row in range(len(accelerations)):

@@ -50,11 +50,7 @@ SMALLEST_CHANGE = 1e-290  # keeps a rate finite
 
 
 def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> Array:
-    """
-    Error (N,) of the last of `peaks`, two or three of the last of consecutive levels, in units of the model.
-
-    Without rounding of the contact forces (`from_rounding`).
-    """
+    """Error (N,) of the last of peaks at two or three consecutive levels, in units, without rounding of the contact."""
     last, before = peaks[-1].value, peaks[-2].value
     change = np.abs(last - before)
     safety, rate = SAFETY_TWO_LEVELS, np.full_like(change, MIN_RATE)
@@ -72,11 +68,7 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
 
 
 def _of_start(peaks: Peaks, level: Level, model: EngineModel) -> Array:
-    """
-    Error (N,) of peaks that links which swing at the start make: all of what they add to the first sample.
-
-    Such a swing at most doubles that sample; a larger peak is another one.
-    """
+    """Error (N,) by links that swing at the start: what they add to the first sample, unless the peak is larger."""
     if model.depressions is None or peaks.first is None:
         return np.zeros_like(peaks.value)
     starting = peaks.instant < STARTING_TIME * math.sqrt(level.penetration)
@@ -86,11 +78,7 @@ def _of_start(peaks: Peaks, level: Level, model: EngineModel) -> Array:
 
 
 def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safety: float = SAFETY_TWO_LEVELS) -> Array:
-    """
-    Error (N,) that rounding of the contact forces leaves in the `peaks` of a level, beside others of a softer contact.
-
-    It is in proportion to the stiffness of the contact, so that two runs which round by x and 4 x differ by 3 x.
-    """
+    """Error (N,) by rounding of contact forces, beside a softer contact: rounding by x and 4 x differs by 3 x."""
     stiffer = softer.penetration / level.penetration
     if stiffer < COMPLIANCE_RATIO * (1.0 - 1e-9):
         return np.full_like(peaks.value, level.rounding)
@@ -123,12 +111,7 @@ def from_contact_noise(run: EngineRun, level: Level, scene: Scene, model: Engine
 
 
 def widened_by_impacts(errors: Array, peaks: list[Peaks], run: EngineRun, before: int) -> Array:
-    """
-    Errors (N,) of a run, the last of `peaks`, which impacts do not let fall below a share of the peaks.
-
-    Nor below the spread of three levels whose changes do not fall by MIN_RATE or differ in sign: they scatter. before:
-    levels on the same springs.
-    """
+    """Errors (N,) that impacts do not let fall below a share of the peaks, nor below levels that scatter."""
     if not run.impacts:
         return errors
     widened = np.maximum(errors, MIN_ERROR_WITH_IMPACTS / 2.0**before * run.peaks.value)
@@ -141,11 +124,7 @@ def widened_by_impacts(errors: Array, peaks: list[Peaks], run: EngineRun, before
 
 
 def widened_without_convergence(errors: Array, run: EngineRun) -> Array:
-    """
-    Errors (N,) of a run, none of them less than the peak itself where the error of any body shows no convergence.
-
-    Supports that hit again make every level another motion. Two of them then agree by chance, for one body or another.
-    """
+    """Errors (N,), none less than the peak where any shows no convergence: levels with impacts agree by chance."""
     peaks = run.peaks.value
     if (errors <= MAX_CONVERGED_ERROR * peaks).all():
         return errors
@@ -159,13 +138,7 @@ def from_sharing(run: EngineRun, per_load: Array | None) -> Array:
 
 
 def measured_per_load(run: EngineRun, stiffer: EngineRun) -> Array:
-    """
-    Relative change of each peak over the load that warping takes, (N,), from a run whose supports warp less easily.
-
-    Nothing else may differ between the runs. The change is stated with a safety factor, and never below what the peaks
-    of other scenes show. Without an answer, with supports that open or with hardly more load the other run says
-    nothing.
-    """
+    """Change of each peak over the load that warping takes, (N,), from a stiffer run, with safety and a floor."""
     added = stiffer.warping_load - run.warping_load
     if stiffer.outcome != Outcome.OK or stiffer.lifts_off or added < run.warping_load:
         return np.full(len(run.peaks.value), ERROR_PER_WARPING_LOAD)
@@ -174,11 +147,7 @@ def measured_per_load(run: EngineRun, stiffer: EngineRun) -> Array:
 
 
 def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:
-    """
-    Error (N,) that the contact's compliance leaves in `stiff`, from a run with the softer contact of `level`.
-
-    Never less than its share of rho: the geometry of the contact is not known better.
-    """
+    """Error (N,) that the contact's compliance leaves in `stiff`, from a softer run; at least its share of rho."""
     if soft.outcome != Outcome.OK:
         return np.full_like(stiff.value, np.inf)
     change: Array = SAFETY_TWO_LEVELS * np.abs(stiff.value - soft.peaks.value) * (1.0 + lag(level, model))

@@ -243,12 +243,7 @@ def newton_tolerance(number: int, step: float, penetration: float) -> float:
 
 
 def for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
-    """
-    `level` with a contact as soft, and a residual as small, as the smallest peak of a run asks for, in units of g.
-
-    The rounding of the contact force then stays a share of the tolerance. Only a peak as small as that of a weak
-    loading changes anything.
-    """
+    """`level` with a contact as soft and a residual as small as the smallest peak of a run asks for, in units of g."""
     if smallest >= WEAK_LOADING:
         return level
     wanted = level.rounding_moment / (MAX_ROUNDING_SHARE * tolerance * max(smallest, WEAKEST_PEAK))
@@ -259,12 +254,7 @@ def for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
 
 
 def contact_change(scene: Scene, model: EngineModel) -> float:
-    """
-    Bound of the change of the contact's force within a brief motion from rest, in weights.
-
-    The loading takes the platform no faster than it would go freely. Speed V and way X along the cap change the force
-    by V^2 / rho and by the loading times X / rho.
-    """
+    """Bound of the change of the contact's force within a brief motion from rest, in weights, by speed and way."""
     if model.ground.shakes(2):
         return math.inf
     speed = 2.0 * math.sqrt(2.0) * scene.largest_acceleration / GRAVITY * scene.duration / model.units.time
@@ -287,12 +277,7 @@ def largest_step(period: float, model: EngineModel) -> float:
 
 
 def shortest_period(scene: Scene, model: EngineModel) -> float:
-    """
-    Shortest period of the loading, the pendulum and the chain, in units of the model.
-
-    The chain's periods count however short they are: the loading begins at once and sets every mode swinging, and
-    dampers leave a mode some swings.
-    """
+    """Shortest period of the loading, the pendulum and every mode of the chain, in units: all swing from the start."""
     periods = [2.0 * math.pi]
     if not scene.recorded:  # a record is linear within every step
         periods += [2.0 * math.pi / (pace * model.units.time) for pace in exponents(scene).imag]

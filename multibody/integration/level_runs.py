@@ -179,11 +179,7 @@ class LevelRuns:
         return real, np.abs(run.peaks.value - real.peaks.value)
 
     def _repeat_on_real_bearings(self, earlier: Array) -> tuple[Array, bool]:
-        """
-        Change (N,) of the last level's peaks on springs of real bearings, and whether a run that ends shows it.
-
-        earlier: the change (N,) at a level before. Beyond the tolerance the run on real bearings is the last one.
-        """
+        """Change (N,) of the last level's peaks on springs of real bearings, and whether a run that ends shows it."""
         number, run = len(self.runs) - 1, self.runs[-1]
         real, change = self._on_real_bearings(self.levels[number], run)
         if real.outcome in UNFINISHED:  # its peaks may still grow

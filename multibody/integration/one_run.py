@@ -54,13 +54,7 @@ class PhasePair:
     def at_level(
         self, level: Level, budget: Budget, stop: float = math.inf, *, keep: bool = False, residual: float | None = None
     ) -> EngineRun:
-        """
-        Run with the steps that `level` allows.
-
-        stop: do not go on after this instant, in units of time. Without it the run may leave out an end in which
-        nothing large comes (`look_ahead`), unless its motion is kept. residual: of Newton's iteration, if not that of
-        the level.
-        """
+        """Run with the steps of `level`, up to `stop` or, unless kept, to where nothing large comes any more."""
         engine = Engine(self.model, level.newton, level.residual if residual is None else residual)
         self.model.set_contact(level.penetration, level.warping_compliance)
         start = self._start(level.penetration)

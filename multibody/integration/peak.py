@@ -84,11 +84,7 @@ class Peaks:
         return rows
 
     def read_until(self, instant: float) -> None:
-        """
-        Read on from the last samples to `instant`, at most about a step behind them, where velocities jump.
-
-        Nothing is read where samples do not agree on what comes: then they do not resolve the motion.
-        """
+        """Read on from the last samples to `instant`, where velocities jump, unless they do not resolve the motion."""
         time, size, last = self._time, self._size, len(self._time) - 1
         if last < 2 or instant - time[-1] > MAX_STEPS_BEYOND * np.diff(time[-3:]).min():
             return
@@ -145,11 +141,7 @@ def _uneven(time: Array) -> Rows:
 def _smooth(
     time: Array, size: Array, row: int, first: int, last: int, others: tuple[int, int]
 ) -> tuple[float, float, float]:
-    """
-    Top of the parabola through the highest sample and two others; its error from a cubic through one more sample.
-
-    The sample itself where one of the others is not between `first` and `last`: a corner or a kink lies in between.
-    """
+    """Top and error of the parabola through the highest sample and two others, or the sample itself beside a corner."""
     alternating = 0.0
     if last - first >= 4:
         begin = min(max(row - 2, first), last - 4)
@@ -176,11 +168,7 @@ def _smooth(
 
 
 def _alternating(time: Array, size: Array) -> float:
-    """
-    Part of five samples that alternates from step to step on a cubic: next to nothing where steps resolve the motion.
-
-    What the first of longer steps leaves, where it is the last one, is all in its own sample.
-    """
+    """Part of five samples that alternates from step to step: next to nothing where steps resolve the motion."""
     apart = time[:, None] - time
     np.fill_diagonal(apart, 1.0)
     weights = 1.0 / apart.prod(axis=1)
@@ -189,11 +177,7 @@ def _alternating(time: Array, size: Array) -> float:
 
 
 def _unresolved(time: Array, size: Array, row: int, corners: list[int]) -> float:
-    """
-    Error of a sample alone between two corners: what the corners before it have changed, from the samples before those.
-
-    Supports that pass v_reg one by one make corners closer than the steps, which are too long for all that they change.
-    """
+    """Error of a sample alone between two corners: what the corners before it have changed."""
     if row - 1 not in corners or row not in corners:
         return 0.0
     last = row - 1

@@ -15,11 +15,7 @@ BISECTIONS = 50
 
 
 def travel_reached(motion: Motion, model: EngineModel) -> tuple[float, int]:
-    """
-    When the platform's displacement passes the travel, in units of time, and the last row before.
-
-    Infinite and the last row if it does not.
-    """
+    """When the displacement passes the travel, in units of time, infinite if never, and the last row before."""
     time, axes, limit = motion.time, model.bodies[0, :2], model.travel**2
     if model.travel == math.inf:
         return math.inf, len(time) - 1

@@ -30,11 +30,7 @@ def assemble(
     contact_force: bool = False,
     **options: int,
 ) -> EngineModel:
-    """
-    Assemble the engine's system of `scene`; options: further arguments of the model's builder.
-
-    Raises ValueError for an unknown model or loading, a wrong or missing v_reg.
-    """
+    """Assemble the engine's system of `scene`. Raises ValueError for an unknown model or loading, or a wrong v_reg."""
     checked_choice("loading", loading, LOADINGS)
     checked_choice("model", model, sorted(BUILDERS))
     if regularization is not None:

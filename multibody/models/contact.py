@@ -41,9 +41,7 @@ def set_contact_parameters(
     damping_ratio: float = DAMPING_RATIO,
 ) -> None:
     """
-    Set radii, stiffness and damping of one of `count` contacts that share the weight.
-
-    radii: of sphere and depression, or of the sphere on a plane.
+    Set radii, of sphere and depression or of a sphere on a plane, stiffness and damping of one of `count` contacts.
     """
     mbs.SetObjectParameter(contact, "spheresRadii" if isinstance(radii, list) else "sphereRadius", radii)
     mbs.SetObjectParameter(contact, "contactStiffness", 1.0 / (count * penetration))
@@ -60,8 +58,7 @@ def corner_and_relaxation(scene: Scene, regularization: float | None, units: Uni
 
 def viscous_relaxation(scene: Scene, units: Units) -> float:
     """
-    Time m1 / (f_c m_sum g) in which a lubricated platform takes on the slip speed that its drive asks for, in units of
-    time; inf without lubrication.
+    Time m1 / (f_c m_sum g) in which a lubricated platform takes on its slip speed, in units; inf without lubrication.
     """
     friction = scene.friction_coefficient * units.velocity if scene.lubricated else 0.0
     return float(scene.masses[0]) / scene.total_mass / friction if friction > 0.0 else math.inf

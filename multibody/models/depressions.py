@@ -26,11 +26,7 @@ class Depressions:
     vertical: NDArray[np.int_]  # (K,) or (0,), index of each sphere's vertical coordinate
 
     def centers(self, coordinates: Array) -> tuple[Array, Array]:
-        """
-        Centers of the spheres from those of the depressions, in the axes of the plate and of the platform.
-
-        coordinates: (T, n). Returns two arrays (T, K, 3).
-        """
+        """Centers (T, K, 3) of the spheres from those of the depressions, in axes of the plate and of the platform."""
         turned = rotation(coordinates[:, 3:6])
         local = np.column_stack([self.ring, np.zeros(len(self.ring))]) - self.center
         place = coordinates[:, None, :3] + self.center + np.einsum("tij,kj->tki", turned, local)
@@ -71,11 +67,7 @@ class Depressions:
         return np.asarray(outside.any(axis=1))
 
     def motion_at_contacts(self, coordinates: Array) -> tuple[Array, Array]:
-        """
-        Normals (K, 3) on the platform at its points of contact for coordinates (n,), and the Jacobian of these points.
-
-        Jacobian: (K, 3, 6), velocities of the points over velocity and angular velocity of the platform.
-        """
+        """Normals (K, 3) at the points of contact, and their Jacobian (K, 3, 6) over the platform's velocities."""
         normals = self._normals(coordinates)
         levers = self._spheres(coordinates) + self.radius * normals - coordinates[:3] - self.center
         jacobian = np.concatenate([np.tile(np.eye(3), (len(levers), 1, 1)), -cross_matrix(levers)], axis=2)

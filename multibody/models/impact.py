@@ -42,11 +42,7 @@ class ImpactLaw:
     rigid: Mask  # (N - 1,), links that are rigid in tension and bending
 
     def after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
-        """
-        Velocities (n,) after an impact at coordinates (n,) with velocities (n,), and which contacts (K,) are open then.
-
-        closed, hit: (K,), contacts that carry load, and those that the platform hits.
-        """
+        """Velocities (n,) after an impact, and which contacts (K,) are open then, from those closed and those hit."""
         count = PER_BODY * len(self.masses)
         turning = self._turning(coordinates)
         speeds = turning @ velocities[:count]
@@ -105,11 +101,7 @@ class ImpactLaw:
         return shifted
 
     def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
-        """
-        Speeds (K,) along the normals at which the platform leaves the spheres; negative: it approaches.
-
-        The first are those against spheres that hold still or give way, the second against spheres as they move.
-        """
+        """Speeds (K,) at which the platform leaves spheres that hold still or give way, and spheres as they move."""
         platform = (self._turning(coordinates) @ velocities[: PER_BODY * len(self.masses)])[:PER_BODY]
         normals, jacobian = self.depressions.motion_at_contacts(coordinates)
         leaving: Array = np.einsum("ki,kij,j->k", normals, jacobian, platform)
@@ -129,11 +121,7 @@ class ImpactLaw:
         return rates
 
     def stiff_rates(self, coordinates: Array, closed: Mask) -> Array:
-        """
-        Rates (s, 6 N) of what is stiff over the engine's velocities of the bodies, at coordinates (n,).
-
-        That is heave and tilt of the platform on closed contacts (K,), tension and bending of rigid links.
-        """
+        """Rates (s, 6 N) of heave and tilt on closed contacts and of rigid links, over the engine's velocities."""
         count = PER_BODY * len(self.masses)
         ring = self.depressions.ring[closed]
         heave_and_tilt = orth(np.column_stack([np.ones(len(ring)), ring])).T if len(ring) else np.empty((0, 0))
@@ -195,11 +183,7 @@ class ImpactLaw:
         return turned[link] @ [-below[0], -below[1], half], turned[link + 1] @ [-above[0], -above[1], -half]
 
     def _impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
-        """
-        Impulses (K, 3), along the normal and across it, by sweeps over the contacts.
-
-        delassus: (3 K, 3 K); before: velocities (K, 3); rebound: least speed along the normal afterwards, (K,).
-        """
+        """Impulses (K, 3), along the normal and across it, by sweeps; rebound: least normal speed afterwards."""
         impulses = np.zeros_like(before)
         scale = float(np.abs(before).max(initial=0.0))
         friction = self.friction.at(np.hypot(before[:, 1], before[:, 2])).tolist()

@@ -116,11 +116,7 @@ def _in_units(bars: BarLink, units: Units) -> BarLink:
 
 
 def add_link(mbs: Any, bodies: list[Any], centers: Array, damping: Array) -> Any:
-    """
-    The link between two neighbors with centers of mass (2, 3), half-way up between them and on the vertical axis.
-
-    damping: in shear, (2, 2). `set_link_stiffness` completes it.
-    """
+    """The link half-way between two centers of mass (2, 3), on the vertical axis; damping: in shear, (2, 2)."""
     values, directions = np.linalg.eigh(damping)
     for value, direction in zip(values, directions.T):
         add_damper(mbs, bodies, centers, np.append(direction, 0.0), value)
@@ -161,11 +157,7 @@ def _ends(mbs: Any, bodies: list[Any], centers: Array, rod: Array, below: float)
 
 
 def set_link_stiffness(mbs: Any, connector: Any, carried: Array, shear: Array, twist: float, stiff: float) -> None:
-    """
-    Give a link the scene's stiffness in shear, (2, 2), stiffness in twist, and `stiff` otherwise.
-
-    carried: (3,), mass above it, and that mass times the place x, y of its center.
-    """
+    """Give a link its stiffness in shear, (2, 2), and twist, else `stiff`; carried: (3,), mass and its moments."""
     mass, along_x, along_y = carried
     matrix = np.diag([0.0, 0.0, stiff, stiff, stiff, twist])
     matrix[:2, :2] = shear
@@ -208,11 +200,7 @@ def _set_bars(
 
 
 def fastest_of_bars(links: list[Link], masses: Array, tensors: Array, centers: Array) -> float:
-    """
-    Largest angular frequency that bars which give way make, of bodies that nothing else holds; 0 without such bars.
-
-    tensors: moments of inertia, (N, 3, 3).
-    """
+    """Largest angular frequency that bars which give way make of bodies held by nothing else; 0 without bars."""
     if all(link.bars is None for link in links):
         return 0.0
     size = PER_BODY * len(masses)

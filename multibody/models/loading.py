@@ -65,11 +65,7 @@ def ground_of(mbs: Any, scene: Scene, units: Units) -> Ground:
 
 
 def symbolic_load(mbs: Any, load: Any, parameter: str, function: Callable[..., Any]) -> Any:
-    """
-    Give `load` the user function `function`, recorded as an expression.
-
-    Returns the expression, which the caller keeps alive as long as the system: the engine does not own it.
-    """
+    """Give `load` the user function as a recorded expression, which the caller keeps alive as long as the system."""
     expression = symbolic_function(mbs, function, parameter, load)
     mbs.SetLoadParameter(load, parameter, expression)
     return expression
@@ -91,11 +87,7 @@ class Push(NamedTuple):
 
 
 def push(mbs: Any, ground: Ground, pushes: Iterable[Push]) -> list[Any]:
-    """
-    -m times the plate's acceleration on every coordinate. Returns the expressions, see `symbolic_load`.
-
-    Loads on coordinates take a fraction of the time of force vectors on bodies.
-    """
+    """-m times the plate's acceleration on every coordinate, faster than forces on bodies. Returns the expressions."""
 
     def force(mass: float, axis: int) -> Any:
         return lambda mbs, t, load: -mass * ground.along(axis, t)

@@ -71,11 +71,7 @@ class RecordedGround:
 
 
 def align_steps(knots: Array, near: float, time: float, step: float, count: int) -> tuple[float, int]:
-    """
-    Step and number of steps from `time` on, at most `step` and `count`, such that steps end at every knot passed.
-
-    From a knot on over as many intervals of the same length as `count` reaches; from elsewhere to the next knot.
-    """
+    """Step and number of steps from `time` on, at most `step` and `count`, that end at every knot passed."""
     place = int(np.searchsorted(knots, time + near, side="right")) if len(knots) else 0
     if place == len(knots):
         return step, count

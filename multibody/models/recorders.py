@@ -16,12 +16,7 @@ def add_recorders(
     contacts: list[Any],
     plate: Any = None,
 ) -> Recorders:
-    """
-    Motion of `nodes`, then of the coordinates of objects `linear`; gap and slip at `contact_nodes`, force and normal of
-    `contacts`, motion of node `plate`.
-
-    One sensor for all coordinates of an object takes less time than one for each of its nodes.
-    """
+    """One sensor of motion of nodes and coordinates, of gap, slip, force and normal of contacts, of the plate."""
     kind = exudyn.OutputVariableType
 
     def at(node: Any, quantity: Any) -> Any:

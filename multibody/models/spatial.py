@@ -65,9 +65,7 @@ def spatial(
     scene: Scene, regularization: float | None, *, loading: str = "inertial", contact_force: bool = False
 ) -> EngineModel:
     """
-    Assemble the spatial model; arguments as in `translational`.
-
-    Raises ValueError if the scene lacks supports, ring, sphere_radius, or the height or size of a body.
+    Assemble the spatial model as `translational`. Raises ValueError if the scene lacks data of supports or bodies.
     """
     units = units_of(scene)
     ring, radius, centers, sizes = _geometry(scene, units)
@@ -289,9 +287,7 @@ def _weights(mbs: Any, nodes: list[Any], masses: Array) -> None:
 
 
 def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
-    """
-    Supports (K, 2), sphere radius, centers of mass (N, 3) and sizes (N, 3), all in units of length. Raises ValueError.
-    """
+    """Supports (K, 2), sphere radius, centers (N, 3) and sizes (N, 3), in units of length. Raises ValueError."""
     isolator = scene.isolator
     required = {f"isolator.{key}": getattr(isolator, key) for key in ("supports", "sphere_radius")}
     if not isinstance(isolator.supports, list):

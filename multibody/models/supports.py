@@ -76,12 +76,7 @@ def fixed_supports(mbs: Any, plate: Plate, ring: Array) -> Supports:
 
 
 def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> Supports:
-    """
-    Spheres at places (K, 2) that share the load elastically, with the coordinates of `sphere_nodes`.
-
-    On a plate that moves a sphere is a rigid body whose moments of inertia keep it from turning, since a 1-D mass has
-    no other motion than its own.
-    """
+    """Spheres at places (K, 2) that share the load elastically; on a plate that moves, bodies too heavy to turn."""
     count = len(ring)
     warped = warping(ring)
     if plate.moves:

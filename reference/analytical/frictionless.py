@@ -81,11 +81,7 @@ def _check(scene: Scene) -> None:
 def _responses(
     scene: Scene, natural: Modes, time: Array, orders: int, *, absolute: bool, bodies: int | None = None
 ) -> list[Complex]:
-    """
-    Complex response per harmonic and its derivatives up to order `orders` - 1: (T, N, 2 axes, 2 harmonics) each.
-
-    absolute: of the absolute acceleration, else of the displacement. bodies: of the first so many only.
-    """
+    """Complex response per harmonic and its first `orders` derivatives, (T, N, 2 axes, 2 harmonics) each."""
     shape = natural.shape[:, :bodies]
     parts = [np.zeros((len(time), shape.shape[1], 2, 2), dtype=complex) for _ in range(orders)]
     for axis in range(2):

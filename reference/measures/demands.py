@@ -187,11 +187,7 @@ def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
 
 
 def squares_and_summits(time: Array, place: Array, velocity: Array) -> tuple[Array, Array]:
-    """
-    Squared length of `place` (T, 2) at the instants, (T,), and the largest from each of them to the next, (T - 1,).
-
-    Where its rate changes sign, that is taken as linear in between. Elsewhere the largest is that of the next instant.
-    """
+    """Squared length of `place` (T, 2) at the instants, and the largest from each to the next, by linear rates."""
     square, rate = (place**2).sum(axis=1), (place * velocity).sum(axis=1)
     before, behind = rate[:-1], rate[1:]
     turns = (before > 0.0) & (behind < 0.0)

@@ -40,13 +40,7 @@ class Energy(NamedTuple):
 
 
 def energy_of(motion: Trajectory) -> Energy:
-    """
-    Powers and stored energy of a motion.
-
-    `ground`, `dampers` and `stored` are NaN where bodies turn, which takes up energy that the motion does not show. The
-    bodies of the small equations keep their height. Their gravity is that of the paraboloid z = (x^2 + y^2) / (2 rho),
-    on which (4.3) move.
-    """
+    """Powers and stored energy of a motion, NaN but for friction where bodies turn; small ones are on a paraboloid."""
     scene, place, velocity = motion.scene, motion.position, motion.velocity
     masses = scene.masses
     height, climb = place[:, :, 2], velocity[:, :, 2]

@@ -181,12 +181,7 @@ def predicted(surface: Surface, search: LocalSearch, square: Points) -> tuple[Ar
 
 
 def _largest(function: Callable[[Array, Array], Array], readings: list[Array]) -> tuple[Array, float]:
-    """
-    Where a function on the square [-1, 1]^2 is largest, (2,), and its value there.
-
-    From the largest value along the second axis at every place along the first one: an edge or a jump aslant does not
-    hold this up. Each of the readings looks, along one axis, at offsets within the interval that the last one left.
-    """
+    """Where a function on the square [-1, 1]^2 is largest, (2,), and its value, by ever finer readings."""
 
     def largest_along_second(first: Array) -> tuple[Array, Array]:
         second, half = np.zeros((len(first), 1)), 1.0

@@ -146,11 +146,7 @@ class PeakDemands(Mapping[str, Estimates]):
 
 
 def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], Trajectory]) -> PeakDemands:
-    """
-    Demands of the motion that `move` computes for every phase pair (2,) of `phases` (..., 2), rad.
-
-    A pair without an answer is NaN; its status says why. The other pairs do not depend on it.
-    """
+    """Demands of the motions that `move` computes for phase pairs (..., 2), rad; NaN without an answer."""
     pairs, shape = flat_phases(phases)
     clock = time.process_time()
     status = np.full(len(pairs), Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")

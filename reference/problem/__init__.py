@@ -81,18 +81,6 @@ if TYPE_CHECKING:
         phase_distribution,
     )
 
-MEASURES = {  # read off motions: here, too, for scripts that import them from here
-    "Demands",
-    "Estimate",
-    "Estimates",
-    "FloorSpectra",
-    "PeakDemands",
-    "PhaseDistribution",
-    "demands",
-    "floor_spectra",
-    "phase_distribution",
-}
-
 __all__ = [
     "ADVICE",
     "GRAVITY",
@@ -146,7 +134,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    if name in MEASURES:
+    if name in __all__:  # read off motions: here, too, for scripts that import them from here
         return getattr(import_module("reference.measures"), name)
     raise AttributeError(f"module 'reference.problem' has no attribute '{name}'")
 

@@ -39,11 +39,7 @@ class BarLink:
 
 
 def bar_links(bodies: Sequence[Body], loads: Sequence[float], radius: float | None) -> list[BarLink | None]:
-    """
-    The links between bodies, from below; None for one that is rigid in tension and bending.
-
-    loads: N, weight that each link carries. radius: m, of the supports, in place of a `spread` of the bars.
-    """
+    """The links between bodies under loads, N, from below; None for a rigid one; radius: m, in place of a `spread`."""
     links: list[BarLink | None] = []
     for body, load in zip(bodies[1:], loads):
         bars = body.bars

@@ -17,12 +17,7 @@ DEPTH = 20  # of the continued fraction: exact in double precision up to bucklin
 
 @dataclass(frozen=True)
 class LoadFactors:
-    """
-    Stiffness under load over that without, as functions of q = P l^2 / (4 E J).
-
-    sway: of the stiffness 12 E J / l^3. sway_slope: its derivative by q. bending: of the stiffness E J / l against
-    opposite rotations of the ends.
-    """
+    """Stiffness under load over that without, by q = P l^2 / (4 E J); sway_slope: the derivative of `sway`."""
 
     sway: float
     sway_slope: float

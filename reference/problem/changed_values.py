@@ -10,11 +10,7 @@ from reference.problem.scene_error import SceneError, keys_of, unknown_key
 
 
 def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapping[str, Sequence[str]]) -> None:
-    """
-    Set one value by its dotted key in the tables `data` of a scene; None leaves an optional key out.
-
-    keys: the valid keys of every table, by its name. Raises SceneError.
-    """
+    """Set one value by its dotted key in tables with these valid keys; None leaves it out. Raises SceneError."""
     parts = key.split(".")
     place: Any = data
     for depth, part in enumerate(parts):

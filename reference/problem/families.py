@@ -101,11 +101,7 @@ def load_family(source: str | Path, amplitude: float | None = None) -> Family:
 
 
 def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) -> Family:
-    """
-    The family of tables that are read already. Raises SceneError as `load_family`.
-
-    label: name or path of the file, for errors and for its records. amplitude: m/s^2, as in `load_scene`.
-    """
+    """The family of tables that are read; label: their file, for errors and records. Raises as `load_family`."""
     name = Path(label).stem
     combine = data.get("combine")
     data = _all_motions({key: value for key, value in data.items() if key != "combine"}, label)

@@ -33,12 +33,7 @@ NEW = "new"  # in a staging directory: what is being written
 
 
 def read_file(file: str | Path, largest: int) -> bytes:
-    """
-    The content of a regular file of at most `largest` bytes: a pipe or a device may block, or never end.
-
-    A symbolic link is followed. Raises OSError also if it is no regular file, or larger (`strerror` says so), and
-    ValueError if it is no path at all, such as one with a null byte.
-    """
+    """The content of a regular file of at most `largest` bytes. Raises OSError; ValueError if it is no path."""
     flags = (getattr(os, name, 0) for name in ("O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY"))
     handle = os.open(file, os.O_RDONLY | sum(flags))
     try:
@@ -60,11 +55,7 @@ def read_file(file: str | Path, largest: int) -> bytes:
 
 
 def write_atomically(file: Path, content: bytes) -> None:
-    """
-    Write a file of our own, whole or not at all, in place of the one that is there, which the caller knows is ours.
-
-    Raises OSError: what was there is still there then.
-    """
+    """Write a file of our own, whole or not at all, in place of the one that is there. Raises OSError."""
     part = _part(file, content)
     try:
         os.replace(part, file)
@@ -74,11 +65,7 @@ def write_atomically(file: Path, content: bytes) -> None:
 
 
 def write_new(file: Path, content: bytes) -> Path:
-    """
-    Write a file under a name that nothing has: the one given, or the next free one (`run-2.gif` for `run.gif`).
-
-    Returns the file written. Nothing that existed is touched. Raises OSError.
-    """
+    """Write a file under the name given, or the next free one (`run-2.gif`); the file written. Raises OSError."""
     part = _part(file, content)
     try:
         for place in names_after(file):
@@ -101,14 +88,7 @@ def names_after(place: Path) -> Iterator[Path]:
 
 @contextmanager
 def locked(folder: Path, wait: bool = True) -> Iterator[bool]:
-    """
-    Hold the lock of a directory for the block; it also ends with the process.
-
-    Yields
-    ------
-    bool
-        Whether it is held: not if somebody else has it and `wait` is false, or where there are no locks.
-    """
+    """Hold the lock of a directory for the block; yields whether it is held, which may fail without `wait` or locks."""
     handle = -1
     try:
         if fcntl is not None:

@@ -103,11 +103,7 @@ LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digi
 
 
 def takes(kind: type | UnionType, rule: str) -> Callable[[Callable[Rest, Result]], Callable[Rest, Result]]:
-    """
-    Have a function check its first argument, as all public functions do that take a scene or a motion.
-
-    The function raises TypeError, one line that ends with `rule`, for anything but a `kind`.
-    """
+    """Have a function raise TypeError, one line that ends with `rule`, if its first argument is not a `kind`."""
 
     def with_check(function: Callable[Rest, Result]) -> Callable[Rest, Result]:
         name = next(iter(signature(function).parameters))
@@ -157,11 +153,8 @@ def checked_choice(name: str, value: Any, allowed: Sequence[str]) -> str:
 
 def checked_array(name: str, values: Any, rule: str, *, finite: bool = True) -> Array:
     """
-    `values` as a contiguous array of finite numbers. Raises ValueError, one line that ends with `rule`.
-
-    finite: whether NaN and infinite numbers are refused.
-
-    Masked entries, texts, None and nested lists of uneven length are no numbers.
+    `values` as a contiguous array of numbers, finite ones if so asked. Raises ValueError, one line that ends with
+    `rule`.
     """
     if _is_masked(values):
         raise ValueError(f"{name}: has masked entries: {rule}")
@@ -186,9 +179,7 @@ def _is_masked(values: Any) -> bool:
 
 def checked_state(initial: Any, bodies: int, radius: float, travel: float | None = None) -> tuple[Array, Array]:
     """
-    Position and velocity (N, 2) of an initial `State`, m and m/s. Raises ValueError, one line.
-
-    The platform must start inside the rim (4.1), `radius` in m, and within `travel`, m, where there is one.
+    Position and velocity (N, 2) of an initial `State`, inside the rim and the travel. Raises ValueError, one line.
     """
     rule = f"must have finite position and velocity of shape ({bodies}, 2)"
     try:

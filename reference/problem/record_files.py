@@ -50,11 +50,7 @@ class RecordError(ValueError):
 
 @lru_cache(maxsize=32)  # of a family whose other keys run
 def csv_samples(text: str) -> Array:
-    """
-    Samples (K, 4) of a CSV file: lines that begin with # are comments, the first other one names columns and units.
-
-    Columns: time [s] and at least one of ax, ay, az in [m/s^2], [g] or [cm/s^2] ([gal]). Raises RecordError.
-    """
+    """Samples (K, 4) of a CSV file: time [s] and some of ax, ay, az in [m/s^2], [g] or [cm/s^2]. Raises RecordError."""
     lines = ((number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip())
     rows = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
     if not rows:
@@ -80,11 +76,7 @@ def csv_samples(text: str) -> Array:
 
 
 def at2_samples(texts: Mapping[str, str]) -> Array:
-    """
-    Samples (K, 4) of PEER NGA .AT2 files, by the axis each is recorded along.
-
-    All must have the same DT; the ground is at rest along an axis whose file ends before the others. RecordError.
-    """
+    """Samples (K, 4) of PEER NGA .AT2 files of one DT, by the axis each is recorded along. Raises RecordError."""
     steps, values = {}, {}
     for axis, text in texts.items():
         steps[axis], values[axis] = _at2(axis, text)
@@ -200,11 +192,7 @@ def _number(line: int, cell: str) -> float:
 
 
 def array_samples(time: Any, acceleration: Any) -> Array:
-    """
-    Samples (K, 4) of arrays.
-
-    time: (K,), s, rising. acceleration: (K,) along x, (K, 2) along x and y or (K, 3), m/s^2. Raises RecordError.
-    """
+    """Samples (K, 4) of times (K,), s, and accelerations along x, x and y, or x, y and z, m/s^2. Raises RecordError."""
     instants = _numbers("time", time, "(K,), s")
     values = _numbers("acceleration", acceleration, ACCELERATIONS)
     columns = values[:, None] if values.ndim == 1 else values

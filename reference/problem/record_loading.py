@@ -38,12 +38,7 @@ OF_TWO_FREQUENCIES = ("amplitudes", "periods", "decay")
 
 
 def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
-    """
-    The tables of a scene file with the samples of its record read from the files it names.
-
-    Paths are relative to the scene file `label`, "" for the working directory; a name that is no file there may be that
-    of a shipped record. Without a `duration` the scene lasts as long as its record. Raises SceneError.
-    """
+    """The tables of a scene file with the samples of its record, relative to the file `label`. Raises SceneError."""
     table = data.get("excitation")
     if not (isinstance(table, dict) and "record" in table):
         return data

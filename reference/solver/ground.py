@@ -86,11 +86,7 @@ def next_ground(system: System, work: Work, t: float) -> Ground:
 
 @compiled
 def ground_at_stages(system: System, work: Work) -> None:
-    """
-    Fill work.ground, after work.elapsed and `start_waves` at the start of the step.
-
-    A harmonic is summed from its Taylor series there, which takes less time than a sine at every stage.
-    """
+    """Fill work.ground after `start_waves`: harmonics from their Taylor series, quicker than sines at every stage."""
     elapsed = work.elapsed
     longest = elapsed[STAGES - 1]
     e0, e1 = system.exponents[0] * longest, system.exponents[1] * longest

@@ -35,11 +35,7 @@ BEHIND = _ones_where(_PLACES[:, None] < _PLACES)
 
 @compiled
 def factorize(columns: Array, pivots: Array) -> bool:
-    """
-    Overwrites a matrix (n, blocks, LANES) by its factors; False if it is singular or not finite.
-
-    pivots (n,): places of the pivots, LANES times the block and the row in it. n is STAGES or twice as much.
-    """
+    """Overwrite a matrix (n, blocks, LANES) by its factors, with pivots (n,); False if it is singular or not finite."""
     return factorize_blocks(columns, pivots, 1) if pivots.shape[0] == STAGES else factorize_blocks(columns, pivots, 2)
 
 

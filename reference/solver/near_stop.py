@@ -53,11 +53,7 @@ DIVERGED = 1e3  # change of angle or logarithm of the speed that ends the iterat
 
 @compiled
 def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> int:
-    """
-    One step of length h in tau from the state x, v = exp(work.log_speed) e(work.angle).
-
-    Fills a, total and `turning` at the stages and x1, v1 at the end; `tolerance` bounds the last change of the angle.
-    """
+    """One step of length h in tau: the stages and the end; `tolerance` bounds the last change of the angle."""
     guess_turning(system, work, h)
     start_waves(system, work, work.time)
     before, slow = 0.0, True
@@ -122,11 +118,7 @@ def move_bodies(system: System, work: Work, h: float) -> None:
 
 @compiled
 def pull_bodies(system: System, work: Work, h: float) -> float:
-    """
-    Ground, accelerations of the chain and drive of the platform at the stages.
-
-    Returns the largest change of the chain's accelerations, as a change of velocity over the speed.
-    """
+    """Ground, chain and drive at the stages; the largest change of the chain's, as one of velocity over the speed."""
     place, velocity, stage = work.chain, work.velocity, work.stage
     bodies = work.x.shape[0]
     change = 0.0
@@ -163,11 +155,7 @@ def inside_rim(system: System, work: Work) -> bool:
 
 @compiled
 def turn_platform(system: System, work: Work, fresh: bool) -> None:
-    """
-    Acceleration of the platform at the stages, along and across its direction; `fresh`: and slopes by the direction.
-
-    Where friction depends on the speed, also the slope of that along the direction by the speed's logarithm.
-    """
+    """Acceleration of the platform at the stages, along and across its direction; `fresh`: and its slopes."""
     turning, stage, load = work.turning, work.stage, load_at_stages(work)
     speed, ex, ey = row(turning, SPEED), row(turning, COSINE), row(turning, SINE)
     ax, ay, reaction, ratio = directed(system, load, speed, ex, ey)
@@ -192,11 +180,7 @@ def turn_platform(system: System, work: Work, fresh: bool) -> None:
 
 @compiled
 def correct_turning(system: System, work: Work, h: float, fresh: bool) -> float:
-    """
-    One iteration of Newton's method for the directions, the speeds behind them; the largest change, or infinity.
-
-    fresh: with slopes of this iteration, not with the factors of the one before.
-    """
+    """One iteration of Newton's method, with slopes that are `fresh` or kept; the largest change, or infinity."""
     turning, residual = work.turning, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     put(residual, 0, work.angle - row(turning, DIRECTION) + h * integral(row(turning, ACROSS)))

@@ -83,11 +83,7 @@ def missed_velocity(work: Work, body: int, axis: int) -> float:
 
 @compiled
 def returned(system: System, work: Work, h: float, body: int) -> float:
-    """
-    Rate at which the acceleration of a body goes wrong at the start of the step, m/s^3, by the links.
-
-    Positions at the stages are integrals of the polynomial through the velocities there, which misses the velocity.
-    """
+    """Rate at which the acceleration of a body goes wrong at the start of the step, m/s^3, by the links."""
     squared, last = 0.0, work.x.shape[0] - 1
     for axis in range(2):
         own = missed_velocity(work, body, axis)
@@ -133,11 +129,7 @@ def interpolation_error(system: System, work: Work, contact: int, h: float, body
 
 @compiled
 def take_peaks(system: System, work: Work, contact: int, h: float, low: float, high: float) -> bool:
-    """
-    Raises work.best (N,) by the largest |total|^2 over the part [low, high] of the step just made.
-
-    Returns whether that is near the largest so far for any body.
-    """
+    """Raise work.best (N,) by the largest |total|^2 over [low, high] of the step; whether one is near the largest."""
     large = False
     for i in range(work.x.shape[0]):
         x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))

@@ -54,12 +54,7 @@ def _in_steps(record: Record, row: NDArray[np.intp], theta: Array, near: NDArray
 
 
 def step_instants(record: Record, count: int, most: int) -> Array:
-    """
-    Rising instants (T,), s, about `count`, at most `most`: some in every step, and one just before its end.
-
-    Where the contact changes, the last one has the limit from the left and the start of the next step that from the
-    right.
-    """
+    """Rising instants (T,), s, about `count`, at most `most`: some in every step, and one just before its end."""
     steps = int(record.made[0])
     start = record.start[:steps]
     places = int(np.clip(count // max(steps, 1), FEWEST_PLACES, MOST_PLACES))

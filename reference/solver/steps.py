@@ -132,11 +132,7 @@ def set_residual(system: System, work: Work, contact: int) -> tuple[int, float]:
 
 @compiled
 def correct(work: Work, axes: int) -> float:
-    """
-    Add Newton's correction, in `residual`, to the stage accelerations of the platform.
-
-    Returns its largest entry, infinity if one is not finite.
-    """
+    """Add Newton's correction, in `residual`, to the stage accelerations; its largest entry, or infinity."""
     change = 0.0
     for axis in range(axes):
         correction = row(work.residual, axis)

@@ -12,15 +12,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
 
 from comparison.analyses.assumptions.feature import figure_name
 from comparison.analyses.assumptions.validity import Assumptions, lines
 from comparison.analyses.assumptions.variations import CLOSE_ENOUGH, DURATION, MANY, PHASES, AssumptionCell
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
+from comparison.cli.terminal import new_table
 from comparison.runner.executors import Pool
 from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
 from comparison.runner.processes import process_pool
@@ -91,9 +90,7 @@ def _spatial(name: str) -> Scene:
 
 def _print(console: Console, scene: Scene, cells: Sequence[AssumptionCell]) -> None:
     console.print(f"{scene.title} ({scene.name}): largest change of mu_i against the translational model, per body")
-    table = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for heading in ("ring, m", "heights x", "supports", "offset, m", "yaw, rad", "change, %", "u_D, %", "outcomes"):
-        table.add_column(heading, justify="right", no_wrap=True)
+    table = new_table("ring, m", "heights x", "supports", "offset, m", "yaw, rad", "change, %", "u_D, %", "outcomes")
     bodies = range(1, len(scene.bodies) + 1)
     for cell in cells:
         table.add_row(

@@ -97,10 +97,7 @@ FEATURE = Feature(
     "how far the paper's assumptions hold; null without a spatial model",
     analysis=Assumptions(),
     section=Section(
-        "assumptions",
         "How far the paper's assumptions hold",
-        "assumptions/section.html.j2",
-        ("assumptions",),
         "no scene with phases says where its supports are and how high and large its bodies, as the spatial model asks",
         _context,
         _tasks,

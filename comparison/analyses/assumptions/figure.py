@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
@@ -26,7 +25,6 @@ def draw_assumptions(path: Path, scene: Scene, cells: Sequence[AssumptionCell]) 
     shown = [cell for cell in cells if cell.scene == scene.name and cell.variation.is_usual]
     bodies = len(scene.bodies)
     figure = Figure(figsize=(1.2 + 4.6 * bodies, 3.9), dpi=110, layout="constrained")
-    FigureCanvasAgg(figure)
     figure.suptitle(verbatim(f"{scene.title} ({scene.name}): spatial against translational model"), fontsize=11)
     for body, axes in enumerate(np.atleast_1d(figure.subplots(1, bodies, sharey=True)), start=1):
         _map(axes, scene, shown, body)

@@ -268,31 +268,30 @@ def _rows(array: Array) -> Rows:
 
 def ranges(scenes: Sequence[Scene], cells: Sequence[AssumptionCell]) -> list[ValidityRange]:
     """
-    Where every mu_i stays within each share of WITHIN: over rings, heights, offsets and angles, all else as stated.
+    Where every mu_i stays within each share of WITHIN, over rings, heights, offsets and angles, all else as stated.
     """
     validity = []
     for scene in scenes:
-        of_scene = [cell for cell in cells if cell.scene == scene.name]
-        usual = [cell for cell in of_scene if cell.variation.is_usual]
-        stated = [cell for cell in usual if cell.variation == Variation()]
-        moved = [cell for cell in of_scene if cell.variation.offset]
-        angled = [cell for cell in of_scene if cell.variation.yaw]
-        for body in range(1, len(scene.bodies) + 1):
-            for share in WITHIN:
-                wide = [cell for cell in usual if cell.variation.height == 1.0]
-                low = [cell for cell in usual if cell.variation.ring == 1.0]
-                ring = scene.support_radius or float("nan")
-                rings = sorted(((cell.variation.ring * ring, cell) for cell in wide), key=lambda pair: -pair[0])
-                heights = sorted(((cell.variation.height, cell) for cell in low), key=lambda pair: pair[0])
-                offsets = sorted(
-                    ((cell.variation.offset * ring, cell) for cell in stated + moved), key=lambda pair: pair[0]
-                )
-                yaws = sorted(((cell.variation.yaw, cell) for cell in stated + angled), key=lambda pair: pair[0])
-                lines: list[tuple[Axis, list[tuple[float, AssumptionCell]]]] = [("ring", rings), ("height", heights)]
-                lines += [("offset", offsets)] if moved else []
-                lines += [("yaw", yaws)] if angled else []
-                for key, line in lines:
-                    validity.append(ValidityRange(scene.name, body, share, key, *_bracket(line, body, share)))
+        ring = scene.support_radius or float("nan")
+        of_scene = [(cell.variation, cell) for cell in cells if cell.scene == scene.name]
+        usual = [(variation, cell) for variation, cell in of_scene if variation.is_usual]
+        stated = [(variation, cell) for variation, cell in usual if variation == Variation()]
+        moved = [(variation, cell) for variation, cell in of_scene if variation.offset]
+        angled = [(variation, cell) for variation, cell in of_scene if variation.yaw]
+        lines: dict[Axis, list[tuple[float, AssumptionCell]]] = {
+            "ring": [(variation.ring * ring, cell) for variation, cell in usual if variation.height == 1.0],
+            "height": [(variation.height, cell) for variation, cell in usual if variation.ring == 1.0],
+            **({"offset": [(variation.offset * ring, cell) for variation, cell in stated + moved]} if moved else {}),
+            **({"yaw": [(variation.yaw, cell) for variation, cell in stated + angled]} if angled else {}),
+        }
+        for key, line in lines.items():
+            line.sort(key=lambda pair: pair[0], reverse=key == "ring")
+        validity += [
+            ValidityRange(scene.name, body, share, key, *_bracket(line, body, share))
+            for body in range(1, len(scene.bodies) + 1)
+            for share in WITHIN
+            for key, line in lines.items()
+        ]
     return validity
 
 

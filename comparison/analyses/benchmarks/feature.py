@@ -21,10 +21,7 @@ FEATURE = Feature(
     "beside the report",
     load=STORED.load,
     section=Section(
-        "benchmarks",
         "External benchmarks",
-        "benchmarks/section.html.j2",
-        ("benchmarks",),
         "python -m comparison.benchmarks makes it, beside the report; the next run of the study shows it",
         lambda report, figures: {
             "benchmark_verdicts": MEANING,

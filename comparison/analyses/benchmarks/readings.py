@@ -71,9 +71,7 @@ def period(motion: Trajectory) -> float:
 
 
 def natural_periods(motion: Trajectory) -> Array:
-    """
-    Natural periods, s, longest first, of a chain that moves freely along x: the accelerations are -A x with one A.
-    """
+    """Natural periods, s, longest first, of a chain that moves freely along x: accelerations are -A x with one A."""
     place, acceleration = motion.position[:, :, 0], motion.absolute_acceleration[:, :, 0]
     moving = np.abs(place).max(axis=0) > STILL * np.abs(place).max()
     fitted = np.linalg.lstsq(place[:, moving], -acceleration[:, moving], rcond=None)[0]

@@ -100,7 +100,7 @@ class Benchmarks:
         seen = Counter(
             row.numbers[side].verdict for each in self.benchmarks for row in each.rows for side in (EQUATIONS, ENGINE)
         )
-        return {verdict.value: seen[verdict.value] for verdict in Verdict}
+        return {verdict.value: seen[verdict] for verdict in Verdict}
 
 
 STORED = StoredFile(FILE, Benchmarks, "a table of benchmarks", "python -m comparison.benchmarks")

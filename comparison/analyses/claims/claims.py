@@ -36,9 +36,7 @@ from comparison.analyses.claims.readings import EPSILON
 
 @dataclass(frozen=True)
 class Claim:
-    """
-    One statement. rule: when it counts as reproduced. proof: why it cannot hold; impossible: whether that applies.
-    """
+    """One statement. rule: when it counts as reproduced. proof: why it cannot hold; impossible: if it applies."""
 
     figure: str
     says: str

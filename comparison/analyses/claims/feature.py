@@ -40,10 +40,7 @@ FEATURE = Feature(
     "the paper's statements about its figures; null unless every scene of the paper was studied",
     analysis=Claims(),
     section=Section(
-        "claims",
         "The paper's claims",
-        "claims/section.html.j2",
-        ("claims",),
         "python -m comparison.run with every scene of the paper makes it, and python -m comparison.claims alone",
         _context,
         verifies=True,

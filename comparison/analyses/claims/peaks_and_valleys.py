@@ -26,9 +26,7 @@ STEPS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 
 @dataclass(frozen=True)
 class Relief:
-    """
-    Peaks (row, column), highest first; and for each point the number of the peak that steepest ascent leads to, or -1.
-    """
+    """Peaks (row, column), highest first; and at each point the number of the peak that steepest ascent leads to."""
 
     tops: Sequence[tuple[int, int]]
     regions: NDArray[np.int_]

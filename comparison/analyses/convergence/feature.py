@@ -13,10 +13,7 @@ FEATURE = Feature(
     "what the steps of friction law and contact tend to; null if not computed",
     analysis=Convergence(),
     section=Section(
-        "convergence",
         "Convergence of friction law and contact",
-        "convergence/section.html.j2",
-        ("convergence",),
         "python -m comparison.run makes it, of scenes with phases",
         lambda report, figures: {"trend_panels": trend_panels},
         verifies=True,

@@ -190,9 +190,9 @@ def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset
     return surfaces.assign(aligned.data_vars)
 
 
-def demand_statistics(study: Study, demands: xr.Dataset, scene: Scene) -> list[DemandStatistics]:
+def demand_statistics(study: Study, demands: xr.Dataset | None, scene: Scene) -> list[DemandStatistics]:
     """One for each demand, body and model with an answer, in the order of QUANTITIES."""
-    if scene.name not in demands["scene"]:
+    if demands is None or scene.name not in demands["scene"]:
         return []
     return [
         statistics

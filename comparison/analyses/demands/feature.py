@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.demands.analysis import DemandSurfaces
+from comparison.analyses.demands.analysis import DemandStatistics, DemandSurfaces, demand_statistics
 from comparison.report.plots import DEMANDS, Panel, plain
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
-from comparison.report.section import Feature, Report, Section
+from comparison.report.section import Feature, Report, SceneField, Section
 from comparison.surfaces.distribution import CURVE
 from reference.measures.peak_demands import QUANTITIES, unit_of
 
@@ -23,7 +23,7 @@ def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
     colors = {model.key: number for number, model in enumerate(results.models)}
     panels = []
     for quantity, body, title, unit, scale in DEMANDS:
-        rows = [row for row in scene.demand_statistics if (row.quantity, row.body) == (quantity, body)]
+        rows = [row for row in scene.of("demand_statistics") if (row.quantity, row.body) == (quantity, body)]
         series = [
             {
                 "name": titles[row.model],
@@ -48,7 +48,7 @@ def demand_lines(results: Results) -> list[dict[str, Any]]:
     titles = {model.key: model.title for model in results.models}
     lines = []
     for scene in results.scenes:
-        for row in scene.demand_statistics:
+        for row in scene.of("demand_statistics"):
             meaning, _ = QUANTITIES[row.quantity]
             name = f"{meaning} of body {row.body}" if row.body else meaning
             name = f"{name}, {unit_of(row.quantity)}".removesuffix(", ")
@@ -67,5 +67,15 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
 FEATURE = Feature(
     "demands",
     analysis=DemandSurfaces(),
-    section=Section("demands", "Demands over all phases", "demands/section.html.j2", context=_context),
+    scene_fields={
+        "demand_statistics": SceneField(
+            list[DemandStatistics],
+            "one per demand, body and model; empty unless demands of every phase pair were asked for",
+            lambda findings, scene: demand_statistics(findings.study, findings.found.get("demands"), scene),
+        )
+    },
+    section=Section(
+        "Demands over all phases",
+        context=_context,
+    ),
 )

@@ -20,11 +20,9 @@ MILLI = 1e3
 
 
 def demand_rows(results: Results) -> list[list[str]]:
-    """
-    Cells under HEADINGS of the first and the last model of every scene, over all phases or over the stored motions.
-    """
+    """Cells under HEADINGS of the first and last model of every scene, over all phases or the stored motions."""
     titles = {model.key: model.title for model in results.models}
-    with_demands = [scene for scene in results.scenes if scene.demand_statistics or scene.demands]
+    with_demands = [scene for scene in results.scenes if scene.of("demand_statistics") or scene.of("demands")]
     return [
         [shortened(scene.name, 40), titles[key], *cells]
         for scene in with_demands
@@ -34,19 +32,19 @@ def demand_rows(results: Results) -> list[list[str]]:
 
 def demands_note(results: Results) -> str:
     """Which motions the rows are of."""
-    if any(scene.demand_statistics for scene in results.scenes):
+    if any(scene.of("demand_statistics") for scene in results.scenes):
         return "Largest values over all phases; of the contact force, the smallest."
     return "Largest values over the stored motions of index.html; of the contact force, the smallest."
 
 
 def _of_two_models(scene: SceneResult, titles: dict[str, str]) -> Iterator[tuple[str, list[str]]]:
-    held = {row.model for row in (scene.demand_statistics or scene.demands)}
+    held = {row.model for row in (scene.of("demand_statistics") or scene.of("demands"))}
     keys = [key for key in titles if key in held]
     for key in dict.fromkeys((keys[0], keys[-1])):
-        if scene.demand_statistics:
-            yield key, _over_phases([row for row in scene.demand_statistics if row.model == key], scene.bodies)
+        if scene.of("demand_statistics"):
+            yield key, _over_phases([row for row in scene.of("demand_statistics") if row.model == key], scene.bodies)
         else:
-            yield key, _over_motions([motion for motion in scene.demands if motion.model == key])
+            yield key, _over_motions([motion for motion in scene.of("demands") if motion.model == key])
 
 
 def _over_phases(rows: Sequence[DemandStatistics], bodies: int) -> list[str]:

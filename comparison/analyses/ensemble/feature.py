@@ -67,10 +67,7 @@ FEATURE = Feature(
     "demands under many motions at many scales; null unless python -m comparison.ensemble left it beside the report",
     load=STORED.load,
     section=Section(
-        "ensemble",
         "Demands under many motions",
-        "ensemble/section.html.j2",
-        ("ensemble",),
         "python -m comparison.ensemble SCENE makes it, beside the report; the next run of the study shows it",
         lambda report, figures: {"ensemble_panels": ensemble_panels(report.results.of("ensemble"))},
     ),

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from comparison.analyses.ensemble.analysis import FRACTILES, EnsembleResult, Quantity, of_quantity
@@ -34,7 +33,6 @@ def draw_ensemble(path: Path, result: EnsembleResult) -> None:
     columns = 3 if len(shown) > 4 else 2
     rows = -(-len(shown) // columns)
     figure = Figure(figsize=(4.4 * columns, 3.5 * rows + 0.6), dpi=110, layout="constrained")
-    FigureCanvasAgg(figure)
     scene, motions = result.family.scenes[0], len({point.curve for point in result.points})
     title = verbatim(f"{scene.title} ({result.family.name}): {motions} motions")
     if any(stripe.answered < motions for stripe in result.stripes if stripe.quantity in shown):

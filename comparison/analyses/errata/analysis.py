@@ -109,8 +109,7 @@ def _change(printed: Array, mended: Array) -> Array:
 
 @dataclass(frozen=True)
 class Erratum:
-    """One erratum. `measure`: the change of mu it makes in a scene, None in a scene without it; `none`: why there is no
-    such measure."""
+    """One erratum. measure: the change of mu that it makes in a scene, if any; none: why there is no such measure."""
 
     where: str
     printed: str

@@ -41,9 +41,7 @@ FEATURE = Feature(
     "in the order of the paper; null where they were not asked for",
     analysis=Errata(),
     section=Section(
-        "errata",
         "Errata of the paper",
-        "errata/section.html.j2",
         context=_context,
         verifies=True,
     ),

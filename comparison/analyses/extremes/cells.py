@@ -44,9 +44,7 @@ def _concerns(row: Row, column: Column) -> bool:
 
 
 def solve_cell(cell: Cell) -> Entry:
-    """
-    Ask the model, ask for more accuracy until that confirms or contradicts the answer, and judge. Nothing is raised.
-    """
+    """Ask the model, ask for more accuracy until that confirms or contradicts the answer, and judge."""
     row, column = cell.row, cell.column
     tolerance = float(row.settings.get("tolerance", column.tolerance))
     begin = time.process_time()

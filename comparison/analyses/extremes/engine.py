@@ -30,9 +30,7 @@ def amplification(
     step: float | None = None,
     max_work: float = multibody.MAX_WORK,
 ) -> Amplification:
-    """
-    As `multibody.amplification`, in full and with few levels, from a contact stiffness, N/m, or a largest step, s.
-    """
+    """As `multibody.amplification`, in full and with few levels, from a contact stiffness, N/m, or largest step, s."""
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:
         penetration = scene.total_mass * GRAVITY / (contact_stiffness * scene.radius)

@@ -22,10 +22,7 @@ FEATURE = Feature(
     "report",
     load=STORED.load,
     section=Section(
-        "extremes",
         "Stability at the extremes",
-        "extremes/section.html.j2",
-        ("extremes",),
         "python -m comparison.extremes makes it, beside the report; the next run of the study shows it",
         lambda report, figures: {
             "verdicts": [(verdict.value, MEANING[verdict]) for verdict in Verdict],

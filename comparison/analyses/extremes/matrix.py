@@ -60,7 +60,7 @@ class Matrix:
     def counts(self) -> dict[str, int]:
         """Number of cells of each verdict, from the best to the worst, zeros included."""
         seen = Counter(entry.verdict for row in self.rows for entry in row.entries.values())
-        return {verdict.value: seen[verdict.value] for verdict in Verdict}
+        return {verdict.value: seen[verdict] for verdict in Verdict}
 
     def groups(self) -> list[list[Extreme]]:
         """The rows that share a quantity."""

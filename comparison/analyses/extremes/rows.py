@@ -138,9 +138,7 @@ def scene(
     storey: float = 1.0,
     **isolator: Any,
 ) -> dict[str, Any]:
-    """
-    The plain scene, `fig3-I` at twice its amplitude, as in a scene file, with a few quantities changed; None: no key.
-    """
+    """The plain scene, `fig3-I` at twice its amplitude, as in a scene file, with changed quantities; None: no key."""
     if "radius" not in isolator:
         isolator = {"period": 1.0, **isolator}
     size = [2.0, 2.0, 0.2]

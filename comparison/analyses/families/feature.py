@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.families.result import FamilyResult
+from comparison.analyses.families.result import FamilyResult, family_results
 from comparison.report.plots import DEMANDS, Panel, plain
 from comparison.report.results import Results
 from comparison.report.section import Feature, Report, Section
@@ -117,11 +117,9 @@ FEATURE = Feature(
     "families",
     list[FamilyResult],
     "families of scenes in which one value runs; null without any",
+    summary=family_results,
     section=Section(
-        "families",
         "Families of scenes",
-        "families/section.html.j2",
-        ("families",),
         "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
         lambda report, figures: {"family_panels": family_panels(report.results)},
         draw=_draw,

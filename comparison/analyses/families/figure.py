@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from comparison.analyses.families.analysis import FamilyStep
@@ -53,7 +52,6 @@ def draw_family(
     """
     titles = {TOTAL: "total", **{model.key: model.title for model in hierarchy}}
     figure = Figure(figsize=(13.0, 4.4), dpi=110)
-    FigureCanvasAgg(figure)
     title = family.scenes[0].title
     figure.suptitle(verbatim(f"{title} ({family.name}), body {body}: what each model adds"), fontsize=12, y=0.98)
     left, right = figure.add_axes((0.06, 0.14, 0.31, 0.74)), figure.add_axes((0.44, 0.14, 0.31, 0.74))

@@ -24,10 +24,7 @@ FEATURE = Feature(
     "measured peaks beside what every model computes; null where no scene has any",
     analysis=MeasuredPeaks(),
     section=Section(
-        "measured",
         "Measured peaks",
-        "measured/section.html.j2",
-        ("measured",),
         "a scene file with [[measured]] peaks makes it: whoever has measurements can set them beside the models",
         _context,
         folded=False,

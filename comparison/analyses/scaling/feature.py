@@ -13,10 +13,7 @@ FEATURE = Feature(
     "the step from small to exact equations over a common scale of loading and friction; null if not computed",
     analysis=Scaling(),
     section=Section(
-        "scaling",
         "Scaling test",
-        "scaling/section.html.j2",
-        ("scaling",),
         "python -m comparison.run makes it, of scenes with phases",
         lambda report, figures: {"trend_panels": trend_panels},
         verifies=True,

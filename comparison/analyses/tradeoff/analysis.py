@@ -26,6 +26,7 @@ from reference.problem import Scene
 Array = NDArray[np.float64]
 
 CHUNK = 3.0  # s of work in one task, about
+STATED = ("question", "method", "parameter", "unit", "value", "controlled", "model_error")  # of a setting
 CHEAP = 0.01  # s per point of a reference solution of its own, about
 OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
 
@@ -112,7 +113,7 @@ def key(function: Function) -> str:
 
 def functions(scene: Scene, quick: bool, others: Sequence[Setting] = ()) -> dict[str, tuple[Function, int, float]]:
     """
-    Every function called for a scene, by its key, with the number of its phase pairs and about how long each takes, s.
+    Every function called for a scene, by its key, with its number of phase pairs and about how long each takes, s.
     """
     points = {question.key: question.quick if quick else question.points for question in asked(scene)}
     measured = [*settings(scene, quick), *others]
@@ -132,13 +133,7 @@ def entry(setting: Setting, measured: Measured, reference_solution: Array) -> En
     error_estimate = measured.error_estimate / np.abs(measured.mu)
     points, bodies = measured.mu.shape
     return Entry(
-        question=setting.question,
-        method=setting.method,
-        parameter=setting.parameter,
-        unit=setting.unit,
-        value=setting.value,
-        controlled=setting.controlled,
-        model_error=setting.model_error,
+        **{name: getattr(setting, name) for name in STATED},
         points=points,
         answered=int(np.isfinite(error).all(axis=1).sum()),
         seconds=measured.seconds / points,
@@ -168,10 +163,7 @@ def _answered(question: Question, reference_solution: Measured, entries: Sequenc
 
 
 def _agreements(question: Question, entries: Sequence[Entry]) -> list[str]:
-    """
-    How far the most accurate setting of other methods agrees with the reference solution; of the same one where there
-    is none.
-    """
+    """How far the most accurate setting of other methods, else of the same one, agrees with the reference solution."""
     candidates = [
         setting
         for setting in entries

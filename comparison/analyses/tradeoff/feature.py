@@ -155,13 +155,11 @@ FEATURE = Feature(
     "beside the report",
     load=trade.load,
     section=Section(
-        "tradeoff",
         "Speed for accuracy",
-        "tradeoff/section.html.j2",
-        ("tradeoff", "growth"),
         "python -m comparison.tradeoff SCENE makes it, beside the report; the next run of the study shows it",
         _context,
         draw=_draw,
         verifies=True,
+        shows=("tradeoff", "growth"),
     ),
 )

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
@@ -36,7 +35,6 @@ def draw_tradeoff(path: Path, trade: Trade) -> None:
     bodies = [0] if trade.bodies == 1 else [0, trade.bodies - 1]
     columns = len(trade.questions)
     figure = Figure(figsize=(1.0 + 5.0 * columns, 4.1 * len(bodies) + 3.6), dpi=100, layout="constrained")
-    FigureCanvasAgg(figure)
     widths = [1.5 if question.key == "regularised" else 1.0 for question in trade.questions]
     panels = figure.subplots(len(bodies), columns, squeeze=False, sharey=True, width_ratios=widths)
     for column, question in enumerate(trade.questions):

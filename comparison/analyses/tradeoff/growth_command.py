@@ -37,9 +37,7 @@ CALLS, PAIRS = 16, 64  # of the equations, shared by the workers
 def measured_growth(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> MeasuredGrowth:
-    """
-    All series of a scene with what is known of their run; what is stored is not measured again, but for the workers.
-    """
+    """All series of a scene with what is known of their run; stored ones are not measured again, but for workers."""
     begin = time.monotonic()
     growth, study = Growth(), Study((scene,), 1, TOLERANCE)
     tasks = growth.tasks(study)

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from comparison.analyses.tradeoff.growth import Series
@@ -21,7 +20,6 @@ def draw_growth(path: Path, series: Sequence[Series]) -> None:
     """Write the panels to `path`, PNG, and as PDF."""
     quantities = list(dict.fromkeys(each.quantity for each in series))
     figure = Figure(figsize=(4.4 * len(quantities), 3.8), dpi=110, layout="constrained")
-    FigureCanvasAgg(figure)
     for axes, quantity in zip(np.atleast_1d(figure.subplots(1, len(quantities))), quantities):
         shown = [each for each in series if each.quantity == quantity]
         for each, color, marker in zip(shown, COLORS, MARKERS):

@@ -26,27 +26,19 @@ ALWAYS_LINEAR = 1e6  # m/s, corner of the lubricated law mu = f_c |v|: above any
 
 
 @njit  # type: ignore[untyped-decorator]
-def slope(
-    t: float, y: Array, amplitudes: Array, s: Any, phase: Array, below: Array, above: Array,
-    damping_below: Array, damping_above: Array, mass_ratio: float, radius: float, friction: float, rise: float,
-    rate: float, corner: float,
-) -> Array:  # fmt: skip
-    """
-    Time derivative of y = (x, v), each (N, 2), under (3.9)-(3.13) and (4.4), friction linear below `corner`, m/s.
-
-    below, above: (N, 2), stiffness of the links over the mass of the body, 1/s^2; damping_below, damping_above: 1/s.
-    friction: at rest; rise: from there to high speed, at this rate, s/m.
-    """
+def slope(t: float, y: Array, system: Any, s: Any, phase: Array, corner: float) -> Array:
+    """Time derivative of y = (x, v), each (N, 2), under (3.9)-(3.13) and (4.4), friction linear below `corner`, m/s."""
+    below, above, radius, friction = system.below, system.above, system.radius, system.friction
     count = len(below)
     z = np.exp(s * t + 1j * phase)
-    u = (amplitudes[:, 0] * z[0] + amplitudes[:, 1] * z[1]).real
+    u = (system.amplitudes[:, 0] * z[0] + system.amplitudes[:, 1] * z[1]).real
     state = np.ascontiguousarray(y)  # Radau passes columns of a matrix
     x, v = state[: 2 * count].reshape((count, 2)), state[2 * count :].reshape((count, 2))
     px, py, vx, vy = x[0, 0], x[0, 1], v[0, 0], v[0, 1]
     speed2 = vx * vx + vy * vy + (px * vx + py * vy) ** 2 / (radius * radius - px * px - py * py)
     speed = np.sqrt(speed2)
-    if rate > 0.0:
-        friction -= rise * np.expm1(-rate * speed)
+    if system.rate > 0.0:
+        friction -= system.rise * np.expm1(-system.rate * speed)
     factor = friction / max(speed, corner)
     out = np.empty(4 * count)
     out[: 2 * count] = y[2 * count :]
@@ -56,14 +48,14 @@ def slope(
             pull = -u[axis]
             if i > 0:
                 pull -= below[i, axis] * (x[i, axis] - x[i - 1, axis])
-                pull -= damping_below[i, axis] * (v[i, axis] - v[i - 1, axis])
+                pull -= system.damping_below[i, axis] * (v[i, axis] - v[i - 1, axis])
             if i + 1 < count:
                 pull += above[i, axis] * (x[i + 1, axis] - x[i, axis])
-                pull += damping_above[i, axis] * (v[i + 1, axis] - v[i, axis])
+                pull += system.damping_above[i, axis] * (v[i + 1, axis] - v[i, axis])
             acceleration[i, axis] = pull
     ax, ay, _, _ = exact_acceleration(
         px, py, acceleration[0, 0], acceleration[0, 1], GRAVITY + u[2], speed2, factor * vx, factor * vy,
-        mass_ratio, radius,
+        system.mass_ratio, radius,
     )  # fmt: skip
     acceleration[0, 0], acceleration[0, 1] = ax, ay
     return out
@@ -81,14 +73,9 @@ def slopes(times: Array, states: Array, constants: Any) -> Array:
 def constants_of(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...]:
     """What `slope` is called with after t and y."""
     system = pack(scene, False, v_reg)
-    corner, friction = v_reg, system.friction
     if scene.lubricated:
-        corner, friction = ALWAYS_LINEAR, system.friction * ALWAYS_LINEAR
-    return (
-        system.amplitudes, exponents(scene), np.asarray(phase, dtype=float), system.below, system.above,
-        system.damping_below, system.damping_above, system.mass_ratio, system.radius, friction, system.rise,
-        system.rate, corner,
-    )  # fmt: skip
+        system, v_reg = system._replace(friction=system.friction * ALWAYS_LINEAR), ALWAYS_LINEAR
+    return system, exponents(scene), np.asarray(phase, dtype=float), v_reg
 
 
 def motion(scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg: float) -> tuple[Array, Array]:

@@ -15,11 +15,9 @@ from comparison.study.user_models import engine_of
 from reference.problem import Scene
 
 REFERENCE, ENGINE = "reference:amplification", "multibody:amplification"
-RUN, LEVEL = (
-    "comparison.analyses.tradeoff.single_runs:reference_run",
-    "comparison.analyses.tradeoff.single_runs:engine_run",
+RUN, LEVEL, CONSTANT = (
+    f"comparison.analyses.tradeoff.single_runs:{name}" for name in ("reference_run", "engine_run", "constant_step_run")
 )
-CONSTANT = "comparison.analyses.tradeoff.constant_step:factors_at_constant_step"
 SCIPY = "comparison.analyses.tradeoff.outside:factors_by_scipy"
 
 TIGHT = 1e-10  # the tightest the reference takes

@@ -15,6 +15,7 @@ from reference.surface import checked_demand
 
 Array = NDArray[np.float64]
 
+DISCONTINUOUS = 1.0  # the engine's own default
 USUAL_LEVEL = 1  # of the engine: it usually answers at a tolerance of 1e-3
 
 
@@ -42,10 +43,7 @@ def engine_run(
     penetration: float | None = None,
     newton: float | None = None,
 ) -> Array:
-    """
-    mu of one run of the engine for each phase pair at its USUAL_LEVEL; step: factor on the largest one; penetration: in
-    rho.
-    """
+    """mu of one run of the engine for each phase pair at USUAL_LEVEL; step: a factor; penetration: over rho."""
     pairs = checked_phases(phases)
     usual = multibody.levels(scene, model, 1e-3, regularization)[USUAL_LEVEL]
     level = replace(
@@ -58,3 +56,16 @@ def engine_run(
     runs = [multibody.single_run(scene, phase, model, regularization, level=level) for phase in pairs]
     peaks = [run.peak if run.status == Outcome.OK else np.full(len(scene.bodies), np.nan) for run in runs]
     return np.array(peaks) / ground_peak(scene, pairs)[:, None]
+
+
+def constant_step_run(scene: Scene, phases: ArrayLike, solver: str, step: float, v_reg: float) -> Array:
+    """mu (M, N) of the translational model by an integrator of `multibody.single_run`; NaN where it gives up."""
+    pairs = checked_phases(phases)
+    peaks = np.full((len(pairs), len(scene.bodies)), np.nan)
+    for row, phase in enumerate(pairs):
+        run = multibody.single_run(
+            scene, phase, "translational", v_reg, step=step, integrator=solver, discontinuous=DISCONTINUOUS
+        )
+        if run.status == Outcome.OK:
+            peaks[row] = np.linalg.norm(run.absolute_acceleration, axis=-1).max(axis=0)
+    return peaks / ground_peak(scene, pairs)[:, None]

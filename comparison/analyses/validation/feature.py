@@ -45,10 +45,7 @@ FEATURE = Feature(
     "report",
     load=STORED.load,
     section=Section(
-        "validation",
         "Measured motions",
-        "validation/section.html.j2",
-        ("validation",),
         "python -m comparison.validation FOLDER makes it of measured files, beside the report; the next run of the "
         "study shows it",
         lambda report, figures: {

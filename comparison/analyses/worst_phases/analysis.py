@@ -110,9 +110,7 @@ class WorstPhases(Analysis[list[Worst]]):
 
 
 def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
-    """
-    The largest mu over all phases of a model, else of the next one that was searched, else of the last one before.
-    """
+    """The largest mu over all phases of a model, else of the next one that was searched, else of the one before."""
     searched = {
         worst.model: worst
         for worst in found

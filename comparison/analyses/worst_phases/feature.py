@@ -73,10 +73,7 @@ FEATURE = Feature(
     "the largest values over all phases; null if not computed",
     analysis=WorstPhases(),
     section=Section(
-        "worst_phases",
         "Largest values over all phases",
-        "worst_phases/section.html.j2",
-        ("worst_phases",),
         "python -m comparison.run makes it, of scenes with phases",
         _context,
     ),

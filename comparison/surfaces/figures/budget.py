@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure
@@ -15,7 +14,7 @@ from matplotlib.figure import Figure
 from comparison.study.study import Study
 from comparison.surfaces.budget import TOTAL, steps
 from comparison.surfaces.figures.file_names import figure_file
-from comparison.surfaces.figures.pairs import QUARTER_NAMES, QUARTERS, SIGN_COLORS, closed
+from comparison.surfaces.figures.pairs import QUARTER_NAMES, QUARTERS, SIGN_COLORS, TURN, closed
 from comparison.surfaces.steps import Step
 from comparison.wording import mathtext
 from reference.drawing import verbatim
@@ -33,7 +32,6 @@ def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, bo
     """Write one map per step, and of the total, to `path`, PNG: % of the first model's mu_i."""
     bars = steps(study, surfaces, scene.name, body)
     figure = Figure(figsize=(13.0, 3.4), dpi=110)
-    FigureCanvasAgg(figure)
     heading = f"{scene.title} ({scene.name}), body {body}: what each model adds (dots: not resolved)"
     figure.suptitle(verbatim(heading), fontsize=12, y=0.98)
     sizes = np.abs(np.concatenate([step.size[np.isfinite(step.size)] for step in bars] or [np.zeros(0)]))
@@ -57,9 +55,7 @@ def _map(axes: Axes, step: Step, norm: SymLogNorm) -> QuadMesh:
     image = axes.pcolormesh(phase, phase, size.T, cmap=SIGN_COLORS, norm=norm, shading="nearest")
     row, column = np.nonzero(step.known & ~step.real)
     axes.plot(phase[row], phase[column], ".", color="0.35", markersize=160.0 / len(phase) / 4.0, markeredgewidth=0.0)
-    axes.set_xlim(0.0, 2.0 * np.pi)
-    axes.set_ylim(0.0, 2.0 * np.pi)
-    axes.set_aspect("equal")
+    axes.set(xlim=TURN, ylim=TURN, aspect="equal")
     axes.set_xticks(QUARTERS, QUARTER_NAMES, fontsize=8)
     axes.set_yticks(QUARTERS, QUARTER_NAMES, fontsize=8)
     known = step.known

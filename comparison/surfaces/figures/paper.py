@@ -9,7 +9,6 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
@@ -44,7 +43,6 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
     bodies = len(scene.bodies)
     with mpl.rc_context(PRINT):
         figure = Figure(figsize=(WIDTH, 2.7 * bodies))
-        FigureCanvasAgg(figure)
         for row in range(bodies):
             data = [common_phases(surfaces, scene.name, [r.key]).sel(model=r.key, body=row + 1) for r in (first, last)]
             heights = [closed(surface["alpha1"].values, surface["mu"].values) for surface in data]

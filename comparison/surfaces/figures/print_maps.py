@@ -10,13 +10,12 @@ import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from comparison.study.models import Model
 from comparison.surfaces.completion import Completion
-from comparison.surfaces.figures.pairs import HEIGHT_COLORS, SIGN_COLORS, closed
+from comparison.surfaces.figures.pairs import HEIGHT_COLORS, SIGN_COLORS, TURN, closed
 from comparison.surfaces.steps import known_mu
 from comparison.surfaces.surfaces import common_phases
 from comparison.wording import mathtext
@@ -46,7 +45,6 @@ def draw_maps(
     """
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, HEIGHT), dpi=RESOLUTION)
-        FigureCanvasAgg(figure)
         for column, body in enumerate(bodies[:2]):
             done = next((c for c in completed if (c.model, c.body, c.accepted) == (models[1].key, body, True)), None)
             _row(figure, 0.5 * column, surfaces, scene, models, body, done)
@@ -108,9 +106,7 @@ def _map(axes: Axes, values: Array, scale: tuple[float, float, str], peak: bool)
     if peak and np.isfinite(values).any():
         row, column = np.unravel_index(np.nanargmax(values), values.shape)
         axes.plot(phase[row], phase[column], "x", color="red", markersize=3.5, markeredgewidth=0.7)
-    axes.set_xlim(0.0, 2.0 * np.pi)
-    axes.set_ylim(0.0, 2.0 * np.pi)
-    axes.set_aspect("equal")
+    axes.set(xlim=TURN, ylim=TURN, aspect="equal")
     axes.set_xticks(*ENDS, fontsize=5.5)
     axes.set_yticks(*ENDS, fontsize=5.5)
     axes.tick_params(length=1.5, pad=1)

@@ -24,11 +24,7 @@ NEWEST_KNOWN = 0, 68  # numba whose inside was seen to work as this needs it (ol
 
 
 def compiled_part(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """
-    Decorate a function that only compiled functions call, and that makes, keeps and returns no arrays.
-
-    options: of `numba.njit`, those of the entry point.
-    """
+    """Decorate a function that only compiled functions call, and that makes, keeps and returns no arrays."""
     if numba.version_info.short <= NEWEST_KNOWN:
         from reference.solver.compiled.numba_parts import PartCompiler
 

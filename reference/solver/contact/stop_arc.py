@@ -33,11 +33,7 @@ def sideways(system: System, load: Load, angle: float) -> float:
 
 @compiled
 def squared_total(system: System, load: Load, angle: float, horizontal: float) -> float:
-    """
-    Squared absolute acceleration of the platform sliding in the direction `angle` at vanishing speed, m^2/s^4.
-
-    horizontal: share of the horizontal part, 0 for the vertical part alone.
-    """
+    """Squared absolute acceleration, or its vertical part for horizontal = 0, sliding at vanishing speed, m^2/s^4."""
     ax, ay, _, _ = directed(system, load, 0.0, cos(angle), sin(angle))
     az = load.uz
     if not system.small:
@@ -99,11 +95,7 @@ def turning_ends(system: System, load: Load, inside: float, outside: float) -> f
 
 @compiled
 def arc_peak(system: System, load: Load, angle: float, end: float, floor: float, horizontal: float) -> float:
-    """
-    Largest `squared_total` over the arc from `angle` to `end`, m^2/s^4.
-
-    Where that stays below `floor`, the largest sample.
-    """
+    """Largest `squared_total` over the arc from `angle` to `end`, m^2/s^4; below `floor`, the largest sample."""
     samples = 4 + int(abs(end - angle) * SAMPLES_PER_TURN / (2.0 * pi))
     stride = (end - angle) / samples
     best, top = -1.0, 0

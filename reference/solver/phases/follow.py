@@ -136,11 +136,7 @@ def vibration_angle(system: System, contact: int, h: float) -> float:
 
 @compiled
 def note_drift(system: System, work: Work, h: float, angle: float) -> None:
-    """
-    Add what a step misses of the fastest vibration to what the steps before it missed: together at most all of it.
-
-    The two runs agree without it where both damp it, or where the knots of a record make their steps equally long.
-    """
+    """Add what a step misses of the fastest vibration to what those before it missed: together at most all of it."""
     share = min(DRIFT_SHARE * angle**7, 1.0)
     for i in range(work.x.shape[0]):
         defect = sqrt(work.defect[i] ** 2 + (returned(system, work, h, i) / system.fastest) ** 2)
@@ -206,11 +202,7 @@ def made(system: System, work: Work, contact: int, demand: Demand, h: float) -> 
 
 @compiled
 def event_within(system: System, work: Work, contact: int, demand: Demand, h: float) -> tuple[float, int]:
-    """
-    Length of the step up to the first event inside it, and what the contact does then.
-
-    0 where the phase begins at an event. A step at rest has been made again to its onset, others have not.
-    """
+    """Length of the step up to the first event inside it, 0 for one at its begin, and what the contact does then."""
     if contact == REST:
         return onset_within(system, work, h)
     if contact == SLIDING:

@@ -77,11 +77,7 @@ def stretched_length(system: System, work: Work) -> float:
 
 @compiled
 def break_within(system: System, work: Work, demand: Demand, h: float) -> tuple[float, int]:
-    """
-    Length of the step up to the loading's next kink or to v_reg; what the contact does then.
-
-    0 if the phase begins at v_reg.
-    """
+    """Length of the step up to the loading's next kink or to v_reg, 0 at its begin, and what the contact does then."""
     limit = next_break(system, work, demand)
     if work.turning[CLOCK, STAGES - 1] > limit + MIN_STEP * demand.period:
         portion = first_crossing(system, work, row(work.turning, CLOCK), work.time, limit)
@@ -128,11 +124,7 @@ def after_stopping_step(system: System, work: Work, demand: Demand, h: float, fa
 
 @compiled
 def take_arc(system: System, work: Work, load: Load, followed: bool) -> bool:
-    """
-    Raise the peaks by the accelerations on the arc of directions that is left; True if they are known well enough.
-
-    `followed`: the slide may be followed further, so an arc that decides a peak is not yet taken.
-    """
+    """Raise the peaks by those on the arc that is left; True if known well enough, or not to be `followed` further."""
     bodies, total, best = work.x.shape[0], work.total0, work.best
     end = settled_direction(system, load, work.angle, MAX_ROUNDING_TURN)
     arc = arc_peak(system, load, work.angle, end, SETTLED_FRACTION**2 * best[0], 1.0)
@@ -153,11 +145,7 @@ def take_arc(system: System, work: Work, load: Load, followed: bool) -> bool:
 
 @compiled
 def after_stop(system: System, work: Work, demand: Demand) -> int:
-    """
-    REST or SLIDING (a straight slide turns back) if the motion is at a stop, STOPPING if it goes on.
-
-    Leaves the time that is left of the slide at its deceleration in work.left: rest is entered so much early.
-    """
+    """REST or SLIDING at a stop, STOPPING if it goes on; the time left of the slide is in work.left."""
     unit = demand.unit * demand.period / (2.0 * pi)
     speed = exp(work.log_speed)
     if speed > MAX_STOPPED_SPEED * sqrt(demand.tolerance) * unit:

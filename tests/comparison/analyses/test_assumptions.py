@@ -15,7 +15,7 @@ from known_analyses import collected
 
 from comparison.analyses.assumptions import command
 from comparison.analyses.assumptions.command import main
-from comparison.analyses.assumptions.validity import Assumptions, describe
+from comparison.analyses.assumptions.validity import ASSUMPTIONS, Assumptions, Validity, describe
 from comparison.analyses.assumptions.validity import lines as lines_of
 from comparison.analyses.assumptions.variations import (
     FEW,
@@ -248,8 +248,9 @@ def test_the_command_prints_the_change_of_every_body(
         )
         for number, variation in enumerate((Variation(ring=0.5), Variation(height=2.0, supports=3)), start=1)
     ]  # fmt: skip
+    validity = Validity(ASSUMPTIONS, ((0.0, 0.0),), 1.0, tuple(cells), tuple(ranges([STATED], cells)))
     monkeypatch.setattr(command, "computed", lambda *rest: None)
-    monkeypatch.setattr(Assumptions, "collect", lambda *rest: ValidityRanges([STATED], cells))
+    monkeypatch.setattr(Assumptions, "collect", lambda *rest: validity)
     assert command.main(["fig3-I", "--out", str(tmp_path / "report"), "--figures", str(tmp_path / "drawn")]) == 0
     rows = [re.split(r"\s{2,}", line.strip()) for line in capsys.readouterr().out.splitlines()]
     radius = STATED.support_radius or 0.0

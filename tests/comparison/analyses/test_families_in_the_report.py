@@ -15,11 +15,12 @@ from report_texts import page_of, summary_of
 from runs import RUN, Run
 from studies import solved
 
-from comparison.analyses.demands.analysis import DemandStatistics, Extreme
+from comparison.analyses.demands.analysis import DemandStatistics, PhaseExtreme
 from comparison.analyses.families.analysis import FamilyDemand, family_demands, family_demands_over_phases
 from comparison.analyses.families.feature import family_panels
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.registry import report_of
+from comparison.result_types import UncertainNumber
 from comparison.study.study import Study
 from comparison.surfaces.distribution import Fractile
 from reference.measures import Demands, Estimate
@@ -105,8 +106,12 @@ def test_demands_of_all_phases_go_before_stored_motions(file: Path) -> None:
 
     def statistics(value: float) -> list[DemandStatistics]:
         fractiles = tuple(Fractile(probability, value + probability, 0.0) for probability in FRACTILES)
-        low, high = (Extreme(value + shift, 0.0, (0.0, 0.0)) for shift in (-1.0, 2.0))
-        return [DemandStatistics("small", "drift", 2, 16, 0.25, Estimate(value, 0.0), fractiles, low, high, ())]
+        low, high = (PhaseExtreme(value + shift, 0.0, (0.0, 0.0)) for shift in (-1.0, 2.0))
+        return [
+            DemandStatistics(
+                "small", "drift", 2, 16, 0.25, UncertainNumber(value=value, error=0.0), fractiles, low, high, ()
+            )
+        ]
 
     first, _, third = (scene.name for scene in family.scenes)
     [band] = family_demands_over_phases(family, {first: statistics(5.0), third: statistics(7.0)})

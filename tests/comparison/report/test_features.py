@@ -61,7 +61,7 @@ FEATURE = Feature(
     list[Ratio],
     "ratio of the two amplification factors",
     analysis=Ratios(),
-    section=Section("ratio", "Ratio of the factors", "ratio/section.html.j2", ("ratio",), draw=_draw),
+    section=Section("Ratio of the factors", draw=_draw),
 )
 """,
     "section.html.j2": """{% for row in results.ratio %}

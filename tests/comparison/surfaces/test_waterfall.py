@@ -10,8 +10,7 @@ from studies import GRID, KEYS, planted_study, scattered
 
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
-from comparison.surfaces.independent import independent_phases
-from comparison.surfaces.waterfall import waterfall
+from comparison.surfaces.waterfall import independent_phases, waterfall
 from reference.problem import load_scene
 
 

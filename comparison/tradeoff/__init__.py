@@ -1,1 +1,0 @@
-"""The commands `python -m comparison.tradeoff` and `python -m comparison.tradeoff.record`."""
