@@ -46,6 +46,15 @@ class Motion(NamedTuple):
         """Slip speed of each contact, (T, K)."""
         return self.contact[:, 1::4]
 
+    @property
+    def load(self) -> Array | None:
+        """Normal force of each contact over its share of the weight, (T, K); None unless forces are recorded."""
+        if not self.force.shape[1]:
+            return None
+        vectors = self.force.reshape(len(self.time), -1, 2, 3)
+        load: Array = vectors.shape[1] * np.abs((vectors[:, :, 0] * vectors[:, :, 1]).sum(axis=-1))
+        return load
+
     def until(self, row: int) -> Motion:
         """The rows up to and including `row`."""
         return self if row == len(self.time) - 1 else Motion(*[column[: row + 1] for column in self])
@@ -65,13 +74,17 @@ class Motion(NamedTuple):
         return Motion(np.empty(0), *(np.empty((0, *width)) for width in widths))
 
     def state(self, row: int) -> EngineState:
-        """State of the engine at an instant, with the rate of slip since the instant before."""
+        """State of the engine at an instant, with the rates of slip and load since the instant before."""
         row = range(len(self.time))[row]
-        rate = None
+        slip, load = self.slip, self.load
+        rates: list[Array | None] = [None, None]
         if row > 0:
-            slip = self.slip
-            rate = (slip[row] - slip[row - 1]) / (self.time[row] - self.time[row - 1])
-        return EngineState(self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row], rate)
+            span = self.time[row] - self.time[row - 1]
+            rates = [None if each is None else (each[row] - each[row - 1]) / span for each in (slip, load)]
+        return EngineState(
+            self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row], rates[0],
+            None if load is None else load[row], rates[1],
+        )  # fmt: skip
 
 
 @contextmanager
@@ -142,7 +155,7 @@ class Engine:
         set_initial_state(self.model, state)
         self.model.ground.begin(begin)
         if self.model.friction is not None:
-            self.model.friction.begin(self.model.mbs, state.contact, state.slip_rate, begin)
+            self.model.friction.begin(self.model.mbs, state, begin)
         integration = self.integration
         integration.startTime = begin
         integration.endTime = begin + count * step

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ def contact_law(scene: Scene, regularization: float | None, units: Units) -> tup
     """
     Friction coefficient of the contact, and the speed in units of velocity under which it is reduced linearly.
 
-    The largest coefficient, where it depends on the slip speed: `SpeedFriction` sets it before every step.
+    Where it depends on slip speed or load, the largest under the weight: `SpeedFriction` sets it before every step.
     """
     if scene.lubricated:
         return scene.friction_coefficient * units.velocity * MAX_LINEAR_SPEED, MAX_LINEAR_SPEED
@@ -98,4 +99,4 @@ def settled_contact(state: EngineState, gap_rate: float, penetration: float, nor
         velocities[axis] -= share * excess_speed
         coordinates[axis] -= share * rise
     contact[0] -= rise
-    return EngineState(coordinates, velocities, contact, state.plate, state.slip_rate)
+    return replace(state, coordinates=coordinates, velocities=velocities, contact=contact)

@@ -97,19 +97,18 @@ def spatial(
     _weights(mbs, nodes, masses)
     pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
     expressions = [*plate.expressions] if plate.moves else push(mbs, ground, pushed)
-    forces = contacts if contact_force else []
+    forces = contacts if contact_force or scene.dry_friction.exponent else []
     recorders = add_recorders(mbs, [*nodes, *supports.nodes], supports.springs, contact_nodes, forces, plate.node)
     mbs.Assemble()
 
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
-    varies = scene.dry_friction.varies
-    varying = SpeedFriction(mbs, scene, units, threshold, contacts, ground) if varies else None
+    constant = scene.dry_friction.constant
+    varying = None if constant else SpeedFriction(mbs, scene, units, threshold, contacts, ground)
     parts = _Parts(scene, mbs, units, index, contacts, links, supports, radius, bearing_penetration)
     vertical = parts.body_coordinates + supports.vertical
     under_platform = (FlatUnderside if scene.flat else Depressions)(ring, centers[0], radius, vertical)
     restitution = scene.isolator.restitution or 0.0
-    constant = DryFriction(friction, friction, 0.0)
-    law = constant if varying is None else varying.law
+    law = DryFriction(friction, friction, 0.0) if varying is None else varying.law
     rigid = np.array([link.bars is None for link in links], dtype=bool)
     impact_law = ImpactLaw(under_platform, masses, inertias, axes, centers, restitution, law, threshold, rigid)
     tensors = (axes * inertias[:, None, :]) @ axes.swapaxes(1, 2)
@@ -213,7 +212,9 @@ class _Parts:
         coordinates[index[:, 2]] += relief * self.supports.sinking(penetration)
         coordinates[index[1:, 2]] += relief * np.cumsum([link.sinking(penetration) for link in self.links])
         coordinates[self.body_coordinates + self.supports.vertical] = relief * self.supports.sinking(penetration)
-        return EngineState(coordinates, velocities, np.tile([gap, slip, 0.0, 0.0], len(self.contacts)))
+        count = len(self.contacts)
+        data, load = np.tile([gap, slip, 0.0, 0.0], count), np.full(count, -gap / pressed)
+        return EngineState(coordinates, velocities, data, load=load)
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
         """See `EngineModel`: the bodies that turn settle by themselves."""

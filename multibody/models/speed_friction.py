@@ -1,23 +1,28 @@
 """
-Friction that depends on the slip speed, for contacts of the engine, whose coefficient is one number.
+Friction that depends on slip speed or normal force, for contacts of the engine, whose coefficient is one number.
 
-Before every step the coefficient of each contact is set to that at the slip speed which the contact will have at the
-end of the step: the straight line through its last two speeds. Within a step the engine solves for constant
-coefficients. So the error is of second order in the step, like that of the integrator, as long as a step is short
+Before every step the coefficient of each contact is set to that at the slip speed and the normal force which the
+contact will have at the end of the step: the straight lines through its last two of each. Within a step the engine
+solves for constant coefficients. So the error is of second order in the step, like that of the integrator, as long as a step is short
 beside the time in which the change of friction acts back on the speed (`feedback`).
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from multibody.models.engine import exudyn
 from multibody.models.loading import Ground
 from multibody.models.units import Units
 from reference.problem import DryFriction, Scene
+from reference.problem.friction import LEAST_LOAD
+
+if TYPE_CHECKING:
+    from multibody.models.system import EngineState
 
 Array = NDArray[np.float64]
 
@@ -31,17 +36,21 @@ class SpeedFriction:
         self, mbs: Any, scene: Scene, units: Units, threshold: float, contacts: list[Any], ground: Ground
     ) -> None:
         law = scene.dry_friction
-        self.law = DryFriction(law.slow, law.fast, law.rate * units.velocity)
+        self.law = DryFriction(law.slow, law.fast, law.rate * units.velocity, law.exponent)
         self._contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
-        self._slip = self._rate = [0.0] * len(contacts)  # at the start of the step
+        self._slip = self._rate = self._load_rate = [0.0] * len(contacts)  # at the start of the step
+        self._load = [1.0] * len(contacts)  # over the shares of the weight
         self._start = self._end = 0.0  # of the step
         mbs.SetPreStepUserFunction(self._before_step)
 
-    def begin(self, mbs: Any, contact: Array, slip_rate: Array | None, time: float) -> None:
-        """Make ready for a run from contact data (4 K,) at this instant; slip_rate: (K,), of the step before it."""
-        self._slip = contact[SLIP::DATA_PER_CONTACT].tolist()
-        self._rate = [0.0] * len(self._slip) if slip_rate is None else slip_rate.tolist()
+    def begin(self, mbs: Any, state: EngineState, time: float) -> None:
+        """Make ready for a run from `state` at this instant."""
+        nothing = [0.0] * len(self._contacts)
+        self._slip = state.contact[SLIP::DATA_PER_CONTACT].tolist()
+        self._rate = nothing if state.slip_rate is None else state.slip_rate.tolist()
+        self._load = [1.0] * len(nothing) if state.load is None else state.load.tolist()
+        self._load_rate = nothing if state.load is None or state.load_rate is None else state.load_rate.tolist()
         self._start = self._end = time
         self._set(mbs, 0.0)
 
@@ -58,15 +67,29 @@ class SpeedFriction:
         if slip != self._slip:  # the step before was made; otherwise the engine tries it again with another length
             span = self._end - self._start
             self._rate = [(new - old) / span for new, old in zip(slip, self._slip, strict=True)]
+            if self.law.exponent != 0.0:
+                load = self._loads(mbs)
+                self._load_rate = [(new - old) / span for new, old in zip(load, self._load, strict=True)]
+                self._load = load
             self._slip, self._start = slip, self._end
         self._end = end
         self._set(mbs, end - self._start)
         return True
 
+    def _loads(self, mbs: Any) -> list[float]:
+        """Normal forces of the contacts over their shares of the weight."""
+        kind, count = exudyn.OutputVariableType, len(self._contacts)
+        pairs = [(mbs.GetObjectOutput(each, kind.Force), mbs.GetObjectOutput(each, kind.Director1))
+                 for each in self._contacts]  # fmt: skip
+        return [count * abs(float(force @ normal)) for force, normal in pairs]
+
     def _set(self, mbs: Any, span: float) -> None:
-        """Set the coefficients at the speeds that the contacts have after `span`."""
+        """Set the coefficients at the speeds and loads that the contacts have after `span`."""
         law = self.law
-        for contact, slip, rate in zip(self._contacts, self._slip, self._rate, strict=True):
+        loads = zip(self._load, self._load_rate, strict=True)
+        for contact, slip, rate, (load, load_rate) in zip(self._contacts, self._slip, self._rate, loads, strict=True):
             speed = max(slip + span * rate, 0.0)
             coefficient = law.slow - (law.fast - law.slow) * math.expm1(-law.rate * speed)
+            if law.exponent != 0.0:
+                coefficient *= max(load + span * load_rate, LEAST_LOAD) ** law.exponent
             mbs.SetObjectParameter(contact, "dynamicFriction", coefficient)

@@ -31,6 +31,8 @@ class EngineState:
     contact: Array  # (c,), contact data
     plate: Array = field(default_factory=AT_REST.copy)  # (3, 3), its own displacement, velocity, acceleration
     slip_rate: Array | None = None  # (K,), of the contacts' slip speeds over the last step, where there was one
+    load: Array | None = None  # (K,), of the contacts, over their shares of the weight, where friction depends on it
+    load_rate: Array | None = None  # (K,), over the last step, where there was one
 
 
 @dataclass(frozen=True)
@@ -80,7 +82,7 @@ class EngineModel:
     # distance of the supports from a plane, (T,), for coordinates (T, n); None if the supports do not share the load
     warping_displacement: Callable[[Array], Array] | None = None
     bearing_penetration: float = 0.0  # by the weight, as the scene's bearings state it, or 0
-    friction: SpeedFriction | None = None  # of contacts whose friction depends on the slip speed
+    friction: SpeedFriction | None = None  # of contacts whose friction depends on slip speed or load
     rim: float = 1.0  # displacement of the platform at which it reaches the rim; inf on a plane
     fastest_of_bars: float = 0.0  # largest angular frequency that bars make which give way; 0 without such bars
 

@@ -72,9 +72,11 @@ def translational(
     add_contact = _contact_on_plane if scene.flat else _contact
     contact, contact_node = add_contact(mbs, plate, depression, friction, threshold)
     expressions = [*plate.expressions] if plate.moves else push(mbs, ground, _pushed(masses, nodes, axes))
-    recorders = add_recorders(mbs, [], [chain], [contact_node], [contact] if contact_force else [], plate.node)
+    recorders = add_recorders(mbs, [], [chain], [contact_node], [contact] if contact_force or scene.dry_friction.exponent else [], plate.node)
     mbs.Assemble()
 
+    constant = scene.dry_friction.constant
+    varying = None if constant else SpeedFriction(mbs, scene, units, threshold, [contact], ground)
     count = COORDINATES + axes * (len(masses) - 1)
     bodies = np.tile(np.arange(3), (len(masses), 1))
     bodies[1:, :axes] = np.arange(COORDINATES, count).reshape(-1, axes)
@@ -97,7 +99,8 @@ def translational(
         coordinates[:3], velocities[:3], gap, slip = on_surface(
             coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
         )
-        return EngineState(coordinates, velocities, np.array([gap, slip, 0.0, 0.0]))
+        contact_data, load = np.array([gap, slip, 0.0, 0.0]), np.array([-gap / penetration])
+        return EngineState(coordinates, velocities, contact_data, load=load)
 
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
         x, y, z = (0.0, 0.0, 0.0) if scene.flat else state.coordinates[:3].tolist()
@@ -105,7 +108,6 @@ def translational(
         length = math.hypot(*inward)
         return settled_contact(state, float(gap_rate[0]), penetration, [part / length for part in inward])
 
-    varies = scene.dry_friction.varies
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
         mbs=mbs,
@@ -122,7 +124,7 @@ def translational(
         moving_plate=plate.moves,
         carried=bodies,
         references=(container, expressions),
-        friction=SpeedFriction(mbs, scene, units, threshold, [contact], ground) if varies else None,
+        friction=varying,
         rim=np.inf if scene.flat else 1.0,
     )
 

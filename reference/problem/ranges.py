@@ -57,6 +57,8 @@ SCENE: dict[str, Range] = {
     "isolator.friction.slow": Range(1e-9, 1e3),
     "isolator.friction.fast": Range(0.0, 1e3),
     "isolator.friction.rate": Range(1e-6, 1e10, "s/m"),
+    "isolator.friction.load_exponent": Range(-0.5, 1.0),
+    "isolator.friction.reference_load": Range(1e-11, 1e16, "N"),
     "isolator.lubrication": Range(0.0, 1e9, "s/m"),
     "isolator.supports": Range(3, 1000),
     "isolator.ring": Range(1e-6, 1e6, "m"),

@@ -155,6 +155,8 @@ class Scene(Table):
         }
         with np.errstate(over="ignore", divide="ignore"):
             periods = 2.0 * np.pi * np.sqrt(self.masses[1:, None] / self.stiffness)
+        if self.dry_friction.exponent != 0.0:
+            derived["isolator.friction: under the weight"] = self.dry_friction.slow, SCENE["isolator.friction.slow"]
         for (i, axis), k in np.ndenumerate(self.stiffness):
             derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), SCENE["bodies.stiffness"]
             derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), SCENE["bodies.period"]
@@ -370,18 +372,23 @@ class Scene(Table):
 
     @property
     def friction_coefficient(self) -> float:
-        """Dry friction coefficient mu, the largest where it depends on the velocity, or f_c in s/m when lubricated."""
+        """
+        Dry friction coefficient mu under the weight, the largest where it depends on the velocity; f_c in s/m when
+        lubricated.
+        """
         if self.isolator.lubrication is not None:
             return self.isolator.lubrication
         return self.dry_friction.largest
 
     @property
     def dry_friction(self) -> DryFriction:
-        """The law of dry friction mu(|v|); without friction in a lubricated scene, which has none."""
+        """The law of dry friction mu(|v|, N); without friction in a lubricated scene, which has none."""
         friction = self.isolator.friction
-        if isinstance(friction, VelocityFriction):
-            return DryFriction(friction.slow, friction.fast, friction.rate)
-        return DryFriction(friction or 0.0, friction or 0.0, 0.0)
+        if not isinstance(friction, VelocityFriction):
+            return DryFriction(friction or 0.0, friction or 0.0, 0.0)
+        fast, rate, exponent = friction.fast, friction.rate or 0.0, friction.load_exponent or 0.0
+        share = (self.total_mass * GRAVITY / friction.reference_load) ** exponent if friction.reference_load else 1.0
+        return DryFriction(share * friction.slow, share * (friction.slow if fast is None else fast), rate, exponent)
 
     @property
     def recorded(self) -> bool:

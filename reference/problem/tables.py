@@ -142,15 +142,44 @@ def exactly_one(table: BaseModel, *keys: str) -> None:
 
 
 class VelocityFriction(Table):
-    """Dry friction that depends on the slip speed: mu(|v|) = fast - (fast - slow) exp(-rate |v|)."""
+    """
+    Dry friction that depends on the slip speed, the normal force, or both.
+
+    The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n.
+    """
 
     slow: Annotated[Positive, within("isolator.friction.slow"), about("coefficient at rest", "", ALL)]
     fast: Annotated[
-        NonNegative, within("isolator.friction.fast"), about("coefficient at high speed, above or below slow", "", ALL)
-    ]
+        Annotated[NonNegative, within("isolator.friction.fast")] | None,
+        about("coefficient at high speed, above or below slow; without it and rate, slow holds at every speed", "", ALL),
+    ] = None
     rate: Annotated[
-        Positive, within("isolator.friction.rate"), about("rate of the change from slow to fast", "s/m", ALL)
-    ]
+        Annotated[Positive, within("isolator.friction.rate")] | None,
+        about("rate of the change from slow to fast", "s/m", ALL),
+    ] = None
+    load_exponent: Annotated[
+        Annotated[float, within("isolator.friction.load_exponent")] | None,
+        about("exponent n: the coefficient grows like N^n with the normal force N, and not without it", "", ALL),
+    ] = None
+    reference_load: Annotated[
+        Annotated[Positive, within("isolator.friction.reference_load")] | None,
+        about(
+            "normal force of the whole isolator under which the coefficients are those stated; the weight of all bodies "
+            "without it",
+            "N",
+            ALL,
+        ),
+    ] = None
+
+    @model_validator(mode="after")
+    def _pairs(self) -> VelocityFriction:
+        if (self.fast is None) != (self.rate is None):
+            raise ValueError("give fast and rate together, or neither")
+        if self.fast is None and self.load_exponent is None:
+            raise ValueError("give fast and rate, or load_exponent, or one number in place of the table")
+        if self.reference_load is not None and self.load_exponent is None:
+            raise ValueError("reference_load belongs to a load_exponent: state that, too, or remove this key")
+        return self
 
 
 def kind_of_friction(friction: Any) -> str:
@@ -183,7 +212,7 @@ class Isolator(Table):
     friction: Annotated[
         Friction | None,
         about(
-            "dry friction coefficient mu of (2.5), or the table below where it depends on the velocity; "
+            "dry friction coefficient mu of (2.5), or the table below where it depends on velocity or load; "
             "give this or lubrication",
             "",
             ALL,

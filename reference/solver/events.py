@@ -6,6 +6,7 @@ import numpy as np
 
 from reference.solver.collocation import DENSE, STAGES
 from reference.solver.compiled import compiled
+from reference.solver.contact.load import loaded
 from reference.solver.contact.platform import load_at_stages, rest_excess
 from reference.solver.polynomial import expand, value_at
 from reference.solver.rows import Row, as_many, highest, put, row, where_positive
@@ -43,7 +44,7 @@ def first_onset(system: System, work: Work) -> float:
     """First theta of a step at rest at which friction can no longer hold the platform; fills the reaction."""
     excess, reaction = rest_excess(system, load_at_stages(work))
     put(work.stage, REACTION, reaction)
-    limit = system.friction * reaction
+    limit = loaded(system, reaction, system.friction * reaction)
     most = highest(excess + NEAR_LIMIT * (limit * limit))
     if most < 0.0:  # only a step that comes near the limit is looked at closely
         return NEVER

@@ -14,6 +14,7 @@ from math import cos, inf, sin, sqrt
 from reference.solver.chain import chain_acceleration
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import coefficient, sliding_speed2
+from reference.solver.contact.load import loaded
 from reference.solver.contact.platform import acceleration, load_in_state, rest_excess, slip_factor
 from reference.solver.ground import next_ground, start_turns, start_waves
 from reference.solver.steps import lifted
@@ -134,7 +135,7 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
     speed2 = sliding_speed2(system, load.px, load.py, vx, vy)
     if system.law == SET_VALUED and speed2 == 0.0:
         excess, reaction = rest_excess(system, load)
-        limit = system.friction * reaction
+        limit = loaded(system, reaction, system.friction * reaction)
         if excess <= 0.0:
             largest = sqrt(ground.x * ground.x + ground.y * ground.y)
             nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
@@ -146,7 +147,8 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
     ax, ay, reaction, determinant = acceleration(system, load, speed2, sx, sy)
     if not (reaction >= least and determinant >= MIN_MARGIN):
         return inf, True
-    gx, gy = ax + reaction * sx, ay + reaction * sy  # without friction
+    held = loaded(system, reaction, reaction)
+    gx, gy = ax + held * sx, ay + held * sy  # without friction
     free_x, free_y = vx + h * gx, vy + h * gy
     free = sqrt(free_x * free_x + free_y * free_y)
     if free == 0.0:
@@ -156,11 +158,11 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
         share = 1.0 / (1.0 + h * reaction * system.friction)
     else:
         ratio = sqrt(sliding_speed2(system, load.px, load.py, free_x / free, free_y / free))
-        limit = reaction * coefficient(system, sqrt(speed2)) / ratio
+        limit = held * coefficient(system, sqrt(speed2)) / ratio
         share = max(0.0, 1.0 - h * limit / free)
         if share * free * ratio < system.v_reg:
             share = 1.0 / (1.0 + h * limit * ratio / system.v_reg)
-        limit = max(limit, reaction * system.friction / ratio)  # friction may rise on the way to the stop
+        limit = max(limit, held * system.friction / ratio)  # friction may rise on the way to the stop
         slow = share * free < MAX_SLOW_STEPS * h * limit
         if slow and speed2 > system.v_reg * system.v_reg:
             work.v[0, 0], work.v[0, 1] = share * free_x, share * free_y

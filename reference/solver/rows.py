@@ -211,10 +211,12 @@ def where_positive(context: Any, number: Any, positive: Any, otherwise: Any) -> 
 
 
 def _reduction(relation: str) -> Callable[..., Any]:
-    """The number at a stage that is above or below all others; any of them where one is NaN."""
+    """The number at a stage that is above or below all others; any of them where one is NaN. A float is its own."""
 
     def reduce(context: Any, values: Any) -> Any:
         def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            if signature.args[0] != _ROW:
+                return arguments[0]
             best, width = arguments[0], LANES
             while width > 1:
                 width //= 2

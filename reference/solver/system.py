@@ -35,6 +35,7 @@ class System(NamedTuple):
     friction: float  # mu, at rest where it depends on the velocity, or f_c in s/m
     rise: float  # of mu from rest to high speed
     rate: float  # s/m, of that rise; 0 where mu is constant
+    exponent: float | None  # of the normal force over the weight, in mu; None where mu does not depend on it
     v_reg: float  # m/s, of the regularized law
     mass_ratio: float  # m_sum / m1
     radius: float  # m
@@ -120,6 +121,7 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         friction=dry.slow if dry.varies else scene.friction_coefficient,
         rise=dry.fast - dry.slow if dry.varies else 0.0,
         rate=dry.rate if dry.varies else 0.0,
+        exponent=None if smooth or dry.exponent == 0.0 else dry.exponent,
         v_reg=0.0 if v_reg is None else float(v_reg),
         mass_ratio=float(scene.total_mass / masses[0]),
         radius=float(scene.radius),

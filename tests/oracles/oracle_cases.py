@@ -88,9 +88,11 @@ OWN: dict[str, dict[str, Any]] = {
 }
 
 
-VELOCITY = {  # behind the name of a scene: friction that depends on the velocity
+VELOCITY = {  # behind the name of a scene: friction that depends on the velocity, or on the load
     "rising": {"slow": 0.05, "fast": 0.1, "rate": 100.0},
     "falling": {"slow": 0.1, "fast": 0.05, "rate": 100.0},
+    "pressed": {"slow": 0.08, "load_exponent": 0.4},
+    "eased": {"slow": 0.05, "fast": 0.1, "rate": 100.0, "load_exponent": -0.3, "reference_load": 25.0},
 }
 
 
@@ -123,7 +125,10 @@ SET_VALUED = [
         Case(f"{scene}-falling", (0.3, 1.1), "exact")
         for scene in ("fig3-I", "fig4-dry", "one-body", "three-vertical", "deep", "one-axis")
     ),
-    *(Case(f"fig3-I-{law}", (0.3, 1.1), "small") for law in VELOCITY),
+    *(Case(f"fig3-I-{law}", (0.3, 1.1), "small") for law in ("rising", "falling")),
+    *(Case(f"{scene}-pressed", (0.3, 1.1), "exact") for scene in ("fig3-I", "three-vertical", "deep", "light-platform")),
+    *(Case(f"{scene}-eased", (0.3, 1.1), "exact") for scene in ("fig4-dry", "three-vertical", "five-bodies")),
+    Case("three-vertical-pressed", (2.2, 5.2), "small"),
 ]
 SMOOTH = [
     *(Case("fig4-viscous", p, e) for p in ((0.3, 1.1), (2.5, 4.0)) for e in BOTH),
@@ -145,5 +150,7 @@ REGULARIZED = [
     Case("fig3-I-falling", (0.3, 1.1), "exact", 1e-3),
     Case("three-vertical-rising", (0.3, 1.1), "small", 1e-2),
     Case("one-axis-falling", (0.3, 1.1), "exact", 1e-2),
+    Case("three-vertical-pressed", (0.3, 1.1), "exact", 1e-2),
+    Case("fig3-I-eased", (0.3, 1.1), "exact", 1e-3),
 ]
 CASES = [*SET_VALUED, *SMOOTH, *REGULARIZED]

@@ -6,6 +6,7 @@ import cmath
 import math
 
 import numpy as np
+from scipy.optimize import brentq
 
 from reference.problem import GRAVITY, Scene
 from reference.problem.tables import VelocityFriction
@@ -33,10 +34,12 @@ class Law:
         self.dampers = [(float(cx), float(cy)) for cx, cy in scene.damping]
         self.count = len(self.mass)
         friction = scene.isolator.friction
-        self.slow, self.fast, self.rate = (
-            (friction.slow, friction.fast, friction.rate) if isinstance(friction, VelocityFriction) else (0.0, 0.0, 0.0)
-        )
-        self.mu = self.slow or scene.friction_coefficient  # at rest
+        self.slow, self.fast, self.rate, self.exponent, self.reference = 0.0, 0.0, 0.0, 0.0, self.total * GRAVITY
+        if isinstance(friction, VelocityFriction):
+            self.slow, self.fast, self.rate = friction.slow, friction.fast or 0.0, friction.rate or 0.0
+            self.exponent = friction.load_exponent or 0.0
+            self.reference = friction.reference_load or self.reference
+        self.mu = self.slow or scene.friction_coefficient  # at rest, under the reference load
         self.lubricated = scene.lubricated
         self.duration = scene.duration
         self.swing = 0.0  # largest sqrt(x1^2 + y1^2)/rho and smallest normal force of the states accepted so far
@@ -105,17 +108,26 @@ class Law:
         sx, sy = slip
         if not self.exact:
             normal = total / m1 * (GRAVITY + w)
+            sx, sy = self.share(normal * m1) * sx, self.share(normal * m1) * sy
             ax = bx - normal * x / self.rho - (normal - x * u / self.rho) * sx + y * u / self.rho * sy
             ay = by - normal * y / self.rho - (normal - y * v / self.rho) * sy + x * v / self.rho * sx
             return ax, ay, 0.0, normal * m1
         z = self.delta(x, y)
         nx, ny, nz = -x / self.rho, -y / self.rho, -z / self.rho
         sz = -(x * sx + y * sy) / z
-        dx, dy, dz = nx - sx, ny - sy, nz - sz
-        compliance = (nx * dx + ny * dy) / m1 + nz * dz / total
-        if compliance <= 0.0:
+
+        def compliance(share: float) -> float:
+            return (nx * (nx - share * sx) + ny * (ny - share * sy)) / m1 + nz * (nz - share * sz) / total
+
+        if compliance(1.0) <= 0.0:
             raise RefusalError("painleve paradox")
-        normal = (speed / self.rho - (nx * bx + ny * by + nz * bz)) / compliance
+        apart = speed / self.rho - (nx * bx + ny * by + nz * bz)
+        normal = apart / compliance(1.0)
+        if self.exponent:
+            middle = apart / compliance(0.0)
+            normal = brentq(lambda n: n * compliance(self.share(n)) - apart, 0.2 * middle, 5.0 * middle, rtol=1e-15)
+        share = self.share(normal)
+        dx, dy, dz = nx - share * sx, ny - share * sy, nz - share * sz
         return bx + normal * dx / m1, by + normal * dy / m1, bz + normal * dz / total, normal
 
     def speed_square(self, x: float, y: float, vx: float, vy: float) -> float:
@@ -123,6 +135,10 @@ class Law:
         if not self.exact:
             return vx * vx + vy * vy
         return vx * vx + vy * vy + ((x * vx + y * vy) / self.delta(x, y)) ** 2
+
+    def share(self, normal: float) -> float:
+        """Coefficient under a normal force over that under the reference load."""
+        return (normal / self.reference) ** self.exponent if self.exponent else 1.0
 
     @property
     def coefficient_slope(self) -> float:
@@ -163,9 +179,15 @@ class Law:
         """Rest: required over available friction, minus 1; negative inside the cone. Consistent condition."""
         x, y = q[0], q[1]
         sx, sy = self.holding(t, x, y, force)
+        u, v, w = self.ground(t)
+        normal = self.total * (GRAVITY + w)
+        if self.exact:
+            m1, z = self.mass[0], self.delta(x, y)
+            normal = -((m1 * u - force[0]) * x + (m1 * v - force[1]) * y + normal * z) / self.rho
+        limit = self.mu * self.share(normal)
         if not self.exact:
-            return math.hypot(sx, sy) / self.mu - 1.0
-        return math.sqrt(self.speed_square(x, y, sx, sy)) / self.mu - 1.0
+            return math.hypot(sx, sy) / limit - 1.0
+        return math.sqrt(self.speed_square(x, y, sx, sy)) / limit - 1.0
 
     def holding(self, t: float, x: float, y: float, force: list[float]) -> tuple[float, float]:
         """Horizontal part of the mu w that would give a = 0."""

@@ -31,8 +31,8 @@ class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
 
     @property
     def mangling_args(self) -> tuple[str, tuple[()]]:
-        """The type in the names of functions."""
-        return self._typename, ()
+        """The type in the names of functions: those of another variant (variants.py) have others."""
+        return "_".join([self._typename, *(name for name, kind in self._fields if kind == types.none)]), ()
 
     @cached_property
     def field_dict(self) -> dict[str, Any]:

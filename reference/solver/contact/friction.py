@@ -7,7 +7,8 @@ a slip vector s = factor * v_h with v_h the horizontal velocity:
   creeping    factor = mu / v_reg   (v < v_reg)
   lubricated  factor = f_c
 The dry coefficient may depend on the sliding speed, mu(v) = mu(0) + rise (1 - exp(-rate v)). The condition for rest and
-the directions at a stop take mu(0).
+the directions at a stop take mu(0). Where it depends on the normal force as well, this is its value under the weight,
+and `acceleration` (platform.py) multiplies the slip vector (load.py).
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from __future__ import annotations
 from math import cos, exp, expm1, sin, sqrt
 
 from reference.solver.compiled import compiled
+from reference.solver.contact.load import loaded
 from reference.solver.rows import Number, as_many, where_positive
 from reference.solver.system import CREEPING, Load, System
 
@@ -67,7 +69,7 @@ def rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     tx = -load.fx - normal * nx
     ty = -load.fy - normal * ny
     tz = rz - normal * nz
-    limit = system.friction * normal
+    limit = loaded(system, normal, system.friction * normal)
     return tx * tx + ty * ty + tz * tz - limit * limit, normal
 
 
@@ -79,8 +81,9 @@ def rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     Mf = mu (R I - u p^T / rho) with R = M (g + zeta''); F_3 = f - R p / rho. The excess is |adj F_3|^2 - det^2 with
     Mf^-1 = adj / det, so that nothing is divided by a small number.
     """
-    px, py, radius, friction = load.px, load.py, system.radius, system.friction
+    px, py, radius = load.px, load.py, system.radius
     reaction = system.mass_ratio * (system.gravity + load.uz)
+    friction = loaded(system, reaction, system.friction)
     gx = load.fx - reaction * px / radius
     gy = load.fy - reaction * py / radius
     a = friction * (reaction - load.ux * px / radius)
@@ -101,8 +104,9 @@ def rest_excess_printed(system: System, load: Load) -> Number:
     origin, and F_3 carries gravity and spring with the printed signs. Kept to measure what the slip costs.
     """
     reaction = system.mass_ratio * (system.gravity + load.uz)
-    lx = system.friction * (reaction - load.ux * (load.px + load.py) / system.radius)
-    ly = system.friction * (reaction - load.uy * (load.px + load.py) / system.radius)
+    friction = loaded(system, reaction, system.friction)
+    lx = friction * (reaction - load.ux * (load.px + load.py) / system.radius)
+    ly = friction * (reaction - load.uy * (load.px + load.py) / system.radius)
     gx = -(2.0 * load.ux + load.fx) + reaction * load.px / system.radius  # spring force f + u with its sign turned
     gy = -(2.0 * load.uy + load.fy) + reaction * load.py / system.radius
     return gx * gx + gy * gy - lx * lx - ly * ly

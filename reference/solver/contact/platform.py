@@ -13,7 +13,8 @@ from reference.solver.contact.friction import (
     sliding_speed2,
     slip_vector,
 )
-from reference.solver.equations import exact_acceleration, small_acceleration
+from reference.solver.contact.load import exact, loaded
+from reference.solver.equations import small_acceleration
 from reference.solver.rows import Number, as_many, row
 from reference.solver.system import CREEPING, PRINTED, SLIDING, Ground, Load, System
 from reference.solver.work import DRIVE, POSITION, Work
@@ -59,12 +60,14 @@ def acceleration(
     system: System, load: Load, speed2: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
     """(ax, ay, reaction / m1, inertia determinant) by the system's own equations (equations.py)."""
-    px, py, fx, fy, ux, uy, pressure = (
-        load.px, load.py, load.fx, load.fy, load.ux, load.uy, system.gravity + load.uz
-    )  # fmt: skip
     if system.small:
-        return small_acceleration(px, py, fx, fy, ux, uy, pressure, sx, sy, system.mass_ratio, system.radius)
-    return exact_acceleration(px, py, fx, fy, pressure, speed2, sx, sy, system.mass_ratio, system.radius)
+        pressure = system.gravity + load.uz
+        reaction = system.mass_ratio * pressure
+        return small_acceleration(
+            load.px, load.py, load.fx, load.fy, load.ux, load.uy, pressure,
+            loaded(system, reaction, sx), loaded(system, reaction, sy), system.mass_ratio, system.radius,
+        )  # fmt: skip
+    return exact(system, load, speed2, sx, sy)
 
 
 @compiled
@@ -98,5 +101,5 @@ def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
     if system.rest_condition == PRINTED:
         # where (4.6) lets go of a platform that friction can hold, no motion begins all the same
         excess = min(excess, rest_excess_printed(system, load))
-    limit = system.friction * reaction
+    limit = loaded(system, reaction, system.friction * reaction)
     return excess - ROUNDING_EXCESS * (limit * limit), reaction

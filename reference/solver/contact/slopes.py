@@ -6,6 +6,7 @@ from math import sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import coefficient_slope
+from reference.solver.contact.load import loaded, responding
 from reference.solver.contact.platform import slip_factor
 from reference.solver.rows import Row, as_many, put, row, where_positive
 from reference.solver.system import LUBRICATED_SLIDING, SLIDING, Array, System
@@ -33,6 +34,8 @@ def slopes(system: System, contact: int, work: Work) -> None:
     speed2 = row(work.stage, SPEED2)
     factor = slip_factor(system, contact, speed2)
     bend = factor_slope(system, contact, factor, speed2)
+    reaction = row(work.stage, REACTION)
+    factor, bend = loaded(system, reaction, factor), loaded(system, reaction, bend)
     if system.small:
         small_slopes(system, work, factor, bend)
     else:
@@ -88,6 +91,7 @@ def exact_slopes(system: System, work: Work, factor: Row, bend: Row) -> None:
     share = ratio / determinant  # of the reaction in a load along the normal
     turn = reaction * (ratio - 1.0) / determinant
     dn = -1.0 / radius
+    tx, ty = responding(system, reaction, sx), responding(system, reaction, sy)
     for axis in range(system.axes):
         ex, ey = (1.0, 0.0) if axis == 0 else (0.0, 1.0)
         p, v, n, s = row(stage, POSITION + axis), row(stage, VELOCITY + axis), nx, sx
@@ -99,16 +103,16 @@ def exact_slopes(system: System, work: Work, factor: Row, bend: Row) -> None:
         d_reaction = share * (dspeed2 / radius - dn * f - dn * n * rise) - turn * (dn * (2.0 * n - s) - gain * lean)
         put_pair(
             out, BY_POSITION + 2 * axis,
-            d_reaction * (nx - sx) + reaction * (dn * ex - gain * vx),
-            d_reaction * (ny - sy) + reaction * (dn * ey - gain * vy),
+            d_reaction * (nx - tx) + reaction * (dn * ex - gain * vx),
+            d_reaction * (ny - ty) + reaction * (dn * ey - gain * vy),
         )  # fmt: skip
         dspeed2 = 2.0 * (v + climb * p)
         gain = bend * dspeed2
         d_reaction = share * dspeed2 / radius + turn * (gain * lean + factor * n)
         put_pair(
             out, BY_VELOCITY + 2 * axis,
-            d_reaction * (nx - sx) - reaction * (gain * vx + factor * ex),
-            d_reaction * (ny - sy) - reaction * (gain * vy + factor * ey),
+            d_reaction * (nx - tx) - reaction * (gain * vx + factor * ex),
+            d_reaction * (ny - ty) - reaction * (gain * vy + factor * ey),
         )  # fmt: skip
         d_reaction = -share * n
-        put_pair(out, BY_DRIVE + 2 * axis, d_reaction * (nx - sx) + ex, d_reaction * (ny - sy) + ey)
+        put_pair(out, BY_DRIVE + 2 * axis, d_reaction * (nx - tx) + ex, d_reaction * (ny - ty) + ey)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
+from reference.solver.contact.load import loaded
 from reference.solver.contact.platform import load_at_stages, rest_excess
 from reference.solver.events import excess_at, expand_drive, first_onset
 from reference.solver.rows import put
@@ -39,7 +40,8 @@ def onset_within(system: System, work: Work, h: float) -> tuple[float, int]:
     width = ONSET_DIFFERENCE * onset
     slope = (excess_at(system, work, onset) - excess_at(system, work, onset - width)) / (width * h)
     end = h * onset
-    limit = (system.friction * work.stage[REACTION, STAGES - 1]) ** 2  # hardly changes on the way to the onset
+    reaction: float = work.stage[REACTION, STAGES - 1]
+    limit = loaded(system, reaction, system.friction * reaction) ** 2  # hardly changes on the way to the onset
     for _ in range(ONSET_ITERATIONS):
         rest_step(system, work, end)
         expand_drive(work)

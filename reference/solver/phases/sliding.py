@@ -7,6 +7,7 @@ from math import atan2, inf, log, sqrt
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import coefficient_slope, heading, rising_rate, sliding_speed2
+from reference.solver.contact.load import loaded
 from reference.solver.contact.platform import directed, load_in_state, rest_excess
 from reference.solver.contact.stop_arc import settled_direction, squared_total
 from reference.solver.events import first_crossing
@@ -185,7 +186,7 @@ def turns_too_far(work: Work) -> bool:
 def barely_slips(system: System, work: Work) -> bool:
     """Whether the drive exceeds the friction limit by so little that a slide need not begin yet."""
     excess, reaction = rest_excess(system, load_in_state(system, work, ground_at(system, work, work.time)))
-    return excess <= BARELY_SLIPPING_EXCESS * (system.friction * reaction) ** 2
+    return excess <= BARELY_SLIPPING_EXCESS * loaded(system, reaction, system.friction * reaction) ** 2
 
 
 @compiled

@@ -1,0 +1,100 @@
+"""
+Friction whose coefficient depends on the normal force: mu (N / W)^n, with W the weight and mu the coefficient under it.
+
+The slip vector s of equations.py is that under the weight; its share here is phi(R) = (R / (M g))^n, R = N / m1. In the
+exact equations R depends on friction in turn: R (1 + (M - 1) (n_h^2 - phi(R) n_h . s)) = M q, q the drive along the
+normal. Without such friction nothing of this is compiled (variants.py).
+"""
+
+from __future__ import annotations
+
+from math import exp, log, sqrt
+
+from reference.problem.friction import LEAST_LOAD
+from reference.solver.compiled import compiled
+from reference.solver.compiled.variants import variants
+from reference.solver.equations import exact_acceleration
+from reference.solver.rows import Number, as_many, highest, where_positive
+from reference.solver.system import Load, System
+
+MAX_ITERATIONS = 40
+LAST_CHANGE = 1e-8  # of the reaction: the one behind it is below rounding
+MAX_MISFIT = 1e-7  # of the drive along the normal, before the last change: a larger one means that no reaction fits
+
+
+@compiled
+def _same(system: System, reaction: Number, number: Number) -> Number:
+    """Without dependence on the load."""
+    return number
+
+
+@compiled
+def _with_share(system: System, reaction: Number, number: Number) -> Number:
+    return number * share(system, reaction)
+
+
+@compiled
+def _with_response(system: System, reaction: Number, number: Number) -> Number:
+    return number * (1.0 + elasticity(system, reaction))
+
+
+loaded = variants("exponent", _same, _with_share)
+"""A number times the coefficient under a reaction over that under the weight."""
+
+responding = variants("exponent", _same, _with_response)
+"""A slip vector times the relative change of the friction force over that of the reaction."""
+
+
+@compiled
+def share(system: System, reaction: Number) -> Number:
+    """Coefficient under a reaction over that under the weight."""
+    return exp(system.exponent * log(max(reaction / (system.mass_ratio * system.gravity), LEAST_LOAD)))
+
+
+@compiled
+def elasticity(system: System, reaction: Number) -> Number:
+    """Relative change of the coefficient over that of the reaction."""
+    above = reaction - LEAST_LOAD * system.mass_ratio * system.gravity
+    return where_positive(above, as_many(system.exponent, above), as_many(0.0, above))
+
+
+@compiled
+def _of_constant_share(
+    system: System, load: Load, speed2: Number, sx: Number, sy: Number
+) -> tuple[Number, Number, Number, Number]:
+    pressure = system.gravity + load.uz
+    return exact_acceleration(
+        load.px, load.py, load.fx, load.fy, pressure, speed2, sx, sy, system.mass_ratio, system.radius
+    )
+
+
+@compiled
+def _of_load(
+    system: System, load: Load, speed2: Number, sx: Number, sy: Number
+) -> tuple[Number, Number, Number, Number]:
+    """By Newton's method for the reaction; the determinant is the derivative of its equation."""
+    curvature = 1.0 / system.radius
+    nx, ny = -load.px * curvature, -load.py * curvature
+    tilt = nx * nx + ny * ny
+    plain = 1.0 + (system.mass_ratio - 1.0) * tilt
+    taken = (system.mass_ratio - 1.0) * (nx * sx + ny * sy)
+    drive = speed2 * curvature - nx * load.fx - ny * load.fy + sqrt(1.0 - tilt) * (system.gravity + load.uz)
+    drive = system.mass_ratio * drive
+    reaction, misfit = drive / plain, drive
+    for _ in range(MAX_ITERATIONS):
+        factor = share(system, reaction)
+        slope = plain - (1.0 + elasticity(system, reaction)) * factor * taken
+        misfit = drive - reaction * (plain - factor * taken)
+        change = misfit / slope
+        reaction += change
+        if not highest(abs(change) - LAST_CHANGE * abs(reaction)) > 0.0:
+            break
+    factor = share(system, reaction)
+    determinant = plain - (1.0 + elasticity(system, reaction)) * factor * taken
+    determinant = where_positive(abs(misfit) - MAX_MISFIT * abs(drive), as_many(-1.0, determinant), determinant)
+    sx, sy = factor * sx, factor * sy
+    return load.fx + reaction * (nx - sx), load.fy + reaction * (ny - sy), reaction, determinant
+
+
+exact = variants("exponent", _of_constant_share, _of_load)
+"""(ax, ay, reaction / m1, inertia determinant) by the exact equations."""
