@@ -11,16 +11,8 @@ import numpy as np
 import xarray as xr
 
 from comparison.analyses.benchmarks.cases import Case, Published, Reading
-from comparison.analyses.benchmarks.table import (
-    ENGINE,
-    EQUATIONS,
-    SMOOTHED,
-    Benchmark,
-    Benchmarks,
-    Number,
-    Row,
-    Verdict,
-)
+from comparison.analyses.benchmarks.table import Benchmark, Benchmarks, Number, Row, Verdict
+from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult

@@ -19,7 +19,8 @@ from comparison.analyses.benchmarks.analysis import MODELS, BenchmarkTable
 from comparison.analyses.benchmarks.cases import Case, cases
 from comparison.analyses.benchmarks.mastodon import mastodon
 from comparison.analyses.benchmarks.page import page, with_error
-from comparison.analyses.benchmarks.table import ENGINE, EQUATIONS, PAGE, STORED, Benchmarks, Verdict
+from comparison.analyses.benchmarks.table import PAGE, STORED, Benchmarks, Verdict
+from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table

@@ -4,17 +4,8 @@ from __future__ import annotations
 
 import math
 
-from comparison.analyses.benchmarks.table import (
-    ENGINE,
-    EQUATIONS,
-    MEANING,
-    SMOOTHED,
-    Benchmark,
-    Benchmarks,
-    Number,
-    Row,
-    Verdict,
-)
+from comparison.analyses.benchmarks.table import MEANING, Benchmark, Benchmarks, Number, Row, Verdict
+from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
 
 MOST_DIGITS = 7  # of a value
 SHORT = (("sdnd104-1.5", 0), ("sdnd100", 2), ("frame", 0), ("den-hartog", 0), ("newmark", 0))  # name, and row

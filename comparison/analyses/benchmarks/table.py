@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from typing import Any
 
+from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.json_file import StoredFile
 from comparison.result_types import result
 
 FILE, PAGE = "benchmarks.json", "benchmarks.md"
-EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"  # sides; smoothed: with the engine's friction
 
 
 class Verdict(StrEnum):

@@ -12,7 +12,8 @@ from scipy.interpolate import CubicHermiteSpline
 
 import multibody
 import reference
-from comparison.analyses.validation.table import ENGINE, EQUATIONS, NONE, SMOOTHED, VALID, Comparison, Curve, Quantity
+from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
+from comparison.analyses.validation.table import NONE, VALID, Comparison, Curve, Quantity
 from comparison.json_file import finite_or_none
 from reference.measures.demands import ANSWERED
 from reference.problem import Scene, State, Trajectory

@@ -14,9 +14,10 @@ from pathlib import Path
 
 from rich.console import Console
 
+from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import assess, frame, pendulum
 from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE, read_folder
-from comparison.analyses.validation.table import ENGINE, EQUATIONS, MEANING, NONE, STORED, Validation, recorded
+from comparison.analyses.validation.table import MEANING, NONE, STORED, Validation, recorded
 from comparison.cli.arguments import CommandParser, command, writing
 from comparison.cli.terminal import new_table
 from comparison.runner.output import destination, publish, refuse_foreign_files

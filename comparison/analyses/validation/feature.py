@@ -5,8 +5,9 @@ from __future__ import annotations
 from itertools import groupby
 from typing import Any
 
+from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
-from comparison.analyses.validation.table import ENGINE, EQUATIONS, INPUT, LAW, MEANING, NONE, STORED, VALID, Validation
+from comparison.analyses.validation.table import INPUT, LAW, MEANING, NONE, STORED, VALID, Validation
 from comparison.report.plots import Panel
 from comparison.report.section import Feature, Section
 

@@ -20,10 +20,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
+from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import assess
 from comparison.analyses.validation.assess import COVERAGE, SIDES, Answer, Array, Found
 from comparison.analyses.validation.files import Shaken, wrong_file
-from comparison.analyses.validation.table import ENGINE, EQUATIONS, INPUT, LAW, Curve
+from comparison.analyses.validation.table import INPUT, LAW, Curve
 from reference.problem import GRAVITY, Scene, Trajectory
 
 HEAVY, LOOSE = 10.0, 1e4  # mass of the second body over that of the platform; period of its link, s

@@ -12,10 +12,11 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import ellipk
 
+from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import assess
 from comparison.analyses.validation.assess import COVERAGE, SIDES, Answer, Array, Data, Found
 from comparison.analyses.validation.files import DECAY, LARGE, Swing, wrong_file
-from comparison.analyses.validation.table import ENGINE, EQUATIONS, INPUT, LAW, Curve
+from comparison.analyses.validation.table import INPUT, LAW, Curve
 from reference.problem import GRAVITY, Scene, Trajectory
 
 REGULARIZATION, TOLERANCE = 1e-5, 1e-4  # of the engine; v_reg in m/s

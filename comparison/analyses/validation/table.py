@@ -9,10 +9,10 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
+from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.json_file import StoredFile
 from comparison.result_types import result
 
-EQUATIONS, SMOOTHED, ENGINE = "equations", "smoothed", "engine"  # sides; smoothed: with the engine's friction law
 VALID, LAW, INPUT, NONE = "within u_val", "law", "input", "no answer"
 MEANING = {
     VALID: "the comparison error is within the uncertainties together",

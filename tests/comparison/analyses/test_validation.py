@@ -15,10 +15,15 @@ from scipy.integrate import solve_ivp
 from scipy.io import savemat
 from scipy.special import ellipk
 
+<<<<<<< HEAD
 from comparison.analyses.validation import assess, frame, pendulum
+=======
+from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
+from comparison.analyses.validation import frame, pendulum
+>>>>>>> 3dc3d27 (Name the sides of benchmarks and validation in one place)
 from comparison.analyses.validation.command import compared, main
 from comparison.analyses.validation.files import DECAY, LARGE, Swing, read_folder
-from comparison.analyses.validation.table import ENGINE, EQUATIONS, LAW, SMOOTHED, VALID, recorded
+from comparison.analyses.validation.table import LAW, VALID, recorded
 
 MASS, STIFFNESS, DAMPING, RATIO = 3.0799, 1191.0, 0.6690, 0.24
 FREQUENCY, AMPLITUDE, RATE, GRAVITY = 1.003, 1.8e-3, 250.0, 9.80665
