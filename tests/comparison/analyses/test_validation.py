@@ -15,12 +15,8 @@ from scipy.integrate import solve_ivp
 from scipy.io import savemat
 from scipy.special import ellipk
 
-<<<<<<< HEAD
-from comparison.analyses.validation import assess, frame, pendulum
-=======
 from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
-from comparison.analyses.validation import frame, pendulum
->>>>>>> 3dc3d27 (Name the sides of benchmarks and validation in one place)
+from comparison.analyses.validation import assess, frame, pendulum
 from comparison.analyses.validation.command import compared, main
 from comparison.analyses.validation.files import DECAY, LARGE, Swing, read_folder
 from comparison.analyses.validation.table import LAW, VALID, recorded
