@@ -165,6 +165,7 @@ def _verdicts(difference: str = "", **sides: tuple[float, float]) -> dict[str, s
 def test_a_number_is_met_within_both_errors():
     near, far = (1.005, 1e-3), (1.2, 1e-3)
     assert _verdicts(equations=near, smoothed=near, engine=near)[ENGINE] == Verdict.MET
+    assert _verdicts(equations=(1.0105, 1e-3), smoothed=far, engine=far)[EQUATIONS] == Verdict.MET
     assert _verdicts(equations=near, smoothed=far, engine=(1.2005, 1e-3))[ENGINE] == Verdict.FRICTION
     assert _verdicts(equations=near, smoothed=near, engine=far)[ENGINE] == Verdict.OFF
     assert _verdicts(equations=far, smoothed=far, engine=far)[EQUATIONS] == Verdict.OFF

@@ -20,6 +20,7 @@ from comparison.analyses.claims.checks import Finding, Verdict, judged, similar
 from comparison.analyses.claims.claims import CLAIMS, Claim
 from comparison.analyses.claims.command import main
 from comparison.analyses.claims.evidence import Evidence, Question
+from comparison.analyses.claims.peak_checks import counted
 from comparison.analyses.claims.readings import EVERY_READING, READINGS, Reading, without_effect
 from comparison.analyses.claims.smoothness import Bend
 from comparison.analyses.claims.table import Claims, tabulated
@@ -284,3 +285,10 @@ def test_four_peaks_are_a_matter_of_the_drawing() -> None:
     """1 m/s^2, resolved peak: two ridges on the square that closes; cut open they are the paper's four and three."""
     table = collected(Claims(16, [Reading()], [_claim("Fig. 3a", "four"), _claim("Fig. 3c", "two")]), PAPERS)
     assert [claim.verdicts[0].finding for claim in table.claims] == [Finding.AS_DRAWN] * 2
+
+
+def test_peaks_that_only_the_cut_square_has_are_as_drawn() -> None:
+    """One peak at the corner is four where the square is cut, and none on the profile."""
+    seen = {"one": Evidence(CORNERS[..., None], 1e-4, ("ok",))}
+    found = counted("one", 1, 4, 1)(seen)
+    assert found == Verdict(Finding.AS_DRAWN, "periodic 1 and 1; drawn 4 and 1; profile 0 and 0")

@@ -88,3 +88,17 @@ def test_regularization_is_of_first_order() -> None:
     assert [trend.verdict for trend in resolved] == ["like the power 1"] * 2
     assert supremum[0].verdict.startswith("hardly falls")
     assert supremum[1].verdict == "falls"
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_the_error_of_a_constant_step_covers_it(monkeypatch: pytest.MonkeyPatch, order: int) -> None:
+    """A method of this order that is off by 1 % with the coarser steps."""
+
+    def stepped(scene: Scene, v_reg: float, penetration: float, factor: int) -> Array:
+        return np.full((len(convergence.FEW), 2), 3.0 * (1.0 + 0.01 / factor**order))
+
+    monkeypatch.setattr(convergence, "_at_constant_step", stepped)
+    monkeypatch.setattr(reference, "amplification", _regularized(60.0))
+    sizes, errors = convergence._stiffened(load_scene("fig3-I"))
+    assert (np.abs(sizes) <= errors).all()
+    assert (errors <= 5.0 * np.abs(sizes)).all()

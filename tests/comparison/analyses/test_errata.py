@@ -11,7 +11,7 @@ from report_texts import page_of, summary_of
 
 from comparison.analyses.errata import analysis as errata
 from comparison.analyses.errata.analysis import ERRATA, PHASES, Errata, Erratum, cut_platform, measured
-from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
+from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING, _fixed, printed_amplification
 from comparison.study.models import V_REG
 from comparison.study.study import Study
 from reference import amplification, trajectory
@@ -124,3 +124,13 @@ def test_the_change_is_that_of_the_printed_form(monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(errata.reference, "amplification", known)
     place = next(number for number, erratum in enumerate(ERRATA) if erratum.where == "after (2.5)")
     assert measured((load_scene("fig3-I"), place)).change == ((0.5, 0.5),) * 2
+
+
+def test_the_wrong_spring_of_y_is_that_of_x() -> None:
+    """c_24 = -k^x_21 Delta, as (3.12) is printed: body 2 pulls the platform along y by the spring of x."""
+    scene = load_scene("fig3-I")
+    k_x, k_y = scene.stiffness[0]
+    assert k_x != k_y
+    printed, mended = (_fixed(scene, slips).links for slips in ([WRONG_SPRING], []))
+    assert (mended[0, 2], mended[1, 3]) == (-k_x, -k_y)
+    assert (printed[0, 2], printed[1, 3]) == (-k_x, -k_x)

@@ -88,6 +88,7 @@ def test_a_reader_that_leaves_is_no_traceback() -> None:
     os.close(writer)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="/dev/full")
 def test_a_full_output_is_one_line_and_exit_3(tmp_path: Path) -> None:
     with open("/dev/full", "w") as full:

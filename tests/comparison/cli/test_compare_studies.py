@@ -49,5 +49,6 @@ def test_a_changed_bit_and_a_changed_number_are_found(finished: Path, tmp_path: 
     assert len(lines) == 3, out
 
 
+@pytest.mark.long
 def test_a_folder_without_a_report_is_refused(finished: Path, tmp_path: Path) -> None:
     assert compare(finished, tmp_path)[0] == 2

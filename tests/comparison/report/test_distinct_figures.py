@@ -342,6 +342,8 @@ def test_growth_and_extremes_are_drawn_as_they_are(monkeypatch: pytest.MonkeyPat
     figure = drawn(monkeypatch, draw_extremes, UNUSED, FOUND)
     fields = {text.get_text(): text.get_position() for panel in figure.axes for text in panel.texts}
     assert [fields[text][0] for text in ("2e-07", "step limit", "FAILED")] == [0.5, 1.5, 0.5], "columns of the models"
+    titles = {text.replace("\n", " "): place for text, place in fields.items()}
+    assert [titles[name][0] for name in FOUND.columns.values()] == [0.5, 1.5]
     for title, text in (("1e-9", "2e-07"), ("10", "step limit"), ("1e3", "FAILED")):
         assert fields[title][1] == pytest.approx(fields[text][1], abs=0.05), "in the line of its extreme"
     [legend] = figure.legends

@@ -324,6 +324,7 @@ def test_a_largest_value_names_its_grid_and_the_search() -> None:
         assert words in about["note"]
     data = json.loads(page_data(report))["scenes"][0]["models"]
     assert data["small"]["worst"] == [[1.0, 2.0, 8.765, "exact"], None]
+    assert data["resolved"]["worst"] == [[1.1, 2.1, 7.654, "translational"], None], "the next one that was searched"
     assert data["spatial"]["worst"] == [[1.1, 2.1, 7.654, "translational"], None]
 
 

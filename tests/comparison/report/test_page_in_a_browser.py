@@ -76,7 +76,7 @@ def test_ticks_tell_as_many_digits_as_their_distance_asks_for(
     assert [text for _, text in ticks] == texts
 
 
-@pytest.mark.parametrize("width", [PHONE, LAPTOP, DESKTOP])
+@pytest.mark.parametrize("width", [PHONE, DESKTOP])
 def test_no_two_texts_overlap_and_all_fits_the_window(width: int, browser: Browser, finished: Path) -> None:
     for name, bars in (("index.html", "mean"), ("index.html", "largest"), ("verification.html", "")):
         visit = opened(browser, finished / name, width)

@@ -123,6 +123,7 @@ def test_the_demands_of_the_stored_motions_are_in_a_table(tmp_path: Path) -> Non
     assert "base shear, N" in text
 
 
+@pytest.mark.long
 def test_what_the_pdf_leaves_out_it_counts(tmp_path: Path) -> None:
     record = load_scene("synthetic-pair")
     scenes = [_called(record, f"{'long-' * 20}{number}", "A record") for number in range(9)]

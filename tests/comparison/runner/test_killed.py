@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fake_models import fake_hierarchy
 from places import HELPERS, ROOT
 from report_texts import summary_of
 from rich.console import Console
@@ -21,6 +22,9 @@ from whole_runs import whole_run
 
 from comparison.runner.cache import store_beside
 from comparison.study.batches import BatchResult
+from comparison.study.study import Study
+from comparison.surfaces.tasks import surface_tasks
+from reference.problem import load_scene
 
 INSTANTS = 24
 
@@ -96,6 +100,10 @@ def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[...,
     assert "only the others are computed" not in fresh.out
     summary = summary_of(fresh.report)["run"]
     assert summary["tiles_stored_before"] == 0
+    finer = command("fig3-I", "--grid", "8")
+    hierarchy, scenes = fake_hierarchy(), (load_scene("fig3-I"),)
+    coarse, fine = ([task.key for task in surface_tasks(Study(scenes, n, 1e-3, hierarchy))] for n in (4, 8))
+    assert summary_of(finer.report)["run"]["tiles_stored_before"] == sum(key in coarse for key in fine) > 0
 
 
 @pytest.mark.long

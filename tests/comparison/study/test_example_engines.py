@@ -56,6 +56,7 @@ def test_an_example_gives_mu_of_the_equations_with_its_law(
     assert (np.abs(mu(name, scene, **settings) / right - 1.0).max(axis=0) < close).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["scipy_equations", "siconos_moreau"])
 def test_an_example_tends_to_the_equations_with_its_step(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     example(name, monkeypatch)

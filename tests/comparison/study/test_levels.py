@@ -154,10 +154,9 @@ def test_a_stopped_run_has_its_last_level_and_goes_on_alike(
     assert "go on with: python -m comparison.run fig3-I" in run.err
     if level is None:
         assert not (tmp_path / "a").exists()
-    else:
-        summary = summary_of(tmp_path / "a")
-        assert summary["run"]["level"] == level
-        assert f"This is level {level} of 3" in run.out
+        return
+    assert summary_of(tmp_path / "a")["run"]["level"] == level
+    assert f"This is level {level} of 3" in run.out
     stopped, undisturbed = _whole(command, tmp_path / "a"), _whole(command, tmp_path / "b")
     xr.testing.assert_identical(stopped.drop_attrs(), undisturbed.drop_attrs())
 

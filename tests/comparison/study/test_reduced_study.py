@@ -50,6 +50,7 @@ def test_the_reduced_study_gives_the_full_surfaces(name: str) -> None:
     assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
 
 
+@pytest.mark.long
 def test_the_engine_has_the_symmetry_too() -> None:
     whole, full = surfaces(load_scene("fig3-I"), [TRANSLATIONAL], full=True)
     fewer, reduced = surfaces(load_scene("fig3-I"), [TRANSLATIONAL], full=False)

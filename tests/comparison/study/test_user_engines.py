@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -31,6 +32,7 @@ from comparison.analyses.tradeoff.analysis import TradeOff
 from comparison.analyses.tradeoff.figure import draw_tradeoff
 from comparison.analyses.tradeoff.settings import QUESTIONS, user_settings
 from comparison.cli.user_models import as_words, look_at, user_models
+from comparison.runner import environment
 from comparison.runner.environment import engine_fingerprint, source_digest
 from comparison.runner.processes import process_pool
 from comparison.study.batches import execute_batch
@@ -82,7 +84,7 @@ def stranger(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
 def test_the_engine_of_the_documentation_appears_in_the_report(
     command: Callable[..., Run], stranger: str, tmp_path: Path
 ) -> None:
-    (tmp_path / "short.toml").write_text(scene_text("fig3-I", ("duration = 20.0", "duration = 3.0")))
+    (tmp_path / "short.toml").write_text(scene_text("fig3-I", ("duration = 20.0", "duration = 1.5")))
     run = command("short.toml", "--grid", "2", "--model", stranger)
     assert (run.code, run.err) == (0, "")
     with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as surfaces:
@@ -91,7 +93,7 @@ def test_the_engine_of_the_documentation_appears_in_the_report(
         assert np.isnan(mine["error"]).all(), "it states none"
         assert (mine["cost"] > 0.0).all(), "measured, though it states none"
         mu = mine["mu"].values
-    exact = reference.amplification(SCENE.with_values({"duration": 3.0}), [(0.0, 0.0)], regularization=1e-3).mu[0]
+    exact = reference.amplification(SCENE.with_values({"duration": 1.5}), [(0.0, 0.0)], regularization=1e-3).mu[0]
     np.testing.assert_allclose(mu[:, 0, 0], exact, rtol=0.03)  # geometry left out
     shown = data_of(run.report)["scenes"][0]
     (pair,) = [pair for pair in shown["pairs"] if pair["key"] == "mine"]
@@ -411,6 +413,7 @@ def test_the_first_level_asks_it_at_few_phases() -> None:
 
 def test_its_results_belong_to_its_source_and_its_helpers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(environment, "packages_distributions", cache(environment.packages_distributions))
     seen = []
     for helper, engine in (("1", "1"), ("2", "1"), ("2", "2"), ("2", "2")):
         (tmp_path / "its_helper.py").write_text(f"NUMBER = {helper}\n")
