@@ -56,7 +56,7 @@ def build_report(
         of_scene = {name: [row for row in every if row.scene == scene.name] for name, every in parts.items()}
         more = {name: each.of(findings, scene) for name, each in fields.items()}
         scenes.append(scene_kind(**_scene(study, surfaces, scene, rows), **of_scene, **more))
-    summaries = {
+    summaries: dict[str, Any] = {
         feature.key: feature.summary(findings, scenes) if feature.summary else findings.found.get(feature.key)
         for feature in features
         if feature.result is not None

@@ -39,7 +39,7 @@ def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[B
     models = [model.key for model in study.hierarchy]
     bodies = max(len(scene.bodies) for scene in study.scenes)
     plane = (len(names), len(models), study.grid**2)
-    values = {name: np.full((*plane, bodies), np.nan) for name in ("mu", "error")}
+    values: dict[str, Any] = {name: np.full((*plane, bodies), np.nan) for name in ("mu", "error")}
     values |= {name: np.full(plane, np.nan) for name in ("instant", "displacement")}
     status, cost, solved = np.full(plane, NOT_APPLICABLE, dtype=object), np.zeros(plane[:2]), {}
     for row, scene in enumerate(study.scenes):
