@@ -78,7 +78,7 @@ def test_the_error_of_a_peak_counts_the_other_run() -> None:
         assert (left >= share * np.abs(motion.peak - other.peak) * (1.0 - 1e-6)).all()
 
 
-def test_bodies_above_have_their_own_part_and_the_arc_s_vertical_one(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_bodies_above_have_the_arc_s_vertical_part(monkeypatch: pytest.MonkeyPatch) -> None:
     """At a stop: the horizontal part of each stays, and all share the vertical acceleration of the platform."""
     taken: dict[int, float] = {}
     monkeypatch.setattr(stopping, "settled_direction", lambda *rest: 1.0)
