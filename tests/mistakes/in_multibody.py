@@ -352,8 +352,8 @@ MISTAKES = (
     ),
     Mistake(
         MODELS + "speed_friction.py",
-        "self.law = DryFriction(law.slow, law.fast, law.rate * units.velocity)",
-        "self.law = DryFriction(law.slow, law.fast, law.rate)",
+        "law.rate * units.velocity, law.exponent)",
+        "law.rate, law.exponent)",
         "The rate of friction is not in units of the model.",
         (TESTS + "test_speed_friction.py",),
     ),

@@ -85,8 +85,8 @@ def march(
     """
     Integrate until `end` or the first event that rises through 0: (place, state, number of the event or None).
 
-    floor: absolute tolerance of each unknown over the relative one. longest: step, within which peaks are read. Raises RefusalError where an accepted step holds a
-    state outside the equations.
+    floor: absolute tolerance of each unknown over the relative one; longest: step. Raises RefusalError where an
+    accepted step holds a state outside the equations.
     """
     if end <= start:
         return start, state, None
