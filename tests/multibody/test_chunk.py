@@ -30,14 +30,14 @@ def _length(vectors: np.ndarray) -> np.ndarray:
     return np.sqrt(square)
 
 
-def test_sizes_are_those_of_the_sums_with_the_acceleration_of_the_plate() -> None:
+def test_sizes_are_those_of_the_sums_with_the_plate_s() -> None:
     plate = DRAW.normal(size=(STEPS, 3))
     expected = _length(ACCELERATIONS[:, BODIES] + plate[:, None, :])
     assert np.array_equal(absolute_sizes(ACCELERATIONS, BODIES, plate), expected)
 
 
 @pytest.mark.parametrize("corner", [0.3, np.inf])
-def test_a_change_counts_twice_and_is_held_against_the_slowest_contact_that_carries_load(corner: float) -> None:
+def test_a_change_is_held_against_the_slowest_loaded_contact(corner: float) -> None:
     of_platform = ACCELERATIONS[:, BODIES[0]]
     size = _length(of_platform)
     size[1:] = np.maximum(size[1:], 2.0 * _length(np.diff(of_platform, axis=0)))
@@ -79,7 +79,7 @@ def test_the_last_row_near_a_largest_value_is_found(share: float) -> None:
     assert last_near(size, sizes, distance, far) == (near[-1] if len(near) else -1)
 
 
-def test_an_entry_counts_as_larger_in_its_own_column_and_from_the_stated_row_on() -> None:
+def test_an_entry_counts_as_larger_in_its_own_column() -> None:
     size = np.array([[5.0, 1.0], [1.0, 2.0], [3.0, 2.0]])
     assert any_larger(size, 0, np.array([4.0, 4.0]))
     assert not any_larger(size, 1, np.array([4.0, 4.0]))

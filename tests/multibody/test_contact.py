@@ -21,7 +21,7 @@ def started(scene: Scene, position: tuple[float, float], velocity: tuple[float, 
     return multibody.trajectory(scene, (0.0, 0.0), initial=state, **options)  # type: ignore[arg-type]
 
 
-def test_the_weight_presses_the_contact_in_by_the_static_penetration() -> None:
+def test_the_weight_presses_the_contact_in() -> None:
     model = assemble(one_body(), "translational", 1e-3)
     penetration = 1e-4
     model.set_contact(penetration)
@@ -36,7 +36,7 @@ def test_the_weight_presses_the_contact_in_by_the_static_penetration() -> None:
     assert motion.coordinates[-1, 2] == pytest.approx(0.0, abs=1e-6 * penetration)
 
 
-def test_a_held_platform_creeps_with_v_reg_times_force_over_friction_limit() -> None:
+def test_a_held_platform_creeps_as_v_reg_says() -> None:
     push, mu, v_reg = 0.5, 0.1, 1e-3
     scene = one_body(friction=mu, duration=0.3, amplitudes=[[-push, 0.0], [0.0, 0.0]], periods=(CONSTANT, CONSTANT))
     motion = multibody.trajectory(scene, (0.0, 0.0), regularization=v_reg, tolerance=1e-4)
@@ -59,7 +59,7 @@ def test_sliding_stops_after_v_squared_over_two_mu_g() -> None:
     assert motion.stick[0][0] == pytest.approx(speed / (mu * GRAVITY), rel=2e-3)
 
 
-def test_planar_sliding_follows_the_closed_form_with_the_centripetal_force() -> None:
+def test_planar_sliding_follows_the_closed_form() -> None:
     mu, radius, begin, speed = 0.15, 0.25, 1.0, 0.5
     scene = one_body(radius=radius, friction=mu, duration=0.4)
     position = (radius * np.sin(begin), 0.0)

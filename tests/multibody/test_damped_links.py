@@ -33,9 +33,7 @@ def share_of_errors(scene: Scene, phases: Any, v_reg: float | None = V_REG) -> t
 
 @pytest.mark.parametrize("damping", [0.02, [2.0, 0.5], 5.0], ids=["2 %", "unequal axes", "zeta 5"])
 @pytest.mark.parametrize(("name", "v_reg"), [("fig3-I", V_REG), ("fig4-viscous", None)])
-def test_every_factor_lies_within_its_error_of_the_exact_equations(
-    name: str, v_reg: float | None, damping: float | list[float]
-) -> None:
+def test_every_factor_lies_within_its_error(name: str, v_reg: float | None, damping: float | list[float]) -> None:
     share, outcomes = share_of_errors(damped(load_scene(name), damping, duration=4.0), PHASES, v_reg)
     assert outcomes == {Outcome.OK}
     assert share <= 1.0
@@ -56,7 +54,7 @@ def test_64_phases_lie_within_their_errors(name: str, damping: float | list[floa
 
 
 @pytest.mark.parametrize("zeta", [0.05, 1.0, 3.0])
-def test_a_damped_body_on_a_held_platform_decays_as_its_closed_form(zeta: float) -> None:
+def test_a_damped_body_on_a_held_platform_decays_in_closed_form(zeta: float) -> None:
     w, amplitude = 2.0 * np.pi / 1.5, 0.02
     still = {"isolator.friction": 5.0, "excitation.amplitudes": [[1e-9, 0.0], [0.0, 0.0]], "duration": 1.5}
     scene = damped(load_scene("fig3-I"), zeta, **still)
@@ -68,7 +66,7 @@ def test_a_damped_body_on_a_held_platform_decays_as_its_closed_form(zeta: float)
     np.testing.assert_allclose(motion.position[:, 1, 0], amplitude * expected, atol=2e-4 * amplitude)
 
 
-def test_upright_bodies_of_the_spatial_model_follow_the_exact_equations() -> None:
+def test_upright_bodies_of_the_spatial_model_do_not_differ() -> None:
     """Bodies at one height in a plane, wide supports: what turns them is small, and so is the difference."""
     low = {"bodies.0.height": 0.0, "bodies.1.height": 0.0, "isolator.ring": 50.0, "duration": 2.0}
     scene = damped(load_scene("fig3-I"), 0.3, **low, **{"bodies.0.size": [90.0, 90.0, 0.1]})
@@ -79,7 +77,7 @@ def test_upright_bodies_of_the_spatial_model_follow_the_exact_equations() -> Non
     assert (np.abs(undamped.mu - equations.mu) > 0.05 * equations.mu).any()
 
 
-def test_dampers_of_the_spatial_model_take_energy_and_leave_base_shear_to_the_isolator() -> None:
+def test_dampers_of_the_spatial_model_take_energy() -> None:
     """The only horizontal force on all bodies together is that of the supports, friction plus restoring force."""
     scene = damped(load_scene("fig3-I"), 0.2, duration=2.0)
     motion = multibody.single_run(scene, PHASES[0], "spatial", step=1e-3)
@@ -130,7 +128,7 @@ def in_engine(coordinates: Any, velocities: Any, spins: Any) -> Any:
 
 @pytest.mark.parametrize("axis", [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.3, -0.5, 0.8]], ids=str)
 @pytest.mark.parametrize("link", LINKS)
-def test_a_chain_that_turns_as_one_about_any_axis_feels_no_damper(link: str, axis: list[float]) -> None:
+def test_a_chain_that_turns_as_one_feels_no_damper(link: str, axis: list[float]) -> None:
     """Displaced and twisted links: their dampers neither dissipate nor push."""
     coordinates, places = motion_of_two(5)
     spin = np.array(axis)
@@ -143,7 +141,7 @@ def test_a_chain_that_turns_as_one_about_any_axis_feels_no_damper(link: str, axi
 
 
 @pytest.mark.parametrize("link", ["stiff", "at an angle"])
-def test_a_damper_takes_the_power_of_the_link_s_own_deformation_and_keeps_momentum(link: str) -> None:
+def test_a_damper_takes_its_link_s_power_and_keeps_momentum(link: str) -> None:
     scene, (coordinates, places) = two_bodies(link, [0.7, 0.2]), motion_of_two(6)
     random = np.random.default_rng(7)
     velocities, spins = random.uniform(-0.5, 0.5, (2, 2, 3))
@@ -180,7 +178,7 @@ def test_a_damper_takes_the_power_of_the_link_s_own_deformation_and_keeps_moment
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
-def test_a_damped_body_off_the_axis_has_the_factors_of_dampers_that_turn_with_the_bodies(tolerance: float) -> None:
+def test_a_damped_body_off_the_axis_has_dampers_that_turn(tolerance: float) -> None:
     """Those of elastic_chain.py on bearings of 1e7 N/m; without omega x D they are 0.95162 and 1.01113."""
     size = {"mass": 1.0, "size": [2.0, 2.0, 0.2]}
     above = {"height": 1.2, "period": [1.5, 1.2], "offset": [0.2, 0.2], "damping": 0.3}

@@ -16,7 +16,7 @@ def depressions(height: float, width: float = 1.0) -> Depressions:
 
 
 @pytest.mark.parametrize(("height", "width"), [(0.0, 1.0), (5.0, 1.0), (0.2, 10.0)])
-def test_a_platform_near_its_rest_has_all_spheres_in_and_no_tilt_of_90_degrees(height: float, width: float) -> None:
+def test_a_platform_near_its_rest_has_all_spheres_in(height: float, width: float) -> None:
     draw, proved = np.random.default_rng(3), 0
     place = depressions(height, width)
     for size in np.geomspace(1e-3, 3.0, 400):
@@ -29,7 +29,7 @@ def test_a_platform_near_its_rest_has_all_spheres_in_and_no_tilt_of_90_degrees(h
     assert 100 < proved < 400
 
 
-def test_a_platform_that_slides_a_tenth_of_the_radius_and_turns_by_a_milliradian_is_near_its_rest() -> None:
+def test_a_platform_that_slides_a_little_is_near_its_rest() -> None:
     coordinates = np.zeros((1, COORDINATES))
     coordinates[0, :6] = 0.1, 0.1, 0.01, 1e-3, 1e-3, 1e-3
     assert depressions(5.0).near_rest(coordinates)

@@ -119,7 +119,7 @@ def test_full_runs_go_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.isinf(stops).all()
 
 
-def test_a_motion_is_integrated_again_where_a_look_ahead_finds_something_large(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_motion_is_integrated_again_behind_a_look_ahead(monkeypatch: pytest.MonkeyPatch) -> None:
     ends: list[float] = []
 
     def noted(result: EngineRun, place: Place, *rest: Any, **options: Any) -> Place:

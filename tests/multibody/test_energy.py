@@ -11,7 +11,7 @@ from reference.problem import GRAVITY, ground_acceleration, load_scene
 
 
 @pytest.mark.long
-def test_kinetic_spring_and_gravity_energy_equal_work_of_the_plate_less_friction() -> None:
+def test_energy_equals_the_plate_s_work_less_friction() -> None:
     scene, phase, v_reg = load_scene("fig3-I"), (2.0, 0.7), 1e-3
     motion = multibody.trajectory(scene, phase, regularization=v_reg, tolerance=1e-4)
     x, v = motion.position, motion.velocity

@@ -54,7 +54,7 @@ def adaptive_runs(monkeypatch: pytest.MonkeyPatch) -> list[EngineRun]:
 
 @pytest.mark.long  # half a minute of compiling the independent equations
 @pytest.mark.parametrize("tolerance", [1e-3, 3e-4])
-def test_an_answer_beyond_the_tolerance_is_that_of_the_level_that_rounding_has_not_reached(tolerance: float) -> None:
+def test_an_answer_beyond_the_tolerance_is_the_last_exact_one(tolerance: float) -> None:
     """A link of 1000 s leaves the body 5e-5 g: stiffer contacts round by more, and the last level knew nothing."""
     size = [2.0, 2.0, 0.2]
     above = {"mass": 1.0, "height": 1.2, "size": size, "period": [1e3, 800.0]}
@@ -80,7 +80,7 @@ def test_an_answer_beyond_the_tolerance_is_that_of_the_level_that_rounding_has_n
     ],
     ids=["decay 1e6/s", "decay 1e3/s", "link 1e-2 s", "link 1e-3 s", "link 1e-3 s, longer", "v_reg 1e-4 m/s"],
 )
-def test_the_error_holds_where_a_scene_is_much_quicker_than_its_loading(scene: Scene, regularization: float) -> None:
+def test_the_error_holds_where_a_scene_is_quick(scene: Scene, regularization: float) -> None:
     # what is left of a loading of 1 us is weak beside the rounding of the contact force
     tolerance = 1e-2 if scene.excitation.decay[0] == 1e6 else 1e-3
     engine = multibody.amplification(scene, PHASE, regularization=regularization, tolerance=tolerance)
@@ -102,7 +102,7 @@ def test_work_beyond_the_budget_is_refused_before_any_step(scene: Scene, monkeyp
     assert np.isnan(result.mu).all()
 
 
-def test_a_motion_that_was_never_begun_has_no_instants_and_says_why() -> None:
+def test_a_motion_that_never_began_says_why() -> None:
     motion = multibody.trajectory(strong(duration=1e4), PHASE[0], model="spatial")
     assert motion.status == Outcome.STEP_LIMIT
     assert motion.position.shape == (0, 2, 3)
@@ -131,7 +131,7 @@ def test_iterations_in_vain_are_work_as_well(monkeypatch: pytest.MonkeyPatch) ->
     assert result.status[0] == Outcome.STEP_LIMIT
 
 
-def test_what_the_compliance_leaves_is_part_of_an_error_that_misses_the_tolerance(
+def test_what_the_compliance_leaves_is_part_of_the_error(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     done = adaptive_runs(monkeypatch)
@@ -143,7 +143,7 @@ def test_what_the_compliance_leaves_is_part_of_an_error_that_misses_the_toleranc
     assert done[-1].work < 1.5 * done[-2].work, "the last run repeats the finest level with a softer contact"
 
 
-def test_without_a_run_about_the_compliance_the_level_before_answers(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_run_on_compliance_the_level_before_answers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(candidate, "from_compliance", lambda stiff, *rest: np.full_like(stiff.value, np.inf))
     scene = strong(duration=0.3)
     result = multibody.amplification(scene, PHASE, tolerance=1e-6)
@@ -153,7 +153,7 @@ def test_without_a_run_about_the_compliance_the_level_before_answers(monkeypatch
 
 
 @pytest.mark.parametrize("model", ["translational", "spatial"])
-def test_a_loading_of_a_millionth_has_the_factors_of_the_equations(model: str) -> None:
+def test_a_loading_of_a_millionth_has_its_factors(model: str) -> None:
     """A tower turns by as much less as it sways."""
     scene = load_scene("fig3-I").with_values({"duration": 3.0}).with_amplitude(1e-6)
     phases = [(0.3, 1.1), (2.0, 0.7)]
@@ -171,7 +171,7 @@ def test_a_loading_of_a_millionth_has_the_factors_of_the_equations(model: str) -
     ],
     ids=["link 1e3 s", "decay 1e6/s"],
 )
-def test_a_body_that_hardly_moves_has_the_factor_of_the_equations_to_1e_3_of_itself(scene: Scene) -> None:
+def test_a_body_that_hardly_moves_has_its_factor_to_1e_3(scene: Scene) -> None:
     phase = [(2.0, 0.7)]
     engine = multibody.amplification(scene, phase, tolerance=1e-3)
     equations = reference.amplification(scene, phase, equations="exact", regularization=V_REG)
@@ -189,7 +189,7 @@ def test_only_a_small_peak_asks_for_a_softer_contact() -> None:
     assert for_small_peaks(levels[3], 1e-20, 1e-3).penetration == pytest.approx(1e-4), "the softest that is tried"
 
 
-def test_rounding_beside_a_body_that_hardly_moves_counts_no_more_than_a_softer_contact_shows() -> None:
+def test_rounding_counts_no_more_than_a_softer_contact_shows() -> None:
     """A loading of 1 kHz needs a contact so stiff that its rounding may be a third of what the upper body feels."""
     scene = strong(duration=0.02, excitation={"periods": [1e-3, 1.1e-3]})
     phases = [(0.3, 1.1), (2.0, 0.7)]
@@ -201,7 +201,7 @@ def test_rounding_beside_a_body_that_hardly_moves_counts_no_more_than_a_softer_c
     assert (engine.error <= 1e-3 * engine.mu).all()
 
 
-def test_what_warped_supports_do_is_in_proportion_to_the_load_that_stiffer_springs_add() -> None:
+def test_what_warped_supports_do_is_proportional_to_the_load() -> None:
     runs = []
     for peak, load in ((1.0, 0.1), (1.003, 0.4)):
         runs.append(EngineRun(Peaks(2, np.inf), np.inf, warping_load=load))
@@ -219,7 +219,7 @@ def ring_that_opens(supports: int) -> Scene:
     return strong(duration=2.0, excitation=load).with_values({f"isolator.{key}": isolator[key] for key in isolator})
 
 
-def test_where_a_support_opens_every_level_has_the_springs_of_real_bearings(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_where_a_support_opens_every_level_has_bearings(monkeypatch: pytest.MonkeyPatch) -> None:
     """Which support is hit first depends on the springs: mu_1 is 1.893 on springs of 1e-4 rho, 1.826 on real ones."""
     levels: list[tuple[Level, EngineRun]] = []
     at_level = PhasePair.at_level
@@ -246,7 +246,7 @@ def test_loads_of_warped_supports_behind_a_peak_do_not_act_on_it() -> None:
 
 
 @pytest.mark.long
-def test_nine_supports_that_rattle_on_stiff_springs_have_an_answer_on_softer_ones() -> None:
+def test_nine_supports_that_rattle_have_an_answer() -> None:
     places = [[x, y] for x in (-1.0, 0.0, 1.0) for y in (-1.0, 0.0, 1.0)]
     scene = strong(duration=3.0).with_values({"isolator.supports": places, "isolator.ring": None})
     loose, strict = (multibody.amplification(scene, PHASE, "spatial", tolerance=t, max_work=5e4) for t in (1e-2, 1e-3))
@@ -265,7 +265,7 @@ def test_the_error_covers_what_supports_that_open_do(supports: int, finer: float
     assert (np.abs(loose.mu - strict.mu) <= loose.error + strict.error).all()
 
 
-def test_the_loading_that_would_have_been_before_the_start_throws_no_platform_off_its_supports() -> None:
+def test_the_loading_before_the_start_throws_nothing_off() -> None:
     """A plate that falls at nearly g at first, and by its decay at more than g before, takes the platform along."""
     load = {"amplitudes": [[0.2, 0.36], [-0.39, -0.14], [-3.96, 6.52]], "periods": [0.303, 0.643], "decay": [3.0, 5.4]}
     scene = changed(ring_that_opens(6), excitation=load, duration=0.5)
@@ -277,7 +277,7 @@ def test_the_loading_that_would_have_been_before_the_start_throws_no_platform_of
     assert result.mu[0, 0] == pytest.approx(abs(plate[2]) / np.linalg.norm(plate), rel=1e-3), "at rest it slides freely"
 
 
-def test_a_loading_that_is_gone_before_a_contact_swings_sets_nothing_rocking() -> None:
+def test_a_loading_that_is_gone_sets_nothing_rocking() -> None:
     """Contacts in balance with its first value would throw the upper body about: mu_2 was ten times too large."""
     scene = load_scene("fig3-I").with_values({"duration": 1.0, "excitation.decay": [1e6, 1e6]})
     result = multibody.amplification(scene, PHASE, "spatial", 1e-3, 1e-2)
@@ -298,7 +298,7 @@ def test_changes_of_opposite_sign_show_no_rate_of_convergence() -> None:
     assert errors[0] == pytest.approx(3.0 * errors[1], rel=1e-3)
 
 
-def test_friction_quicker_than_the_contact_is_not_taken_for_a_lost_contact() -> None:
+def test_friction_quicker_than_the_contact_loses_nothing() -> None:
     found = multibody.amplification(
         strong(duration=2.0), [(2.0, 0.7)], regularization=1e-8, tolerance=1e-3, max_work=2e5
     )

@@ -50,7 +50,7 @@ def rocking_about_the_left_edge(pace: float) -> np.ndarray[Any, Any]:
     return np.array([pace * ARM, 0.0, -pace * HALF_WIDTH, 0.0, pace, 0.0])
 
 
-def test_a_rocking_block_on_rough_supports_slows_down_as_housner_says() -> None:
+def test_a_rocking_block_slows_down_as_housner_says() -> None:
     before = rocking_about_the_left_edge(0.3)
     after, is_open = block(friction=1e3).after(np.zeros(6), before, LEFT, RIGHT)
     moment = INERTIA + ARM**2 + HALF_WIDTH**2  # about either edge
@@ -61,7 +61,7 @@ def test_a_rocking_block_on_rough_supports_slows_down_as_housner_says() -> None:
     np.testing.assert_allclose(after[[0, 2]], [after[4] * ARM, after[4] * HALF_WIDTH], atol=1e-9)
 
 
-def test_a_rocking_block_on_smooth_supports_slows_down_by_its_inertia() -> None:
+def test_a_rocking_block_slows_down_by_its_inertia() -> None:
     before = rocking_about_the_left_edge(0.3)
     after, is_open = block().after(np.zeros(6), before, LEFT, RIGHT)
     ratio = (INERTIA - HALF_WIDTH**2) / (INERTIA + HALF_WIDTH**2)
@@ -81,7 +81,7 @@ def test_a_wide_block_comes_to_rest_on_all_its_supports() -> None:
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
-def test_a_level_block_that_falls_on_all_supports_rebounds_by_the_restitution(restitution: float) -> None:
+def test_a_level_block_rebounds_by_the_restitution(restitution: float) -> None:
     fall = np.array([0.0, 0.0, -0.7, 0.0, 0.0, 0.0])
     after, is_open = block(restitution, friction=0.3).after(np.zeros(6), fall, NONE, ALL)
     np.testing.assert_allclose(after, [0.0, 0.0, 0.7 * restitution, 0.0, 0.0, 0.0], atol=1e-8)
@@ -138,7 +138,7 @@ def flights(restitution: float, count: int) -> list[tuple[float, float]]:
     return done
 
 
-def test_flights_between_impacts_begin_and_end_when_free_fall_says() -> None:
+def test_flights_begin_and_end_when_free_fall_says() -> None:
     motion = multibody.trajectory(bouncing(0.5), (0.0, 0.0), model="spatial", tolerance=1e-2)
     expected = [flight for flight in flights(0.5, 2) if flight[1] < 0.45]
     assert len(expected) == 2
@@ -150,7 +150,7 @@ def test_flights_between_impacts_begin_and_end_when_free_fall_says() -> None:
 
 
 @pytest.mark.parametrize("number", [0, 1])
-def test_a_platform_that_its_own_contacts_tilt_lands_on_all_supports_at_once(number: int) -> None:
+def test_a_platform_tilted_by_its_contacts_lands_at_once(number: int) -> None:
     """Uneven loads press rigid spheres in by nothing: a platform that does not turn lands as often as a ball."""
     load = {"amplitudes": [[3.0, 0.0], [0.0, 2.1], [15.0, 0.0]]}
     scene = changed(bouncing(0.8), isolator={"friction": 0.05}, excitation=load, duration=0.6)
@@ -167,7 +167,7 @@ def test_without_restitution_the_first_landing_is_the_last() -> None:
         assert (np.abs(intervals[0] - [begin, end]) < [2e-4, 3e-5]).all()
 
 
-def test_the_largest_value_where_counting_begins_behind_an_impact_converges_by_a_factor_of_four() -> None:
+def test_the_largest_value_behind_an_impact_converges() -> None:
     """A body lands on a plate whose acceleration falls: nothing counted before or later is as large."""
     push, phase, pace = 20.0, 0.5 * math.pi, 2.0 * math.pi / 0.4
     scene = bouncing(0.0).with_values({"duration": 0.5, "excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0], [push, 0.0]]})
@@ -215,7 +215,7 @@ def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float
     return PhasePair(scene, model, np.array(phase), whole=True).at_level(level, Budget(work))
 
 
-def test_the_largest_value_just_before_an_impact_does_not_depend_on_where_the_steps_end() -> None:
+def test_the_largest_value_before_an_impact_is_step_free() -> None:
     isolator = {"period": None, "radius": 1.062, "friction": 0.0, "ring": 0.19, "sphere_radius": 0.06}
     size, link = [0.772, 0.772, 0.2], {"period": [1.112, 0.994], "damping": [0.921, 0.921]}
     bodies = [{"mass": 0.329, "height": 0.168, "size": size}, {"mass": 0.477, "height": 0.966, "size": size, **link}]
@@ -229,7 +229,7 @@ def test_the_largest_value_just_before_an_impact_does_not_depend_on_where_the_st
     assert np.ptp(instants) < 1e-4
 
 
-def test_a_contact_that_opens_behind_an_impact_does_not_end_the_run() -> None:
+def test_a_contact_that_opens_again_does_not_end_the_run() -> None:
     load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [15.0, 0.0]], "decay": [0.333, 0.273]}
     scene = changed(tower(1.0), isolator={"friction": 0.1, "supports": 4}, excitation=load, duration=0.56)
     run = one_level(scene, (2.0, 0.7), 4, 6e4)
@@ -237,7 +237,7 @@ def test_a_contact_that_opens_behind_an_impact_does_not_end_the_run() -> None:
     assert run.outcome == Outcome.OK, "the engine shortened its step without end"
 
 
-def test_contacts_that_open_and_flights_within_a_step_cost_few_steps() -> None:
+def test_contacts_that_open_cost_few_steps() -> None:
     isolator = {"period": None, "radius": 1.42, "ring": 0.103, "sphere_radius": 0.065, "restitution": 0.8}
     body = {"mass": 1.58, "height": 0.195, "size": [2.0, 2.0, 0.2]}
     load = {"amplitudes": [[4.494, 0.0], [0.0, 4.494]], "periods": [0.855, 1.057], "decay": [0.957, 1.0]}
@@ -248,14 +248,14 @@ def test_contacts_that_open_and_flights_within_a_step_cost_few_steps() -> None:
 
 
 @pytest.mark.parametrize("tilt", [0.0, 0.1, 0.3])
-def test_a_platform_high_in_the_air_touches_no_sphere_however_it_tilts(tilt: float) -> None:
+def test_a_platform_high_in_the_air_touches_no_sphere(tilt: float) -> None:
     depressions = Depressions(CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
     flying = np.array([[0.0, 0.0, 60.0, 0.0, tilt, 0.0]])
     assert (depressions.clearance(flying) > 0.5).all()
     assert depressions.beyond_rim(flying)[0] == (tilt > 0.0), "its depressions are no longer above the spheres"
 
 
-def test_a_tower_that_overturns_ends_under_that_name_with_the_instant() -> None:
+def test_a_tower_that_overturns_ends_under_that_name() -> None:
     results = [
         multibody.amplification(tower(0.1), [(0.3, 1.1)], model="spatial", tolerance=tolerance, full=True)
         for tolerance in (1e-2, 1e-3)
@@ -266,7 +266,7 @@ def test_a_tower_that_overturns_ends_under_that_name_with_the_instant() -> None:
     assert 1.0 < results[0].instant[0] < 3.0
 
 
-def test_a_tower_that_hits_its_supports_has_an_answer_that_a_finer_run_confirms() -> None:
+def test_a_tower_that_hits_its_supports_has_an_answer() -> None:
     coarse, fine = (
         multibody.amplification(tower(1.0), [(0.3, 1.1)], model="spatial", tolerance=tolerance)
         for tolerance in (1e-2, 1e-3)
@@ -277,7 +277,7 @@ def test_a_tower_that_hits_its_supports_has_an_answer_that_a_finer_run_confirms(
 
 
 @pytest.mark.parametrize("phase", [(0.0, 1.1), (math.pi, 0.7)])
-def test_supports_that_carry_nothing_for_an_instant_do_not_chatter(phase: tuple[float, float]) -> None:
+def test_supports_that_carry_nothing_briefly_do_not_chatter(phase: tuple[float, float]) -> None:
     """The plate falls as fast as the bodies at a turning point of its acceleration."""
     load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [GRAVITY, 0.0]], "decay": [0.0, 0.0]}
     scene = changed(load_scene("fig3-I"), excitation=load).with_values({"duration": 1.0})
@@ -289,7 +289,7 @@ def test_supports_that_carry_nothing_for_an_instant_do_not_chatter(phase: tuple[
     assert (np.abs(loose.mu - strict.mu) <= loose.error + strict.error).all()
 
 
-def test_a_contact_that_has_just_closed_stays_closed_without_a_force() -> None:
+def test_a_contact_that_has_just_closed_stays_closed() -> None:
     scene = load_scene("fig3-I")
     model = assemble(scene, "spatial", 1e-3)
     level = multibody.levels(scene, "spatial")[0]
@@ -307,7 +307,7 @@ def test_a_contact_that_has_just_closed_stays_closed_without_a_force() -> None:
     assert (event.row, event.closes, event.which.all()) == (2, False, True)
 
 
-def test_levels_that_impacts_take_elsewhere_are_given_up_with_a_wide_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_levels_that_impacts_take_elsewhere_are_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     ran: list[EngineRun] = []
 
     def elsewhere(pair: PhasePair, *given: Any, **named: Any) -> EngineRun:
@@ -323,7 +323,7 @@ def test_levels_that_impacts_take_elsewhere_are_given_up_with_a_wide_error(monke
     assert len(ran) <= 7, "four levels, three of which went to the end after all"
 
 
-def test_levels_that_impacts_scatter_have_their_spread_as_error_and_converging_ones_a_share_of_the_peak() -> None:
+def test_levels_that_impacts_scatter_have_their_spread() -> None:
     run = EngineRun(Peaks(3, math.inf), math.inf, impacts=50)
     peaks = [Peaks(3, math.inf), Peaks(3, math.inf), run.peaks]
     # to and fro, ever on by hardly less, and by a third of the change before
@@ -335,7 +335,7 @@ def test_levels_that_impacts_scatter_have_their_spread_as_error_and_converging_o
     assert not widened_by_impacts(np.zeros(3), peaks, run, 2).any()
 
 
-def test_levels_on_other_springs_do_not_lower_the_error_of_a_motion_with_impacts() -> None:
+def test_levels_on_other_springs_do_not_lower_the_error() -> None:
     """Level 0 on stiff springs is another motion: level 2 then is confirmed by one level, as is level 1 without it."""
     scene = load_scene("fig3-I")
     model, levels = assemble(scene, "spatial", 1e-3), multibody.levels(scene, "spatial")[:3]
@@ -360,6 +360,6 @@ def test_a_restitution_outside_its_range_is_refused_in_one_line(wrong: Any) -> N
     assert "\n" not in message
 
 
-def test_restitution_beside_a_stiffness_of_the_supports_is_refused() -> None:
+def test_restitution_beside_a_support_stiffness_is_refused() -> None:
     with pytest.raises(SceneError, match="remove one of the two keys"):
         tower(1.0).with_values({"isolator.restitution": 0.5, "isolator.support_stiffness": 1e6})

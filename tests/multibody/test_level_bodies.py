@@ -72,7 +72,7 @@ def test_it_is_answered_by_the_model_without_rotations(monkeypatch: pytest.Monke
 
 
 @pytest.mark.long
-def test_a_platform_that_leaves_its_supports_is_followed_by_the_model_asked_for() -> None:
+def test_a_platform_off_its_supports_has_the_model_asked_for() -> None:
     scene = level("fig3-I", 1.0, excitation={"amplitudes": [[1.0, 0.0], [0.0, 1.0], [12.0, 0.0]]})
     asked, full = (multibody.amplification(scene, [(2.0, 0.7)], "spatial", full=full) for full in (False, True))
     lost = multibody.amplification(scene, [(2.0, 0.7)], "translational")

@@ -20,7 +20,7 @@ V_REG = 1e-3
 @pytest.mark.parametrize(
     ("scene", "regularization"), [("fig3-I", V_REG), ("fig3-II", V_REG), ("fig4-viscous", None), ("fig4-dry", V_REG)]
 )
-def test_every_factor_lies_within_its_error_of_the_exact_equations(scene: str, regularization: float | None) -> None:
+def test_every_factor_lies_within_its_error(scene: str, regularization: float | None) -> None:
     loaded, phases = load_scene(scene), PHASES if scene == "fig3-I" else PHASES[:1]
     engine = multibody.amplification(loaded, phases, regularization=regularization)
     equations = reference.amplification(loaded, phases, equations="exact", regularization=regularization)
@@ -29,7 +29,7 @@ def test_every_factor_lies_within_its_error_of_the_exact_equations(scene: str, r
     assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
 
 
-def test_a_contact_that_a_small_v_reg_makes_stiff_is_solved_as_well_as_a_softer_one() -> None:
+def test_a_contact_made_stiff_by_a_small_v_reg_is_solved() -> None:
     """What the prediction of a step misses presses a stiff contact: Newton's first residual is large."""
     bearing = {"radius": 0.17, "friction": 0.0755}
     above = {"mass": 2.06, "period": [1.9, 0.58], "damping": 0.02}
@@ -114,7 +114,7 @@ def test_no_finer_run_contradicts_an_answer(scene: str, model: str) -> None:
 
 
 @pytest.mark.long
-def test_asked_for_more_than_its_rounding_allows_the_engine_says_so_and_its_errors_hold() -> None:
+def test_asked_for_too_much_the_engine_says_so() -> None:
     """
     At 1e-5 the last levels differ by little more than rounding in the contact, which no finer level removes.
 
@@ -136,7 +136,7 @@ def test_asked_for_more_than_its_rounding_allows_the_engine_says_so_and_its_erro
 
 
 @pytest.mark.parametrize("regularization", [1e-4, 1e-5])
-def test_a_sharp_corner_of_the_law_asks_for_a_contact_that_is_as_quick(regularization: float) -> None:
+def test_a_sharp_corner_asks_for_a_quick_contact(regularization: float) -> None:
     # the contact of 1e-6 rho is 3 or 30 times slower than the friction relaxes: off by 1.4e-4 and 7e-4, estimate less
     scene, phase = changed(load_scene("fig3-I"), duration=4.0), PHASES[:1]
     engine = multibody.amplification(scene, phase, regularization=regularization)

@@ -44,7 +44,7 @@ def within_errors(scene: Scene, phases: np.ndarray, **asked: object) -> float:
 
 
 @pytest.mark.parametrize("name", ["own axes", "lubricated", "vertical", "friction by speed", "damped links"])
-def test_every_factor_lies_within_its_error_of_the_exact_equations(name):
+def test_every_factor_lies_within_its_error(name):
     scene = SCENES[name].with_values({"duration": 6.0})
     assert within_errors(scene, PHASES if name == "own axes" else PHASES[:1]) <= 1.0
 
@@ -68,7 +68,7 @@ def test_a_plate_that_moves_carries_the_plane_along():
     assert within_errors(scene, PHASES[:1], loading="plate") <= 1.0
 
 
-def test_a_straight_slide_stops_after_v2_over_2_mu_g_however_far_from_the_middle():
+def test_a_straight_slide_far_out_stops_after_v2_over_2_mu_g():
     still = {"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0]], "bodies": [{"mass": 1.0}], "duration": 2.0}
     scene, speed = SCENES["own axes"].with_values(still), 1.0
     way = stopping_distance(speed, 0.1)
@@ -107,7 +107,7 @@ SPATIAL = SCENES["own axes"].with_values({"duration": 3.0})
 RING, SPHERE = 1.0, 0.05  # m, of SPATIAL
 
 
-def test_overturning_shifts_the_load_of_the_supports_as_statics_says():
+def test_overturning_shifts_the_load_as_statics_says():
     """A block that slides along x with its center h above the plane: the load's center is mu h before that of mass."""
     height, still = 0.3, [[0.0, 0.0], [0.0, 0.0]]
     block = {"mass": 2.0, "height": height, "size": [2.0, 2.0, 0.2]}
@@ -133,7 +133,7 @@ def test_a_body_level_with_the_plane_does_not_turn():
     assert (spatial.error < 1e-3).all()
 
 
-def test_bodies_that_turn_on_large_spheres_tend_to_those_on_a_plane():
+def test_bodies_that_turn_on_large_spheres_tend_to_a_plane():
     """Heights count from the plane, so on spheres they are larger by the depth of the plane's place, rho + r."""
     phase = PHASES[1:2]
     limit = multibody.amplification(SPATIAL, phase, model="spatial")
@@ -152,7 +152,7 @@ def test_bodies_that_turn_on_large_spheres_tend_to_those_on_a_plane():
     assert abs(gaps[0][0]) > 10.0 * uncertain[0], "the gap at 10 m is seen"
 
 
-def test_a_plate_that_moves_carries_the_plane_under_bodies_that_turn():
+def test_a_moving_plate_carries_the_plane_under_turning_bodies():
     scene = SPATIAL.with_values({"duration": 1.5})
     moving, still = (
         multibody.amplification(scene, PHASES[:1], model="spatial", loading=each) for each in ("plate", "inertial")

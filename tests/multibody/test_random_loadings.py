@@ -59,13 +59,13 @@ def test_no_random_value_is_contradicted_by_the_equations(first: int) -> None:
 
 @pytest.mark.long  # 3 min
 @pytest.mark.parametrize("first", range(1000, 2000, 100))
-def test_no_value_of_a_thousand_random_scenes_is_contradicted_by_the_equations(first: int) -> None:
+def test_no_value_of_a_thousand_scenes_is_contradicted(first: int) -> None:
     answered = [assert_not_contradicted(random_case(seed, WEAKEST, STRONGEST)) for seed in range(first, first + 100)]
     assert sum(answered) >= 60
 
 
 @pytest.mark.parametrize("mass", [3.0, 0.1])
-def test_a_flat_slider_that_newton_does_not_iterate_for_has_an_error_that_covers(mass: float) -> None:
+def test_a_flat_slider_without_iterations_has_its_error(mass: float) -> None:
     """Steps whose forces change by less than the residual are taken as they are: 0.6 % at 5e-9 m/s^2, in all runs."""
     for seed in range(30):
         case = random_case(seed, 1e-11, 1e-8, 0.01, 0.1)
@@ -74,7 +74,7 @@ def test_a_flat_slider_that_newton_does_not_iterate_for_has_an_error_that_covers
         assert_not_contradicted(Case(flat, case.phase, 1e-3, case.tolerance))
 
 
-def test_a_contact_that_swings_behind_a_longer_step_counts_as_error_of_reading() -> None:
+def test_a_contact_that_swings_is_an_error_of_reading() -> None:
     """Accelerations alternate by 0.4 % from step to step where the peak is, less from level to level."""
     scene = changed(
         one_body(radius=0.6938309771454613, lubrication=0.16790001312853042, duration=0.1738835314932428),
@@ -126,7 +126,7 @@ def weak_peaks(scene: Scene, phase: tuple[float, float], v_reg: float) -> np.nda
 
 
 @pytest.mark.parametrize("size", [1e-6, 1e-9, 1e-15])
-def test_the_equations_that_the_engine_is_held_against_are_right_under_weak_loadings(size: float) -> None:
+def test_the_equations_are_right_under_weak_loadings(size: float) -> None:
     scene = load_scene("fig3-I").with_values({"duration": 1.0}).with_amplitude(size)
     found = reference.amplification(scene, [(0.3, 1.1)], "exact", 1e-3)
     np.testing.assert_allclose(found.mu[0], weak_peaks(scene, (0.3, 1.1), 1e-3), rtol=2e-5)
@@ -134,7 +134,7 @@ def test_the_equations_that_the_engine_is_held_against_are_right_under_weak_load
 
 @pytest.mark.parametrize("max_work", [2e4, 3e3])  # with the other one levels end before
 @pytest.mark.parametrize("seed", [28, 40, 62, 65, 94])
-def test_an_answer_before_the_level_at_which_rounding_takes_over_is_not_called_ok(seed: int, max_work: float) -> None:
+def test_an_answer_before_rounding_takes_over_is_not_ok(seed: int, max_work: float) -> None:
     for strongest, v_reg in ((1e-1, 1e-5), (1e-2, 1e-4)):
         scene, phase, _, _ = random_case(seed, strongest * (1e-2 if v_reg == 1e-5 else 1e-3), strongest, 1e-2, 1.0)
         assert_not_contradicted(Case(scene, phase, v_reg, 1e-4), max_work)

@@ -10,7 +10,7 @@ import reference
 from reference.problem import load_scene
 
 
-def test_the_gap_to_the_small_equations_falls_like_the_square_of_the_motion() -> None:
+def test_the_gap_to_the_small_equations_falls_as_a_square() -> None:
     full = changed(load_scene("fig3-I"), duration=6.0)
     phase, gaps = [(0.3, 1.1)], []
     for scale in (1.0, 0.5):

@@ -23,7 +23,7 @@ def test_the_run_at_the_second_level_has_the_peaks_of_the_answer(model: str) -> 
     np.testing.assert_array_equal(run.peak / ground_peak(SCENE, [PHASE])[0], answer.mu[0])
 
 
-def test_a_level_with_another_contact_rounds_as_that_contact_does() -> None:
+def test_a_level_with_another_contact_rounds_like_it() -> None:
     level = multibody.levels(SCENE)[0]
     stiffer = replace(level, penetration=level.penetration / 100.0)
     assert stiffer.rounding == pytest.approx(100.0 * level.rounding)

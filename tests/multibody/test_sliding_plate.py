@@ -111,7 +111,7 @@ def test_bodies_on_links_move_as_independent_equations_say(flat: bool, recorded:
 
 
 @pytest.mark.parametrize("flat", [False, True], ids=["spheres", "plane"])
-def test_the_translational_model_ends_where_the_normal_force_vanishes(flat: bool) -> None:
+def test_translation_ends_where_the_normal_force_vanishes(flat: bool) -> None:
     scene, phase, v_reg = jumping(0, flat, False)
     engine = multibody.amplification(Scene.model_validate(scene), [phase], regularization=v_reg)
     plate = SlidingPlate(scene, phase, v_reg)

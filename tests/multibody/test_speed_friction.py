@@ -37,7 +37,7 @@ def within_errors(scene: Scene, phases: np.ndarray, tolerance: float = 1e-3) -> 
 
 
 @BOTH_LAWS
-def test_four_points_lie_within_their_errors_of_the_exact_equations(law: dict[str, float]) -> None:
+def test_four_points_lie_within_their_errors(law: dict[str, float]) -> None:
     assert within_errors(paper_scene(law, duration=6.0), PHASES) <= 1.0
 
 
@@ -81,7 +81,7 @@ def test_points_of_every_rate_lie_within_their_errors(rate: float, slow: float, 
 @pytest.mark.parametrize(
     "law", [DryFriction(0.03, 0.08, 10.0), DryFriction(0.08, 0.03, 10.0)], ids=["rising", "falling"]
 )
-def test_a_straight_slide_slows_down_as_friction_of_its_speed_makes_it(law: DryFriction) -> None:
+def test_a_straight_slide_slows_down_as_its_friction_says(law: DryFriction) -> None:
     """The time from one speed to another is the integral of dv / (mu g), in closed form."""
     speed, rise = 0.5, law.fast - law.slow
     table = {"slow": law.slow, "fast": law.fast, "rate": law.rate}
@@ -98,7 +98,7 @@ def test_a_straight_slide_slows_down_as_friction_of_its_speed_makes_it(law: DryF
     np.testing.assert_allclose(passed(np.array(speed)) - passed(v[sliding]), motion.time[sliding], atol=2e-4)
 
 
-def test_a_force_between_slow_and_fast_friction_makes_the_platform_creep_at_its_terminal_speed() -> None:
+def test_a_force_between_frictions_makes_a_steady_creep() -> None:
     law, force = RISING, 0.08 * GRAVITY
     scene = one_body(radius=FLAT, duration=0.5, amplitudes=[[-force, 0.0], [0.0, 0.0]], periods=(CONSTANT, CONSTANT))
     motion = multibody.trajectory(changed(scene, isolator={"friction": law}), (0.0, 0.0), tolerance=1e-4)

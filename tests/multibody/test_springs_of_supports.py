@@ -95,7 +95,7 @@ def level_error(number: int) -> float:
     return LEVELS[number].error_floor + 1e-6
 
 
-def test_an_answer_that_real_bearings_hardly_change_stays_and_the_change_is_an_error(refined: Any) -> None:
+def test_an_answer_hardly_changed_by_bearings_stays(refined: Any) -> None:
     changes = [3e-4, 5e-4]
     done = refined(lambda number, springs: result(1.0 + changes[number] * (springs == REAL)))
     assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL)]
@@ -104,7 +104,7 @@ def test_an_answer_that_real_bearings_hardly_change_stays_and_the_change_is_an_e
     np.testing.assert_allclose(done.answer.errors, [5e-4 + level_error(1), 2.0 * level_error(1)])
 
 
-def test_a_change_that_leaves_no_room_for_the_error_of_levels_asks_for_another_level_and_no_run_in_vain(
+def test_a_change_without_room_asks_for_another_level(
     refined: Any,
 ) -> None:
     done = refined(lambda number, springs: result(1.0 + 9e-4 * (springs == REAL)))
@@ -113,7 +113,7 @@ def test_a_change_that_leaves_no_room_for_the_error_of_levels_asks_for_another_l
     np.testing.assert_allclose(done.answer.errors[0], 9e-4 + level_error(2))
 
 
-def test_where_real_bearings_change_the_peaks_at_once_every_further_level_has_them(refined: Any) -> None:
+def test_where_bearings_change_the_peaks_levels_have_them(refined: Any) -> None:
     done = refined(lambda number, springs: result(1.893 if springs == STIFF else 1.826))
     assert done.asked == [(0, STIFF), (0, REAL), (1, REAL)]
     assert done.answer.outcome == Outcome.OK
@@ -126,7 +126,7 @@ def real_from_level_1(number: int, springs: float) -> EngineRun:
     return result(1.826 if number > 0 and springs == REAL else 1.893, steps=STEPS + STEPS // 2 * (springs == REAL))
 
 
-def test_an_answer_that_real_bearings_change_is_dropped_and_further_levels_have_them(refined: Any) -> None:
+def test_an_answer_that_real_bearings_change_is_dropped(refined: Any) -> None:
     done = refined(real_from_level_1)
     assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL), (2, REAL)]
     assert done.answer.outcome == Outcome.OK
@@ -135,9 +135,7 @@ def test_an_answer_that_real_bearings_change_is_dropped_and_further_levels_have_
 
 
 @pytest.mark.parametrize(("levels", "max_work"), [(2, 1e9), (6, 7.0 * STEPS)], ids=["last level", "end of the work"])
-def test_without_a_further_level_the_answer_is_that_of_real_bearings_and_its_error_covers_the_change(
-    refined: Any, levels: int, max_work: float
-) -> None:
+def test_without_a_further_level_bearings_give_the_answer(refined: Any, levels: int, max_work: float) -> None:
     done = refined(real_from_level_1, levels, max_work)
     assert done.asked[-1] == (1, REAL)
     assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
@@ -147,7 +145,7 @@ def test_without_a_further_level_the_answer_is_that_of_real_bearings_and_its_err
     assert done.answer.instant == 0.0, "where the worst peak is"
 
 
-def test_the_error_of_an_answer_on_real_bearings_counts_their_impacts(refined: Any) -> None:
+def test_the_error_on_real_bearings_counts_impacts(refined: Any) -> None:
     def runs(number: int, springs: float) -> EngineRun:
         run = real_from_level_1(number, springs)
         run.impacts = int(number > 0 and springs == REAL)
@@ -157,9 +155,7 @@ def test_the_error_of_an_answer_on_real_bearings_counts_their_impacts(refined: A
     assert done.answer.errors[1] == pytest.approx(2.0 * 4e-3), "no level before it has the same springs"
 
 
-def test_the_compliance_of_an_answer_on_real_bearings_is_measured_on_them(
-    refined: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_compliance_is_measured_on_real_bearings(refined: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     shared = [LEVELS[0], replace(LEVELS[1], penetration=LEVELS[0].penetration)]
     monkeypatch.setattr("test_springs_of_supports.LEVELS", shared)
     done = refined(real_from_level_1, 2)
@@ -167,9 +163,7 @@ def test_the_compliance_of_an_answer_on_real_bearings_is_measured_on_them(
     assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
 
 
-def test_an_answer_before_real_bearings_changed_it_does_not_come_back(
-    refined: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_answer_before_real_bearings_does_not_come_back(refined: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """The run that would complete the error of the last level fails: the level before was another motion."""
     shared = [replace(level, penetration=LEVELS[min(number, 1)].penetration) for number, level in enumerate(LEVELS)]
     monkeypatch.setattr("test_springs_of_supports.LEVELS", shared)
@@ -189,9 +183,7 @@ def test_an_answer_before_real_bearings_changed_it_does_not_come_back(
 
 @pytest.mark.parametrize("outcome", [Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED])
 @pytest.mark.parametrize("so_far", [0.4, 1.05])
-def test_an_answer_that_no_run_on_real_bearings_confirms_has_the_change_of_a_coarser_level_twice(
-    refined: Any, outcome: Outcome, so_far: float
-) -> None:
+def test_an_unconfirmed_answer_has_the_change_twice(refined: Any, outcome: Outcome, so_far: float) -> None:
     def runs(number: int, springs: float) -> EngineRun:
         if number > 0 and springs == REAL:
             return result(so_far, outcome=outcome)
@@ -206,7 +198,7 @@ def test_an_answer_that_no_run_on_real_bearings_confirms_has_the_change_of_a_coa
     np.testing.assert_allclose(done.answer.errors[0], change + level_error(1))
 
 
-def test_a_level_at_which_the_run_on_real_bearings_ends_confirms_the_answer(refined: Any) -> None:
+def test_a_level_whose_run_on_bearings_ends_is_confirmed(refined: Any) -> None:
     def runs(number: int, springs: float) -> EngineRun:
         outcome = Outcome.SOLVER_FAILED if number == 1 and springs == REAL else Outcome.OK
         return result(1.0 + 1e-4 * (springs == REAL), outcome=outcome)
@@ -217,7 +209,7 @@ def test_a_level_at_which_the_run_on_real_bearings_ends_confirms_the_answer(refi
     np.testing.assert_allclose(done.answer.errors[0], 1e-4 + level_error(2))
 
 
-def test_a_motion_that_ends_on_real_bearings_alone_has_no_value_and_says_how_it_ends(refined: Any) -> None:
+def test_a_motion_that_ends_on_bearings_alone_has_no_value(refined: Any) -> None:
     def runs(number: int, springs: float) -> EngineRun:
         tips = number > 0 and springs == REAL
         return result(1.0, outcome=Outcome.RIM_REACHED if tips else Outcome.OK)
@@ -240,20 +232,20 @@ def test_without_any_run_on_real_bearings_there_is_no_value(refined: Any) -> Non
     assert np.isnan(done.answer.peaks).all()
 
 
-def test_supports_that_rattle_on_any_springs_stand_on_those_of_real_bearings(refined: Any) -> None:
+def test_supports_that_rattle_stand_on_real_bearings(refined: Any) -> None:
     done = refined(lambda number, _: result(1.0, outcome=Outcome.STEP_LIMIT if number == 0 else Outcome.OK))
     assert done.asked == [(0, STIFF), (0, REAL), (1, REAL), (2, REAL)]
     assert done.answer.outcome == Outcome.OK
 
 
-def test_no_level_is_begun_without_work_for_its_run_on_real_bearings(refined: Any) -> None:
+def test_no_level_is_begun_without_work_for_its_bearings(refined: Any) -> None:
     done = refined(lambda number, springs: result(1.0 + 9e-4 * (springs == REAL)), max_work=6.5 * STEPS)
     assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF)]
     assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
     np.testing.assert_allclose(done.answer.errors[0], 9e-4 + level_error(1))
 
 
-def test_the_first_run_of_supports_that_may_rattle_has_a_share_of_the_work(refined: Any) -> None:
+def test_the_first_run_of_rattling_supports_has_a_share(refined: Any) -> None:
     def runs(number: int, springs: float) -> EngineRun:
         outcome = Outcome.STEP_LIMIT if springs == STIFF else Outcome.OK
         return result(1.0, outcome=outcome)
@@ -264,7 +256,7 @@ def test_the_first_run_of_supports_that_may_rattle_has_a_share_of_the_work(refin
     assert done.answer.outcome == Outcome.OK
 
 
-def test_supports_that_open_by_the_misfit_of_the_platform_alone_may_give_way_by_more_than_real_bearings(
+def test_supports_opened_by_a_misfit_may_give_way_by_more(
     refined: Any,
 ) -> None:
     load = 0.02
@@ -279,9 +271,7 @@ def test_supports_that_open_by_the_misfit_of_the_platform_alone_may_give_way_by_
 
 
 @pytest.mark.parametrize("softest_closed", [0.0, REAL], ids=["open on any", "open on softer ones only"])
-def test_supports_that_open_on_softer_springs_stand_on_those_of_real_bearings_from_then_on(
-    refined: Any, softest_closed: float
-) -> None:
+def test_supports_opened_on_softer_springs_get_real_bearings(refined: Any, softest_closed: float) -> None:
     def runs(number: int, springs: float) -> EngineRun:
         return result(1.0 + 0.1 * (number == 1), opens=number > 0 and springs > softest_closed, load=4e-7 / springs)
 
@@ -292,7 +282,7 @@ def test_supports_that_open_on_softer_springs_stand_on_those_of_real_bearings_fr
     assert [number for number, _ in done.asked] == [0, 1, *range(1, 5)], "levels 0 and 1 differ: more follow"
 
 
-def test_supports_give_way_until_warping_takes_no_more_load_than_the_tolerance_allows(refined: Any) -> None:
+def test_supports_give_way_until_warping_takes_little_load(refined: Any) -> None:
     """The load falls as the springs get softer."""
 
     def runs(number: int, springs: float) -> EngineRun:
@@ -307,9 +297,7 @@ def test_supports_give_way_until_warping_takes_no_more_load_than_the_tolerance_a
 
 
 @pytest.mark.parametrize(("per_load", "levels"), [(0.02, 2), (0.1, 3)], ids=["met", "not met"])
-def test_what_warping_does_is_measured_once_where_no_softer_springs_are_left(
-    refined: Any, per_load: float, levels: int
-) -> None:
+def test_what_warping_does_is_measured_once(refined: Any, per_load: float, levels: int) -> None:
     """per_load: relative change of the platform's peak over the load that warping takes."""
     load, softest = 0.01, MAX_COMPLIANCE_OF_CLOSED
 

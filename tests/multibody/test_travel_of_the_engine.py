@@ -46,7 +46,7 @@ def test_the_instant_is_that_of_the_equations(model: str) -> None:
     assert engine.instant[0] == pytest.approx(equations.instant[0], abs=5e-5 if model == "translational" else 5e-3)
 
 
-def test_a_stored_motion_ends_before_the_travel_and_has_no_demands() -> None:
+def test_a_stored_motion_ends_before_the_travel() -> None:
     for motion in (multibody.trajectory(strong(0.05), PHASE), multibody.single_run(strong(0.05), PHASE, step=2e-3)):
         assert motion.status == Outcome.TRAVEL_REACHED
         assert np.hypot(*motion.position[:, 0, :2].T).max() <= 0.05
@@ -73,7 +73,7 @@ def test_a_travel_close_to_the_largest_displacement_is_settled(share: float) -> 
 
 @pytest.mark.long
 @pytest.mark.parametrize("travel", [0.05, 0.08, 0.1])
-def test_both_sides_end_the_same_motions_at_the_same_instants_on_64_phases(travel: float) -> None:
+def test_both_sides_end_the_same_motions_on_64_phases(travel: float) -> None:
     scene, phases = strong(travel), np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (64, 2))
     engine = multibody.amplification(scene, phases)
     equations = reference.amplification(scene, phases, regularization=1e-3)

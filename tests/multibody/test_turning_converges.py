@@ -22,7 +22,7 @@ def phases_of(scene: Scene) -> np.ndarray:
 
 @pytest.mark.long
 @pytest.mark.parametrize(("name", "count"), [("fig3-I", 16), ("fig3-II", 32)])
-def test_the_platform_of_the_spatial_model_converges_where_the_translational_one_climbs(name: str, count: int) -> None:
+def test_the_platform_that_turns_converges(name: str, count: int) -> None:
     scene = changed(load_scene(name), duration=6.0)  # all peaks lie in the first five seconds
     phases = phases_of(scene)
     assert len(phases) == count

@@ -86,7 +86,7 @@ def test_a_whole_surface_agrees_with_newton_euler_equations() -> None:
     assert not misfits
 
 
-def test_supports_that_stay_closed_share_the_load_of_a_turned_platform_to_the_tolerance() -> None:
+def test_closed_supports_share_the_load_of_a_turned_platform() -> None:
     """The platform tilts and turns so far that springs of real bearings would take a seventh of the weight."""
     scene, phase = uneven("everything"), [(1.5 * np.pi, 0.5 * np.pi)]
     loose, tight = (multibody.amplification(scene, phase, "spatial", tolerance=t) for t in (1e-3, 3e-4))
@@ -94,7 +94,7 @@ def test_supports_that_stay_closed_share_the_load_of_a_turned_platform_to_the_to
 
 
 @pytest.mark.long
-def test_supports_that_open_under_an_eccentric_tower_agree_with_newton_euler_equations() -> None:
+def test_supports_under_a_tower_agree_with_newton_euler() -> None:
     scene = uneven("body above off the axis", 4.0, **{"isolator.ring": 0.3, "bodies.1.offset": [0.03, -0.02]})
     engine = multibody.amplification(scene, [PHASE], model="spatial")
     independent = spatial_motion(scene, PHASE, 1e-3, tolerance=1e-6)
@@ -122,7 +122,7 @@ def test_supports_of_a_building_at_rest_carry_what_statics_say(name: str) -> Non
 
 
 @pytest.mark.parametrize("supports", [3, 4, 5, 6])
-def test_offsets_are_allowed_as_long_as_every_support_carries_something(supports: int) -> None:
+def test_offsets_are_allowed_while_supports_carry(supports: int) -> None:
     """Offset by e away from it, a support of a ring carries 1/K - 2 e / (K ring) of the weight."""
     scene = uneven("body above off the axis", **{"isolator.supports": supports})
     places = scene.support_places
@@ -137,7 +137,7 @@ def test_offsets_are_allowed_as_long_as_every_support_carries_something(supports
 
 
 @pytest.mark.parametrize("share", [0.5, 0.9, 0.9999])
-def test_a_building_near_the_edge_of_its_supports_has_an_answer_or_an_outcome_by_name(share: float) -> None:
+def test_a_building_near_its_supports_edge_has_an_outcome(share: float) -> None:
     values = {f"bodies.{body}.offset": [share * 0.25 * math.sqrt(2.0)] * 2 for body in range(2)}
     scene = uneven("body above off the axis", 1.5, **values)
     result = multibody.amplification(scene, [PHASE], "spatial", tolerance=1e-2, max_work=2e4)
@@ -180,7 +180,7 @@ def test_a_scene_turned_as_a_whole_has_the_turned_motion(name: str, angle: float
     np.testing.assert_allclose(motions[1].extra["turns"][-1, :, 2], motions[0].extra["turns"][-1, :, 2], atol=2e-5)
 
 
-def test_a_quarter_turn_of_a_body_swaps_its_edges_and_the_stiffness_of_its_link() -> None:
+def test_a_quarter_turn_swaps_edges_and_stiffness() -> None:
     scene = uneven("at an angle", **{"bodies.0.yaw": 0.0, "bodies.1.yaw": 0.5 * math.pi})
     swapped = scene.with_values({"bodies.1.yaw": None, "bodies.1.size": [0.8, 2.0, 0.2], "bodies.1.period": [1.2, 1.5]})
     assert agree(*(multibody.amplification(each, [PHASE], "spatial") for each in (scene, swapped)))
@@ -190,7 +190,7 @@ def test_a_quarter_turn_of_a_body_swaps_its_edges_and_the_stiffness_of_its_link(
     "law", [{}, {"isolator.friction": 0.0}, {"isolator.friction": None, "isolator.lubrication": 0.5}]
 )
 @pytest.mark.parametrize("key", ["offset", "yaw"])
-def test_rotation_grows_in_proportion_and_factors_with_the_square(key: str, law: dict[str, Any]) -> None:
+def test_rotation_grows_linearly_and_factors_squared(key: str, law: dict[str, Any]) -> None:
     """Loading along x: an offset along y, or an angle, of the other sign gives the mirrored motion."""
     scene = load_scene("fig3-I").with_values(
         {"duration": 2.0, "excitation.amplitudes": [[1.0, 1.0], [0.0, 0.0]], **law}
@@ -304,7 +304,7 @@ def test_nothing_moves_until_the_loading_does(name: str) -> None:
         assert np.abs(run.chunks[0].accelerations[0]).max() < 1e-6 + 1e3 * level.rounding
 
 
-def test_an_eccentric_platform_tilts_and_moves_aside_by_the_tilt_times_its_height() -> None:
+def test_an_eccentric_platform_tilts_and_moves_aside() -> None:
     """One body: the moment of its weight over the springs, and depressions that stay where the spheres are."""
     height, offset, stiffness, ring = 0.7, 0.03, 2e4, 0.6
     body = {**PLATFORM, "height": height, "offset": [offset, 0.0]}
@@ -317,7 +317,7 @@ def test_an_eccentric_platform_tilts_and_moves_aside_by_the_tilt_times_its_heigh
     assert motion.position[0, 0, 0] == pytest.approx(tilt * height, rel=2e-3)
 
 
-def test_an_eccentric_body_on_soft_bearings_has_the_factors_of_independent_equations() -> None:
+def test_an_eccentric_body_on_bearings_has_its_factors() -> None:
     """Those of elastic_chain.py to 1e-8; a start out of balance gave 5.055 at any tolerance."""
     scene = Scene.model_validate(ON_BEARINGS)
     for amplitude, expected in ((0.05, [0.999012, 2.418480]), (1.0, [0.922187, 1.107874])):
@@ -338,7 +338,7 @@ def test_a_start_without_equilibrium_is_a_named_outcome(monkeypatch: pytest.Monk
     assert answer.instant[0] == 0.0
 
 
-def test_damping_of_the_supports_is_critical_where_none_is_stated() -> None:
+def test_damping_of_supports_is_critical_unless_stated() -> None:
     scene = Scene.model_validate(ON_BEARINGS)
     absent, critical, half = (
         multibody.amplification(each, [STILL_AT_FIRST], "spatial", 5e-3).mu

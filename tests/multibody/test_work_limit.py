@@ -15,7 +15,7 @@ from reference.problem import Outcome, load_scene
 WORK = 5e3  # steps
 
 
-def test_a_refusal_tells_by_how_much_and_the_durations_that_it_names_are_true() -> None:
+def test_a_refusal_names_durations_that_are_true() -> None:
     said = multibody.refusal(frame(20.0), "spatial", max_work=WORK)
     needed = re.search(r"needs (\S+) steps", said)
     assert needed is not None
@@ -31,7 +31,7 @@ def test_a_refusal_tells_by_how_much_and_the_durations_that_it_names_are_true() 
 
 
 @pytest.mark.long
-def test_at_the_duration_and_with_the_work_that_a_refusal_names_there_are_values() -> None:
+def test_at_what_a_refusal_names_there_are_values() -> None:
     said = multibody.refusal(frame(20.0), "translational", max_work=WORK)
     enough = re.search(r"duration to about (\S+) s", said)
     work = re.search(r"max_work or --max-work, about (\S+) steps", said)
@@ -43,7 +43,7 @@ def test_at_the_duration_and_with_the_work_that_a_refusal_names_there_are_values
     assert np.isfinite(allowed.mu).all(), allowed.status
 
 
-def test_a_refusal_is_what_the_model_does_and_no_tolerance_changes_it() -> None:
+def test_a_refusal_depends_on_the_model_alone() -> None:
     for tolerance in (1e-5, 1e-3, 1e-1):
         options = {"model": "spatial", "tolerance": tolerance, "max_work": WORK}
         assert "a looser tolerance does not help" in multibody.refusal(frame(20.0), **options)
@@ -57,7 +57,7 @@ def test_what_is_tried_is_not_refused() -> None:
     assert [multibody.refusal(scene, model) for model in ("translational", "spatial")] == ["", ""]
 
 
-def test_work_that_runs_out_fails_no_solver_and_leaves_enough_to_show_what_the_contact_changes() -> None:
+def test_work_that_runs_out_fails_no_solver() -> None:
     """
     With v_reg so small rounding forbids a contact that friction does not outrun: levels share one, a softer one shows
     what it changes, and Newton iterations double the steps of a light platform.
@@ -90,7 +90,7 @@ def test_tall_frames_have_answers_within_the_tolerance(count: int, duration: flo
 
 
 @pytest.mark.long
-def test_a_frame_of_six_floors_has_support_forces_under_thirty_seconds_of_shaking() -> None:
+def test_a_frame_of_six_floors_has_support_forces() -> None:
     motion = multibody.trajectory(frame(30.0), (0.1, 0.2), model="spatial")
     weight = 6e3 * 9.80665
     assert motion.status == Outcome.OK

@@ -154,7 +154,9 @@ class _SetValued:
         number = None
         while t < end and number is None:
             stop = min(end, law.next_break(t))
-            t, y, number = march(rhs, t, y, stop, [onset] if events else [], observe, peaks, self.tolerance)
+            t, y, number = march(
+                rhs, t, y, stop, [onset] if events else [], observe, peaks, self.tolerance, longest=law.longest_rest
+            )
         return t, y
 
     # onset -----------------------------------------------------------------------------------------------------------

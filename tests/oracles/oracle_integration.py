@@ -80,12 +80,13 @@ def march(
     tolerance: float,
     stiff: bool = False,
     floor: np.ndarray | float = 1e-3,
+    longest: float = math.inf,
 ) -> tuple[float, np.ndarray, int | None]:
     """
     Integrate until `end` or the first event that rises through 0: (place, state, number of the event or None).
 
-    floor: absolute tolerance of each unknown over the relative one. Raises RefusalError where an accepted step holds a
-    state outside the equations.
+    floor: absolute tolerance of each unknown over the relative one; longest: step. Raises RefusalError where an
+    accepted step holds a state outside the equations.
     """
     if end <= start:
         return start, state, None
@@ -97,7 +98,7 @@ def march(
         except RefusalError:  # perhaps only a trial stage of a step too long: let the solver reject it
             return np.full(len(y), np.nan)
 
-    solver = method(guarded, start, state, end, rtol=tolerance, atol=floor * tolerance, first_step=None)
+    solver = method(guarded, start, state, end, rtol=tolerance, atol=floor * tolerance, max_step=longest)
     while solver.status == "running":
         message = solver.step()
         if solver.status == "failed":

@@ -47,6 +47,8 @@ class Law:
         load = scene.excitation
         self.breaks = [scene.duration]  # s, where the ground acceleration has a kink, and the end
         self.record = scene.record if scene.recorded else None
+        # s, step of a platform at rest, which alone has nothing to integrate: 1/16 of a period
+        self.longest_rest = math.inf if scene.recorded else min(load.periods) / 16.0
         if self.record is not None:
             self.breaks = [float(t) for t in self.record[:, 0] if 0.0 < t < scene.duration] + self.breaks
             return

@@ -25,7 +25,7 @@ def answer() -> np.ndarray:
     return reference.amplification(reference.load_scene("fig4-dry"), PHASES, "small", tolerance=1e-4).mu
 
 
-def test_a_script_on_standard_input_has_the_answer_of_this_process() -> None:
+def test_a_script_on_standard_input_has_the_same_answer() -> None:
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run(
         [sys.executable, "-"], input=SCRIPT, cwd=ROOT, env=environment, capture_output=True, text=True, check=True

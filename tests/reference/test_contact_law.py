@@ -53,7 +53,7 @@ def test_the_platform_rests_only_where_friction_can_hold_it(name, phase, equatio
 
 @pytest.mark.parametrize("equations", ["small", "exact"])
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
-def test_a_drive_that_touches_the_friction_limit_once_a_period_moves_nothing(equations: str, tolerance: float) -> None:
+def test_a_drive_that_touches_the_friction_limit_moves_nothing(equations: str, tolerance: float) -> None:
     """The platform stays at rest, so its absolute acceleration is that of the ground."""
     limit = 0.1 * GRAVITY
     scene = Scene.model_validate(

@@ -61,7 +61,7 @@ def estimates(answer: Demands) -> dict[str, Estimate]:
     return named
 
 
-def test_a_body_released_in_a_smooth_cap_swings_to_where_it_was_let_go() -> None:
+def test_a_body_released_in_a_smooth_cap_swings_back() -> None:
     """Frictionless plane pendulum on a plate at rest: amplitude A, N = m g (3 cos t - 2 cos A) from the energy."""
     scene = one_body().with_values({"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0]]})
     released = State(position=np.array([[0.6 * RHO, 0.0]]), velocity=np.zeros((1, 2)))
@@ -117,7 +117,7 @@ def test_the_isolator_force_is_friction_and_restoring_force(law: str, side: str)
 
 
 @pytest.mark.parametrize(("name", "regularization"), [("fig3-I", 1e-3), ("fig4-viscous", None)])
-def test_the_two_sides_agree_within_their_errors_in_a_scene_of_the_paper(name, regularization) -> None:
+def test_both_sides_have_the_demands_of_a_scene_of_the_paper(name, regularization) -> None:
     agree(reference.load_scene(name), regularization)
 
 
@@ -128,7 +128,7 @@ def test_the_two_sides_agree_within_their_errors_in_every_scene(name) -> None:
 
 
 @pytest.mark.long
-def test_the_two_sides_agree_within_their_errors_on_a_frame_of_six_bodies() -> None:
+def test_both_sides_have_the_demands_of_a_frame() -> None:
     agree(frame(), 1e-3)
     recorded = frame().model_dump(exclude_none=True)
     recorded["excitation"] = reference.load_scene("synthetic-triple").model_dump(exclude_none=True)["excitation"]
@@ -205,7 +205,7 @@ def shaken_then_still(**isolator: float) -> Scene:
     )
 
 
-def test_a_residual_after_creep_is_that_of_coulomb_friction_within_its_error() -> None:
+def test_a_residual_after_creep_is_that_of_coulomb_friction() -> None:
     """At rest a regularized platform creeps to the center like exp(-t v_reg / (mu rho)); its residual does not."""
     scene, v_reg = shaken_then_still(), 1e-3
     truth = demands(reference.trajectory(scene, PHASE)).residual
@@ -226,7 +226,7 @@ def test_a_residual_after_creep_is_that_of_coulomb_friction_within_its_error() -
 @pytest.mark.parametrize("motion", ["synthetic-pair", "synthetic-triple"])
 @pytest.mark.parametrize("v_reg", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("friction", [0.02, 0.05, 0.1])
-def test_the_error_of_a_residual_covers_what_regularization_changes(motion: str, v_reg: float, friction: float) -> None:
+def test_the_error_of_a_residual_covers_regularization(motion: str, v_reg: float, friction: float) -> None:
     scene = reference.load_scene(motion).with_values({"isolator.friction": friction})
     truth, found = (demands(reference.trajectory(scene, PHASE, regularization=law)).residual for law in (None, v_reg))
     assert abs(found.value - truth.value) <= found.error + truth.error
@@ -249,7 +249,7 @@ def test_a_residual_that_is_none_says_why(isolator: dict[str, float], duration: 
     assert not any(found.reason for name, found in estimates(answer).items() if name != "residual")
 
 
-def test_a_residual_is_not_read_from_samples_that_end_before_the_motion() -> None:
+def test_a_residual_needs_samples_of_the_last_rest() -> None:
     scene = shaken_then_still()
     motion = reference.trajectory(scene, PHASE, times=np.linspace(0.0, 1.0, 101))
     assert motion.stick[-1][1] == scene.duration
@@ -354,7 +354,7 @@ def test_support_forces_are_those_of_the_spatial_model_alone() -> None:
     assert demands(reference.trajectory(scene, PHASE)).support_force_max is None
 
 
-def test_torsion_is_the_largest_rotation_of_every_body_that_turns() -> None:
+def test_torsion_is_the_largest_rotation_of_every_body() -> None:
     scene = reference.load_scene("fig3-I").with_values({"duration": 1.5, "bodies.1.offset": [0.1, 0.0]})
     motion = multibody.trajectory(scene, PHASE, "spatial")
     torsion = demands(motion).torsion

@@ -9,7 +9,7 @@ import reference
 
 
 def test_errors_cover_the_truth_and_are_not_far_too_large() -> None:
-    """Stated over true error: in the median."""
+    """Of 403 values 1 is beyond its error (99 % are stated to hold); stated over true error is 41 in the median."""
     found = []
     for truth in TRUTHS:
         scene, phase, *_ = case_of(truth["seed"])
@@ -17,4 +17,4 @@ def test_errors_cover_the_truth_and_are_not_far_too_large() -> None:
     beyond, ratios = beyond_and_ratios(TRUTHS, found)
     assert len(ratios) > 200
     assert np.mean(beyond) <= 0.01
-    assert 10.0 <= np.median(ratios) <= 60.0
+    assert 27.0 <= np.median(ratios) <= 62.0

@@ -45,5 +45,5 @@ def test_an_event_is_located_to_rounding_at_any_kind_of_root(value: Callable[[fl
     assert count <= 200
 
 
-def test_a_simple_event_takes_a_fraction_of_the_evaluations_of_bisection() -> None:
+def test_a_simple_event_takes_few_evaluations() -> None:
     assert located(lambda t: exp(t) - exp(ROOT))[1] <= 15

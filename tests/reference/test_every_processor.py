@@ -75,7 +75,7 @@ def lacking(kernels: str, features: Mapping[str, bool] = __cpu_features__) -> li
 
 
 @pytest.mark.parametrize("kernels", KERNELS)
-def test_the_constants_of_the_method_do_not_depend_on_the_kernels_that_the_linear_algebra_chooses(kernels: str) -> None:
+def test_the_constants_do_not_depend_on_linear_algebra(kernels: str) -> None:
     if lacking(kernels):
         pytest.skip(f"kernels {kernels} need {', '.join(lacking(kernels))}, which this processor does not have")
     words = [sys.executable, "-c", CONSTANTS]
@@ -86,14 +86,14 @@ def test_the_constants_of_the_method_do_not_depend_on_the_kernels_that_the_linea
     assert other == b"".join(here)
 
 
-def test_kernels_are_asked_for_only_where_the_processor_has_what_they_need() -> None:
+def test_kernels_are_asked_for_only_where_they_can_run() -> None:
     of_2004, of_2013 = {"SSE3": True}, {"SSE3": True, "AVX2": True, "FMA3": True, "AVX512_SKX": False}
     assert [lacking(kernels, of_2004) for kernels in KERNELS] == [[], ["AVX2", "FMA3"], ["AVX512_SKX"]]
     assert [lacking(kernels, of_2013) for kernels in KERNELS] == [[], [], ["AVX512_SKX"]]
     assert all(lacking(kernels, {"ASIMD": True}) for kernels in KERNELS), "a processor of another family"
 
 
-def test_no_other_test_or_check_names_what_only_some_processors_have() -> None:
+def test_no_other_test_names_what_only_some_processors_have() -> None:
     files = [ROOT / name for name in ("noxfile.py", "pyproject.toml", ".ci/run")]
     files += [*(ROOT / ".github").rglob("*.yml"), *(ROOT / "tests").rglob("*.py")]
     found = {file.relative_to(ROOT): OF_SOME.search(file.read_text(encoding="utf-8")) for file in files}
@@ -118,7 +118,7 @@ def test_a_generic_processor_gives_the_same_factors(tmp_path: Path, here: np.nda
 
 
 @pytest.mark.long
-def test_the_process_that_compiles_and_one_that_loads_the_build_agree_to_the_last_bit(tmp_path: Path) -> None:
+def test_compiling_and_loading_agree_to_the_last_bit(tmp_path: Path) -> None:
     build = tmp_path / "build"
     compiling, loading = (
         computed(tmp_path / f"{name}.npy", NUMBA_CACHE_DIR=str(build)) for name in ("first", "second")
@@ -127,7 +127,7 @@ def test_the_process_that_compiles_and_one_that_loads_the_build_agree_to_the_las
     np.testing.assert_array_equal(loading, compiling)
 
 
-def test_no_part_of_the_solver_is_compiled_with_the_freedom_to_reorder_sums() -> None:
+def test_no_part_of_the_solver_may_reorder_sums() -> None:
     """Such freedom is used otherwise on another processor, and otherwise where a part is not inlined."""
     from reference.solver.run import runs
 
@@ -142,7 +142,7 @@ def folder_of_builds(**environment: str) -> Path:
     return Path(os.fsdecode(run.stdout.strip())).parent
 
 
-def test_a_cache_folder_of_the_user_s_choice_holds_a_build_per_version_of_the_source(tmp_path: Path) -> None:
+def test_a_cache_folder_holds_a_build_per_version_of_the_source(tmp_path: Path) -> None:
     chosen = folder_of_builds(NUMBA_CACHE_DIR=str(tmp_path))
     assert chosen.parent == tmp_path
     build = build_folder(ROOT / "reference" / "solver")

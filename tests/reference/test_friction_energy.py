@@ -48,7 +48,7 @@ def test_friction_takes_what_gravity_loses(isolator) -> None:
     assert answer.friction_energy.error < 1e-3 * expected
 
 
-def test_without_friction_nothing_is_dissipated_and_with_all_of_it_nothing_moves() -> None:
+def test_without_friction_or_motion_nothing_is_dissipated() -> None:
     smooth = demands(released(0.5 * RHO, friction=0.0))
     assert smooth.friction_energy.value == pytest.approx(0.0, abs=1e-9)
     held = demands(released(0.1 * RHO, friction=0.3))
@@ -82,7 +82,7 @@ def test_the_engine_s_contacts_dissipate_what_its_motion_loses() -> None:
 
 
 @pytest.mark.parametrize("side", ["equations", "engine"])
-def test_energy_is_balanced_where_friction_depends_on_the_velocity(side) -> None:
+def test_energy_is_balanced_with_velocity_friction(side) -> None:
     law = {"isolator.friction": {"slow": 0.05, "fast": 0.12, "rate": 30.0}, "duration": 8.0}
     scene = reference.load_scene("fig3-I").with_values(law)
     trajectory = reference.trajectory if side == "equations" else multibody.trajectory

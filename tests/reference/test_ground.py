@@ -18,7 +18,7 @@ PHASE = np.array([0.3, 1.1])
 
 
 @pytest.mark.parametrize("name", ["fig3-I", "fig4-dry"])
-def test_the_harmonics_turned_step_by_step_stay_those_of_the_scene(name: str) -> None:
+def test_the_harmonics_turned_stay_those_of_the_scene(name: str) -> None:
     scene = load_scene(name)
     system = pack(scene, small=False, v_reg=None)
     work = SimpleNamespace(phase=PHASE, waves=np.zeros(2, complex), turns=np.zeros(2, complex))
@@ -44,7 +44,7 @@ def ground_in_a_step(system: System, elapsed: Array) -> Array:
 
 @pytest.mark.long  # it compiles
 @pytest.mark.parametrize("angle", [1e-12, 0.3, 1.9, 2.1])
-def test_the_harmonics_at_the_stages_of_a_step_are_those_of_the_scene(angle: float) -> None:
+def test_the_harmonics_at_the_stages_are_those_of_the_scene(angle: float) -> None:
     """By their series up to an angle of 2, by themselves beyond it."""
     scene = load_scene("fig4-dry")
     system = pack(scene, small=False, v_reg=None)

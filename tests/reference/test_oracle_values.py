@@ -44,7 +44,7 @@ def test_amplification_is_the_oracle_s(entry):
 
 
 @pytest.mark.parametrize("entry", [e for e in VALUES if e["regularization"] is None], ids=lambda entry: entry["name"])
-def test_trajectory_ends_where_the_oracle_does_and_rests_when_it_rests(entry):
+def test_trajectory_ends_and_rests_as_the_oracle_says(entry):
     scene = scene_of(entry["scene"])
     run = reference.trajectory(scene, entry["phase"], entry["equations"], tolerance=TOLERANCE, times=[scene.duration])
     assert run.status == "ok"

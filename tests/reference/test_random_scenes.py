@@ -100,5 +100,5 @@ def test_random_scenes_are_answered_or_refused_by_name(scene, phase, equations, 
 @pytest.mark.long
 @given(**arguments)
 @settings(max_examples=1000, deadline=None)
-def test_a_thousand_random_scenes_are_answered_or_refused_by_name(scene, phase, equations, v_reg):
+def test_a_thousand_scenes_are_answered_or_refused_by_name(scene, phase, equations, v_reg):
     hold(scene, phase, equations, v_reg)

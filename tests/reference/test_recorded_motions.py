@@ -44,7 +44,7 @@ def random_record(spacing: float, duration: float = 8.0) -> np.ndarray:
         pytest.param("synthetic-triple", "small", marks=pytest.mark.long),
     ],
 )
-def test_mu_is_that_of_scipys_integrators_which_stop_at_every_knot(name, equations):
+def test_mu_is_that_of_scipys_integrators(name, equations):
     """Twice as strong, so that slides begin early; creep below 5 mm/s, and the set-valued law with its limits."""
     scene = scaled(EXAMPLES[name], 2.0, 2.25)
     assert len(reference.trajectory(scene, ANY).stick) > 1

@@ -28,7 +28,7 @@ def largest(motion, cutoff: float) -> float:
 
 
 @pytest.mark.parametrize(("friction", "phase"), CASES.values(), ids=CASES.keys())
-def test_a_resolved_peak_is_the_largest_of_the_instants_that_count(friction, phase):
+def test_a_resolved_peak_is_the_largest_instant_that_counts(friction, phase):
     scene = load_scene("fig4-dry").with_values({"isolator.friction": friction, "duration": 3.0})
     instants = np.linspace(0.0, scene.duration, INSTANTS)
     motion = reference.trajectory(scene, phase, "small", tolerance=1e-10, times=instants)

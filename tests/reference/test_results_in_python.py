@@ -31,7 +31,7 @@ SHAPES = [(3, 3), (3, 1, 3)]
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_results_have_the_shape_of_the_phases_and_the_numbers_of_the_list(surface, shape):
+def test_results_have_the_shape_of_the_phases(surface, shape):
     result = reference.amplification(SCENE, PAIRS.reshape(*shape, 2), tolerance=1e-4)
     for name in ("mu", "error"):
         np.testing.assert_array_equal(getattr(result, name), getattr(surface, name).reshape(*shape, 2))
@@ -68,7 +68,7 @@ def test_a_loading_that_overflows_keeps_the_shape():
     assert result.mu.shape == (3, 3, 2)
 
 
-def test_a_list_of_phases_is_labeled_by_the_list_and_a_grid_by_its_axes(surface):
+def test_a_list_is_labeled_by_itself_and_a_grid_by_its_axes(surface):
     data = surface.to_xarray()
     assert data["mu"].dims == ("phase", "body")
     np.testing.assert_array_equal(data["alpha2"], PAIRS[:, 1])

@@ -91,7 +91,7 @@ def test_rows_are_read_and_written_where_an_array_has_them() -> None:
     np.testing.assert_array_equal(goal, expected)
 
 
-def test_a_choice_is_made_for_every_number_and_a_float_becomes_as_many_as_its_pattern() -> None:
+def test_a_choice_is_made_for_every_number_of_a_row() -> None:
     @numba.njit
     def chosen(values: Array, out: Array) -> tuple[float, float]:
         numbers = row(values, ())

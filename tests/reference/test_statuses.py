@@ -55,7 +55,7 @@ def test_a_thrown_platform_reaches_the_rim_when_its_energy_says():
 
 
 @BOTH
-def test_a_contact_that_opens_at_rest_is_told_at_the_root_of_the_ground_motion(equations):
+def test_a_contact_opens_at_rest_at_the_root_of_the_ground(equations):
     """Vertical loading alone: at rest in the middle N = m_sum (g + zeta''), zero at a root known in closed form."""
     scene = chain(
         0.25, 0.1, amplitudes=[[0.0, 0.0], [0.0, 0.0], [12.0, 0.0]], masses=[1.0, 1.0], stiffness=[[20.0, 30.0]]
@@ -81,7 +81,7 @@ def test_a_contact_that_opens_in_sliding_is_told_when(equations, regularization)
     assert run.contact_force[-1] < 0.2 * GRAVITY
 
 
-def test_the_paradox_of_painleve_is_told_where_the_inertia_has_lost_its_sign():
+def test_the_paradox_is_told_where_inertia_loses_its_sign():
     """
     Light platform under a heavy body, strong friction, thrown from a slope towards the middle.
 
@@ -179,7 +179,7 @@ def test_impossible_times_are_refused(times):
         reference.trajectory(load_scene("fig3-I"), PHASE, times=times)
 
 
-def test_the_printed_rest_condition_is_looser_and_changes_the_answer():
+def test_the_printed_rest_condition_is_looser():
     """(4.6) as printed lets friction hold sqrt(2) of its limit at the origin: the first rest lasts longer."""
     scene = load_scene("fig3-I")
     consistent = reference.trajectory(scene, PHASE, "small")

@@ -129,7 +129,7 @@ def ends_of_runs(monkeypatch: pytest.MonkeyPatch, scene: Scene, full: bool, **la
     return np.concatenate(ends)
 
 
-def test_both_runs_of_a_point_stop_early_and_those_of_a_full_one_go_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_both_runs_stop_early_and_full_ones_do_not(monkeypatch: pytest.MonkeyPatch) -> None:
     scene = load_scene("fig3-I")
     finer, coarser = ends_of_runs(monkeypatch, scene, full=False)
     motion = reference.trajectory(scene, (0.3, 1.1))
@@ -155,7 +155,7 @@ def two_bursts(second: float) -> Scene:
     return Scene.model_validate({**values, "duration": float(time[-1])})
 
 
-def test_a_run_goes_on_through_a_quiet_time_only_where_something_large_comes_after_it(
+def test_a_run_goes_on_only_where_something_large_comes(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     weak, strong = two_bursts(0.2), two_bursts(1.2)
@@ -216,7 +216,7 @@ DAMPED = {"bodies.1.damping": 1.0}
     ],
     ids=str,
 )
-def test_looking_ahead_costs_little_where_an_accurate_run_takes_few_steps(values: dict[str, Any]) -> None:
+def test_looking_ahead_costs_little(values: dict[str, Any]) -> None:
     """A rough run would step over 20 s in periods of 1e-4 s, or in the time in which a loading decays."""
     scene = load_scene("fig3-I").with_values(values)
     reference.amplification(scene, [(0.3, 1.1)])  # compiled

@@ -38,7 +38,7 @@ def hold(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("name", ["fig3-I", "fig3-II"])
-def test_the_sum_is_the_integrated_surface_on_the_papers_cases_without_friction(name):
+def test_the_sum_is_the_integrated_surface_of_the_paper(name):
     table = load_scene(name).model_dump(exclude_none=True)
     table["isolator"]["friction"] = 0.0
     hold(Scene.model_validate({**table, "duration": 8.0}))
@@ -67,7 +67,7 @@ def test_the_sum_is_the_integrated_surface_on_any_chain(bodies, radius, first, s
     )
 
 
-def test_resonance_without_decay_is_a_limit_and_no_division_by_zero():
+def test_resonance_without_decay_is_a_limit():
     radius, period = 1.0, 2.0 * np.pi / np.sqrt(GRAVITY)
     hold(
         chain(radius, 0.0, amplitudes=[[0.05, 0.0], [0.0, 0.05]], periods=[period, 1.1], decay=[0.0, 0.0], duration=9.0)

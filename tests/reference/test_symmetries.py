@@ -77,7 +77,7 @@ def test_only_mass_ratios_matter():
 
 
 @pytest.mark.parametrize("equations", ["exact", "small"])
-def test_loading_and_friction_scaled_together_leave_the_factors_alone_in_the_limit(equations):
+def test_scaled_loading_and_friction_leave_the_factors_alone(equations):
     """
     Loading and mu times s: the motion scales by s up to terms of relative order (x/rho)^2 and mu x xi''/(rho g).
 

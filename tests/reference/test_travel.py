@@ -22,7 +22,7 @@ def limited(scene: Scene, travel: float) -> Scene:
     return scene.with_values({"isolator.travel": travel})
 
 
-def test_a_thrown_platform_reaches_its_travel_when_its_energy_says() -> None:
+def test_a_thrown_platform_reaches_its_travel_by_its_energy() -> None:
     """Frictionless from the middle: t = int rho d theta / sqrt(v^2 - 2 g rho (1 - cos theta)) to sin theta = 0.6."""
     scene = limited(chain(0.25, 0.0, amplitudes=[[1e-9, 0.0], [0.0, 0.0]], duration=1.0), 0.15)
     speed = 1.6
@@ -65,7 +65,7 @@ def test_the_instant_is_that_of_an_independent_solution(law: str, v_reg: float |
 
 @pytest.mark.parametrize("v_reg", [None, 1e-3])
 @pytest.mark.parametrize("share", [0.2, 0.7, 0.999, 0.999999])
-def test_the_travel_is_passed_where_the_motion_without_it_passes_it(v_reg: float | None, share: float) -> None:
+def test_the_travel_is_passed_where_a_free_motion_passes_it(v_reg: float | None, share: float) -> None:
     """Up to a hair below the largest displacement, which is taken at a stop, in stretched time."""
     scene = load_scene("fig3-I")
     free = reference.trajectory(scene, PHASE, regularization=v_reg, tolerance=1e-9)
@@ -90,7 +90,7 @@ def test_a_travel_that_is_not_needed_changes_no_number() -> None:
     np.testing.assert_allclose(narrow.mu[~ended], free.mu[~ended], rtol=1e-6)
 
 
-def test_a_travel_between_two_tolerances_is_settled_by_the_finer_runs() -> None:
+def test_a_travel_between_two_tolerances_is_settled() -> None:
     """The displacement is known to 1e-7 or so: within 1e-4 of it the outcome is no matter of luck."""
     scene = load_scene("fig4-dry")
     share = reference.amplification(scene, [PHASE], tolerance=1e-9).cap_share[0]
@@ -99,7 +99,7 @@ def test_a_travel_between_two_tolerances_is_settled_by_the_finer_runs() -> None:
         assert found.status.tolist() == [outcome]
 
 
-def test_a_displacement_that_grows_late_is_not_lost_by_the_early_end() -> None:
+def test_a_displacement_that_grows_late_is_not_lost() -> None:
     """A burst first, then beats of weak friction: the largest accelerations come long before the displacement."""
     scene = chain(
         0.25, 0.002, amplitudes=[[6.0, 0.0], [0.0, 0.35]], periods=(0.12, 1.0), decay=(3.0, 0.0), duration=8.0
@@ -112,7 +112,7 @@ def test_a_displacement_that_grows_late_is_not_lost_by_the_early_end() -> None:
         assert found.instant[0] > 3.0
 
 
-def test_a_sum_of_harmonics_ends_where_its_closed_form_passes_the_travel() -> None:
+def test_a_sum_of_harmonics_ends_where_it_passes_the_travel() -> None:
     scene = load_scene("fig3-I").with_values({"isolator.friction": 0.0, "duration": 4.0})
     found = reference.amplification(limited(scene, 0.03), [PHASE], "small", tolerance=1e-9)
 
@@ -125,7 +125,7 @@ def test_a_sum_of_harmonics_ends_where_its_closed_form_passes_the_travel() -> No
     assert found.instant[0] == pytest.approx(brentq(beyond, times[first - 1], times[first], xtol=1e-13), abs=1e-8)
 
 
-def test_a_travel_beyond_the_radius_and_a_start_beyond_the_travel_are_refused_in_one_line() -> None:
+def test_a_travel_or_start_beyond_its_limit_is_refused() -> None:
     with pytest.raises(SceneError, match=r"isolator\.travel = 0\.3: must be below the radius, rho = 0\.24849 m"):
         limited(load_scene("fig3-I"), 0.3)
     with pytest.raises(SceneError, match=r"isolator\.travel = -1\.0"):
@@ -147,7 +147,7 @@ def test_the_demands_state_the_share_of_the_travel() -> None:
 
 
 @pytest.mark.parametrize("s", [0.5, 0.125])
-def test_loading_friction_and_travel_scaled_together_end_the_motion_at_one_instant(s: float) -> None:
+def test_scaled_loading_friction_and_travel_end_at_one_instant(s: float) -> None:
     """Frictionless small equations are linear, so the instant is the same; with friction it tends to that like s^2."""
     scene = limited(chain(0.25, 0.0, **TWO), 0.06)
     instants = [

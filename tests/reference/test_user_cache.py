@@ -41,9 +41,7 @@ def nowhere(monkeypatch: pytest.MonkeyPatch, fresh: Path) -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners of files")
-def test_without_a_home_a_private_temporary_directory_takes_its_place(
-    monkeypatch: pytest.MonkeyPatch, fresh: Path
-) -> None:
+def test_without_a_home_a_private_directory_takes_its_place(monkeypatch: pytest.MonkeyPatch, fresh: Path) -> None:
     nowhere(monkeypatch, fresh)
     folder = module.user_cache()
     assert folder == fresh / f"phase-resonance-{os.getuid()}"
@@ -53,7 +51,7 @@ def test_without_a_home_a_private_temporary_directory_takes_its_place(
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners of files")
 @pytest.mark.parametrize("planted", ["writable by others", "link", "file", "of another user"])
-def test_a_temporary_directory_that_others_may_have_filled_is_not_used(
+def test_a_temporary_directory_of_others_is_not_used(
     monkeypatch: pytest.MonkeyPatch, fresh: Path, planted: str
 ) -> None:
     nowhere(monkeypatch, fresh)
@@ -74,7 +72,7 @@ def test_a_temporary_directory_that_others_may_have_filled_is_not_used(
     assert module.user_cache() is None
 
 
-def test_every_function_that_is_kept_on_disk_is_kept_in_the_user_s_cache() -> None:
+def test_every_kept_function_is_kept_in_the_user_s_cache() -> None:
     for found in walk_packages(reference.__path__, "reference."):
         import_module(found.name)
     dispatchers = [
@@ -92,7 +90,7 @@ def test_every_function_that_is_kept_on_disk_is_kept_in_the_user_s_cache() -> No
     assert [name for name, place in kept.items() if parent not in place.parents] == []
 
 
-def test_numbas_settings_in_the_folder_do_not_say_where_builds_are(tmp_path: Path) -> None:
+def test_numbas_settings_do_not_say_where_builds_are(tmp_path: Path) -> None:
     pytest.importorskip("yaml")  # without it numba reads no such file
     (tmp_path / ".numba_config.yaml").write_text(f"cache_dir: {tmp_path}\n", encoding="utf-8")
     ask = "from reference import build_cache as b; print(b.build_folder(b.Path(b.__file__)))"

@@ -38,7 +38,7 @@ def with_law(scene: Scene, law: DryFriction | dict[str, float] | float) -> Scene
 @BOTH
 @LAWS
 @pytest.mark.parametrize("speed", [0.005, 0.5])
-def test_a_straight_slide_stops_where_and_when_friction_of_its_speed_makes_it(law, speed, equations):
+def test_a_straight_slide_stops_as_friction_of_its_speed_says(law, speed, equations):
     """Time and way are the integrals of dv / (mu g) and v dv / (mu g); the time in closed form."""
     rise = law.fast - law.slow
     time = np.log((law.fast * np.exp(law.rate * speed) - rise) / law.slow) / (law.rate * law.fast * GRAVITY)
@@ -56,7 +56,7 @@ def test_a_straight_slide_stops_where_and_when_friction_of_its_speed_makes_it(la
 
 
 @BOTH
-def test_between_slow_and_fast_friction_a_constant_force_makes_the_platform_creep_to_its_terminal_speed(equations):
+def test_a_force_between_frictions_makes_a_terminal_speed(equations):
     """
     v' = F - mu(v) g from rest has the solution exp(rate v) = w + (1 - w) exp(-r t), w that of the terminal speed.
 
@@ -77,7 +77,7 @@ def test_between_slow_and_fast_friction_a_constant_force_makes_the_platform_cree
 
 @BOTH
 @pytest.mark.parametrize("slow", [0.03, 0.12])
-def test_circular_shaking_feels_the_friction_of_its_constant_speed(equations, slow):
+def test_circular_shaking_feels_friction_of_its_speed(equations, slow):
     """The closed form for constant friction holds with mu(omega r), whose radius r it gives."""
     law, period, acceleration = DryFriction(slow, 0.08, 4.0), 0.7, 3.0
     frequency = 2.0 * np.pi / period
@@ -138,14 +138,14 @@ READINGS = pytest.mark.parametrize("asked", [{}, {"cutoff": 1e-3}, {"regularizat
 
 @READINGS
 @pytest.mark.parametrize("law", [RISING, FALLING], ids=["rising", "falling"])
-def test_as_the_rate_vanishes_friction_tends_to_the_slow_one_with_slope_one(law, asked):
+def test_as_the_rate_vanishes_friction_tends_to_the_slow_one(law, asked):
     rates = [1e-2, 1e-3, 1e-4]
     gap = answers(rates, law, **asked) - plain(law["slow"], **asked)
     np.testing.assert_allclose(slopes(rates, gap)[-1], 1.0, atol=0.01)
 
 
 @pytest.mark.parametrize("cutoff", [1e-3, 1e-2])
-def test_as_the_rate_grows_resolved_peaks_tend_to_those_of_the_fast_friction_like_its_logarithm_over_it(cutoff):
+def test_as_the_rate_grows_friction_tends_to_the_fast_one(cutoff):
     """
     A slide that begins between the two limits creeps at a speed like log(rate)/rate, until the drive exceeds the fast.
 
@@ -161,7 +161,7 @@ def test_as_the_rate_grows_resolved_peaks_tend_to_those_of_the_fast_friction_lik
     np.testing.assert_allclose(scaled[2] - scaled[1], scaled[1] - scaled[0], rtol=0.1)
 
 
-def test_the_supremum_tends_to_that_of_the_fast_friction_like_a_power_of_the_rate_that_its_stop_decides():
+def test_the_supremum_tends_to_that_of_the_fast_friction():
     """
     On the way into the stop the slip direction turns like v^(F / (fast N - F)); below 1 / rate it does so otherwise.
 
@@ -183,7 +183,7 @@ def test_the_supremum_tends_to_that_of_the_fast_friction_like_a_power_of_the_rat
     assert slope[-1] == pytest.approx(expected, rel=0.06)
 
 
-def test_small_equations_keep_mu_when_loading_and_friction_shrink_and_the_rate_grows():
+def test_small_equations_keep_mu_when_all_is_scaled():
     """What is left of a difference are the friction terms with xi'' x1 / rho that (4.3) keeps: they shrink like s^2."""
     scene = load_scene("fig3-I").with_values({"duration": 5.0})
     mu = []

@@ -66,14 +66,14 @@ def test_a_smooth_maximum_is_found_to_its_error(monkeypatch: pytest.MonkeyPatch)
     assert np.allclose(worst.phases, TOP, atol=1e-5)
 
 
-def test_a_maximum_on_an_oblique_edge_of_the_denominator_is_found_to_its_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_maximum_on_an_oblique_edge_is_found_to_its_error(monkeypatch: pytest.MonkeyPatch) -> None:
     worst = reference.worst_phases(scene_with(monkeypatch, hill, lambda phases: 1.0 + 3.0 * abs(across(phases))))
     assert worst.kind == "kink"
     assert abs(worst.value - highest_on_the_edge()) <= worst.error
     assert abs(across(np.array([worst.phases]))[0]) < 1e-6
 
 
-def test_a_maximum_beside_a_jump_is_approached_from_the_named_side(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_maximum_beside_a_jump_is_approached_from_its_side(monkeypatch: pytest.MonkeyPatch) -> None:
     worst = reference.worst_phases(scene_with(monkeypatch, lambda phases: hill(phases) - (across(phases) < 0.0), level))
     assert worst.kind == "jump"
     assert np.dot(worst.side, [1.0, 2.0]) > 0.0
@@ -138,7 +138,7 @@ def test_no_point_of_a_fine_surface_exceeds_the_maximum(name: str, law: dict[str
     assert displacement <= worst.value + worst.error
 
 
-def test_the_largest_mu_2_of_a_built_in_scene_stands_on_a_kink_of_the_denominator() -> None:
+def test_the_largest_mu_2_stands_on_a_kink() -> None:
     worst = reference.worst_phases(reference.load_scene("fig3-I"), body=2)
     assert worst.kind == "kink"
     assert worst.value == pytest.approx(3.0663, abs=1e-4)

@@ -47,7 +47,7 @@ def test_forces_balance_on_the_sphere_at_every_instant(acceleration):
         np.testing.assert_allclose(total, 0.0, atol=1e-11 * abs(weight))
 
 
-def test_small_amplitudes_agree_with_the_linearized_circle_with_a_gap_of_second_order():
+def test_small_amplitudes_agree_with_the_linearized_circle():
     gaps = []
     for scale in (1e-1, 1e-2):
         scene = chain(friction=0.08 * scale)

@@ -18,7 +18,7 @@ def test_amplitude_has_the_known_values(ratio, dead_zone, amplitude):
 
 
 @pytest.mark.parametrize(("ratio", "dead_zone"), [(0.6, 0.3), (1.4, 0.2), (2.0, 0.15), (0.8, 0.5)])
-def test_motion_obeys_its_equation_and_repeats_with_the_sign_turned(ratio, dead_zone):
+def test_motion_obeys_its_equation_and_repeats(ratio, dead_zone):
     motion = den_hartog(ratio, dead_zone)
     angle = np.linspace(1e-3, np.pi - 1e-3, 400)
     x = motion.position(angle)

@@ -60,7 +60,7 @@ def test_no_length_exceeds_the_bound_of_its_interval(seed: int) -> None:
             assert np.all(least <= most)
 
 
-def test_a_bound_may_be_reached_where_the_largest_comes_close_to_it_and_not_far_below():
+def test_a_bound_may_be_reached_only_close_to_the_largest():
     _, _, series, phases = example(7)
     peaks, _ = largest(series, phases)
     for m, peak in enumerate(peaks[:, 0]):

@@ -33,7 +33,7 @@ def folded(first: Array, second: Array) -> Array:
 
 
 @pytest.mark.parametrize("points", [16, 24, 48])
-def test_fractiles_of_a_surface_with_edges_and_jumps_are_those_of_random_phases(points: int) -> None:
+def test_fractiles_of_a_surface_are_those_of_random_phases(points: int) -> None:
     random = np.random.default_rng(4)
     samples = folded(*random.uniform(0.0, 2.0 * np.pi, (2, 400_000)))
     mu = on_grid(points, folded)

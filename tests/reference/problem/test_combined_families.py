@@ -33,7 +33,7 @@ def written(tmp_path):
     return write
 
 
-def test_a_product_has_every_combination_and_the_last_key_changes_fastest(written):
+def test_a_product_has_every_combination_last_key_fastest(written):
     family = load_family(written('combine = "product"', record=SUITE, scale="{range = [0.5, 1.0], steps = 2}"))
     assert family.key == "excitation.record.motion, excitation.scale"
     assert family.columns == {
@@ -59,7 +59,7 @@ def test_three_keys_may_run(written):
     assert len(set(family.scenes)) == 12
 
 
-def test_all_motions_of_a_suite_are_a_family_without_any_other_key(written):
+def test_all_motions_of_a_suite_are_a_family(written):
     family = load_family(written(record=SUITE))
     assert (family.key, family.values) == ("excitation.record.motion", (1, 2, 3))
     np.testing.assert_array_equal([scene.record[1, 1] for scene in family.scenes], [1.0, 2.0, 3.0])
@@ -96,6 +96,6 @@ def test_keys_that_cannot_run_together_are_refused_in_one_line(written, options,
     assert rule in refusal.value.rule
 
 
-def test_one_scene_of_a_file_with_combined_keys_is_refused_in_one_line(written):
+def test_one_scene_of_a_file_with_combined_keys_is_refused(written):
     with pytest.raises(SceneError, match="makes a family of scenes, and one scene is asked for"):
         load_scene(written('combine = "zip"', friction=TWO, scale=TWO))

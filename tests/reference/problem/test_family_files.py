@@ -115,7 +115,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize(("table", "line"), WRONG.values(), ids=WRONG.keys())
-def test_what_is_no_range_is_one_line_with_file_key_value_and_rule(tmp_path: Path, table: str, line: str) -> None:
+def test_what_is_no_range_is_one_line(tmp_path: Path, table: str, line: str) -> None:
     file = _file(tmp_path, "friction = 0.1", f"friction = {table}")
     if "ring" in table:
         file.write_text(file.read_text(encoding="utf-8").replace("ring = 1.0 ", ""), encoding="utf-8")
@@ -126,7 +126,7 @@ def test_what_is_no_range_is_one_line_with_file_key_value_and_rule(tmp_path: Pat
 
 
 @pytest.mark.filterwarnings("error")
-def test_ends_whose_difference_overflows_are_refused_without_a_warning(tmp_path: Path) -> None:
+def test_ends_whose_difference_overflows_are_refused(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="their difference finite"):
         load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [-1e308, 1e308], steps = 5}"))
 

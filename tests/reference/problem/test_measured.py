@@ -37,7 +37,7 @@ def test_a_file_states_measured_peaks(tmp_path: Path):
     assert (peak.quantity, peak.body, peak.value, peak.source) == ("base_shear", None, 3.0, "run 7")
 
 
-def test_measured_peaks_change_no_digest_and_can_be_left_out_again():
+def test_measured_peaks_change_no_digest():
     plain = load_scene("fig3-I")
     assert plain.measured is None
     assert measured().digest() == plain.digest()

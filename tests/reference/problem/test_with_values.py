@@ -179,7 +179,7 @@ def test_a_record_is_changed_as_a_whole():
     )
 
 
-def test_a_scene_with_limits_of_an_engine_is_written_and_read_again():
+def test_a_scene_with_limits_of_an_engine_is_read_again():
     scene = load_scene("fig3-I").with_values({"acceptance.mine.median": 0.1})
     assert Scene.model_validate(scene.model_dump(exclude_none=True)) == scene != load_scene("fig3-I")
     assert scene.acceptance.differences()[-1] == ("mine.median", "mine", "median", 0.1)

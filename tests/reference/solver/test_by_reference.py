@@ -47,7 +47,7 @@ def test_fields_are_read_and_set_where_they_are() -> None:
     assert np.array_equal(values, np.arange(1000.0))
 
 
-def test_the_fields_are_not_spelled_out_in_the_code_of_a_function() -> None:
+def test_the_fields_are_not_spelled_out_in_the_code() -> None:
     made(3)
     (built,) = changed.overloads.values()
     assert "PairType" in built.fndesc.mangled_name
@@ -83,7 +83,7 @@ def filled(size):
     return zero, (room.many.sum(), room.waves.sum(), room.number)
 
 
-def test_a_structure_without_values_is_zero_and_keeps_what_it_is_given() -> None:
+def test_a_structure_without_values_is_zero() -> None:
     for size in (1, 2, 5, 1):
         assert filled(size) == (True, (4.0 * size, (3.0 + 1.0j) * size, 4.0))
 

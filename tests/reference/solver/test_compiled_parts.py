@@ -91,7 +91,7 @@ def test_python_searches_for_garbage_again_after_compiling(tmp_path: Path, monke
     assert gc.isenabled()
 
 
-def test_operators_give_a_part_what_they_give_python_whatever_was_asked_before() -> None:
+def test_operators_give_a_part_what_they_give_python() -> None:
     @compiled_part()
     def mixed(x, y):
         return x * y + x, x < y, max(x, y), x**2
@@ -132,7 +132,7 @@ for part in parts:
 
 
 @pytest.mark.long
-def test_every_part_of_the_solver_is_compiled_once_for_floats_and_once_for_rows(tmp_path: Path) -> None:
+def test_every_part_is_compiled_for_floats_and_for_rows(tmp_path: Path) -> None:
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
     run = subprocess.run([sys.executable, "-c", BUILDS], env=environment, check=True, capture_output=True, text=True)
     kinds = run.stdout.split()

@@ -1,0 +1,135 @@
+"""Single numbers that a run reports or rests on, each by its own closed form."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from scenes_at_hand import forces_of_links
+
+import multibody
+import reference
+from multibody.integration.estimate import from_compliance
+from multibody.integration.peak import Peaks
+from multibody.integration.travel import travel_reached
+from multibody.models.assembly import assemble
+from multibody.models.depressions import Depressions
+from multibody.models.impact import ImpactLaw
+from reference.problem import GRAVITY, DryFriction, Outcome, ground_acceleration, load_scene
+
+PHASE = (0.3, 1.1)
+BRIEF = load_scene("fig3-I").with_values({"duration": 0.5})
+
+
+def test_a_travel_passed_within_a_step_is_passed_on_the_way_out() -> None:
+    """x = v t - a t^2 / 2 goes beyond the travel and comes back within one step."""
+    speed, braking, travel = 2.0, 4.0, 0.49
+    time = np.array([0.35, 0.62])
+    place = speed * time - 0.5 * braking * time**2
+    rate = speed - braking * time
+    rows = np.zeros((2, 6))
+    motion: Any = SimpleNamespace(time=time, coordinates=rows.copy(), velocities=rows.copy())
+    motion.coordinates[:, 0], motion.velocities[:, 0] = place, rate
+    model: Any = SimpleNamespace(bodies=np.arange(3)[None], travel=travel)
+    instant, row = travel_reached(motion, model)
+    assert row == 0
+    # the squared displacement is of fourth order in time, of which the cubic between two samples misses some
+    assert instant == pytest.approx((speed - math.sqrt(speed**2 - 2.0 * braking * travel)) / braking, abs=0.02)
+
+
+def test_the_error_of_a_parabola_is_that_of_a_cubic_signal() -> None:
+    time = np.arange(0.0, 1.0, 0.02)
+    for shift in (0.003, 0.007, 0.013):
+        t = time - 0.5 - shift
+        peaks = Peaks(1, np.inf)
+        peaks.add(time, (1.0 - 30.0 * t**2 + 40.0 * t**3)[:, None], np.ones((len(time), 1)))
+        missed = abs(peaks.value[0] - 1.0)
+        assert 1e-7 < missed <= 1.2 * peaks.sampling[0] < 4.0 * missed
+
+
+def test_a_corner_is_the_mean_of_what_both_sides_say() -> None:
+    """The rise is a parabola, which is read exactly; the decay is extrapolated by one through its first samples."""
+    corner, time = 0.5 + 0.0072, np.arange(0.0, 1.0, 0.02)
+    t = time - corner
+    peaks = Peaks(1, 1.0)
+    signal = np.where(t < 0.0, 1.0 + 2.0 * t + t**2, np.exp(-20.0 * t))
+    peaks.add(time, signal[:, None], (1.0 - t)[:, None])
+    behind = np.flatnonzero(t > 0.0)[:3]
+    decay = np.polyval(np.polyfit(t[behind], signal[behind], 2), 0.0)
+    assert abs(decay - 1.0) > 1e-3
+    assert peaks.value[0] == pytest.approx(0.5 * (1.0 + decay), abs=1e-9)
+
+
+def test_a_softer_contact_leaves_at_least_its_share_of_rho_open() -> None:
+    stiff, soft = Peaks(2, 1.0), SimpleNamespace(outcome=Outcome.OK, peaks=Peaks(2, 1.0))
+    stiff.value[:] = soft.peaks.value[:] = 1.0, 2.0
+    level = multibody.levels(BRIEF)[0]
+    error = from_compliance(stiff, soft, level, assemble(BRIEF, "translational", 1e-3))  # type: ignore[arg-type]
+    np.testing.assert_allclose(error, level.penetration * stiff.value)
+
+
+def test_at_the_lowest_rate_a_whole_change_counts_as_error() -> None:
+    """Richardson: what a level removes of the error it leaves once more where it halves it."""
+    accuracy = multibody.trajectory(BRIEF, PHASE).accuracy
+    assert accuracy is not None
+    assert all(share >= 1.0 for share in accuracy.share)
+
+
+def test_displacements_are_meters_and_their_shares_those_of_rho() -> None:
+    engine = multibody.amplification(BRIEF, [PHASE])
+    equations = reference.amplification(BRIEF, [PHASE], regularization=1e-3)
+    np.testing.assert_allclose(engine.displacement, equations.displacement, rtol=1e-3)
+    np.testing.assert_allclose(engine.cap_share, equations.cap_share, rtol=1e-3)
+
+
+def test_supports_that_press_are_not_lifted() -> None:
+    motion = multibody.trajectory(BRIEF, PHASE, "spatial")
+    assert motion.support_force.min() > 0.0
+    assert not motion.extra["uplift"].any()
+
+
+def test_a_flat_slider_starts_under_the_weight_and_its_inertia() -> None:
+    values = {"isolator.period": None, "isolator.radius": math.inf, "duration": 0.01}
+    scene = load_scene("fig3-I").with_values({**values, "excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [4.0, 2.0]]})
+    motion = multibody.trajectory(scene, PHASE)
+    expected = scene.total_mass * (GRAVITY + ground_acceleration(scene, PHASE, motion.time)[:, 2])
+    np.testing.assert_allclose(motion.contact_force, expected, rtol=1e-3)
+
+
+def test_a_link_without_bars_twists_as_if_it_stood_on_the_ring() -> None:
+    """ring^2 (kx + ky) / 2 of bars that stand where the supports do, against what the engine answers."""
+    scene, twisted = load_scene("fig3-I"), np.zeros(12)
+    twisted[11] = 1e-4
+    _, moments, model = forces_of_links(scene, twisted, np.zeros(12))
+    ring = scene.isolator.ring
+    assert ring is not None
+    expected = 0.5 * ring**2 * scene.stiffness[0].sum() * 1e-4
+    assert moments[0, 2] * model.units.force * model.units.length == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize("offset", [[0.03, -0.05], [-0.1, 0.0]], ids=str)
+def test_a_stiff_link_carries_an_eccentric_weight_at_rest(offset: list[float]) -> None:
+    """On the body above nothing is left but its weight, whose moment about its center of mass is zero."""
+    scene = load_scene("fig3-I").with_values({"bodies.1.offset": offset, "isolator.supports": 3})
+    _, moments, _ = forces_of_links(scene, np.zeros(12), np.zeros(12))
+    below, above = np.abs(moments[:, :2]).max(axis=1)
+    assert above < 1e-6 < below
+
+
+def test_a_chain_that_moves_as_one_stretches_and_bends_no_link() -> None:
+    """In impacts: translation and turns about any axis, of links between eccentric bodies at unequal distances."""
+    centers = np.array([[0.1, -0.05, 0.3], [-0.2, 0.1, 1.2], [0.05, 0.15, 2.6]])
+    depressions = Depressions(np.array([[1.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]), centers[0], 0.2, np.empty(0, np.int_))
+    law = ImpactLaw(
+        depressions, np.ones(3), np.ones((3, 3)), np.tile(np.eye(3), (3, 1, 1)), centers, 0.0,
+        DryFriction(0.1, 0.1, 0.0), 1e-3, np.ones(2, bool),
+    )  # fmt: skip
+    upright = np.tile(np.eye(3), (3, 1, 1))
+    for axis in np.eye(3):
+        turn = np.concatenate([[np.cross(axis, center), axis] for center in centers]).ravel()
+        shift = np.tile(np.concatenate([axis, np.zeros(3)]), 3)
+        for velocity in (turn, shift):
+            np.testing.assert_allclose(law._bars(np.zeros(18), upright) @ velocity, 0.0, atol=1e-12)

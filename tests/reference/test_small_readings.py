@@ -1,0 +1,96 @@
+"""Single numbers that are read off motions, each by its own closed form."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from chains import chain
+
+import reference
+from reference.measures import demands
+from reference.measures.distribution import FRACTILES, fractile
+from reference.measures.peak_demands import QUANTITIES
+from reference.problem import Scene, State, Trajectory, load_scene
+from reference.solver.phases import stopping
+
+
+def test_fractiles_are_named_in_rising_order_and_follow_hazen() -> None:
+    """Of the values 1 ... 100 a share p is below 100 p + 1/2."""
+    assert list(FRACTILES) == sorted(FRACTILES)
+    for probability in FRACTILES:
+        assert fractile(np.arange(100.0, 0.0, -1.0), probability) == pytest.approx(100.0 * probability + 0.5)
+
+
+def test_units_are_those_of_the_quantities() -> None:
+    units = {name: unit for name, (_, unit) in QUANTITIES.items()}
+    of = {"m": "displacement residual drift uplift", "J": "friction_energy damping_energy energy_balance"}
+    of |= {"rad": "torsion"}
+    of |= {"N": "base_shear contact_force_min contact_force_max support_force_min support_force_max"}
+    of |= {"m/s^2": "acceleration", "1": "cap_share travel_share stops"}
+    assert units == {name: unit for unit, names in of.items() for name in names.split()}
+
+
+def test_a_drift_is_against_the_body_below() -> None:
+    scene = chain(masses=[1.0] * 4, stiffness=[[20.0, 20.0]] * 3, duration=1.0)
+    time, place = np.linspace(0.0, 1.0, 21), np.zeros((21, 4, 3))
+    place[:, :, 0] = [1.0, 3.0, 7.0, 8.0]
+    still = np.zeros_like(place)
+    motion = Trajectory(time, place, still, still, np.ones(21), [], "ok", np.nan, scene, peak=np.zeros(4))
+    assert [drift.value for drift in demands(motion).drift] == [2.0, 4.0, 1.0]
+
+
+def test_dampers_take_the_energy_of_a_body_on_a_held_platform() -> None:
+    """A body let go at rest at x: k x^2 / 2 goes into the damper, nothing into friction."""
+    still = [[1e-9, 0.0], [0.0, 0.0]]
+    scene = chain(1.0, 5.0, (1.0, 2.0), [(50.0, 50.0)], still, duration=20.0, damping=0.3)
+    released = State(np.array([[0.0, 0.0], [0.02, 0.0]]), np.zeros((2, 2)))
+    answer = demands(reference.trajectory(scene, (0.0, 0.0), initial=released))
+    assert answer.damping_energy is not None
+    assert answer.friction_energy.value == 0.0
+    assert answer.damping_energy.value == pytest.approx(0.5 * 50.0 * 0.02**2, rel=1e-3)
+
+
+@pytest.mark.parametrize("share", [0.6, 0.72, 0.9])
+def test_a_spectrum_is_read_between_the_steps(share: float) -> None:
+    """A rigid floor jumps by 1 for a part of a period: the oscillator swings to 2 once, at half a period."""
+    period = 1.7
+    time = np.array([0.0, 1.0, np.nextafter(1.0, 2.0), 1.0 + share * period])
+    total = np.zeros((4, 1, 3))
+    total[2:, 0, 0] = 1.0
+    scene = chain(duration=float(time[-1]))
+    zero = np.zeros_like(total)
+    motion = Trajectory(time, zero, zero, total, np.zeros(4), [], "ok", np.nan, scene)
+    found = reference.floor_spectra(motion, [period], 0.0).acceleration[0, 0, 0]
+    assert found == pytest.approx(2.0, rel=1e-4)
+
+
+def test_the_error_of_a_peak_counts_the_other_run() -> None:
+    scene = load_scene("fig3-II")
+    for phase in ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5)):
+        motion = reference.trajectory(scene, phase, tolerance=1e-4)
+        accuracy = motion.accuracy
+        assert accuracy is not None
+        (other,), (share,) = accuracy.coarser, accuracy.share
+        left = accuracy.peak_error - accuracy.floor * motion.peak
+        assert (left >= share * np.abs(motion.peak - other.peak) * (1.0 - 1e-6)).all()
+
+
+def test_bodies_above_have_the_arc_s_vertical_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At a stop: the horizontal part of each stays, and all share the vertical acceleration of the platform."""
+    taken: dict[int, float] = {}
+    monkeypatch.setattr(stopping, "settled_direction", lambda *rest: 1.0)
+    monkeypatch.setattr(stopping, "arc_peak", lambda system, load, a, b, floor, horizontal: 9.0 if horizontal else 4.0)
+    monkeypatch.setattr(stopping, "take_limit", lambda work, body, squared: taken.update({int(body): squared}))
+    total = np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 0.1], [3.0, 0.5, 0.1]])
+    work: Any = SimpleNamespace(x=np.zeros((3, 2)), total0=total, best=np.ones(3), angle=0.0)
+    assert stopping.take_arc.py_func(SimpleNamespace(small=False), work, None, False)
+    assert taken == {0: 9.0, 1: 1.0 + 4.0 + 4.0, 2: 9.0 + 0.25 + 4.0}
+
+
+def test_vertical_shaking_forbids_to_take_phases_from_others() -> None:
+    scene: Scene = chain(amplitudes=[[1.0, 0.0], [0.0, 1.0], [2.0, 1.0]])
+    assert not reference.problem.half_turn(scene)
+    assert not reference.problem.own_axes(scene)
