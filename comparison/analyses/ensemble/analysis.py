@@ -1,9 +1,9 @@
 """
 Demands of a structure under many motions at many intensities (incremental dynamic analysis).
 
-A family of scenes with recorded motions: what runs beside the scale factor, the motions of a suite as a rule, makes the
-curves of demand against scale; with one scale factor there is one set of statistics. The equations compute every scene,
-the engine a stated subset of them.
+Families of scenes with recorded motions: one curve of demand against scale for every motion, statistics for every
+structure, which is a file or one of the values that run in it, such as bounds of friction. The equations compute every
+scene, the engine a stated subset of them.
 """
 
 from __future__ import annotations
@@ -21,14 +21,16 @@ from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL, Model
+from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL, Model, has_spatial_data, why_not_spatial
 from comparison.study.study import Study
-from reference.measures import Demands, Estimate, demands
+from reference.measures import Demands, Estimate, FloorSpectra, demands, floor_spectra
 from reference.measures.distribution import fractile
-from reference.problem import Family, Scene, SceneError
+from reference.problem import GRAVITY, Family, Scene, SceneError
 
 SCALE = "excitation.scale"
+RECORD = "excitation.record"
 FRACTILES = (0.16, 0.5, 0.84)
+SMALLEST = ("contact_force_min", "support_force_min")  # demands of which the smallest value is the worst
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # steps of which fill an interval evenly
 REST = (0.0, 0.0)  # a record has no phases
 SECONDS_PER_KNOT = {"reference": 8e-5, "engine": 4e-3}  # of processor time, for six bodies
@@ -38,16 +40,46 @@ Quantity = tuple[str, int]  # field of `Demands`, and body from 1 or 0 for the i
 
 
 @dataclass(frozen=True)
+class Member:
+    """A scene of the ensemble and its place in it."""
+
+    structure: str  # file, and the values that run in it beside motion and scale
+    motion: str
+    scale: float  # of the ensemble; a factor of the motion itself comes on top
+    scene: Scene
+
+
+@dataclass(frozen=True)
+class Structure:
+    """What the statistics are of. weight: N."""
+
+    name: str
+    title: str
+    bodies: int
+    weight: float
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What is kept of a motion."""
+
+    demands: Demands
+    spectra: FloorSpectra | None
+
+
+@dataclass(frozen=True)
 class Point:
     """One motion at one scale by one model. demands: NaN if it ended early; None if there is nothing at all."""
 
-    curve: str  # what runs beside the scale, as in names of scenes: the motion
+    structure: str
+    curve: str  # the motion
     scale: float
     peak: float  # m/s^2, largest horizontal acceleration of the ground
     scene: str  # name
     model: str  # key
     status: str
     demands: Demands | None
+    spectra: FloorSpectra | None = None
 
     def estimate(self, quantity: Quantity) -> Estimate:
         """A demand; NaN without an answer."""
@@ -57,19 +89,43 @@ class Point:
 
 @dataclass(frozen=True)
 class Stripe:
-    """One demand at one scale over all motions. Fractiles are NaN where they fall on a motion without an answer."""
+    """
+    One demand of one structure at one scale over all motions, by one model.
 
+    Every number is NaN where it rests on a motion without an answer.
+    """
+
+    structure: str
+    model: str  # key
     quantity: Quantity
     scale: float
+    mean: Estimate
     fractiles: tuple[Estimate, ...]  # at FRACTILES
+    largest: Estimate
+    smallest: Estimate
     answered: int  # motions that have the demand
     reasons: dict[str, int]  # why the others do not have it: how many each
+
+
+@dataclass(frozen=True)
+class SpectrumBand:
+    """Floor spectrum of one body over all motions at one scale, by the equations; of x and y the larger, m/s^2."""
+
+    structure: str
+    body: int  # from 1
+    scale: float
+    damping: float
+    period: tuple[float, ...]  # s
+    mean: tuple[Estimate, ...]
+    fractiles: tuple[tuple[Estimate, ...], ...]  # at FRACTILES
+    largest: tuple[Estimate, ...]
 
 
 @dataclass(frozen=True)
 class Bound:
     """How far the engine is from the equations in one demand, at the points that both have computed."""
 
+    structure: str
     quantity: Quantity
     largest: float  # |engine - equations| / |equations| of the ensemble; NaN without a common point
     like_for_like: float  # the same against the equations with the engine's friction law
@@ -79,14 +135,20 @@ class Bound:
 
 @dataclass(frozen=True)
 class EnsembleResult:
-    """points: by the equations, in the order of the family. engine: at the subset; alike: with its friction law."""
+    """points: by the equations, in the order of the members. engine: at the subset; alike: with its friction law."""
 
-    family: Family
+    structures: Sequence[Structure]
+    model: Model  # of the engine
     points: Sequence[Point]
     engine: Sequence[Point]
     alike: Sequence[Point]
     stripes: Sequence[Stripe]
     bounds: Sequence[Bound]
+    spectra: Sequence[SpectrumBand] = ()
+
+    def motions(self) -> int:
+        """How many motions there are."""
+        return len({point.curve for point in self.points})
 
     def outcomes(self) -> dict[str, int]:
         """How many motions ended with which status by the equations, the most frequent first."""
@@ -105,89 +167,131 @@ def _alike(scene: Scene) -> Model:
 @dataclass(frozen=True)
 class Ensemble(Analysis[EnsembleResult]):
     """
-    Demands of every scene of a family by the equations, and by the engine at `subset` of them.
+    Demands of every scene by the equations, and by the engine at `subset` of every structure's.
 
-    family: every scene has a recorded motion. subset: scenes that the engine computes, spread evenly over motions and
-    scales. tolerance: relative error asked of the largest accelerations by the engine; the equations take theirs.
+    members: every scene has a recorded motion. subset: scenes that the engine computes, spread evenly over motions and
+    scales; None for all. model: that of the engine. tolerance: relative error asked of the largest accelerations by
+    the engine; the equations take theirs.
     """
 
     key, stage = "ensemble", "ensemble"
-    family: Family
-    subset: int = 2
+    members: tuple[Member, ...]
+    subset: int | None = 2
+    model: Model = TRANSLATIONAL
     tolerance: float = 1e-3
 
     def tasks(self, study: Study | None = None, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One for each scene, then those of the engine."""
-        scenes = self.family.scenes
-        subset = [(scenes[n], model) for n in self.chosen() for model in (TRANSLATIONAL, _alike(scenes[n]))]
-        asked = [*((scene, EXACT) for scene in scenes), *subset]
+        subset = [
+            (member.scene, model)
+            for member in map(self.members.__getitem__, self.chosen())
+            for model in (self.model, _alike(member.scene))
+        ]
+        asked = [*((member.scene, EXACT) for member in self.members), *subset]
         tasks = {task.key: task for task in (self._task(scene, model) for scene, model in asked)}
         return list(tasks.values())
 
     def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> EnsembleResult:
-        """Points, stripes and the engine's bound."""
-        curves, scales = curves_of(self.family), scales_of(self.family)
+        """Points, their statistics and the engine's bound."""
 
-        def point(number: int, model: Model) -> Point:
-            scene = self.family.scenes[number]
-            answer: Demands | str = results.value(self._task(scene, model), _outcome)
+        def point(member: Member, model: Model) -> Point:
+            scene = member.scene
+            answer: Answer | str = results.value(self._task(scene, model), _outcome)
             peak = float(np.hypot(scene.record[:, 1], scene.record[:, 2]).max())
-            named = curves[number], scales[number], peak, scene.name, model.key
-            return Point(*named, answer, None) if isinstance(answer, str) else Point(*named, answer.status, answer)
+            named = member.structure, member.motion, member.scale, peak, scene.name, model.key
+            if isinstance(answer, str):
+                return Point(*named, answer, None)
+            return Point(*named, answer.demands.status, answer.demands, answer.spectra)
 
-        points = [point(number, EXACT) for number in range(len(curves))]
-        engine = [point(number, TRANSLATIONAL) for number in self.chosen()]
-        alike = [point(number, _alike(self.family.scenes[number])) for number in self.chosen()]
-        listed = list(stripes(points)), list(bounds(points, engine, alike))
-        return EnsembleResult(self.family, points, engine, alike, *listed)
+        asked = [self.members[place] for place in self.chosen()]
+        points = [point(member, EXACT) for member in self.members]
+        engine = [point(member, self.model) for member in asked]
+        alike = [point(member, _alike(member.scene)) for member in asked]
+        listed = [*stripes(points), *stripes(engine)], list(bounds(points, engine, alike)), list(spectrum_bands(points))
+        return EnsembleResult(structures_of(self.members), self.model, points, engine, alike, *listed)
 
     def chosen(self) -> list[int]:
-        """Places of the engine's scenes in the family: the motions and the scales each spread evenly."""
-        curves = list(dict.fromkeys(curves_of(self.family)))
-        scales = sorted(set(scales_of(self.family)))
-        at = {point: n for n, point in enumerate(zip(curves_of(self.family), scales_of(self.family)))}
-        count = min(self.subset, len(at))
-        last, chosen = len(scales) + 1, []
-        stride = next(n for n in range(max(1, round(GOLDEN * len(scales))), last + 1) if math.gcd(n, len(scales)) == 1)
-        for k in range(count):
-            scale = scales[(len(scales) // 2 + k * stride) % len(scales)]
-            wanted = curves[int((k + 0.5) / count * len(curves))], scale
-            chosen.append(at.get(wanted, k * len(at) // count))  # a zip does not have every combination
-        return sorted(set(chosen))
+        """Places of the engine's members: of every structure, the motions and the scales each spread evenly."""
+        if self.subset is None:
+            return list(range(len(self.members)))
+        names = dict.fromkeys(member.structure for member in self.members)
+        return sorted(
+            place
+            for name in names
+            for place in _spread([n for n, each in enumerate(self.members) if each.structure == name], self)
+        )
 
     def _task(self, scene: Scene, model: Model) -> Task:
         seconds = SECONDS_PER_KNOT[model.side] * len(scene.record)
         arguments: Arguments = scene, model, model.tolerance(self.tolerance)
-        return Task(demanded, arguments, self.stage, seconds, scene, model.side == "reference", timeout=LIMIT)
+        return Task(answered, arguments, self.stage, seconds, scene, model.side == "reference", timeout=LIMIT)
 
 
-def refuse_unfit(family: Family, label: str) -> None:
-    """Raise SceneError unless every scene has a recorded motion; label: the file, for the message."""
-    for scene in family.scenes:
-        if not scene.recorded:
-            rule = "an ensemble needs recorded motions: give --suite, or a record in the scene"
-            raise SceneError(label, "excitation", scene.name, rule)
+def _spread(places: Sequence[int], ensemble: Ensemble) -> set[int]:
+    """At most `subset` of the members at these places."""
+    members = [ensemble.members[place] for place in places]
+    curves = list(dict.fromkeys(member.motion for member in members))
+    scales = sorted({member.scale for member in members})
+    at = {(member.motion, member.scale): n for n, member in enumerate(members)}
+    count = min(ensemble.subset or 0, len(at))
+    last, chosen = len(scales) + 1, []
+    stride = next(n for n in range(max(1, round(GOLDEN * len(scales))), last + 1) if math.gcd(n, len(scales)) == 1)
+    for k in range(count):
+        scale = scales[(len(scales) // 2 + k * stride) % len(scales)]
+        wanted = curves[int((k + 0.5) / count * len(curves))], scale
+        chosen.append(at.get(wanted, k * len(at) // count))  # a zip does not have every combination
+    return {places[n] for n in chosen}
 
 
-def scales_of(family: Family) -> list[float]:
-    """The scale factor of every scene, whether it runs or not."""
-    return [float(scene.excitation.scale or 1.0) for scene in family.scenes]
+def members_of(families: Sequence[Family]) -> tuple[Member, ...]:
+    """
+    The members of an ensemble of families.
+
+    Raises SceneError unless every scene has a recorded motion and families of different files have different names.
+    """
+    names = [family.name for family in families]
+    for name in names:
+        if names.count(name) > 1:
+            raise SceneError(name, "scene", name, "two files have this name, and the structures are named by it")
+    members = []
+    for family in families:
+        inner = [key for key in family.columns if key != SCALE and not key.startswith(RECORD)]
+        outer = [key for key in family.columns if key.startswith(RECORD)]
+        for n, scene in enumerate(family.scenes):
+            if not scene.recorded:
+                rule = "an ensemble needs recorded motions: give --suite, or a record in the scene"
+                raise SceneError(family.name, "excitation", scene.name, rule)
+            values = ", ".join(f"{key.rpartition('.')[2]}={family.columns[key][n]}" for key in inner)
+            motion = ", ".join(f"{key.rpartition('.')[2]} {family.columns[key][n]}" for key in outer)
+            structure = f"{family.name}[{values}]" if values else family.name
+            members.append(Member(structure, motion, float(scene.excitation.scale or 1.0), scene))
+    return tuple(members)
 
 
-def curves_of(family: Family) -> list[str]:
-    """For every scene, what runs beside the scale, as one text."""
-    others = [key for key in family.columns if key != SCALE]
+def refuse_unfit(members: Sequence[Member], model: Model) -> None:
+    """Raise SceneError if a scene does not state what the engine's model needs."""
+    for scene in (member.scene for member in members):
+        if model.is_spatial and not has_spatial_data(scene):
+            rule = why_not_spatial(scene) or "has no supports, heights and sizes of bodies: --model translational"
+            raise SceneError(scene.name, "--model", "spatial", rule)
+
+
+def structures_of(members: Sequence[Member]) -> list[Structure]:
+    """The structures in their order."""
+    scenes = {member.structure: member.scene for member in reversed(members)}
+    names = dict.fromkeys(member.structure for member in members)
     return [
-        ", ".join(f"{key.rpartition('.')[2]} {family.columns[key][n]}" for key in others)
-        for n in range(len(family.scenes))
+        Structure(name, scenes[name].title, len(scenes[name].bodies), scenes[name].total_mass * GRAVITY)
+        for name in names
     ]
 
 
-def demanded(task: Arguments) -> Demands:
-    """The demands of one motion by one model."""
+def answered(task: Arguments) -> Answer:
+    """The demands of one motion by one model, and its floor spectra by the equations."""
     scene, model, tolerance = task
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
-    return demands(imported(model.trajectory)(scene, REST, tolerance=tolerance, **settings))
+    motion = imported(model.trajectory)(scene, REST, tolerance=tolerance, **settings)
+    return Answer(demands(motion), floor_spectra(motion) if model == EXACT else None)
 
 
 def _outcome(task: Arguments, failed: TaskResult) -> str:
@@ -195,17 +299,56 @@ def _outcome(task: Arguments, failed: TaskResult) -> str:
 
 
 def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
-    """Fractiles of every demand at every scale. A motion without an answer counts as larger than all others."""
-    for quantity in quantities(points):
-        for scale in sorted({point.scale for point in points}):
-            numbers = [point.estimate(quantity) for point in points if point.scale == scale]
-            fractiles = tuple(uncertain_fractile(numbers, share) for share in FRACTILES)
-            ended = [point.status for point in points if point.scale == scale]
-            lacking = [
-                number.reason or status for number, status in zip(numbers, ended) if not math.isfinite(number.value)
-            ]
-            reasons = {reason: lacking.count(reason) for reason in lacking}
-            yield Stripe(quantity, scale, fractiles, len(numbers) - len(lacking), reasons)
+    """
+    Statistics of every demand of every structure at every scale.
+
+    A motion without an answer counts as worse than all others: it reached the rim, or is not known to demand less.
+    """
+    for name in dict.fromkeys(point.structure for point in points):
+        own = [point for point in points if point.structure == name]
+        for quantity in quantities(own):
+            for scale in sorted({point.scale for point in own}):
+                yield _stripe(name, quantity, scale, [point for point in own if point.scale == scale])
+
+
+def _stripe(name: str, quantity: Quantity, scale: float, points: Sequence[Point]) -> Stripe:
+    numbers = [point.estimate(quantity) for point in points]
+    worst = -np.inf if quantity[0] in SMALLEST else np.inf
+    mean, *shares = statistics(numbers, (*FRACTILES, 1.0, 0.0), worst)
+    ended = [point.status for point in points]
+    lacking = [number.reason or status for number, status in zip(numbers, ended) if not math.isfinite(number.value)]
+    reasons = {reason: lacking.count(reason) for reason in lacking}
+    known = len(numbers) - len(lacking)
+    return Stripe(
+        name, points[0].model, quantity, scale, mean, tuple(shares[:-2]), shares[-2], shares[-1], known, reasons
+    )
+
+
+def statistics(numbers: Sequence[Estimate], shares: Sequence[float], worst: float = math.inf) -> list[Estimate]:
+    """Mean of numbers with errors, which has no value unless all are known, and their fractiles."""
+    value, error = (float(np.mean([getattr(each, part) for each in numbers])) for part in ("value", "error"))
+    return [Estimate(value, error), *(uncertain_fractile(numbers, share, worst) for share in shares)]
+
+
+def spectrum_bands(points: Sequence[Point]) -> Iterator[SpectrumBand]:
+    """Floor spectra of every body of every structure at the largest scale, over all motions."""
+    top = max((point.scale for point in points), default=math.nan)
+    for name in dict.fromkeys(point.structure for point in points):
+        own = [point for point in points if point.structure == name and point.scale == top]
+        known = [point.spectra for point in own if point.spectra is not None]
+        for body in range(known[0].acceleration.shape[0] if known else 0):
+            columns = zip(*(_envelope(point.spectra, body, len(known[0].period)) for point in own))
+            mean, *shares = zip(*(statistics(column, (*FRACTILES, 1.0)) for column in columns))
+            about = name, body + 1, top, known[0].damping, tuple(known[0].period.tolist())
+            yield SpectrumBand(*about, mean, tuple(shares[:-1]), shares[-1])
+
+
+def _envelope(spectra: FloorSpectra | None, body: int, periods: int) -> list[Estimate]:
+    """The larger of the spectra along x and y."""
+    if spectra is None:
+        return [Estimate(math.nan, math.nan)] * periods
+    (x, y), error = spectra.acceleration[body], spectra.error[body].max(axis=0)
+    return [Estimate(float(value), float(each)) for value, each in zip(np.maximum(x, y), error)]
 
 
 def quantities(points: Sequence[Point]) -> list[Quantity]:
@@ -215,9 +358,9 @@ def quantities(points: Sequence[Point]) -> list[Quantity]:
     return [quantity for quantity in names if quantity[0] != "energy_balance"]
 
 
-def uncertain_fractile(numbers: Sequence[Estimate], share: float) -> Estimate:
+def uncertain_fractile(numbers: Sequence[Estimate], share: float, worst: float = math.inf) -> Estimate:
     """
-    Fractile of numbers with errors; NaN numbers count as infinite. Its error is the largest change within the errors.
+    Fractile of numbers with errors; NaN ones count as `worst`. Its error is the largest change within the errors.
 
     >>> numbers = [Estimate(1.0, 0.1), Estimate(2.0, 0.2), Estimate(float("nan"), float("nan"))]
     >>> median = uncertain_fractile(numbers, 0.5)
@@ -227,19 +370,21 @@ def uncertain_fractile(numbers: Sequence[Estimate], share: float) -> Estimate:
     value = np.array([number.value for number in numbers])
     error = np.array([number.error for number in numbers])
     low, middle, high = (
-        fractile(np.where(np.isfinite(value), x, np.inf), share) for x in (value - error, value, value + error)
+        fractile(np.where(np.isfinite(value), x, worst), share) for x in (value - error, value, value + error)
     )
     return Estimate(middle, max(high - middle, middle - low)) if math.isfinite(middle) else Estimate(math.nan, math.nan)
 
 
 def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Point]) -> Iterator[Bound]:
     """The largest difference of every demand that both sides have, and the largest with the same friction law."""
-    equations = {point.scene: point for point in points}
-    matching = [equations[point.scene] for point in engine]
-    for quantity in quantities(engine):
-        apart, same = ([*_differences(quantity, first, engine)] for first in (matching, alike))
-        closest = max(same, default=(math.nan, math.nan))
-        yield Bound(quantity, max(apart, default=closest)[0], *closest, len(apart))
+    equations = {(point.structure, point.scene): point for point in points}
+    for name in dict.fromkeys(point.structure for point in engine):
+        own, same_law = ([point for point in each if point.structure == name] for each in (engine, alike))
+        matching = [equations[name, point.scene] for point in own]
+        for quantity in quantities(own):
+            apart, same = ([*_differences(quantity, first, own)] for first in (matching, same_law))
+            closest = max(same, default=(math.nan, math.nan))
+            yield Bound(name, quantity, max(apart, default=closest)[0], *closest, len(apart))
 
 
 def _differences(quantity: Quantity, first: Sequence[Point], second: Sequence[Point]) -> Iterator[tuple[float, float]]:
@@ -251,18 +396,14 @@ def _differences(quantity: Quantity, first: Sequence[Point], second: Sequence[Po
             yield abs(after.value - before.value) / size, (before.error + after.error) / size
 
 
-def of_quantity(items: Sequence[Stripe], quantity: Quantity) -> list[Stripe]:
-    """The stripes of one demand, by scale."""
-    return [stripe for stripe in items if stripe.quantity == quantity]
-
-
 def as_rows(result: EnsembleResult) -> list[dict[str, object]]:
     """A row for every motion, scale and model, with all demands and their errors; None where there is no answer."""
-    names = quantities(result.points)
+    names = quantities([*result.points, *result.engine])
     rows = []
     alike = [point for point in result.alike if point.model != EXACT.key]  # else it is among the points
     for point in (*result.points, *alike, *result.engine):
         row: dict[str, object] = {
+            "structure": point.structure,
             "scene": point.scene,
             "motion": point.curve,
             "scale": point.scale,

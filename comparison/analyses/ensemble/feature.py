@@ -2,54 +2,121 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from comparison.analyses.ensemble.result import STORED, StoredCurve, StoredEnsemble
-from comparison.report.plots import DEMANDS, Panel
-from comparison.report.section import Feature, Section
+from comparison.analyses.ensemble.units import figures_of, shown_stripes, title_of, unit_for_reading
+from comparison.report.plots import Panel
+from comparison.report.section import Feature, Report, Section
+from comparison.study.models import EXACT
+from reference.problem import GRAVITY
+
+SHOWN = ("displacement", "residual", "base_shear", "uplift", "support_force_max")
+WIDTH = 0.3  # of a strip, in steps from one structure to the next
 
 
 def ensemble_panels(ensemble: StoredEnsemble) -> list[Panel]:
-    """One panel for each demand that is drawn: every motion over its scale, the fractiles, and the engine."""
-    top = ("acceleration", ensemble.bodies, "acceleration of the uppermost body", "m/s²", 1.0)
-    panels = []
-    for quantity, number, title, unit, factor in (*DEMANDS, *([top] if ensemble.bodies > 1 else [])):
-        shown = quantity, number or None
-        stripes = [stripe for stripe in ensemble.stripes if (stripe.quantity, stripe.body) == shown]
-        if not stripes:
-            continue
-        curves = [curve for curve in ensemble.curves if (curve.quantity, curve.body) == shown]
-        motions = [curve for curve in curves if curve.model != ensemble.engine.model]
-        series = [
-            {
-                **_over_scales(curve, factor),
-                "name": "one motion",
-                "color": "gray",
-                "width": 0.8,
-                "legend": curve is motions[0],
-            }
-            for curve in motions
-        ]
-        low, median, high = ([_scaled(stripe.fractiles[n].value, factor) for stripe in stripes] for n in range(3))
-        shares = [f"{100.0 * each.share:.0f} %" for each in stripes[0].fractiles]
-        fractiles = {"name": f"median, {shares[0]} to {shares[2]}", "y": median, "low": low, "high": high, "band": True}
-        series.append({**fractiles, "x": [stripe.scale for stripe in stripes], "color": 0, "marks": True, "width": 2.4})
-        asked = [curve for curve in curves if curve.model == ensemble.engine.model]
-        series += [
-            {
-                **_over_scales(curve, factor),
-                "name": "engine",
-                "color": 1,
-                "marks": True,
-                "line": False,
-                "legend": curve is asked[0],
-            }
-            for curve in asked
-        ]
-        axes = {"x": {"title": "scale factor of the motion"}, "y": {"title": f"{title}, {unit}"}}
-        label = f"{title} of {ensemble.scene} over the scale factor of {ensemble.motions} motions"
-        panels.append({"title": title, "plot": {"label": label, **axes, "series": series}})
+    """Isolator, base shear and supports over the scale or as strips; profiles over the height; floor spectra."""
+    if not ensemble.curves:
+        return []
+    panels = [_panel(ensemble, quantity) for quantity in SHOWN if any(c.quantity == quantity for c in ensemble.curves)]
+    return [*panels, *_profiles(ensemble), *_spectra(ensemble)]
+
+
+def _panel(ensemble: StoredEnsemble, quantity: str) -> Panel:
+    one, series = len(ensemble.scales) == 1, []
+    for place, structure in enumerate(ensemble.structures):
+        unit, factor = unit_for_reading(quantity, structure.weight)
+        own = [c for c in ensemble.curves if (c.quantity, c.structure) == (quantity, structure.name)]
+        motions = [curve for curve in own if curve.model == EXACT.key]
+        asked = [curve for curve in own if curve.model != EXACT.key]
+        look = {"color": place, "name": f"{structure.name}: one motion", "legend": False}
+        if one:
+            series += _strips(motions, factor, place, {**look, "legend": True})
+        else:
+            series += [{**_over_scales(curve, factor), **look, "width": 0.7} for curve in motions]
+        stripes = [s for s in ensemble.stripes if (s.quantity, s.structure) == (quantity, structure.name)]
+        stripes = [s for s in stripes if s.model == EXACT.key] or stripes
+        low, median, high = ([_scaled(each.fractiles[n].value, factor) for each in stripes] for n in range(3))
+        band = {"name": f"{structure.name}: median, 16 % to 84 %", "y": median, "low": low, "high": high}
+        x = [place + WIDTH if one else stripe.scale for stripe in stripes]
+        series.append({**band, "x": x, "color": place, "band": not one, "marks": True, "line": not one, "width": 2.4})
+        name = f"{structure.name}: engine"
+        if one:
+            series += _strips(asked, factor, place - WIDTH, {"color": "ink", "name": name})
+        else:
+            looks = {"name": name, "color": "ink", "marks": True, "line": False}
+            series += [{**_over_scales(curve, factor), **looks, "legend": curve is asked[0]} for curve in asked]
+    title = title_of((quantity, None))
+    names = [[n, structure.name] for n, structure in enumerate(ensemble.structures)]
+    x_axis = {"title": "", "ticks": names, "range": [-0.6, len(names) - 0.4]} if one else {
+        "title": "scale factor of the motion", "range": [0.0, 1.04 * max(ensemble.scales)]
+    }  # fmt: skip
+    y_axis = {"title": f"{title}, {unit}", "range": [0.0, _top(series)]}
+    over = "by scene" if one else "over the scale factor"
+    label = f"{title} {over}, {ensemble.motions} motions"
+    return {"title": title, "plot": {"label": label, "x": x_axis, "y": y_axis, "series": series}}
+
+
+def _strips(curves: Sequence[StoredCurve], factor: float, place: float, look: dict[str, Any]) -> list[dict[str, Any]]:
+    """A dot for every motion, side by side."""
+    if not curves:
+        return []
+    spread = [place + WIDTH * ((n + 0.5) / len(curves) - 0.5) for n in range(len(curves))]
+    values = [_scaled(curve.values[0], factor) for curve in curves]
+    titles = [curve.motion for curve in curves]
+    return [{"x": spread, "y": values, "titles": titles, "marks": True, "line": False, **look}]
+
+
+def _profiles(ensemble: StoredEnsemble) -> list[Panel]:
+    """Median and band of accelerations and drifts over the bodies, at the largest scale."""
+    top, panels = max(ensemble.scales), []
+    for quantity in ("acceleration", "drift"):
+        series = []
+        for place, structure in enumerate(ensemble.structures):
+            unit, factor = unit_for_reading(quantity, structure.weight)
+            rows = [s for s in ensemble.stripes if (s.quantity, s.structure) == (quantity, structure.name)]
+            rows = [s for s in rows if s.model == EXACT.key and s.scale == top]
+            low, median, high = ([_scaled(each.fractiles[n].value, factor) for each in rows] for n in range(3))
+            values = {"x": [s.body for s in rows], "y": median, "low": low, "high": high, "band": True, "marks": True}
+            series.append({"name": f"{structure.name}: median, 16 % to 84 %", "color": place, **values})
+        if any(each["x"] for each in series):
+            ticks = [[n, str(n)] for n in range(1, max(each.bodies for each in ensemble.structures) + 1)]
+            x_axis = {"title": "body, from the platform up", "ticks": ticks}
+            title = {"acceleration": "acceleration over the height", "drift": "drift over the height"}[quantity]
+            y_axis = {"title": f"{quantity}, {unit}", "range": [0.0, _top(series)]}
+            label = f"{title}, {ensemble.motions} motions at scale {top:g}"
+            panels.append({"title": title, "plot": {"label": label, "x": x_axis, "y": y_axis, "series": series}})
     return panels
+
+
+def _spectra(ensemble: StoredEnsemble) -> list[Panel]:
+    """Floor spectra of platform and uppermost body: median and band."""
+    panels = []
+    tops = {structure.name: structure.bodies for structure in ensemble.structures}
+    for title, body_of in (("platform", lambda name: 1), ("top", tops.__getitem__)):
+        series = []
+        for place, structure in enumerate(ensemble.structures):
+            for band in ensemble.spectra:
+                if (band.structure, band.body) == (structure.name, body_of(structure.name)):
+                    low, median, high = ([_scaled(each.value, 1.0 / GRAVITY) for each in row] for row in band.fractiles)
+                    values = {"x": list(band.period), "y": median, "low": low, "high": high, "band": True}
+                    series.append({"name": f"{structure.name}: median, 16 % to 84 %", "color": place, **values})
+        if series and (title == "platform" or max(tops.values()) > 1):
+            damping = f"{100.0 * ensemble.spectra[0].damping:g} % damping"
+            y_axis = {"title": f"pseudo-acceleration, {damping}, g", "range": [0.0, _top(series)]}
+            axes = {"x": {"title": "period, s", "log": True}, "y": y_axis}
+            label = f"floor spectrum of the {title}, {ensemble.motions} motions"
+            panels.append({"title": f"floor spectrum: {title}", "plot": {"label": label, **axes, "series": series}})
+    return panels
+
+
+def _top(series: Sequence[dict[str, Any]]) -> float:
+    """Upper end of an axis that starts at zero."""
+    values = [value for each in series for key in ("y", "high") for value in each.get(key, ()) if value is not None]
+    return 1.06 * max(values, default=0.0) or 1.0
 
 
 def _over_scales(curve: StoredCurve, factor: float) -> dict[str, Any]:
@@ -61,6 +128,35 @@ def _scaled(value: float | None, factor: float) -> float | None:
     return None if value is None else factor * value
 
 
+def demand_rows(ensemble: StoredEnsemble) -> list[dict[str, Any]]:
+    """Rows of the table of demands: those of every structure at the largest scale first, then the other scales."""
+    rows = []
+    for scale in sorted(ensemble.scales, reverse=True):
+        for structure in ensemble.structures:
+            for stripe in shown_stripes(ensemble.stripes, structure.name, scale):
+                unit, factor = unit_for_reading(stripe.quantity, structure.weight)
+                name = title_of((stripe.quantity, stripe.body))
+                numbers = [stripe.mean, *stripe.fractiles, stripe.largest, stripe.smallest]
+                cells = [_text(number, factor) for number in numbers]
+                model = "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
+                about = {"scene": structure.name, "name": f"{name}{model}", "unit": unit, "scale": scale}
+                rows.append({**about, "cells": cells, "stripe": stripe})
+    return rows
+
+
+def _text(number: Any, factor: float) -> str:
+    """A value with its error, which may be unknown."""
+    if number.value is None:
+        return "none"
+    error = "" if number.error is None else f" ± {factor * number.error:.1g}"
+    return f"{figures_of(factor * number.value)}{error}"
+
+
+def _context(report: Report, figures: Path) -> Mapping[str, Any]:
+    ensemble = report.results.of("ensemble")
+    return {"ensemble_panels": ensemble_panels(ensemble), "ensemble_rows": demand_rows(ensemble)}
+
+
 FEATURE = Feature(
     "ensemble",
     StoredEnsemble,
@@ -69,6 +165,6 @@ FEATURE = Feature(
     section=Section(
         "Demands under many motions",
         "python -m comparison.ensemble SCENE makes it, beside the report; the next run of the study shows it",
-        lambda report, figures: {"ensemble_panels": ensemble_panels(report.results.of("ensemble"))},
+        _context,
     ),
 )

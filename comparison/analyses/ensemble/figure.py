@@ -1,4 +1,4 @@
-"""Demand against intensity: a curve for every motion, median and fractiles, and the engine where it was asked."""
+"""Demands of every structure: over the scale or as strips of dots, over the height, and floor spectra, with bands."""
 
 from __future__ import annotations
 
@@ -9,96 +9,187 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
-from comparison.analyses.ensemble.analysis import FRACTILES, EnsembleResult, Quantity, of_quantity
+from comparison.analyses.ensemble.analysis import EnsembleResult, Point, Quantity, Stripe, Structure
+from comparison.analyses.ensemble.units import title_of, unit_for_reading
+from comparison.study.models import EXACT
 from comparison.surfaces.figures.pairs import save
 from reference.drawing import verbatim
-from reference.measures.peak_demands import unit_of
 from reference.problem import GRAVITY
 
-TITLES = {
-    "displacement": "isolator displacement",
-    "residual": "residual displacement",
-    "base_shear": "base shear",
-    "acceleration": "acceleration of body {}",
-    "drift": "drift below body {}",
-}
-CURVE, MEDIAN, BAND, ENGINE = "0.72", "#1f4e8c", "#1f4e8c", "#b3541e"
+COLORS = ("#1f4e8c", "#b3541e", "#2a7f4f", "#7b3f98", "#8a6d00", "#37808c")
+ENGINE = "#222222"
+WIDTH = 0.3  # of a strip, in steps from one structure to the next
 
 
 def draw_ensemble(path: Path, result: EnsembleResult) -> None:
     """Write the panels to `path`, PNG, and as PDF."""
-    shown = shown_quantities(result)
-    columns = 3 if len(shown) > 4 else 2
-    rows = -(-len(shown) // columns)
+    shown, several = shown_quantities(result), max(each.bodies for each in result.structures) > 1
+    count = len(shown) + (2 if several else 0) + bool(result.spectra)
+    columns = 3 if count > 4 else 2
+    rows = -(-count // columns)
     figure = Figure(figsize=(4.4 * columns, 3.5 * rows + 0.6), dpi=110, layout="constrained")
-    scene, motions = result.family.scenes[0], len({point.curve for point in result.points})
-    title = verbatim(f"{scene.title} ({result.family.name}): {motions} motions")
-    if any(stripe.answered < motions for stripe in result.stripes if stripe.quantity in shown):
+    FigureCanvasAgg(figure)
+    motions = result.motions()
+    names = ", ".join(each.title if len(result.structures) == 1 else each.name for each in result.structures)
+    title = verbatim(f"{names}: {motions} {'motion' if motions == 1 else 'motions'}")
+    if any(stripe.answered < motions for stripe in result.stripes if stripe.model == EXACT.key):
         title += "; ↑ counts those without a value"
     figure.suptitle(title, fontsize=12)
-    panels = np.atleast_1d(figure.subplots(rows, columns)).ravel()
-    for axes, quantity in zip(panels, shown):
-        _draw(axes, result, quantity)
-    for axes in panels[len(shown) :]:
+    panels = list(np.atleast_1d(figure.subplots(rows, columns)).ravel())
+    for quantity in shown:
+        _draw(panels.pop(0), result, quantity)
+    top = max(point.scale for point in result.points)
+    for name in ("acceleration", "drift") if several else ():
+        _draw_profile(panels.pop(0), result, name, top)
+    if result.spectra:
+        _draw_spectra(panels.pop(0), result)
+    for axes in panels:
         axes.set_axis_off()
-    figure.legend(
-        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False, fontsize=9
-    )
+    legend = dict(zip(*reversed(figure.axes[0].get_legend_handles_labels())))
+    figure.legend(legend.values(), legend.keys(), loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     save(figure, path)
 
 
 def shown_quantities(result: EnsembleResult) -> list[Quantity]:
-    """Isolator, base shear, platform, uppermost body, and the drift with the largest median."""
-    bodies = result.family.bodies
-    drifts = [stripe for stripe in result.stripes if stripe.quantity[0] == "drift"]
-    largest = max(drifts, key=lambda stripe: _known(stripe.fractiles[1].value), default=None)
-    asked: list[Quantity] = [("displacement", 0), ("residual", 0), ("base_shear", 0), ("acceleration", 1)]
-    asked += [("acceleration", bodies)] if bodies > 1 else []
-    return asked + ([largest.quantity] if largest else [])
-
-
-def _known(value: float) -> float:
-    return value if math.isfinite(value) else -math.inf
+    """Isolator, base shear, and what only the engine has of the supports; bodies are in the profiles."""
+    asked: list[Quantity] = [("displacement", 0), ("residual", 0), ("base_shear", 0)]
+    known = {stripe.quantity for stripe in result.stripes}
+    asked += [(name, 0) for name in ("uplift", "support_force_max") if (name, 0) in known]
+    return asked if max(each.bodies for each in result.structures) > 1 else [*asked, ("acceleration", 1)]
 
 
 def _draw(axes: Axes, result: EnsembleResult, quantity: Quantity) -> None:
-    unit, factor = unit_of(quantity[0]), 1.0
-    if quantity[0] == "base_shear":
-        unit, factor = "of the weight", 1.0 / (result.family.scenes[0].total_mass * GRAVITY)
-    for number, curve in enumerate(dict.fromkeys(point.curve for point in result.points)):
-        points = sorted((point for point in result.points if point.curve == curve), key=lambda point: point.scale)
-        values = [factor * point.estimate(quantity).value for point in points]
-        label = "one motion" if number == 0 else None
-        axes.plot([point.scale for point in points], values, color=CURVE, lw=0.8, marker=".", ms=3, label=label)
-    stripes = of_quantity(result.stripes, quantity)
-    scales = [stripe.scale for stripe in stripes] or sorted({point.scale for point in result.points})
-    low, middle, high = (_column([stripe.fractiles[n].value for stripe in stripes], factor) for n in range(3))
-    band = f"{100.0 * FRACTILES[0]:.0f} % to {100.0 * FRACTILES[2]:.0f} %"
-    if stripes:
-        axes.fill_between(scales, low, high, color=BAND, alpha=0.18, lw=0.0, label=band)
-        axes.plot(scales, middle, color=MEDIAN, lw=2.0, marker="o", ms=4, label="median")
-    if result.engine:
-        places = [point.scale for point in result.engine]
-        found = [point.estimate(quantity) for point in result.engine]
-        heights, errors = (_column([getattr(each, part) for each in found], factor) for part in ("value", "error"))
-        bars: dict[str, Any] = {"fmt": "x", "color": ENGINE, "ms": 8, "mew": 1.8, "capsize": 3}
-        axes.errorbar(places, heights, np.nan_to_num(errors), label="engine with its error", **bars)
-    axes.set_xlabel("scale factor of the motion")
-    axes.set_ylabel(f"{TITLES[quantity[0]].format(quantity[1])}, {unit}".replace("m/s^2", "m/s$^2$"))
-    drawn = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in axes.get_lines()])
-    highest = float(drawn[np.isfinite(drawn)].max(initial=0.0))
+    one = len({point.scale for point in result.points}) == 1
+    highest = 0.0
+    for place, structure in enumerate(result.structures):
+        unit, factor = unit_for_reading(quantity[0], structure.weight)
+        drawn = _draw_strip if one else _draw_curves
+        highest = max(highest, drawn(axes, result, structure, quantity, place, factor))
+    axes.set_ylabel(f"{title_of(quantity)}, {unit}".removesuffix(", "))
     axes.set_ylim(0.0, 1.08 * highest if highest > 0.0 else 1.0)
-    margin = 0.04 * (scales[-1] - scales[0]) if len(scales) > 1 else 0.1
-    axes.set_xlim(scales[0] - margin, scales[-1] + margin)
-    for stripe in stripes:
-        absent = sum(point.scale == stripe.scale for point in result.points) - stripe.answered
-        if absent:
-            place: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "ha": "center", "va": "top"}
-            axes.text(stripe.scale, 0.985, f"↑{absent}", fontsize=7.5, color=ENGINE, **place)
+    if one:
+        axes.set_xticks(range(len(result.structures)), [verbatim(each.name) for each in result.structures], fontsize=8)
+        axes.set_xlim(-0.6, len(result.structures) - 0.4)
+    else:
+        axes.set_xlabel("scale factor of the motion")
+        axes.set_xlim(left=0.0)
     axes.grid(color="0.92")
 
 
+def _own(points: Sequence[Point], structure: Structure) -> list[Point]:
+    return [point for point in points if point.structure == structure.name]
+
+
+def _of(result: EnsembleResult, structure: Structure, quantity: Quantity) -> list[Stripe]:
+    """Statistics by the equations, or by the engine of what the equations do not have."""
+    own = [each for each in result.stripes if (each.structure, each.quantity) == (structure.name, quantity)]
+    return [each for each in own if each.model == EXACT.key] or own
+
+
+def _draw_strip(
+    axes: Axes, result: EnsembleResult, structure: Structure, quantity: Quantity, place: int, factor: float
+) -> float:
+    """One dot for every motion at its structure, median and fractiles beside them; the largest value."""
+    color, listed = COLORS[place % len(COLORS)], _of(result, structure, quantity)
+    models = {stripe.model for stripe in listed}
+    points = [point for point in _own([*result.points, *result.engine], structure) if point.model in models]
+    values = _column([point.estimate(quantity).value for point in points], factor)
+    beside = place + WIDTH * ((np.arange(len(values)) + 0.5) / max(len(values), 1) - 0.5)
+    axes.plot(beside, values, color=color, ls="", marker=".", ms=5, alpha=0.6, label=f"{structure.name}: one motion")
+    for stripe in listed:
+        low, middle, high = (factor * each.value for each in stripe.fractiles)
+        at = place + WIDTH
+        axes.plot([at, at], [low, high], color=color, lw=5, alpha=0.3, solid_capstyle="butt", label="16 % to 84 %")
+        axes.plot([at], [middle], color=color, marker="_", ms=13, mew=2.2, ls="", label="median")
+        _count_missing(axes, stripe, len(points), place)
+    largest = _largest(values)
+    return max(largest, _draw_engine(axes, result, structure, quantity, factor, place - WIDTH))
+
+
+def _draw_curves(
+    axes: Axes, result: EnsembleResult, structure: Structure, quantity: Quantity, place: int, factor: float
+) -> float:
+    """One thin curve for every motion over its scale, median and band; the largest value."""
+    color, listed, largest = COLORS[place % len(COLORS)], _of(result, structure, quantity), 0.0
+    own = _own(result.points, structure)
+    for curve in dict.fromkeys(point.curve for point in own):
+        points = sorted((point for point in own if point.curve == curve), key=lambda point: point.scale)
+        values = _column([point.estimate(quantity).value for point in points], factor)
+        look: dict[str, Any] = {"color": color, "alpha": 0.35, "lw": 0.7, "marker": ".", "ms": 3}
+        axes.plot([point.scale for point in points], values, label=f"{structure.name}: one motion", **look)
+        largest = max(largest, _largest(values))
+    if listed:
+        scales = [stripe.scale for stripe in listed]
+        low, middle, high = (_column([stripe.fractiles[n].value for stripe in listed], factor) for n in range(3))
+        axes.fill_between(scales, low, high, color=color, alpha=0.18, lw=0.0, label="16 % to 84 %")
+        axes.plot(scales, middle, color=color, lw=2.0, marker="o", ms=4, label="median")
+        for stripe in listed:
+            _count_missing(axes, stripe, sum(point.scale == stripe.scale for point in own), stripe.scale)
+    return max(largest, _draw_engine(axes, result, structure, quantity, factor, None))
+
+
+def _draw_engine(
+    axes: Axes, result: EnsembleResult, structure: Structure, quantity: Quantity, factor: float, place: float | None
+) -> float:
+    """The engine's values with their errors, at their scales or at one place; the largest."""
+    engine = _own(result.engine, structure)
+    if not engine:
+        return 0.0
+    found = [point.estimate(quantity) for point in engine]
+    heights, errors = (_column([getattr(each, part) for each in found], factor) for part in ("value", "error"))
+    places = [point.scale if place is None else place for point in engine]
+    bars: dict[str, Any] = {"fmt": "x", "color": ENGINE, "ms": 6, "mew": 1.3, "capsize": 3}
+    axes.errorbar(places, heights, np.nan_to_num(errors), label="engine with its error", **bars)
+    return _largest(heights)
+
+
+def _count_missing(axes: Axes, stripe: Stripe, motions: int, place: float) -> None:
+    if motions > stripe.answered:
+        where: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "ha": "center", "va": "top"}
+        axes.text(place, 0.985, f"↑{motions - stripe.answered}", fontsize=7.5, color=ENGINE, **where)
+
+
+def _draw_profile(axes: Axes, result: EnsembleResult, name: str, scale: float) -> None:
+    """Median and band of a demand over the height: one level for every body."""
+    for place, structure in enumerate(result.structures):
+        unit, factor = unit_for_reading(name, structure.weight)
+        color = COLORS[place % len(COLORS)]
+        rows = [each for each in result.stripes if (each.structure, each.model) == (structure.name, EXACT.key)]
+        rows = [each for each in rows if each.quantity[0] == name and each.scale == scale]
+        low, middle, high = (_column([each.fractiles[n].value for each in rows], factor) for n in range(3))
+        bodies = [each.quantity[1] for each in rows]
+        axes.fill_betweenx(bodies, low, high, color=color, alpha=0.18, lw=0.0)
+        axes.plot(middle, bodies, color=color, lw=2.0, marker="o", ms=4)
+    axes.set_xlabel(f"{name}, {unit}, at scale {scale:g}")
+    axes.set_ylabel("body" if name == "acceleration" else "body above the link")
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.set_xlim(left=0.0)
+    axes.grid(color="0.92")
+
+
+def _draw_spectra(axes: Axes, result: EnsembleResult) -> None:
+    """Floor spectra of the uppermost body: median and band."""
+    for place, structure in enumerate(result.structures):
+        for band in result.spectra:
+            if (band.structure, band.body) == (structure.name, structure.bodies):
+                color = COLORS[place % len(COLORS)]
+                low, middle, high = (_column([each.value for each in row], 1.0 / GRAVITY) for row in band.fractiles)
+                axes.fill_between(band.period, low, high, color=color, alpha=0.18, lw=0.0)
+                axes.plot(band.period, middle, color=color, lw=2.0)
+                axes.set_ylabel(f"floor spectrum of the top, {100.0 * band.damping:g} % damping, g")
+    axes.set_xscale("log")
+    axes.set_xlabel("period, s")
+    axes.set_ylim(bottom=0.0)
+    axes.grid(color="0.92")
+
+
+def _largest(values: np.ndarray) -> float:
+    return float(values[np.isfinite(values)].max(initial=0.0))
+
+
 def _column(values: Sequence[float], factor: float) -> np.ndarray:
-    return factor * np.array(values)
+    return factor * np.array([value if math.isfinite(value) else math.nan for value in values], dtype=float)

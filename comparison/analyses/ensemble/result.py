@@ -9,12 +9,11 @@ from typing import Any, Literal
 from comparison.analyses.ensemble.analysis import FRACTILES, EnsembleResult, Point, Quantity, quantities
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import result
-from comparison.study.models import TRANSLATIONAL
 from reference.measures import Estimate
 from reference.measures.peak_demands import unit_of
 
 FILE, PICTURE = "ensemble.json", "ensemble.png"
-SCHEMA: Literal["phase-resonance/ensemble"] = "phase-resonance/ensemble"
+SCHEMA: Literal["phase-resonance/ensemble/2"] = "phase-resonance/ensemble/2"
 
 
 @result
@@ -30,9 +29,59 @@ class StoredFractile:
 
 
 @result
-class StoredStripe:
-    """A demand at one scale over all motions."""
+class StoredNumber:
+    """A statistic of a demand over the motions."""
 
+    value: float | None
+    """in the unit of the demand; null where it rests on a motion without an answer"""
+    error: float | None
+    """largest change within the errors of the motions"""
+
+
+@result
+class StoredStructure:
+    """What the statistics are of: a file, or one of the values that run in it beside motion and scale."""
+
+    name: str
+    """name"""
+    title: str
+    """title of its scenes"""
+    bodies: int
+    """number of bodies"""
+    weight: float
+    """N"""
+
+
+@result
+class StoredSpectrum:
+    """Floor spectrum of a body over all motions at the largest scale, by the equations; the larger of x and y."""
+
+    structure: str
+    """name"""
+    body: int
+    """from 1"""
+    scale: float
+    """factor of the motions"""
+    damping: float
+    """damping ratio of the oscillators"""
+    period: Sequence[float]
+    """s"""
+    mean: Sequence[StoredNumber]
+    """pseudo-acceleration at every period, m/s^2"""
+    fractiles: Sequence[Sequence[StoredNumber]]
+    """16, 50 and 84 % at every period, m/s^2"""
+    largest: Sequence[StoredNumber]
+    """at every period, m/s^2"""
+
+
+@result
+class StoredStripe:
+    """A demand at one scale over all motions by one model."""
+
+    structure: str
+    """name"""
+    model: str
+    """key of the model"""
     quantity: str
     """demand"""
     body: int | None
@@ -43,8 +92,14 @@ class StoredStripe:
     """factor of the motions"""
     answered: int
     """motions that have the demand"""
+    mean: StoredNumber
+    """mean over the motions"""
     fractiles: Sequence[StoredFractile]
     """from small to large shares"""
+    largest: StoredNumber
+    """largest over the motions"""
+    smallest: StoredNumber
+    """smallest over the motions"""
     reasons: Mapping[str, int] = field(default_factory=dict)
     """why the other motions do not have it, and how many each"""
 
@@ -53,6 +108,8 @@ class StoredStripe:
 class StoredCurve:
     """A demand of one motion over its scale factors."""
 
+    structure: str
+    """name"""
     quantity: str
     """demand"""
     body: int | None
@@ -73,6 +130,8 @@ class StoredCurve:
 class StoredDifference:
     """How far the engine is from the equations in one demand."""
 
+    structure: str
+    """name"""
     quantity: str
     """demand"""
     body: int | None
@@ -103,26 +162,22 @@ class StoredEngine:
 class StoredEnsemble:
     """Content of the file."""
 
-    schema: Literal["phase-resonance/ensemble"]
+    schema: Literal["phase-resonance/ensemble/2"]
     """what the file is"""
-    scene: str
-    """name of the family"""
-    title: str
-    """title of its scenes"""
-    keys: Sequence[str]
-    """what runs"""
+    structures: Sequence[StoredStructure]
+    """what the statistics are of"""
     scales: Sequence[float]
     """scale factors"""
     motions: int
     """number of motions"""
-    bodies: int
-    """number of bodies"""
     outcomes: Mapping[str, int]
     """motions by the equations with every status"""
     stripes: Sequence[StoredStripe]
-    """by demand and scale"""
+    """by structure, demand and scale; by the equations, then by the engine over its subset"""
     curves: Sequence[StoredCurve]
-    """by demand, model and motion"""
+    """by structure, demand, model and motion"""
+    spectra: Sequence[StoredSpectrum]
+    """by structure and body"""
     engine: StoredEngine
     """the engine's subset"""
     run: Mapping[str, Any]
@@ -134,26 +189,34 @@ STORED = StoredFile(FILE, StoredEnsemble, "an ensemble", "python -m comparison.e
 
 def stored(result: EnsembleResult, run: Mapping[str, Any]) -> StoredEnsemble:
     """The content of the file."""
-    scene, names = result.family.scenes[0], quantities(result.points)
     stripes = [
         StoredStripe(
+            stripe.structure,
+            stripe.model,
             *_named(stripe.quantity),
             unit_of(stripe.quantity[0]),
             stripe.scale,
             stripe.answered,
+            StoredNumber(*_finite(stripe.mean)),
             [StoredFractile(share, *_finite(value)) for share, value in zip(FRACTILES, stripe.fractiles)],
+            StoredNumber(*_finite(stripe.largest)),
+            StoredNumber(*_finite(stripe.smallest)),
             stripe.reasons,
         )
         for stripe in result.stripes
     ]
     curves = [
-        _curve(quantity, [point for point in points if point.curve == motion])
-        for quantity in names
+        _curve(structure.name, quantity, [point for point in own if point.curve == motion])
+        for structure in result.structures
+        for quantity in quantities([*result.points, *result.engine])
         for points in (result.points, result.engine)
-        for motion in dict.fromkeys(point.curve for point in points)
+        for own in [[point for point in points if point.structure == structure.name]]
+        if quantity in quantities(own)
+        for motion in dict.fromkeys(point.curve for point in own)
     ]
     differences = [
         StoredDifference(
+            bound.structure,
             *_named(bound.quantity),
             finite_or_none(bound.largest),
             finite_or_none(bound.like_for_like),
@@ -162,21 +225,36 @@ def stored(result: EnsembleResult, run: Mapping[str, Any]) -> StoredEnsemble:
         )
         for bound in result.bounds
     ]
+    spectra = [
+        StoredSpectrum(
+            band.structure,
+            band.body,
+            band.scale,
+            band.damping,
+            band.period,
+            _numbers(band.mean),
+            [_numbers(row) for row in band.fractiles],
+            _numbers(band.largest),
+        )
+        for band in result.spectra
+    ]
     asked = [{"scene": point.scene, "status": point.status} for point in result.engine]
     return StoredEnsemble(
         schema=SCHEMA,
-        scene=result.family.name,
-        title=scene.title,
-        keys=list(result.family.columns),
+        structures=[StoredStructure(each.name, each.title, each.bodies, each.weight) for each in result.structures],
         scales=sorted({point.scale for point in result.points}),
-        motions=len({point.curve for point in result.points}),
-        bodies=len(scene.bodies),
+        motions=result.motions(),
         outcomes=result.outcomes(),
         stripes=stripes,
         curves=curves,
-        engine=StoredEngine(TRANSLATIONAL.key, asked, differences),
+        spectra=spectra,
+        engine=StoredEngine(result.model.key, asked, differences),
         run=run,
     )
+
+
+def _numbers(estimates: Sequence[Estimate]) -> list[StoredNumber]:
+    return [StoredNumber(*_finite(estimate)) for estimate in estimates]
 
 
 def _named(quantity: Quantity) -> tuple[str, int | None]:
@@ -187,8 +265,10 @@ def _finite(estimate: Estimate) -> tuple[float | None, float | None]:
     return finite_or_none(estimate.value), finite_or_none(estimate.error)
 
 
-def _curve(quantity: Quantity, points: Sequence[Point]) -> StoredCurve:
+def _curve(structure: str, quantity: Quantity, points: Sequence[Point]) -> StoredCurve:
     points = sorted(points, key=lambda point: point.scale)
     values, errors = zip(*(_finite(point.estimate(quantity)) for point in points))
     scales = [point.scale for point in points]
-    return StoredCurve(*_named(quantity), points[0].model, points[0].curve, scales, list(values), list(errors))
+    return StoredCurve(
+        structure, *_named(quantity), points[0].model, points[0].curve, scales, list(values), list(errors)
+    )

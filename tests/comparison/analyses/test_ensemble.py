@@ -16,17 +16,18 @@ import pytest
 
 import reference
 from comparison.analyses.ensemble.analysis import (
-    SCALE,
     Ensemble,
     EnsembleResult,
     Point,
+    Structure,
     bounds,
-    curves_of,
+    members_of,
     stripes,
     uncertain_fractile,
 )
 from comparison.analyses.ensemble.command import FILES, main, table_text
 from comparison.analyses.ensemble.figure import draw_ensemble
+from comparison.study.models import TRANSLATIONAL
 from reference.measures import Demands, Estimate, phase_distribution
 from reference.measures.distribution import FRACTILES
 from reference.problem import load_family
@@ -111,7 +112,7 @@ def demanding(displacement: float, error: float, residual: Estimate, model: str 
     """A motion of which two demands are known, every other is lacking."""
     known = {"status": "ok", "displacement": Estimate(displacement, error), "residual": residual}
     demands = Demands(**{**{field.name: None for field in fields(Demands)}, **known})  # type: ignore[arg-type]
-    return Point("motion 1", 1.0, 1.0, "mine", model, "ok", demands)
+    return Point("mine", "motion 1", 1.0, 1.0, "mine", model, "ok", demands)
 
 
 def test_the_bound_of_the_engine_has_the_errors_of_both_sides() -> None:
@@ -161,31 +162,35 @@ def test_the_picture_has_the_numbers_in_the_units_of_its_axes(monkeypatch: pytes
     points = [demanding(float(number), 0.0, Estimate(1.0, 0.0)) for number in range(11)]
     engine = [demanding(5.5, 0.25, Estimate(1.0, 0.0), "translational")]
     listed = list(stripes(points)), list(bounds(points, engine, engine))
-    family = load_family("synthetic-pair")
-    draw_ensemble(tmp_path / "ensemble.png", EnsembleResult(family, points, engine, engine, *listed))
+    structures = [Structure("mine", "a title", 1, 1.0)]
+    draw_ensemble(tmp_path / "ensemble.png", EnsembleResult(structures, TRANSLATIONAL, points, engine, engine, *listed))
     axes = figures[0].axes[0]
-    assert axes.get_ylabel() == "isolator displacement, m"
-    lines = {line.get_label(): line.get_ydata() for line in axes.get_lines()}
-    assert lines["median"] == pytest.approx([5.0])
+    assert axes.get_ylabel() == "isolator displacement, mm"
+    assert axes.get_ylim()[0] == 0.0
+    lines = {line.get_label(): line for line in axes.get_lines()}
+    assert lines["median"].get_ydata() == pytest.approx([5e3])
+    assert lines["16 % to 84 %"].get_ydata() == pytest.approx([1.26e3, 8.74e3])
+    assert lines["mine: one motion"].get_linestyle() == "None", "motions are not joined by a line"
+    assert lines["mine: one motion"].get_ydata() == pytest.approx(1e3 * np.arange(11.0))
     (bars,) = axes.containers
     assert bars.get_label() == "engine with its error"
-    assert bars.lines[0].get_ydata() == pytest.approx([5.5])
-    assert bars.lines[2][0].get_segments()[0][:, 1] == pytest.approx([5.25, 5.75])
-    assert axes.collections[0].get_paths()[0].get_extents().intervaly == pytest.approx([1.26, 8.74])
+    assert bars.lines[0].get_ydata() == pytest.approx([5.5e3])
+    assert bars.lines[2][0].get_segments()[0][:, 1] == pytest.approx([5.25e3, 5.75e3])
 
 
 def test_the_engine_is_asked_at_different_motions_and_scales(folder: Path) -> None:
     text = SCENE[: SCENE.index("excitation")].replace("title", 'combine = "product"\ntitle')
     loading = 'excitation = {record = {suite = "suite", motion = "all"}, scale = {range = [0.5, 2.0], steps = 4}}\n'
     (folder / "family.toml").write_text(text + loading)
-    family = load_family("family.toml")
+    members = members_of([load_family("family.toml")])
+    assert Ensemble(members, None).chosen() == list(range(12))
     for count in (0, 1, 2, 3, 12, 50):
-        chosen = Ensemble(family, count).chosen()
+        chosen = Ensemble(members, count).chosen()
         assert len(chosen) <= min(count, 12)
         assert (len(chosen) > 0) == (count > 0)
-    three = Ensemble(family, 3).chosen()
-    assert len({curves_of(family)[place] for place in three}) == 3
-    assert len({family.columns[SCALE][place] for place in three}) == 3
+    three = [members[place] for place in Ensemble(members, 3).chosen()]
+    assert len({member.motion for member in three}) == 3
+    assert len({member.scale for member in three}) == 3
 
 
 def test_the_command_writes_the_demands_of_every_motion(folder: Path) -> None:
@@ -205,7 +210,11 @@ def test_the_command_writes_the_demands_of_every_motion(folder: Path) -> None:
     assert float(row["drift_2"]) == numbers.drift[0].value
     assert float(row["acceleration_1_error"]) == numbers.acceleration[0].error
     column = [float(row["displacement"]) for row in rows if (row["scale"], row["model"]) == ("1.0", "exact")]
-    (stripe,) = (s for s in summary["stripes"] if s["quantity"] == "displacement" and s["scale"] == 1.0)
+    (stripe,) = (
+        s for s in summary["stripes"] if (s["quantity"], s["scale"], s["model"]) == ("displacement", 1.0, "exact")
+    )
+    assert stripe["mean"]["value"] == pytest.approx(np.mean(column))
+    assert (stripe["largest"]["value"], stripe["smallest"]["value"]) == (max(column), min(column))
     expected = np.quantile(column, [0.16, 0.5, 0.84], method="hazen")
     assert [each["value"] for each in stripe["fractiles"]] == pytest.approx(expected)
     assert (stripe["answered"], stripe["unit"], stripe["body"]) == (3, "m", None)
@@ -240,7 +249,9 @@ def test_motions_that_reach_the_rim_are_counted(folder: Path, undrawn: None) -> 
     assert at_twelve
     for stripe in at_twelve:
         assert stripe["answered"] < 3
-        assert stripe["fractiles"][2]["value"] is None
+        worst = stripe["fractiles"][0 if stripe["quantity"] == "contact_force_min" else 2]
+        assert (worst["value"], stripe["mean"]["value"]) == (None, None)
+        assert stripe["smallest" if stripe["quantity"] == "contact_force_min" else "largest"]["value"] is None
 
 
 def test_the_same_command_computes_nothing_again(
@@ -265,6 +276,8 @@ def test_the_same_command_computes_nothing_again(
         (("mine.toml", "--suite", "suite", "--scales", "1", "x", "2"), "--scales"),
         (("mine.toml", "--suite", "suite", "--scales", "1", "2", "0"), "a whole number from 1 to 100"),
         (("mine.toml", "--suite", "suite", "--scales", "1", "2", "2", "--engine", "-1"), "--engine"),
+        (("mine.toml", "--suite", "suite", "--model", "spatial"), "--model translational"),
+        (("mine.toml", "mine.toml", "--suite", "suite"), "two files have this name"),
         (("gone.toml", "--suite", "suite", "--scales", "1", "2", "2"), "gone.toml"),
     ],
 )
@@ -277,6 +290,64 @@ def test_wrong_input_is_one_line_at_the_start(
     assert line in said
     assert said.count("\n") == 1
     assert not Path("out").exists()
+
+
+def test_several_scenes_have_statistics_of_their_own(folder: Path, undrawn: None) -> None:
+    """Bounds of friction in one file are the same as two files."""
+    tables = ["{slow = 0.02, fast = 0.04, rate = 50.0}", "{slow = 0.06, fast = 0.08, rate = 50.0}"]
+    for name, table in zip(("lower", "upper"), tables):
+        (folder / f"{name}.toml").write_text(SCENE.replace("friction = 0.05", f"friction = {table}"))
+    (folder / "both.toml").write_text(
+        SCENE.replace("friction = 0.05", f"friction = {{values = [{', '.join(tables)}]}}")
+    )
+    assert run("lower.toml", "upper.toml", "--suite", "suite", "--engine", "0") == 0
+    files = content()
+    assert run("both.toml", "--suite", "suite", "--engine", "0") == 0
+    family = content()
+    assert [each["name"] for each in files["structures"]] == ["lower", "upper"]
+    assert [each["name"] for each in family["structures"]] == [
+        f"both[friction=slow={0.02 + k:g}+fast={0.04 + k:g}+rate=50]" for k in (0.0, 0.04)
+    ]
+    for part in ("stripes", "spectra"):
+        first, second = ([{**row, "structure": ""} for row in each[part]] for each in (files, family))
+        assert first == second
+    largest = [s["largest"]["value"] for s in files["stripes"] if s["quantity"] == "displacement"]
+    assert len(largest) == 2
+    assert largest[0] > largest[1], "more friction, less displacement"
+
+
+def test_bands_of_floor_spectra_are_those_of_the_motions(folder: Path, undrawn: None) -> None:
+    assert run("mine.toml", "--suite", "suite", "--engine", "0") == 0
+    bands = {row["body"]: row for row in content()["spectra"]}
+    assert set(bands) == {1, 2}
+    curves = []
+    for motion in (1, 2, 3):
+        values = {"excitation": {"record": {"suite": "suite", "motion": motion}}, "duration": 1.95}
+        moved = reference.trajectory(reference.load_scene("mine.toml").with_values(values), (0.0, 0.0), tolerance=1e-6)
+        curves.append(reference.floor_spectra(moved).acceleration[1].max(axis=0))
+    assert [each["value"] for each in bands[2]["mean"]] == pytest.approx(np.mean(curves, axis=0), rel=1e-9)
+    assert [each["value"] for each in bands[2]["largest"]] == pytest.approx(np.max(curves, axis=0), rel=1e-9)
+    median = [each["value"] for each in bands[2]["fractiles"][1]]
+    assert median == pytest.approx(np.median(curves, axis=0), rel=1e-9)
+
+
+SPATIAL = """title = "on four supports"
+isolator = {radius = 0.25, friction = 0.05, supports = 4, ring = 0.5, sphere_radius = 0.02}
+bodies = [{mass = 1e3, height = 0.1, size = [1.0, 1.0, 0.1]}]
+excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}
+duration = 20.0
+"""
+
+
+def test_the_spatial_engine_adds_demands_of_supports(folder: Path, undrawn: None) -> None:
+    (folder / "mine.toml").write_text(SPATIAL)
+    assert run("mine.toml", "--suite", "suite", "--engine", "all", "--model", "spatial") == 0
+    summary = content()
+    assert (summary["engine"]["model"], len(summary["engine"]["points"])) == ("spatial", 3)
+    found = {(s["quantity"], s["model"]): s for s in summary["stripes"]}
+    assert found["support_force_max", "spatial"]["answered"] == 3
+    assert found["torsion", "spatial"]["answered"] == 3
+    assert ("uplift", "exact") not in found
 
 
 def test_a_plan_says_what_it_would_cost_and_computes_nothing(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

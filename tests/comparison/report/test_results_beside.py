@@ -58,11 +58,11 @@ def known_ensemble() -> ensemble.StoredEnsemble:
     known = {"motion 1": (0.1, 0.2), "motion 2": (0.2, 0.5), "motion 3": (0.3, None)}
     curves = [
         ensemble.StoredCurve(
-            "displacement", None, "exact", motion, (1.0, 2.0), values, (0.0, 0.0 if values[1] else None)
+            "tower", "displacement", None, "exact", motion, (1.0, 2.0), values, (0.0, 0.0 if values[1] else None)
         )
         for motion, values in known.items()
     ]
-    engine = ensemble.StoredCurve("displacement", None, "translational", "motion 2", (2.0,), (0.51,), (1e-3,))
+    engine = ensemble.StoredCurve("tower", "displacement", None, "translational", "motion 2", (2.0,), (0.51,), (1e-3,))
     low, high = (
         [
             ensemble.StoredFractile(share, value, None if value is None else 0.0)
@@ -70,12 +70,15 @@ def known_ensemble() -> ensemble.StoredEnsemble:
         ]
         for values in ((0.132, 0.2, 0.268), (0.296, 0.5, None))
     )
-    stripes = [ensemble.StoredStripe("displacement", None, "m", 1.0, 3, low),
-               ensemble.StoredStripe("displacement", None, "m", 2.0, 2, high)]  # fmt: skip
-    difference = ensemble.StoredDifference("displacement", None, 0.02, 1e-4, 2e-3, 1)
+    mean, largest, smallest = (ensemble.StoredNumber(value, 0.0) for value in (0.21, 0.3, 0.1))
+    none, named = ensemble.StoredNumber(None, None), ("tower", "exact", "displacement", None, "m")
+    stripes = [ensemble.StoredStripe(*named, 1.0, 3, mean, low, largest, smallest),
+               ensemble.StoredStripe(*named, 2.0, 2, none, high, none, ensemble.StoredNumber(0.2, 1e-3))]  # fmt: skip
+    difference = ensemble.StoredDifference("tower", "displacement", None, 0.02, 1e-4, 2e-3, 1)
     return ensemble.StoredEnsemble(
-        schema=ensemble.SCHEMA, scene="tower", title="Tower & <town>", keys=["excitation.scale"], scales=(1.0, 2.0),
-        motions=3, bodies=1, outcomes={"ok": 5, "rim reached": 1}, stripes=stripes, curves=[*curves, engine],
+        schema=ensemble.SCHEMA, structures=[ensemble.StoredStructure("tower", "Tower & <town>", 1, 9.81e3)],
+        scales=(1.0, 2.0), spectra=[],
+        motions=3, outcomes={"ok": 5, "rim reached": 1}, stripes=stripes, curves=[*curves, engine],
         engine=ensemble.StoredEngine("translational", [{"scene": "tower[2]", "status": "ok"}], [difference]), run=MADE,
     )  # fmt: skip
 
@@ -158,10 +161,10 @@ def test_a_panel_of_an_ensemble_is_in_the_unit_of_its_axis(beside: tuple[str, Pa
     assert panel["plot"]["y"]["title"] == "isolator displacement, mm"
     motions, [band], [engine] = (
         [line for line in panel["plot"]["series"] if line["name"].startswith(name)]
-        for name in ("one motion", "median", "engine")
+        for name in ("tower: one motion", "tower: median", "tower: engine")
     )
     assert [line["y"][0] for line in motions] == pytest.approx([100.0, 200.0, 300.0])
-    assert band["name"] == "median, 16 % to 84 %"
+    assert band["name"] == "tower: median, 16 % to 84 %"
     assert [band[key][0] for key in ("low", "y", "high")] == pytest.approx([132.0, 200.0, 268.0])
     assert engine["y"] == pytest.approx([510.0])
 
@@ -170,14 +173,14 @@ def test_the_tables_of_an_ensemble_have_every_number_in_its_column(
     beside: tuple[str, Path, dict[str, bytes]],
 ) -> None:
     tables = Tables(page_of(beside[1]))
-    low, high = tables.headed("demand", "scale", "16 %", "84 %")
+    high, low = (dict(zip(*table[:2])) for table in tables.tables if "84 %" in table[0])
     assert low == {
-        "demand": "displacement", "body": "", "scale": "1", "16 %": "0.132 ± 0", "50 %": "0.2 ± 0",
-        "84 %": "0.268 ± 0", "unit": "m", "answered": "3",
+        "demand": "isolator displacement", "scene": "tower", "scale": "1", "mean": "210 ± 0", "16 %": "132 ± 0",
+        "50 %": "200 ± 0", "84 %": "268 ± 0", "largest": "300 ± 0", "smallest": "100 ± 0", "unit": "mm", "motions": "3",
     }  # fmt: skip
-    assert (high["scale"], high["84 %"], high["answered"]) == ("2", "none", "2")
+    assert (high["scale"], high["84 %"], high["motions"], high["smallest"]) == ("2", "none", "2", "200 ± 1")
     [engine] = tables.headed("demand", "like for like", "errors")
-    assert list(engine.values()) == ["displacement", "", "2 %", "0.01 %", "0.2 %", "1"]
+    assert list(engine.values()) == ["displacement", "tower", "", "2 %", "0.01 %", "0.2 %", "1"]
 
 
 @pytest.mark.parametrize("name", [*FILES, TRADES])

@@ -49,6 +49,17 @@ KEYS = {
 }
 
 
+def test_a_whole_table_may_run(tmp_path: Path) -> None:
+    tables = [{"slow": 0.05, "fast": 0.08, "rate": 50.0}, {"slow": 0.05, "fast": 0.1, "rate": 50.0}]
+    listed = ", ".join("{" + ", ".join(f"{key} = {part}" for key, part in each.items()) + "}" for each in tables)
+    family = load_family(_file(tmp_path, "friction = 0.1", f"friction = {{values = [{listed}]}}"))
+    assert [scene.name for scene in family.scenes] == [
+        "mine[friction=slow=0.05+fast=0.08+rate=50]", "mine[friction=slow=0.05+fast=0.1+rate=50]",
+    ]  # fmt: skip
+    given = [load_scene("fig3-I").with_values({"isolator.friction": table}) for table in tables]
+    assert [scene.digest() for scene in family.scenes] == [scene.digest() for scene in given]
+
+
 @pytest.mark.parametrize(("old", "new", "key", "values"), KEYS.values(), ids=KEYS.keys())
 def test_any_key_of_one_value_may_run(tmp_path: Path, old: str, new: str, key: str, values: tuple[object, ...]) -> None:
     family = load_family(_file(tmp_path, old, new))
