@@ -55,6 +55,8 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     table = claims.collect(study, None, results)
     assert table is not None, "the study has every scene of the paper"
     print_claims(console, table, options.words)
+    if grid != GRID:
+        console.print(f"Verdicts of the literal (4.6) are those recorded on {GRID} x {GRID} phases.", soft_wrap=True)
     print_ratios(console, study)
     if options.settle or options.search is not None:
         console.print(SETTLED, soft_wrap=True)
