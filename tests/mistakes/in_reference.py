@@ -137,7 +137,7 @@ MISTAKES = (
         "far = max(far, top)",
         "pass",
         "The largest displacement is read at the ends of the steps.",
-        (DEMANDS + "test_the_share_of_the_cap_is_that_of_the_surface",),
+        (TESTS + "test_flat_slider.py::test_without_friction_the_plate_moves_alone",),
     ),
     Mistake(
         SOLVER + "travel.py",
