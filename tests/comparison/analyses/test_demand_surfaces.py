@@ -158,7 +158,7 @@ def test_without_them_the_report_says_how_to_get_them(finished: Path) -> None:
 def test_panels_are_in_the_units_of_their_axes(study: Study, demands: xr.Dataset) -> None:
     scene, models = study.scenes[0], [SimpleNamespace(key=model.key, title=model.title) for model in MODELS]
     rows = demand_statistics(study, demands, scene)
-    shown = SimpleNamespace(recorded=False, name=scene.name, demand_statistics=rows)
+    shown = SimpleNamespace(recorded=False, name=scene.name, of={"demand_statistics": rows}.get)
     panels = demand_panels(shown, SimpleNamespace(models=models))  # type: ignore[arg-type]
     assert len(panels) > 5
     for (quantity, body, title, unit, _), panel in zip(

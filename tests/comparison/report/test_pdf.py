@@ -159,7 +159,7 @@ def test_demands_over_phases_have_their_columns_and_units() -> None:
         )
         for (quantity, body), value in values.items()
     ]  # fmt: skip
-    scene = SimpleNamespace(name="mine", demand_statistics=rows, demands=[], bodies=2)
+    scene = SimpleNamespace(name="mine", of={"demand_statistics": rows, "demands": []}.get, bodies=2)
     models = [SimpleNamespace(key="small", title="small equations")]
     [cells] = demand_rows(SimpleNamespace(scenes=[scene], models=models))  # type: ignore[arg-type]
     assert dict(zip(HEADINGS, cells, strict=True)) == {
