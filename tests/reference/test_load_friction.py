@@ -7,7 +7,7 @@ import pytest
 from numba import types
 
 import reference
-from reference.problem import SceneError, load_scene
+from reference.problem import GRAVITY, SceneError, load_scene
 from reference.solver.work import _SystemType
 
 SCENE = load_scene("fig3-I").with_values({"duration": 4.0})
@@ -36,7 +36,7 @@ def test_an_exponent_of_zero_gives_the_bits_of_plain_friction():
 
 
 def test_small_equations_have_the_friction_of_their_constant_load():
-    load = {"slow": 0.1, "load_exponent": 0.5, "reference_load": SCENE.total_mass * 9.80665 / 0.64}
+    load = {"slow": 0.1, "load_exponent": 0.5, "reference_load": SCENE.total_mass * GRAVITY / 0.64}
     small = {"equations": "small", "tolerance": 1e-8}
     np.testing.assert_allclose(factors(load, **small), factors(0.08, **small), rtol=3e-8)
 
