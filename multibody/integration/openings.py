@@ -162,4 +162,6 @@ class Openings:
         assert bar_lags is not None
         lags = bar_lags(self.penetration)
         coordinates = self.law.with_bars_at_rest(state.coordinates, state.velocities, velocities, lags)
-        return replace(state, coordinates=coordinates, velocities=velocities, contact=contact, slip_rate=None, load=None)
+        return replace(
+            state, coordinates=coordinates, velocities=velocities, contact=contact, slip_rate=None, load=None
+        )

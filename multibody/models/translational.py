@@ -72,7 +72,9 @@ def translational(
     add_contact = _contact_on_plane if scene.flat else _contact
     contact, contact_node = add_contact(mbs, plate, depression, friction, threshold)
     expressions = [*plate.expressions] if plate.moves else push(mbs, ground, _pushed(masses, nodes, axes))
-    recorders = add_recorders(mbs, [], [chain], [contact_node], [contact] if contact_force or scene.dry_friction.exponent else [], plate.node)
+    recorders = add_recorders(
+        mbs, [], [chain], [contact_node], [contact] if contact_force or scene.dry_friction.exponent else [], plate.node
+    )
     mbs.Assemble()
 
     constant = scene.dry_friction.constant

@@ -48,7 +48,7 @@ def circular_shaking(scene: Scene, acceleration: float, frequency: float, equati
     """
     if any((links[:, 0] != links[:, 1]).any() for links in (scene.stiffness, scene.damping)):
         raise ValueError("links differ in x and y: the motion is not circular")
-    if scene.lubricated or scene.dry_friction.varies:
+    if scene.lubricated or not scene.dry_friction.constant:
         raise ValueError("constant dry friction only")
 
     def misfit(radius: float) -> float:

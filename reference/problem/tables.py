@@ -151,7 +151,7 @@ class VelocityFriction(Table):
     slow: Annotated[Positive, within("isolator.friction.slow"), about("coefficient at rest", "", ALL)]
     fast: Annotated[
         Annotated[NonNegative, within("isolator.friction.fast")] | None,
-        about("coefficient at high speed, above or below slow; without it and rate, slow holds at every speed", "", ALL),
+        about("coefficient at high speed, above or below slow; without it and rate, slow at every speed", "", ALL),
     ] = None
     rate: Annotated[
         Annotated[Positive, within("isolator.friction.rate")] | None,
@@ -164,8 +164,7 @@ class VelocityFriction(Table):
     reference_load: Annotated[
         Annotated[Positive, within("isolator.friction.reference_load")] | None,
         about(
-            "normal force of the whole isolator under which the coefficients are those stated; the weight of all bodies "
-            "without it",
+            "normal force of the whole isolator under which the coefficients are those stated; the weight without it",
             "N",
             ALL,
         ),

@@ -22,6 +22,7 @@ from comparison.study.batches import imported
 from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
+from reference.problem.friction import LEAST_LOAD
 
 Array = NDArray[np.float64]
 
@@ -185,6 +186,8 @@ def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
     fast = speed > FASTEST * speed.max()
     ratio = across[fast] / along[fast]
     law = scene.dry_friction
+    if law.exponent:  # back to the weight
+        ratio /= np.maximum(along[fast] / (scene.total_mass * GRAVITY), LEAST_LOAD) ** law.exponent
     if law.varies:
         share = -np.expm1(-law.rate * speed[fast])  # of the change from slow to fast
         if not share.min() > LEAST_SHARE:

@@ -67,6 +67,8 @@ def _printed_rest(scene: Scene) -> Array | None:
 def _wrong_spring(scene: Scene) -> Array | None:
     if scene.flat or len(scene.bodies) < 2 or scene.stiffness[0, 0] == scene.stiffness[0, 1]:
         return None
+    if scene.dry_friction.exponent:  # the printed matrices have no normal force
+        return None
     return _change(printed_amplification(scene, PHASES, [WRONG_SPRING]), printed_amplification(scene, PHASES))
 
 

@@ -40,8 +40,9 @@ def scaled(scene: Scene, s: float) -> Scene:
     """The scene with loading, dry friction and travel times s, the rate of friction with speed over s."""
     values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
     law = scene.dry_friction
-    if law.varies:
-        values["isolator.friction"] = {"slow": s * law.slow, "fast": s * law.fast, "rate": law.rate / s}
+    if not law.constant:
+        table = {"slow": s * law.slow} | ({"load_exponent": law.exponent} if law.exponent else {})
+        values["isolator.friction"] = table | ({"fast": s * law.fast, "rate": law.rate / s} if law.varies else {})
     elif not scene.lubricated:
         values["isolator.friction"] = s * scene.friction_coefficient
     if scene.isolator.travel is not None:

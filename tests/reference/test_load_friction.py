@@ -1,0 +1,63 @@
+"""Friction that depends on the normal force against limits and closed forms; `oracle_values.json` has more."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numba import types
+
+import reference
+from reference.problem import GRAVITY, SceneError, load_scene
+from reference.solver.work import _SystemType
+
+SCENE = load_scene("fig3-I").with_values({"duration": 4.0})
+PHASES = [(0.3, 1.1), (2.0, 0.7)]
+
+
+def factors(friction: object, **asked: object) -> np.ndarray:
+    answer = reference.amplification(SCENE.with_values({"isolator.friction": friction}), PHASES, **asked)
+    assert set(answer.status) == {"ok"}
+    return answer.mu
+
+
+@pytest.mark.parametrize("regularization", [None, 1e-3])
+def test_as_the_exponent_vanishes_the_load_matters_with_slope_one(regularization):
+    plain = factors(0.1, tolerance=1e-9, regularization=regularization)
+    far, near = (
+        factors({"slow": 0.1, "load_exponent": n}, tolerance=1e-9, regularization=regularization) - plain
+        for n in (2e-3, 1e-3)
+    )
+    assert np.abs(near).max() > 1e-6
+    np.testing.assert_allclose(far, 2.0 * near, atol=0.02 * np.abs(far).max())
+
+
+def test_an_exponent_of_zero_gives_the_bits_of_plain_friction():
+    np.testing.assert_array_equal(factors({"slow": 0.1, "load_exponent": 0.0}), factors(0.1))
+
+
+def test_small_equations_have_the_friction_of_their_constant_load():
+    load = {"slow": 0.1, "load_exponent": 0.5, "reference_load": SCENE.total_mass * GRAVITY / 0.64}
+    small = {"equations": "small", "tolerance": 1e-8}
+    np.testing.assert_allclose(factors(load, **small), factors(0.08, **small), rtol=3e-8)
+
+
+def test_builds_of_both_variants_have_functions_of_other_names():
+    """A build on disk would otherwise lend its functions to the other variant, which is compiled later."""
+    without, present = (_SystemType([("exponent", kind)]).mangling_args for kind in (types.none, types.float64))
+    assert without != present
+
+
+@pytest.mark.parametrize(
+    ("friction", "said"),
+    [
+        ({"slow": 0.1}, "give fast and rate, or load_exponent"),
+        ({"slow": 0.1, "fast": 0.2}, "give fast and rate together"),
+        ({"slow": 0.1, "fast": 0.2, "rate": 1.0, "reference_load": 9.0}, "belongs to a load_exponent"),
+        ({"slow": 0.1, "load_exponent": 2.0}, "from -0.5 to 1"),
+        ({"slow": 0.1, "load_exponent": 1.0, "reference_load": 1e16}, "from 1e-09 to 1000"),
+    ],
+)
+def test_wrong_tables_are_refused_in_one_line(friction, said):
+    with pytest.raises(SceneError, match=said) as caught:
+        SCENE.with_values({"isolator.friction": friction})
+    assert "\n" not in str(caught.value)
