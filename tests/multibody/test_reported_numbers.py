@@ -12,7 +12,8 @@ from scenes_at_hand import forces_of_links
 
 import multibody
 import reference
-from multibody.integration.estimate import from_compliance
+from multibody.integration.candidate import Candidate
+from multibody.integration.estimate import from_compliance, from_levels
 from multibody.integration.peak import Peaks
 from multibody.integration.travel import travel_reached
 from multibody.models.assembly import assemble
@@ -69,6 +70,23 @@ def test_a_softer_contact_leaves_at_least_its_share_of_rho_open() -> None:
     level = multibody.levels(BRIEF)[0]
     error = from_compliance(stiff, soft, level, assemble(BRIEF, "translational", 1e-3))  # type: ignore[arg-type]
     np.testing.assert_allclose(error, level.penetration * stiff.value)
+
+
+def test_the_error_of_two_levels_is_at_least_their_change() -> None:
+    """Richardson: a level that halves the error leaves as much as it removes."""
+    levels = multibody.levels(BRIEF)[:2]
+    peaks = [Peaks(1, 1.0), Peaks(1, 1.0)]
+    for each, value in zip(peaks, (1.01, 1.0)):
+        each.value[:] = value
+    assert 0.01 <= from_levels(peaks, levels, assemble(BRIEF, "translational", 1e-3))[0] < 0.03
+
+
+def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
+    run: Any = SimpleNamespace(peaks=Peaks(1, 1.0))
+    run.peaks.value[:] = 1.0
+    parts = [np.array([part]) for part in (1e-3, 2e-3, 0.0)]
+    answer = Candidate(run, multibody.levels(BRIEF)[0], True, *parts, (), compliance=np.array([4e-3]))
+    assert answer.errors[0] == pytest.approx(7e-3)
 
 
 def test_at_the_lowest_rate_a_whole_change_counts_as_error() -> None:
