@@ -28,7 +28,7 @@ BRIEF = load_scene("fig3-I").with_values({"duration": 0.5})
 def test_a_travel_passed_within_a_step_is_passed_on_the_way_out() -> None:
     """x = v t - a t^2 / 2 goes beyond the travel and comes back within one step."""
     speed, braking, travel = 2.0, 4.0, 0.49
-    time = np.array([0.35, 0.62])
+    time = np.array([0.35, 0.8])
     place = speed * time - 0.5 * braking * time**2
     rate = speed - braking * time
     rows = np.zeros((2, 6))
@@ -38,7 +38,7 @@ def test_a_travel_passed_within_a_step_is_passed_on_the_way_out() -> None:
     instant, row = travel_reached(motion, model)
     assert row == 0
     # the squared displacement is of fourth order in time, of which the cubic between two samples misses some
-    assert instant == pytest.approx((speed - math.sqrt(speed**2 - 2.0 * braking * travel)) / braking, abs=0.02)
+    assert instant == pytest.approx((speed - math.sqrt(speed**2 - 2.0 * braking * travel)) / braking, abs=0.05)
 
 
 def test_the_error_of_a_parabola_is_that_of_a_cubic_signal() -> None:
