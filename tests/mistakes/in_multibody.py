@@ -40,7 +40,7 @@ MISTAKES = (
         "change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)",
         "change = 0.5 * safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)",
         "The error that levels show is halved.",
-        (COVERAGE,),
+        (NUMBERS + "test_the_error_of_two_levels_is_at_least_their_change",),
     ),
     Mistake(
         INTEGRATION + "estimate.py",
@@ -117,7 +117,7 @@ MISTAKES = (
         "return np.maximum(shown if self.compliance is None else shown + self.compliance, self.least)",
         "return np.maximum(shown, self.least)",
         "What the contact's compliance leaves is no error.",
-        (TESTS + "test_springs_of_supports.py::test_the_compliance_is_measured_on_real_bearings",),
+        (NUMBERS + "test_the_error_of_an_answer_is_the_sum_of_its_parts",),
     ),
     Mistake(
         INTEGRATION + "peak.py",

@@ -24,9 +24,9 @@ BROKEN = {
     "friction of the velocity without its rate": (
         "friction = 0.1",
         "friction = {slow = 0.1, fast = 0.2}",
-        "isolator.friction.rate",
+        "isolator.friction",
         None,
-        "this key is required",
+        "give fast and rate together, or neither",
     ),
     "friction of the velocity without hold": (
         "friction = 0.1",

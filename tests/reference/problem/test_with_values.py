@@ -70,7 +70,11 @@ def test_none_leaves_a_key_out_and_arrays_are_lists():
         ("bodies.-1.mass", 0.1, "indices"),
         ("bodies.mass", 0.1, "indices"),
         ("isolator.friction.x", 0.1, "unknown key"),
-        ("isolator.friction.slow", 0.1, "no table: give isolator.friction = {slow = ..., fast = ..., rate = ...}"),
+        (
+            "isolator.friction.slow",
+            0.1,
+            "no table: give isolator.friction = {slow = ..., fast = ..., rate = ..., load_exponent",
+        ),
         ("", 0.1, "unknown key"),
         (".".join(["a"] * 5000), 0.1, "unknown key"),
         ("isolator.friction", -0.1, "greater than or equal to 0"),
