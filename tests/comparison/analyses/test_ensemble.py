@@ -8,7 +8,7 @@ import json
 import math
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -51,7 +51,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     time = np.arange(0.0, 2.0, 0.05)
     for number in (1, 2, 3):
         along_x = number * np.sin((5.0 + number) * time) * np.exp(-(((time - 1.0) / 0.5) ** 2))
-        rows = "\n".join(f"{t:.2f},{a:.6f},{0.5 * a:.6f}" for t, a in zip(time, along_x))
+        rows = "\n".join(f"{t:.2f},{a:.6f},{(1.5 if number == 2 else 0.5) * a:.6f}" for t, a in zip(time, along_x))
         (tmp_path / "suite" / f"m{number}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{rows}\n")
     (tmp_path / "mine.toml").write_text(SCENE)
     monkeypatch.chdir(tmp_path)
@@ -123,6 +123,19 @@ def test_the_bound_of_the_engine_has_the_errors_of_both_sides() -> None:
     assert bound.largest == pytest.approx(0.5)
     assert bound.like_for_like == pytest.approx(0.2)
     assert bound.errors == pytest.approx((0.2 + 0.4) / 2.5)
+
+
+def test_without_an_answer_the_smallest_force_is_not_known() -> None:
+    known, unknown = demanding(1.0, 0.0, Estimate(1.0, 0.0)), demanding(NAN, NAN, Estimate(1.0, 0.0))
+    points = [
+        replace(point, demands=replace(point.demands, contact_force_min=point.demands.displacement))
+        for point in (known, known, known, unknown)
+        if point.demands is not None
+    ]
+    displacement, _, force = stripes(points)
+    assert (displacement.smallest.value, force.largest.value) == (1.0, 1.0)
+    assert math.isnan(displacement.largest.value)
+    assert math.isnan(force.smallest.value)
 
 
 def test_a_motion_that_still_moves_is_counted_with_its_reason() -> None:
