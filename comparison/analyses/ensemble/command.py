@@ -36,7 +36,7 @@ from comparison.analyses.ensemble.result import PICTURE, STORED, stored
 from comparison.analyses.ensemble.units import figures_of, shown_stripes, unit_for_reading
 from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
 from comparison.cli.computing import computed, run_facts
-from comparison.cli.terminal import new_table
+from comparison.cli.terminal import new_table, print_implausible_values
 from comparison.runner.executors import Pool
 from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
 from comparison.runner.processes import process_pool
@@ -72,6 +72,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     console, ensemble = wide_console(), Ensemble(members, subset, model)
     if line := how_paired(options.suite):
         console.print(line, soft_wrap=True, markup=False)
+    print_implausible_values(console, [member.scene for member in members])
     tasks = ensemble.tasks()
     engine = len(ensemble.chosen())
     seconds = sum(task.seconds for task in tasks)
