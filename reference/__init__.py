@@ -9,6 +9,7 @@ trajectory      one motion, sampled in time
 peak_demands    what the motions at many phase pairs demand of isolator and structure, with errors
 demands         that of one motion
 floor_spectra   response spectra of its floors, with errors
+factor_for_spectrum  factor of a ground motion for a target spectrum
 modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
 damped_modes    complex modes and damping ratios of the chain with the dampers of its links
 load_scene      a scene from a built-in name or a TOML file
@@ -62,6 +63,7 @@ from reference.measures import (
     FloorSpectra,
     PeakDemands,
     demands,
+    factor_for_spectrum,
     floor_spectra,
     phase_distribution,
 )
@@ -116,6 +118,7 @@ __all__ = [
     "damped_modes",
     "demands",
     "example_scenes",
+    "factor_for_spectrum",
     "floor_spectra",
     "load_scene",
     "modes",

@@ -21,6 +21,8 @@ from comparison.study.models import models_of, why_not_spatial
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
 from comparison.surfaces.tasks import surface_tasks
+from reference.problem import Scene
+from reference.problem.plausibility import implausible_values
 
 NAMES = 4  # of a list on the terminal
 
@@ -89,8 +91,16 @@ def print_stored(console: Console, results: TaskResults, batches: Sequence[Task]
         console.print(line, soft_wrap=True)  # a path is copied whole
 
 
+def print_implausible_values(console: Console, scenes: Sequence[Scene]) -> None:
+    """A line for every value that is hardly meant, with the first scene that has it."""
+    said = {line: scene.name for scene in reversed(scenes) for line in implausible_values(scene)}
+    for line, name in said.items():
+        console.print(f"Warning: {name}: {line}", soft_wrap=True, markup=False)
+
+
 def print_models_left_out(console: Console, study: Study) -> None:
-    """A line for every scene that states only a part of what a model needs."""
+    """A line for every scene with hardly meant values, or that states only a part of what a model needs."""
+    print_implausible_values(console, study.scenes)
     for scene in study.scenes:
         if reason := why_not_spatial(scene):
             console.print(f"{scene.name}: {reason}.", soft_wrap=True)

@@ -4,6 +4,7 @@ What is read off motions and surfaces, whichever side computed them.
 Functions
 ---------
 demands                 what a motion demands of isolator and structure
+factor_for_spectrum     factor of a ground motion for a target spectrum
 floor_spectra           response spectra of the floors of a motion
 phase_distribution      mean and fractiles of mu over uniform phases
 
@@ -17,7 +18,7 @@ Estimate, Estimates                 a number with its error; arrays of them
 from reference.measures.demands import Demands, Estimate, demands
 from reference.measures.distribution import PhaseDistribution, phase_distribution
 from reference.measures.peak_demands import Estimates, PeakDemands
-from reference.measures.spectra import FloorSpectra, floor_spectra
+from reference.measures.spectra import FloorSpectra, factor_for_spectrum, floor_spectra
 
 __all__ = [
     "Demands",
@@ -27,6 +28,7 @@ __all__ = [
     "PeakDemands",
     "PhaseDistribution",
     "demands",
+    "factor_for_spectrum",
     "floor_spectra",
     "phase_distribution",
 ]

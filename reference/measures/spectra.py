@@ -123,6 +123,70 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     return FloorSpectra(period, damping, value, error)
 
 
+def factor_for_spectrum(
+    time: ArrayLike,
+    acceleration: ArrayLike,
+    periods: ArrayLike,
+    target: ArrayLike,
+    damping: float = 0.05,
+) -> float:
+    """
+    Factor of a ground motion that brings its response spectrum closest to a target spectrum.
+
+    Parameters
+    ----------
+    time : array_like, (K,), s
+        Rising instants of the samples.
+    acceleration : array_like, (K,) or (K, 2), m/s^2
+        Along x, or x and y. The spectrum of two directions is their geometric mean.
+    periods : array_like, (P,), s
+        Natural periods of the target spectrum.
+    target : array_like, (P,), m/s^2
+        Its pseudo-accelerations.
+    damping : float
+        Damping ratio of the spectra, from 0 to 1.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ValueError
+        For arguments that do not fit together, in one line.
+
+    Notes
+    -----
+    Least squares in the logarithm, with the same weight at every period: the mean over the periods of
+    (ln(f S) - ln T)^2 is smallest at f = exp(mean(ln T - ln S)). Give periods that are evenly spaced in their
+    logarithm.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> time = np.arange(0.0, 10.0, 0.01)
+    >>> motion = np.sin(6.0 * time)
+    >>> round(factor_for_spectrum(time, motion, [0.01, 0.02], [0.5, 0.5]), 2)
+    0.5
+    """
+    damping = checked_number("damping", damping, DAMPING)
+    rule = "must be positive numbers (P,), as many periods as accelerations of the target"
+    period, wanted = checked_array("periods", periods, rule), checked_array("target", target, rule)
+    if period.ndim != 1 or period.shape != wanted.shape or not len(period) or not min(period.min(), wanted.min()) > 0.0:
+        raise ValueError(f"periods {period.shape}, target {wanted.shape}: {rule}")
+    rule = "must be rising instants (K,), s, and as many accelerations (K,) or (K, 2), m/s^2"
+    instants, ground = checked_array("time", time, rule), checked_array("acceleration", acceleration, rule)
+    ground = ground[:, None] if ground.ndim == 1 else ground
+    shaped = instants.ndim == 1 and ground.ndim == 2 and len(ground) == len(instants) > 1 and ground.shape[1] in (1, 2)
+    if not (shaped and (np.diff(instants) > 0.0).all()):
+        raise ValueError(f"time {instants.shape}, acceleration {ground.shape}: {rule}")
+    if not ground.any(axis=0).all():
+        raise ValueError("acceleration: at rest along a direction: leave it out")
+    ground = np.ascontiguousarray(ground)
+    spectra = _largest_accelerations(instants, ground, period, damping, _power_series(damping))
+    return float(np.exp(np.mean(np.log(wanted) - np.log(spectra).mean(axis=0))))
+
+
 @cached_on_disk(__file__, nogil=True)
 def _largest_accelerations(time: Array, floor: Array, period: Array, damping: float, series: Array) -> Array:
     """

@@ -6,11 +6,20 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from reference.problem.ranges import brief
+from reference.problem.record_files import AXES
+from reference.problem.record_loading import SUITE
 from reference.problem.scene_error import SceneError, keys_of, unknown_key
 
 
 def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapping[str, Sequence[str]]) -> None:
     """Set one value by its dotted key in tables with these valid keys; None leaves it out. Raises SceneError."""
+    table, _, last_part = key.rpartition(".")
+    record = data["excitation"].get("record") if isinstance(data.get("excitation"), dict) else None
+    if table == "excitation.record" and isinstance(record, dict):
+        valid = SUITE if "suite" in record else AXES
+        if last_part not in valid:
+            raise unknown_key(scene, key, value, valid)
+        key, value = table, {name: part for name, part in {**record, last_part: value}.items() if part is not None}
     parts = key.split(".")
     place: Any = data
     for depth, part in enumerate(parts):

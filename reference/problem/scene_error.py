@@ -15,6 +15,8 @@ MAX_LETTERS = 300  # letters of a path or a key in an error
 EXCITATIONS = ("two frequencies", "recorded motion")
 SUPPORTS = ("number of supports", "positions of supports")
 FRICTIONS = ("constant friction", "velocity-dependent friction")
+SYNONYMS = {"bearings": "supports", "isolators": "supports"}
+ALONG_AXES = {"stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s"}  # of a link
 DAMPINGS = ("damping ratio", "damping coefficients")
 
 
@@ -64,6 +66,8 @@ def keys_of(table: str, keys: Mapping[str, Sequence[str]]) -> Sequence[str]:
 
 def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneError:
     """The error for the dotted `key` where the keys `valid` belong: it names the nearest of them."""
+    if (meant := SYNONYMS.get(key.rpartition(".")[2])) in valid:
+        return SceneError(file, key, value, f"unknown key; did you mean {meant}?")
     nearest = get_close_matches(key.rpartition(".")[2][:MAX_LETTERS], valid, n=2, cutoff=0.5)
     suggestion = f"did you mean {' or '.join(nearest)}?" if nearest else f"the keys here are {', '.join(valid)}"
     return SceneError(file, key, value, f"unknown key; {suggestion}")
@@ -86,4 +90,6 @@ def first_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence
     if error["type"] == "missing":
         return SceneError(file, key, None, "this key is required")
     rule = error["msg"].removeprefix("Value error, ")
+    if error["type"] == "list_type" and (form := ALONG_AXES.get(str(place[-1]))):
+        rule = f"must be {form}"
     return SceneError(file, key, error["input"], rule)

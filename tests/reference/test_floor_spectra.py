@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy import optimize, signal
 from scipy.integrate import quad, solve_ivp
 
 import multibody
 import reference
+from reference import factor_for_spectrum
 from reference.problem import Scene, Trajectory
 
 PHASE = (2.0, 0.7)
@@ -155,3 +157,46 @@ def test_misfits_are_refused_in_one_line(periods, damping, rule) -> None:
     with pytest.raises(ValueError, match=rule) as refused:
         reference.floor_spectra(motion, periods, damping)
     assert "\n" not in str(refused.value)
+
+
+def oscillator_spectrum(time: np.ndarray, ground: np.ndarray, period: float, damping: float) -> float:
+    """Largest pseudo-acceleration of an oscillator by SciPy's simulation of its state."""
+    omega = 2.0 * np.pi / period
+    system = signal.lti([[0.0, 1.0], [-(omega**2), -2.0 * damping * omega]], [[0.0], [-1.0]], [[1.0, 0.0]], [[0.0]])
+    return float(omega**2 * np.abs(signal.lsim(system, ground, time)[1]).max())
+
+
+def test_the_factor_for_a_spectrum_is_that_of_least_squares() -> None:
+    """The minimum of the squared differences of logarithms, found by SciPy from spectra of SciPy."""
+    random = np.random.default_rng(3)
+    time, periods = np.arange(0.0, 12.0, 0.002), np.geomspace(0.4, 2.0, 5)
+    ground = np.column_stack([np.interp(time, np.arange(13.0), random.normal(size=13)) for _ in "xy"])
+    ground *= [1.0, 2.0]
+    target = random.uniform(1.0, 4.0, 5)
+    spectra = np.array([[oscillator_spectrum(time, row, period, 0.1) for period in periods] for row in ground.T])
+    mean = np.sqrt(spectra.prod(axis=0))
+
+    def misfit(logarithm: float) -> float:
+        return float(((np.log(np.exp(logarithm) * mean) - np.log(target)) ** 2).sum())
+
+    expected = np.exp(optimize.minimize_scalar(misfit, bracket=(-1.0, 1.0)).x)
+    assert factor_for_spectrum(time, ground, periods, target, damping=0.1) == pytest.approx(expected, rel=1e-4)
+    doubled = factor_for_spectrum(time, 2.0 * ground, periods, target, damping=0.1)
+    assert doubled == pytest.approx(0.5 * expected, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("time", "ground", "periods", "target", "rule"),
+    [
+        ([0.0, 1.0], [1.0, 2.0], [1.0, 2.0], [1.0], "as many periods"),
+        ([0.0, 1.0], [1.0, 2.0], [1.0], [0.0], "must be positive"),
+        ([0.0, 0.0], [1.0, 2.0], [1.0], [1.0], "rising instants"),
+        ([0.0, 1.0], [[1.0, 0.0], [2.0, 0.0]], [1.0], [1.0], "at rest along a direction"),
+    ],
+)
+def test_what_has_no_factor_is_one_line(
+    time: list[float], ground: list[float], periods: list[float], target: list[float], rule: str
+) -> None:
+    with pytest.raises(ValueError, match=rule) as error:
+        factor_for_spectrum(time, ground, periods, target)
+    assert "\n" not in str(error.value)

