@@ -20,10 +20,10 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "`isolator.friction` as a table",
         "VelocityFriction",
         "isolator.friction",
-        "Friction that depends on the slip speed, mu(v) = fast - (fast - slow) exp(-rate v), as in practice:"
-        " `friction = {slow = 0.03, fast = 0.06, rate = 100.0}`. It holds the platform at rest with `slow`."
-        " Regularized it is mu(v) min(1, v / v_reg). `load_exponent` n multiplies it by (N / N_ref)^n, N the normal"
-        " force, in the spatial model of each support against its share of N_ref; `slow` may then stand alone."
+        "Friction that depends on the slip speed, mu(v) = fast - (fast - slow) exp(-rate v), as in friction-pendulum"
+        " practice: `friction = {slow = 0.03, fast = 0.06, rate = 100.0}`. It holds the platform at rest with `slow`."
+        " Regularized it is mu(v) min(1, v / v_reg). `load_exponent` n multiplies it by (N / N_ref)^n, with N the"
+        " normal force, in the spatial model of each support against its share of N_ref; `slow` may then stand alone."
         " Each number may run over a range.",
     ),
     (

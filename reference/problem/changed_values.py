@@ -31,7 +31,7 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
             index: Any = int(part)
         else:
             table = ".".join(name for name in parts[:depth] if not name.isdecimal())
-            valid = keys_of(table, keys)
+            valid: Sequence[str] = keys_of(table, keys)
             if not valid:
                 raise SceneError(scene, key, value, f"{table} has no keys to set one by one: give {table} as a whole")
             if part in valid and not isinstance(place, dict):

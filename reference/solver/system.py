@@ -35,7 +35,7 @@ class System(NamedTuple):
     friction: float  # mu, at rest where it depends on the velocity, or f_c in s/m
     rise: float  # of mu from rest to high speed
     rate: float  # s/m, of that rise; 0 where mu is constant
-    exponent: Any  # float or None: of the normal force over the weight, in mu; None where mu does not depend on it
+    exponent: Any  # float, of the normal force over the weight, in mu; None where mu does not depend on it
     v_reg: float  # m/s, of the regularized law
     mass_ratio: float  # m_sum / m1
     radius: float  # m
