@@ -113,6 +113,8 @@ def quantities(
     """The table of one run; explain: verdict and cause of quantity k, whose E exceeds this u_val."""
     rows = []
     for k, (name, unit, use) in enumerate(zip(data.names, data.units, data.use)):
+        if math.isnan(data.values[k]):  # phases of starts and stops in a run at rest
+            continue
         sides, cause = {}, ""
         for side, (values, errors) in answers.items():
             error = float(values[k] - data.values[k])

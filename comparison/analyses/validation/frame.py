@@ -34,10 +34,12 @@ SAMPLES = 250  # of a cycle, as measured
 FEWEST = 3  # whole cycles of a run
 HARMONICS = 6  # fitted to the base motion
 SPEED = 2.0  # mm/s: slower is at rest
+AT_REST = 0.1  # mm: the plate creeps and its sensor scatters by as much under a disc that holds it
 WIDTH = 4  # samples to either side of a velocity
 REGULARIZATION = 1e-4  # m/s, of the engine
 TOLERANCE = 1e-3  # of the engine
 FIRST = 0.250  # kg, weight of the disc in the run that the ratio is fitted to, if the folder has it
+SECOND = 0.450  # kg, in the run that the dependence of the ratio on the load is fitted to, likewise
 STEP = 0.005  # of ratio and scale, for slopes
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
 UNITS = ("mm", "mm", "%", "deg", "deg")
@@ -118,6 +120,8 @@ def read_cycle(motion: Array, frequency: float) -> Array:
     phases are from the turn of the base on, means of both directions.
     """
     speed = (np.roll(motion, -WIDTH) - np.roll(motion, WIDTH)) * frequency * SAMPLES / (2 * WIDTH)
+    if np.abs(speed).max() < SPEED:  # at rest throughout: nothing starts or stops
+        return np.array([0.5 * np.ptp(motion), motion.std(), 100.0, math.nan, math.nan])
     ends = []
     for sign in (-1.0, 1.0):
         top = int(np.argmax(sign * speed))
@@ -222,6 +226,7 @@ def compare(runs: Sequence[Shaken]) -> Found:
     parts = [
         _compare_run(each, "calibrated" if each is first else "predicted", setup, varied, other) for each in folded
     ]
+    parts += _with_friction_of_the_load(first, folded, setup, varied, other)
     inputs = [
         assess.given(f"frame: {name}", getattr(setup, key), size, unit, source)
         for key, (size, name, unit, source) in ASSUMED.items()
@@ -231,8 +236,34 @@ def compare(runs: Sequence[Shaken]) -> Found:
     return assess.joined([Found([], inputs, [], []), *parts])
 
 
-def _compare_run(cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup) -> Found:
+def _with_friction_of_the_load(
+    first: Cycles, folded: Sequence[Cycles], setup: Setup, varied: Sequence[Setup], other: Setup
+) -> list[Found]:
+    """Friction that is a power of the load, as `load_exponent` has it, fitted to two runs; all others predicted."""
+    moving = [each for each in folded if each is not first and np.ptp(each.mean) > 2.0 * AT_REST]
+    if not moving:
+        return []
+    second = min(moving, key=lambda cycles: abs(cycles.run.weight - SECOND))
+    own, _ = fit(second, setup, "ratio")
+    exponent = math.log(own.ratio / setup.ratio) / math.log(second.run.weight / first.run.weight)
+    fact = (
+        f"frame: a friction ratio that grows as the load to the power {exponent:.3f} meets the motion of both "
+        f"{first.run.name} and {second.run.name}"
+    )
+    found = [Found([], [], [fact], [])]
+    for each in folded:
+        if each is not first and each is not second:
+            factor = (each.run.weight / first.run.weight) ** exponent
+            at, others, explained = (
+                [one._replace(ratio=factor * one.ratio) for one in group] for group in ([setup], varied, [other])
+            )
+            found.append(_compare_run(each, "predicted", at[0], others, explained[0], ", friction of the load"))
+    return found
+
+
+def _compare_run(cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup, law: str = "") -> Found:
     """One run; other: setup with ratio and base motion fitted to the first run, as an input that might explain an E."""
+    title = cycles.run.name + law
     found = [read_cycle(motion, cycles.frequency) for motion in cycles.motions]
     data = assess.Data(NAMES, UNITS, [use] * 5, np.mean(found, axis=0), COVERAGE * np.std(found, axis=0, ddof=1))
     motions = {side: compute(side, cycles, setup) for side in SIDES}
@@ -249,15 +280,15 @@ def _compare_run(cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup]
             return LAW, f"gone with the ratio of this run, {own.ratio:.3f}: the ratio depends on the load"
         return LAW, f"gone neither with the ratio of this run, {own.ratio:.3f}, nor with {shift}"
 
-    rows = assess.quantities(cycles.run.name, data, inputs, answers, explain)
+    rows = assess.quantities(title, data, inputs, answers, explain)
     best = last_cycle(compute(EQUATIONS, cycles, own), cycles.frequency)
     lines = {"measured": cycles.mean} | {
         side: last_cycle(motions[side], cycles.frequency) for side in (EQUATIONS, ENGINE)
     }
     fact = (
-        f"{cycles.run.name}: the friction ratio of this run alone is {own.ratio:.3f}; the motion over a cycle is then "
+        f"{title}: the friction ratio of this run alone is {own.ratio:.3f}; the motion over a cycle is then "
         f"off by {np.std(best - cycles.mean):.3f} mm rms, and by {np.std(lines[EQUATIONS] - cycles.mean):.3f} mm with "
         f"{setup.ratio:.3f}"
     )
     axes, turn = ("phase of the base, deg", "top plate, mm"), (np.arange(SAMPLES) * 360.0 / SAMPLES).tolist()
-    return Found(rows, [], [fact], [Curve(cycles.run.name, axes, name, turn, y.tolist()) for name, y in lines.items()])
+    return Found(rows, [], [fact], [Curve(title, axes, name, turn, y.tolist()) for name, y in lines.items()])

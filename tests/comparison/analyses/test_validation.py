@@ -90,7 +90,7 @@ def test_the_equations_predict_runs_of_an_independent_program(tmp_path: Path, gr
 def test_the_numbers_of_a_known_cycle_are_read():
     turn = np.arange(frame.SAMPLES) * 360.0 / frame.SAMPLES
     motion = np.interp(turn, [0.0, 70.0, 150.0, 250.0, 330.0, 360.0], [1.5, 1.5, -1.5, -1.5, 1.5, 1.5])
-    half_range, rms, rest, starts, stops = frame.read_cycle(motion, 1.0)
+    half_range, _, rest, starts, stops = frame.read_cycle(motion, 1.0)
     assert half_range == 1.5
     assert rms == pytest.approx(math.sqrt((200.0 * 1.5**2 + 160.0 * 1.5**2 / 3.0) / 360.0), rel=1e-3)
     width, top = (
@@ -130,6 +130,35 @@ def test_half_periods_are_those_of_elliptic_integrals():
         assert abs(each.sides[EQUATIONS].error) < 2e-4 * each.measured, each
         assert abs(each.sides[ENGINE].error) < 4e-4 * each.measured, each
     assert "-14" in found.facts[0]  # what the small-vibration equations are off by at 1.5 rad
+
+
+def test_a_run_at_rest_has_no_starts_and_stops():
+    half_range, _, rest, starts, stops = frame.read_cycle(0.05 * np.sin(np.linspace(0.0, 6.283, frame.SAMPLES)), 1.0)
+    assert half_range == pytest.approx(0.05, rel=1e-3)
+    assert rest == 100.0
+    assert math.isnan(starts)
+    assert math.isnan(stops)
+
+
+@pytest.mark.long
+def test_friction_of_the_load_fitted_to_two_runs_predicts_others(tmp_path: Path):
+    exponent = 0.15
+    for grams in (250, 350, 450, 2600):  # the heaviest disc holds the plate
+        ratio = RATIO * (grams / 250.0) ** exponent
+        time, plate, base = shaken(1e-3 * grams * ratio / RATIO if grams < 2000 else 0.25)
+        plate = plate if grams < 2000 else np.zeros_like(plate)
+        savemat(tmp_path / f"s_b_{grams}g_x.mat", {"t": time[:, None], "x": plate[:, None]})
+        savemat(tmp_path / f"s_b_{grams}g_y.mat", {"t": time[:, None], "y": base[:, None]})
+    table = compared(tmp_path)
+    rows = {(each.experiment, each.name): each for each in table.quantities}
+    assert any("to the power 0.15" in fact for fact in table.facts)
+    constant, loaded = (rows[f"frame, 350 g{law}", "half range"] for law in ("", ", friction of the load"))
+    assert abs(loaded.sides[EQUATIONS].error) < 0.002 * loaded.measured
+    assert abs(loaded.sides[EQUATIONS].error) < 0.3 * abs(constant.sides[EQUATIONS].error)
+    assert abs(loaded.sides[ENGINE].error - loaded.sides[SMOOTHED].error) < 0.002 * loaded.measured
+    held = rows["frame, 2600 g", "share of time at rest"]
+    assert held.measured == 100.0
+    assert ("frame, 2600 g", "phase of the stops") not in rows
 
 
 @pytest.mark.long
