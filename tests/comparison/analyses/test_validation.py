@@ -90,7 +90,7 @@ def test_the_equations_predict_runs_of_an_independent_program(tmp_path: Path, gr
 def test_the_numbers_of_a_known_cycle_are_read():
     turn = np.arange(frame.SAMPLES) * 360.0 / frame.SAMPLES
     motion = np.interp(turn, [0.0, 70.0, 150.0, 250.0, 330.0, 360.0], [1.5, 1.5, -1.5, -1.5, 1.5, 1.5])
-    half_range, _, rest, starts, stops = frame.read_cycle(motion, 1.0)
+    half_range, rms, rest, starts, stops = frame.read_cycle(motion, 1.0)
     assert half_range == 1.5
     assert rms == pytest.approx(math.sqrt((200.0 * 1.5**2 + 160.0 * 1.5**2 / 3.0) / 360.0), rel=1e-3)
     width, top = (
