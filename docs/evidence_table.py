@@ -47,7 +47,7 @@ def table() -> str:
     claims = {"reference": "the equations are solved", "engine": "the engine's model is solved"}
     tests = [
         f"| {claims[check.side]} | {check.against} | within | {check.closeness} "
-        f"| `{check.file}::{check.test}` | every commit |"
+        f"| `{check.file}::{check.test}` | every commit or night |"
         for check in CHECKS
     ]
     return HEAD + "\n".join([*measured_rows(), *tests]) + "\n"

@@ -25,15 +25,15 @@ reference: reference/test_closed_form_motions.py
   free decay under dry friction: turning points, stops, rest | 1e-7, ten times the tolerance asked |
     test_free_coulomb_decay_of_the_small_equations
   planar slide down and up the sphere with the centripetal part of the contact force | 1e-7 in angle, 2e-7 in energy |
-    test_swing_down_and_up_the_cap_with_friction_of_the_exact_equations
+    test_swing_down_and_up_the_cap_with_friction
   conical pendulum: rate, circle, contact force | 1e-6, a hundred times the tolerance, over many turns |
-    test_conical_pendulum_turns_at_its_frequency_with_a_constant_contact_force
+    test_conical_pendulum_turns_at_its_frequency
   Den Hartog's forced oscillation with friction | 1e-7, what the sphere adds at so weak a loading |
     test_den_hartog_s_oscillation_goes_on_as_it_was_begun
   surface without friction, by superposed modes | within the error each value states |
-    test_frictionless_surface_is_the_closed_form_within_the_error_it_states
+    test_frictionless_surface_is_the_closed_form_to_its_error
 reference: reference/test_natural_modes.py
-  frequencies and shapes of a uniform chain | rounding | test_uniform_chain_frequencies_and_shapes_are_the_closed_form
+  frequencies and shapes of a uniform chain | rounding | test_uniform_chain_has_its_closed_form
 reference: reference/test_energy_balance.py
   energy balance along every run | the tolerance asked | test_energy_is_balanced
 reference: reference/test_oracle_values.py
@@ -46,17 +46,17 @@ reference: comparison/analyses/test_benchmarks.py
   numbers published elsewhere: code_aster, ANSYS, Chopra, Den Hartog, Newmark | the error of both |
     test_the_equations_meet_every_published_number
 engine: multibody/test_contact.py
-  static penetration N/k_c | 1e-6, Newton's tolerance | test_the_weight_presses_the_contact_in_by_the_static_penetration
+  static penetration N/k_c | 1e-6, Newton's tolerance | test_the_weight_presses_the_contact_in
   creep of a held platform, v_reg F / (mu N) | 2e-6, the slope of the sphere squared |
-    test_a_held_platform_creeps_with_v_reg_times_force_over_friction_limit
+    test_a_held_platform_creeps_as_v_reg_says
   straight slide that stops after v^2 / (2 mu g) | 2e-5 | test_sliding_stops_after_v_squared_over_two_mu_g
   planar slide on the sphere with friction | 1e-4, the square of the step |
-    test_planar_sliding_follows_the_closed_form_with_the_centripetal_force
+    test_planar_sliding_follows_the_closed_form
   large-angle period without friction; conical pendulum | 1e-5 |
     test_a_conical_pendulum_keeps_its_circle_at_its_own_rate
 engine: multibody/test_energy.py
   energy along a whole run of the chain | stated in the test |
-    test_kinetic_spring_and_gravity_energy_equal_work_of_the_plate_less_friction
+    test_energy_equals_the_plate_s_work_less_friction
 engine: multibody/test_like_for_like.py
   halved steps until two runs agree, at every point of every surface | the error each value states |
     test_no_finer_run_contradicts_an_answer

@@ -163,10 +163,10 @@ def factor_for_spectrum(
 
     Examples
     --------
-    >>> import numpy as np
+    >>> import numpy as np, reference
     >>> time = np.arange(0.0, 10.0, 0.01)
     >>> motion = np.sin(6.0 * time)
-    >>> round(factor_for_spectrum(time, motion, [0.01, 0.02], [0.5, 0.5]), 2)
+    >>> round(reference.factor_for_spectrum(time, motion, [0.01, 0.02], [0.5, 0.5]), 2)
     0.5
     """
     damping = checked_number("damping", damping, DAMPING)

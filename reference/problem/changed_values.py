@@ -16,9 +16,9 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
     table, _, last_part = key.rpartition(".")
     record = data["excitation"].get("record") if isinstance(data.get("excitation"), dict) else None
     if table == "excitation.record" and isinstance(record, dict):
-        valid = SUITE if "suite" in record else AXES
-        if last_part not in valid:
-            raise unknown_key(scene, key, value, valid)
+        own: Sequence[str] = SUITE if "suite" in record else AXES
+        if last_part not in own:
+            raise unknown_key(scene, key, value, own)
         key, value = table, {name: part for name, part in {**record, last_part: value}.items() if part is not None}
     parts = key.split(".")
     place: Any = data
@@ -31,7 +31,7 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
             index: Any = int(part)
         else:
             table = ".".join(name for name in parts[:depth] if not name.isdecimal())
-            valid: Sequence[str] = keys_of(table, keys)
+            valid = keys_of(table, keys)
             if not valid:
                 raise SceneError(scene, key, value, f"{table} has no keys to set one by one: give {table} as a whole")
             if part in valid and not isinstance(place, dict):
