@@ -118,3 +118,13 @@ def test_a_lubricated_scene_is_not_linear_in_the_small_equations():
     # and without friction it does
     still = [reference.amplification(frictionless().with_amplitude(a), PHASES, "small").mu for a in (0.15, 0.3)]
     np.testing.assert_allclose(*still, rtol=1e-9)
+
+
+def test_the_error_of_mu_is_over_the_ground_as_mu_is():
+    scene = load_scene("fig4-viscous")
+    once, hundred = (
+        reference.amplification(scene.with_values({"excitation.scale": scale}), [(0.3, 1.1)], equations="small")
+        for scale in (1e-4, 1e-2)
+    )
+    np.testing.assert_allclose(hundred.mu, once.mu, rtol=1e-3)
+    np.testing.assert_allclose(hundred.error / once.error, 1.0, atol=0.9)
