@@ -76,14 +76,15 @@ class Motion(NamedTuple):
     def state(self, row: int) -> EngineState:
         """State of the engine at an instant, with the rates of slip and load since the instant before."""
         row = range(len(self.time))[row]
-        slip, load = self.slip, self.load
+        near = Motion(*[column[max(row - 1, 0) : row + 1] for column in self])
+        slip, load = near.slip, near.load
         rates: list[Array | None] = [None, None]
         if row > 0:
             span = self.time[row] - self.time[row - 1]
-            rates = [None if each is None else (each[row] - each[row - 1]) / span for each in (slip, load)]
+            rates = [None if each is None else (each[1] - each[0]) / span for each in (slip, load)]
         return EngineState(
             self.coordinates[row], self.velocities[row], self.contact[row], self.plate[row], rates[0],
-            None if load is None else load[row], rates[1],
+            None if load is None else load[-1], rates[1],
         )  # fmt: skip
 
 

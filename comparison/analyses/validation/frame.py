@@ -34,7 +34,6 @@ SAMPLES = 250  # of a cycle, as measured
 FEWEST = 3  # whole cycles of a run
 HARMONICS = 6  # fitted to the base motion
 SPEED = 2.0  # mm/s: slower is at rest
-AT_REST = 0.1  # mm: the plate creeps and its sensor scatters by as much under a disc that holds it
 WIDTH = 4  # samples to either side of a velocity
 REGULARIZATION = 1e-4  # m/s, of the engine
 TOLERANCE = 1e-3  # of the engine
@@ -223,10 +222,12 @@ def compare(runs: Sequence[Shaken]) -> Found:
     varied = [setup._replace(ratio=setup.ratio + spread), setup._replace(disc=setup.disc + ASSUMED["disc"][0])]
     for name in REFITTED:
         varied.append(fit(first, setup._replace(**{name: getattr(setup, name) + ASSUMED[name][0]}), "ratio")[0])
+    own = [fit(each, setup, "ratio")[0] for each in folded]
     parts = [
-        _compare_run(each, "calibrated" if each is first else "predicted", setup, varied, other) for each in folded
+        _compare_run(each, "calibrated" if each is first else "predicted", setup, varied, other, best)
+        for each, best in zip(folded, own)
     ]
-    parts += _with_friction_of_the_load(first, folded, setup, varied, other)
+    parts += _with_friction_of_the_load(first, folded, setup, varied, other, own)
     inputs = [
         assess.given(f"frame: {name}", getattr(setup, key), size, unit, source)
         for key, (size, name, unit, source) in ASSUMED.items()
@@ -237,39 +238,41 @@ def compare(runs: Sequence[Shaken]) -> Found:
 
 
 def _with_friction_of_the_load(
-    first: Cycles, folded: Sequence[Cycles], setup: Setup, varied: Sequence[Setup], other: Setup
+    first: Cycles, folded: Sequence[Cycles], setup: Setup, varied: Sequence[Setup], other: Setup, own: Sequence[Setup]
 ) -> list[Found]:
     """Friction that is a power of the load, as `load_exponent` has it, fitted to two runs; all others predicted."""
-    moving = [each for each in folded if each is not first and np.ptp(each.mean) > 2.0 * AT_REST]
+    rest = [(each, best) for each, best in zip(folded, own) if each is not first]
+    moving = [pair for pair in rest if read_cycle(pair[0].mean, pair[0].frequency)[2] < 100.0]
     if not moving:
         return []
-    second = min(moving, key=lambda cycles: abs(cycles.run.weight - SECOND))
-    own, _ = fit(second, setup, "ratio")
-    exponent = math.log(own.ratio / setup.ratio) / math.log(second.run.weight / first.run.weight)
+    second, fitted = min(moving, key=lambda pair: abs(pair[0].run.weight - SECOND))
+    exponent = math.log(fitted.ratio / setup.ratio) / math.log(second.run.weight / first.run.weight)
     fact = (
         f"frame: a friction ratio that grows as the load to the power {exponent:.3f} meets the motion of both "
         f"{first.run.name} and {second.run.name}"
     )
     found = [Found([], [], [fact], [])]
-    for each in folded:
-        if each is not first and each is not second:
+    for each, best in rest:
+        if each is not second:
             factor = (each.run.weight / first.run.weight) ** exponent
             at, others, explained = (
                 [one._replace(ratio=factor * one.ratio) for one in group] for group in ([setup], varied, [other])
             )
-            found.append(_compare_run(each, "predicted", at[0], others, explained[0], ", friction of the load"))
+            title = ", friction of the load"
+            found.append(_compare_run(each, "predicted", at[0], others, explained[0], best, title))
     return found
 
 
-def _compare_run(cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup, law: str = "") -> Found:
-    """One run; other: setup with ratio and base motion fitted to the first run, as an input that might explain an E."""
+def _compare_run(
+    cycles: Cycles, use: str, setup: Setup, varied: Sequence[Setup], other: Setup, own: Setup, law: str = ""
+) -> Found:
+    """One run; other: ratio and base motion fitted to the first run, own: ratio to this one; each may explain E."""
     title = cycles.run.name + law
     found = [read_cycle(motion, cycles.frequency) for motion in cycles.motions]
     data = assess.Data(NAMES, UNITS, [use] * 5, np.mean(found, axis=0), COVERAGE * np.std(found, axis=0, ddof=1))
     motions = {side: compute(side, cycles, setup) for side in SIDES}
     answers = {side: read(cycles, motion) for side, motion in motions.items()}
     inputs = assess.combined([solve(cycles, each) - answers[EQUATIONS].values for each in varied])
-    own, _ = fit(cycles, setup, "ratio")
     by_input, by_ratio = (np.abs(solve(cycles, each) - data.values) for each in (other, own))
 
     def explain(k: int, allowed: float) -> tuple[str, str]:

@@ -205,14 +205,19 @@ def test_what_a_solver_complains_about_is_why_a_claim_is_open(monkeypatch: pytes
     assert all("solver failed: ZeroDivisionError: no ground" in reason for reason in reasons)
 
 
-def test_the_command_prints_the_table(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+@pytest.fixture
+def evidence_of_the_paper(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is computed: the surfaces are those that the paper plots."""
+
     def gathered(question: Question) -> Evidence:
         return PAPER[question.case]
 
     monkeypatch.setattr(table_module, "gathered", gathered)
     monkeypatch.setattr(computing, "compiling_task", lambda: Task(len, (), "compiling", 0.0, None, False))
+
+
+@pytest.mark.usefixtures("evidence_of_the_paper")
+def test_the_command_prints_the_table(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert main(["--jobs", "2", "--grid", "16", "--words", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 0
     printed = capsys.readouterr().out
     assert "1 m/s², f_c 0.1 s/m, resolved: 16 of 16" in printed
@@ -225,14 +230,8 @@ def test_the_command_prints_the_table(
     assert message.count("\n") == 1
 
 
-def test_settle_and_search_say_where_results_are_recorded(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
-    def gathered(question: Question) -> Evidence:
-        return PAPER[question.case]
-
-    monkeypatch.setattr(table_module, "gathered", gathered)
-    monkeypatch.setattr(computing, "compiling_task", lambda: Task(len, (), "compiling", 0.0, None, False))
+@pytest.mark.usefixtures("evidence_of_the_paper")
+def test_settle_and_search_say_where_results_are_recorded(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     words = ["--jobs", "1", "--grid", "16", "--out", str(tmp_path / "report")]
     recorded = "docs/claims.md records the counts on finer grids"
     for option, said in (["--settle"], True), (["--search"], True), (["--search", "4"], True), ([], False):
