@@ -19,6 +19,7 @@ from multibody.integration.travel import travel_reached
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions
 from multibody.models.impact import ImpactLaw
+from multibody.models.spatial import _critical_tilt
 from reference.problem import GRAVITY, DryFriction, Outcome, ground_acceleration, load_scene
 
 PHASE = (0.3, 1.1)
@@ -137,17 +138,44 @@ def test_a_stiff_link_carries_an_eccentric_weight_at_rest(offset: list[float]) -
     assert above < 1e-6 < below
 
 
-def test_a_chain_that_moves_as_one_stretches_and_bends_no_link() -> None:
-    """In impacts: translation and turns about any axis, of links between eccentric bodies at unequal distances."""
+def test_a_tower_tips_where_its_center_is_above_its_edge() -> None:
+    """tan = b / h of a center of mass b inside the nearest edge and h above the plane of contact, rho + r = 1.2."""
+    square = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+    centers = np.array([[0.25, 0.0, 1.0], [0.25, 0.0, 5.4]])
+    assert _critical_tilt(square, 0.2, np.ones(2), centers) == pytest.approx(math.atan(0.75 / 2.0), rel=1e-14)
+
+
+def three_bodies_on_bars() -> ImpactLaw:
+    """In impacts: eccentric bodies at unequal distances, on links that are rigid in tension and bending."""
     centers = np.array([[0.1, -0.05, 0.3], [-0.2, 0.1, 1.2], [0.05, 0.15, 2.6]])
     depressions = Depressions(np.array([[1.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]]), centers[0], 0.2, np.empty(0, np.int_))
-    law = ImpactLaw(
-        depressions, np.ones(3), np.ones((3, 3)), np.tile(np.eye(3), (3, 1, 1)), centers, 0.0,
-        DryFriction(0.1, 0.1, 0.0), 1e-3, np.ones(2, bool),
+    return ImpactLaw(
+        depressions, np.ones(3), np.ones((3, 3)), UPRIGHT, centers, 0.0, DryFriction(0.1, 0.1, 0.0), 1e-3,
+        np.ones(2, bool),
     )  # fmt: skip
-    upright = np.tile(np.eye(3), (3, 1, 1))
+
+
+UPRIGHT = np.tile(np.eye(3), (3, 1, 1))
+
+
+def test_a_chain_that_moves_as_one_stretches_and_bends_no_link() -> None:
+    law = three_bodies_on_bars()
     for axis in np.eye(3):
-        turn = np.concatenate([[np.cross(axis, center), axis] for center in centers]).ravel()
+        turn = np.concatenate([[np.cross(axis, center), axis] for center in law.centers]).ravel()
         shift = np.tile(np.concatenate([axis, np.zeros(3)]), 3)
         for velocity in (turn, shift):
-            np.testing.assert_allclose(law._bars(np.zeros(18), upright) @ velocity, 0.0, atol=1e-12)
+            np.testing.assert_allclose(law._bars(np.zeros(18), UPRIGHT) @ velocity, 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("body", [1, 2])
+def test_a_body_that_turns_about_its_link_s_end_bends_it(body: int) -> None:
+    """The end is below its center of mass, half way to the body below and on the links' axis."""
+    law = three_bodies_on_bars()
+    end = np.array([0.0, 0.0, law.centers[body - 1 : body + 1, 2].mean()])
+    for axis in np.eye(3):
+        velocity = np.zeros((3, 2, 3))
+        for above in range(body, 3):
+            velocity[above] = np.cross(axis, law.centers[above] - end), axis
+        rates = (law._bars(np.zeros(18), UPRIGHT) @ velocity.ravel()).reshape(2, 3)
+        np.testing.assert_allclose(rates[body - 1], [0.0, axis[0], axis[1]], atol=1e-12)
+        np.testing.assert_allclose(rates[2 - body], 0.0, atol=1e-12)

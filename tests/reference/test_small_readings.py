@@ -14,7 +14,8 @@ from reference.measures import demands
 from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import QUANTITIES
 from reference.problem import Scene, State, Trajectory, load_scene
-from reference.solver.phases import stopping
+from reference.solver.phases import follow, stopping
+from reference.solver.record import note_stick
 
 
 def test_fractiles_are_named_in_rising_order_and_follow_hazen() -> None:
@@ -94,3 +95,22 @@ def test_vertical_shaking_forbids_to_take_phases_from_others() -> None:
     scene: Scene = chain(amplitudes=[[1.0, 0.0], [0.0, 1.0], [2.0, 1.0]])
     assert not reference.problem.half_turn(scene)
     assert not reference.problem.own_axes(scene)
+
+
+def test_what_steps_miss_of_a_vibration_adds_up_to_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A share of 6e-8 of the defect and the angle's seventh power a step; the vibration is the defect over twice that."""
+    monkeypatch.setattr(follow, "returned", lambda *given: 0.0)
+    work: Any = SimpleNamespace(x=np.zeros((2, 2)), defect=np.array([1e-3, 2e-3]), drift=np.zeros(2))
+    share = 6e-8 * 6.0**7
+    for step in range(1, 10_000):
+        follow.note_drift.py_func(SimpleNamespace(fastest=50.0), work, 0.1, 6.0)
+        if step < 5:
+            np.testing.assert_allclose(work.drift, step * share * work.defect)
+    np.testing.assert_allclose(work.drift, work.defect / (2.0 * share))
+
+
+def test_rests_that_touch_are_one() -> None:
+    record: Any = SimpleNamespace(made=np.zeros(2, int), sticks=np.zeros((4, 2)))
+    for start, end in ((0.0, 1.0), (1.0, 2.5), (3.0, 4.0), (3.5, 3.5)):
+        note_stick.py_func(record, start, end)
+    assert record.sticks[: record.made[1]].tolist() == [[0.0, 2.5], [3.0, 4.0]]
