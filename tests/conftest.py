@@ -6,13 +6,16 @@ Property tests draw the same examples in every run, so that a gate gives one ans
 
 from __future__ import annotations
 
+import os
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from random import Random
+from tempfile import gettempdir
 from threading import RLock
 from typing import Any
+from zlib import crc32
 
 import pytest
 from hypothesis import settings
@@ -26,8 +29,8 @@ try:
 except ImportError:  # on Windows every process compiles for itself
     fcntl = None  # type: ignore[assignment]
 
-# Files to begin with: one compiles the solver, the others do not need it and take as long.
-FIRST = ("test_docstrings.py", "test_early_end.py", "test_page_in_a_browser.py")
+# Files to begin with: two compile a variant of the solver each, the third does not need it and takes as long.
+FIRST = ("test_docstrings.py", "test_friction_of_the_load.py", "test_page_in_a_browser.py")
 
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)
@@ -68,13 +71,13 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
 
 
 def compile_in_turn() -> None:
-    """Let processes compile a function one after the other: what one has kept on disk the others read."""
+    """Let processes compile a function's variant one after the other: what one has kept on disk the others read."""
     compiled, thread = Dispatcher.compile, RLock()
     depth = 0  # a function compiles those that it calls
 
     def in_turn(dispatcher: Any, signature: Any) -> Any:
         nonlocal depth
-        with thread, nullcontext() if depth else alone(dispatcher.py_func.__code__.co_filename):
+        with thread, nullcontext() if depth else alone(f"{dispatcher.py_func.__code__.co_filename} {signature}"):
             depth += 1
             try:
                 return compiled(dispatcher, signature)
@@ -85,11 +88,11 @@ def compile_in_turn() -> None:
 
 
 @contextmanager
-def alone(file: str) -> Iterator[None]:
-    """Keep other processes out of the block, by a lock on a file."""
-    if fcntl is None or not Path(file).is_file():
+def alone(what: str) -> Iterator[None]:
+    """Keep other processes that do the same out of the block, by a lock on an empty file."""
+    if fcntl is None:
         yield
         return
-    with open(file) as stream:
+    with open(Path(gettempdir(), f"phase-resonance-{os.getuid()}-{crc32(what.encode()):08x}.lock"), "a") as stream:
         fcntl.flock(stream, fcntl.LOCK_EX)
         yield

@@ -303,10 +303,10 @@ MISTAKES = (
     ),
     Mistake(
         MODELS + "impact.py",
-        "levers = self._levers(link, turned)\n            shift",
-        "levers = self._levers(link, turned)[::-1]\n            shift",
-        "Links take the lever of one body for that of the other in impacts.",
-        (NUMBERS + "test_a_body_that_turns_about_its_link_s_end_bends_it",),
+        "turn = -0.5 * np.cross(shift, along)",
+        "turn = 0.5 * np.cross(shift, along)",
+        "The axis of a stretched link turns against its bodies in impacts.",
+        (NUMBERS + "test_a_chain_that_moves_as_one_stretches_and_bends_no_link",),
     ),
     Mistake(
         MODELS + "plane.py",

@@ -17,7 +17,7 @@ from multibody.integration.estimate import from_compliance, from_levels
 from multibody.integration.peak import Peaks
 from multibody.integration.travel import travel_reached
 from multibody.models.assembly import assemble
-from multibody.models.depressions import Depressions
+from multibody.models.depressions import Depressions, rotation
 from multibody.models.impact import ImpactLaw
 from multibody.models.spatial import _critical_tilt
 from reference.problem import GRAVITY, DryFriction, Outcome, ground_acceleration, load_scene
@@ -159,12 +159,15 @@ UPRIGHT = np.tile(np.eye(3), (3, 1, 1))
 
 
 def test_a_chain_that_moves_as_one_stretches_and_bends_no_link() -> None:
-    law = three_bodies_on_bars()
+    """Whatever its links are stretched and twisted by."""
+    law, coordinates = three_bodies_on_bars(), np.random.default_rng(2).uniform(-0.2, 0.2, 18)
+    places = law.centers + coordinates.reshape(3, 6)[:, :3]
+    turned = rotation(coordinates.reshape(3, 6)[:, 3:])
     for axis in np.eye(3):
-        turn = np.concatenate([[np.cross(axis, center), axis] for center in law.centers]).ravel()
+        turn = np.concatenate([[np.cross(axis, place), axis] for place in places]).ravel()
         shift = np.tile(np.concatenate([axis, np.zeros(3)]), 3)
         for velocity in (turn, shift):
-            np.testing.assert_allclose(law._bars(np.zeros(18), UPRIGHT) @ velocity, 0.0, atol=1e-12)
+            np.testing.assert_allclose(law._bars(coordinates, turned) @ velocity, 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("body", [1, 2])

@@ -98,7 +98,7 @@ def test_vertical_shaking_forbids_to_take_phases_from_others() -> None:
 
 
 def test_what_steps_miss_of_a_vibration_adds_up_to_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A share of 6e-8 of the defect and the angle's seventh power a step; the vibration is the defect over twice that."""
+    """A share of 6e-8 of the defect and the angle's seventh power in a step, up to the defect over twice that share."""
     monkeypatch.setattr(follow, "returned", lambda *given: 0.0)
     work: Any = SimpleNamespace(x=np.zeros((2, 2)), defect=np.array([1e-3, 2e-3]), drift=np.zeros(2))
     share = 6e-8 * 6.0**7
