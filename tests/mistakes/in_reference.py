@@ -214,7 +214,7 @@ MISTAKES = (
         "a[2] + s * (b[2] - a[2])",
         "a[2] + s * (b[1] - a[1])",
         "A record changes along y between its samples as along x.",
-        (TESTS + "test_recorded_motions.py::test_mu_is_that_of_scipys_integrators",),
+        (ORACLE,),
     ),
     Mistake(
         SOLVER + "ground.py",

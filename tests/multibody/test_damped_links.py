@@ -66,28 +66,6 @@ def test_a_damped_body_on_a_held_platform_decays_in_closed_form(zeta: float) -> 
     np.testing.assert_allclose(motion.position[:, 1, 0], amplitude * expected, atol=2e-4 * amplitude)
 
 
-def test_upright_bodies_of_the_spatial_model_do_not_differ() -> None:
-    """Bodies at one height in a plane, wide supports: what turns them is small, and so is the difference."""
-    low = {"bodies.0.height": 0.0, "bodies.1.height": 0.0, "isolator.ring": 50.0, "duration": 2.0}
-    scene = damped(load_scene("fig3-I"), 0.3, **low, **{"bodies.0.size": [90.0, 90.0, 0.1]})
-    engine = multibody.amplification(scene, PHASES[:1], "spatial", tolerance=3e-3)
-    equations = reference.amplification(scene, PHASES[:1], regularization=V_REG)
-    np.testing.assert_allclose(engine.mu, equations.mu, rtol=6e-3)
-    undamped = reference.amplification(damped(scene, 0.0), PHASES[:1], regularization=V_REG)
-    assert (np.abs(undamped.mu - equations.mu) > 0.05 * equations.mu).any()
-
-
-def test_dampers_of_the_spatial_model_take_energy() -> None:
-    """The only horizontal force on all bodies together is that of the supports, friction plus restoring force."""
-    scene = damped(load_scene("fig3-I"), 0.2, duration=2.0)
-    motion = multibody.single_run(scene, PHASES[0], "spatial", step=1e-3)
-    bare = multibody.single_run(damped(scene, 0.0), PHASES[0], "spatial", step=1e-3)
-    drift = [np.hypot(*(run.position[:, 1, :2] - run.position[:, 0, :2]).T)[-500:].max() for run in (motion, bare)]
-    assert drift[0] < 0.6 * drift[1]
-    limit = motion.contact_force * (0.1 + 1.2 * np.hypot(*motion.position[:, 0, :2].T) / scene.radius) * 1.05
-    assert (np.hypot(*motion.isolator_force.T) <= limit).all()
-
-
 BARS = {"count": 4, "bending_stiffness": 8.0, "length": 0.9, "axial_stiffness": 3e3, "spread": 0.8}
 LINKS: dict[str, dict[str, Any]] = {
     "stiff": {},
@@ -177,8 +155,7 @@ def test_a_damper_takes_its_link_s_power_and_keeps_momentum(link: str) -> None:
     assert power == pytest.approx(-(values * along**2).sum(), rel=2e-3)  # bodies are turned against each other by 0.01
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-4])
-def test_a_damped_body_off_the_axis_has_dampers_that_turn(tolerance: float) -> None:
+def test_a_damped_body_off_the_axis_has_dampers_that_turn() -> None:
     """Those of elastic_chain.py on bearings of 1e7 N/m; without omega x D they are 0.95162 and 1.01113."""
     size = {"mass": 1.0, "size": [2.0, 2.0, 0.2]}
     above = {"height": 1.2, "period": [1.5, 1.2], "offset": [0.2, 0.2], "damping": 0.3}
@@ -193,6 +170,6 @@ def test_a_damped_body_off_the_axis_has_dampers_that_turn(tolerance: float) -> N
             "excitation.decay": [1.0 / 3.0, 3.0 / 11.0],
         }
     )
-    answer = multibody.amplification(scene, [(2.0, 0.7)], "spatial", 5e-3, tolerance=tolerance)
+    answer = multibody.amplification(scene, [(2.0, 0.7)], "spatial", 5e-3, tolerance=1e-4)
     assert answer.status[0] == Outcome.OK
     assert (np.abs(answer.mu[0] - [0.947956, 1.013365]) <= answer.error[0]).all(), (answer.mu, answer.error)

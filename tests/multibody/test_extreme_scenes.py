@@ -299,7 +299,5 @@ def test_changes_of_opposite_sign_show_no_rate_of_convergence() -> None:
 
 
 def test_friction_quicker_than_the_contact_loses_nothing() -> None:
-    found = multibody.amplification(
-        strong(duration=2.0), [(2.0, 0.7)], regularization=1e-8, tolerance=1e-3, max_work=2e5
-    )
+    found = multibody.amplification(strong(duration=0.5), [(2.0, 0.7)], regularization=1e-8, max_work=5e4)
     assert found.status[0] in (Outcome.OK, Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT)

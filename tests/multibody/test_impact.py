@@ -266,6 +266,7 @@ def test_a_tower_that_overturns_ends_under_that_name() -> None:
     assert 1.0 < results[0].instant[0] < 3.0
 
 
+@pytest.mark.long
 def test_a_tower_that_hits_its_supports_has_an_answer() -> None:
     coarse, fine = (
         multibody.amplification(tower(1.0), [(0.3, 1.1)], model="spatial", tolerance=tolerance)
@@ -276,7 +277,7 @@ def test_a_tower_that_hits_its_supports_has_an_answer() -> None:
     assert (fine.error <= 1.000001e-3 * fine.mu).all()
 
 
-@pytest.mark.parametrize("phase", [(0.0, 1.1), (math.pi, 0.7)])
+@pytest.mark.parametrize("phase", [(0.0, 1.1), pytest.param((math.pi, 0.7), marks=pytest.mark.long)])
 def test_supports_that_carry_nothing_briefly_do_not_chatter(phase: tuple[float, float]) -> None:
     """The plate falls as fast as the bodies at a turning point of its acceleration."""
     load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [GRAVITY, 0.0]], "decay": [0.0, 0.0]}

@@ -39,12 +39,6 @@ def test_the_answer_is_that_of_all_coordinates(name: str) -> None:
     assert (np.abs(reduced.mu - full.mu) <= reduced.error + full.error).all()
 
 
-def test_a_moving_plate_takes_it_along_too() -> None:
-    scene = scene_of(duration=1.0)
-    reduced, full = (multibody.amplification(scene, PHASES, loading="plate", full=full) for full in (False, True))
-    assert (np.abs(reduced.mu - full.mu) <= reduced.error + full.error).all()
-
-
 def test_only_what_moves_in_a_plane_is_computed_in_it(monkeypatch: pytest.MonkeyPatch) -> None:
     coordinates = []
     refine = surface.refine

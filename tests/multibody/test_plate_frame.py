@@ -9,7 +9,7 @@ from scenes_at_hand import changed
 import multibody
 from reference.problem import Scene, ground_acceleration, load_scene
 
-PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])
+PHASES = [(2.0, 0.7)]
 
 
 def shaken_in_all_directions(duration: float) -> Scene:
@@ -17,11 +17,11 @@ def shaken_in_all_directions(duration: float) -> Scene:
     return changed(load_scene("fig3-I"), duration=duration, excitation=shaking)
 
 
-@pytest.mark.parametrize(("model", "phases"), [("translational", PHASES), ("spatial", PHASES[1:2])])
-def test_inertial_forces_and_a_moving_plate_agree(model: str, phases: np.ndarray) -> None:
+@pytest.mark.parametrize("model", ["translational", "spatial"])
+def test_inertial_forces_and_a_moving_plate_agree(model: str) -> None:
     scene = shaken_in_all_directions(3.0)
     inertial, plate = (
-        multibody.amplification(scene, phases, model=model, loading=loading) for loading in ("inertial", "plate")
+        multibody.amplification(scene, PHASES, model=model, loading=loading) for loading in ("inertial", "plate")
     )
     assert (inertial.status == "ok").all()
     assert (plate.status == "ok").all()

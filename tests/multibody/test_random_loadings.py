@@ -51,7 +51,7 @@ def test_a_loading_that_rounding_drowns_has_an_error_that_covers(name: str) -> N
     assert engine.status[0] == Outcome.TOLERANCE_NOT_MET
 
 
-@pytest.mark.parametrize("first", range(0, 40, 10))
+@pytest.mark.parametrize("first", range(0, 20, 10))
 def test_no_random_value_is_contradicted_by_the_equations(first: int) -> None:
     answered = [assert_not_contradicted(random_case(seed, WEAKEST, STRONGEST)) for seed in range(first, first + 10)]
     assert sum(answered) >= 5

@@ -226,34 +226,19 @@ def test_the_overturning_moment_is_that_of_inertia(supports: int) -> None:
 
 
 def test_a_stated_stiffness_of_the_supports_is_part_of_the_model() -> None:
-    soft, stiff, given = (changed(towers(4), isolator={"support_stiffness": k}) for k in (3e4, 1e6, 1e8))
-    loose, tight = (
-        {
-            scene.isolator.support_stiffness: multibody.amplification(
-                scene, [(2.0, 0.7)], "spatial", tolerance=tolerance
-            )
-            for scene in (soft, stiff)
-        }
-        for tolerance in (1e-3, 2e-4)
+    """Real bearings tend to elastic sharing, and hard ones let the platform rock on two diagonals."""
+    real, hard, elastic = (
+        multibody.amplification(changed(towers(4), isolator={"support_stiffness": k}), [(2.0, 0.7)], "spatial")
+        for k in (1e6, 1e8, None)
     )
-    for stiffness, answer in loose.items():
-        assert answer.status[0] == "ok"
-        assert (np.abs(answer.mu - tight[stiffness].mu) <= answer.error + tight[stiffness].error).all()
-    elastic = multibody.amplification(towers(4), [(2.0, 0.7)], "spatial")
-    # real bearings tend to elastic sharing; soft ones let the platform tilt, and hard ones rock on two diagonals
-    assert abs(loose[1e6].mu[0, 0] - elastic.mu[0, 0]) <= loose[1e6].error[0, 0] + elastic.error[0, 0]
-    rocking = multibody.amplification(given, [(2.0, 0.7)], "spatial")
-    assert rocking.mu[0, 0] < elastic.mu[0, 0] - 2.0 * (elastic.error[0, 0] + rocking.error[0, 0])
+    assert set(real.status) == set(hard.status) == set(elastic.status) == {Outcome.OK}
+    assert (np.abs(real.mu - elastic.mu) <= real.error + elastic.error)[0, 0]
+    assert hard.mu[0, 0] < elastic.mu[0, 0] - 2.0 * (elastic.error[0, 0] + hard.error[0, 0])
 
 
 def test_a_stiffness_too_small_for_the_weight_is_refused() -> None:
     with pytest.raises(ValueError, match=r"isolator\.support_stiffness.*gives way"):
-        towers(4).model_validate(
-            {
-                **towers(4).model_dump(exclude_none=True),
-                "isolator": {**towers(4).isolator.model_dump(exclude_none=True), "support_stiffness": 10.0},
-            }
-        )
+        changed(towers(4), isolator={"support_stiffness": 10.0})
 
 
 def test_the_start_is_in_balance_with_the_loading() -> None:
@@ -278,23 +263,6 @@ def test_a_start_without_weight_is_in_balance_at_every_level(supports: int) -> N
         pair = PhasePair(scene, model, np.zeros(2))
         run = pair.at_level(level, Budget(1e5), stop=1e-3 * math.sqrt(level.penetration), keep=True)
         assert np.abs(run.chunks[0].accelerations[0]).max() < 1e-2
-
-
-@pytest.mark.parametrize("supports", [3, 4])
-def test_errors_hold_against_a_tenth_of_the_tolerance(supports: int) -> None:
-    scene = changed(load_scene("fig3-I"), duration=3.0, isolator={"supports": supports})
-    phases = [(2.0, 0.7)]
-    loose, tight = (multibody.amplification(scene, phases, model="spatial", tolerance=t) for t in (1e-3, 1e-4))
-    assert loose.status.tolist() == tight.status.tolist() == ["ok"]
-    assert (np.abs(loose.mu - tight.mu) <= loose.error + tight.error).all()
-
-
-def test_a_tower_on_close_supports_is_lost_by_name() -> None:
-    scene = changed(load_scene("fig3-I").with_amplitude(3.0), duration=2.0, isolator={"supports": 3, "ring": 0.05})
-    result = multibody.amplification(scene, [(2.0, 0.7)], model="spatial", tolerance=1e-2)
-    assert result.status.tolist() == [Outcome.OVERTURNED]
-    assert np.isnan(result.mu).all()
-    assert 0.0 < result.instant[0] < 2.0
 
 
 def test_supports_share_the_load_of_overturning() -> None:

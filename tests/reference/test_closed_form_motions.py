@@ -84,7 +84,7 @@ def test_swing_down_and_up_the_cap_with_friction(friction):
 
 @BOTH
 @pytest.mark.parametrize("speed", [0.02, 2.0])
-@pytest.mark.parametrize("radius", [1e4, 1e5, 1e6, 3e6, 1e7, 3e7, 1e8])
+@pytest.mark.parametrize("radius", [1e4, 1e6, 3e7, 1e8])
 def test_a_straight_slide_on_a_nearly_flat_cap_stops_in_time(radius, speed, equations):
     """
     Nothing drives these slides but their own speed: gravity along the slope is 1e-4 to 1e-13 of the friction.
@@ -92,7 +92,7 @@ def test_a_straight_slide_on_a_nearly_flat_cap_stops_in_time(radius, speed, equa
     A straight slide under the small equations is an oscillation about -mu rho; the exact ones add the centripetal part
     of the contact force, of relative order v^2/(rho g).
     """
-    friction, count = 0.3, 12
+    friction, count = 0.3, 5
     scene = chain(radius, friction, amplitudes=STILL, duration=1.0)
     frequency = np.sqrt(GRAVITY / radius)
     way = speed**2 / GRAVITY / (friction + np.sqrt(friction**2 + speed**2 / (GRAVITY * radius)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy import optimize, signal
-from scipy.integrate import quad, solve_ivp
+from scipy.integrate import solve_ivp
 
 import multibody
 import reference
@@ -45,24 +45,6 @@ def test_an_oscillator_in_resonance_amplifies_by_1_over_2_zeta() -> None:
     assert spectra.acceleration[0, 1, 0] == pytest.approx(2.0 / (2.0 * DAMPING), rel=1e-4), "the other direction"
 
 
-@pytest.mark.parametrize("period", [0.5, 0.9, 2.4])
-def test_a_harmonic_floor_agrees_with_duhamel_s_integral(period) -> None:
-    """u(t) = -1/w_d int a(s) e^(-D w (t - s)) sin(w_d (t - s)) ds."""
-    natural = 2.0 * np.pi / period
-    damped = natural * np.sqrt(1.0 - DAMPING**2)
-
-    def displacement(t: float) -> float:
-        def kernel(s: float) -> float:
-            decay = np.exp(-DAMPING * natural * (t - s)) * np.sin(damped * (t - s))
-            return float(np.sin(2.0 * np.pi / 0.8 * s) * decay)
-
-        return quad(kernel, 0.0, t, limit=400)[0] / damped
-
-    expected = natural**2 * max(abs(displacement(t)) for t in np.linspace(0.01, 6.0, 3000))
-    spectra = reference.floor_spectra(harmonic(0.8, 6.0, 12_001), [period], DAMPING)
-    assert spectra.acceleration[0, 0, 0] == pytest.approx(expected, rel=1e-4)
-
-
 def test_a_jump_of_a_rigid_floor_is_twice_amplified() -> None:
     """u'' + w^2 u = -1 from rest swings up to 2 / w^2."""
     time = np.array([0.0, 1.0, np.nextafter(1.0, 2.0), 5.0])
@@ -90,7 +72,7 @@ def test_a_much_stiffer_oscillator_follows_the_floor() -> None:
 
 @pytest.mark.parametrize("name", ["fig3-I", "synthetic-pair"])
 def test_the_floors_of_a_motion_agree_with_scipy(name) -> None:
-    scene = reference.load_scene(name).with_values({"duration": 4.0})
+    scene = reference.load_scene(name).with_values({"duration": 2.0})
     motion = reference.trajectory(scene, PHASE)
     periods = [0.11, 0.6, 2.0]
     spectra = reference.floor_spectra(motion, periods)
@@ -102,7 +84,7 @@ def test_the_floors_of_a_motion_agree_with_scipy(name) -> None:
             def slope(t, y, natural=natural, force=force):
                 return [y[1], -np.interp(t, motion.time, force) - 2.0 * DAMPING * natural * y[1] - natural**2 * y[0]]
 
-            solution = solve_ivp(slope, (0.0, 4.0), [0.0, 0.0], rtol=1e-7, atol=1e-11, max_step=5e-3)
+            solution = solve_ivp(slope, (0.0, 2.0), [0.0, 0.0], rtol=1e-7, atol=1e-11, max_step=5e-3)
             expected = natural**2 * np.abs(solution.y[0]).max()
             assert spectra.acceleration[body, 0, row] == pytest.approx(expected, rel=2e-3)
 
