@@ -30,7 +30,7 @@ except ImportError:  # on Windows every process compiles for itself
     fcntl = None  # type: ignore[assignment]
 
 # Files to begin with: two compile a variant of the solver each, the third does not need it and takes as long.
-FIRST = ("test_docstrings.py", "test_friction_of_the_load.py", "test_page_in_a_browser.py")
+FIRST = ("test_docstrings.py", "test_like_for_like.py", "test_page_in_a_browser.py")
 
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.register_profile("new", deadline=None)

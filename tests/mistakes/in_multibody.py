@@ -341,7 +341,7 @@ MISTAKES = (
         "damping_matrix[pair] += damping[link, axis] * BETWEEN_TWO",
         "damping_matrix[pair] += damping[link, 0] * BETWEEN_TWO",
         "Dampers along y have the coefficient along x.",
-        (TESTS + "test_damped_links.py::test_every_factor_lies_within_its_error",),
+        (TESTS + "test_like_for_like.py::test_every_factor_lies_within_its_error",),
     ),
     Mistake(
         MODELS + "speed_friction.py",

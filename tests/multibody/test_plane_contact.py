@@ -5,72 +5,20 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pytest
-from scenes_at_hand import frame
 
 import multibody
-import reference
 from reference.analytical import stopping_distance
-from reference.problem import GRAVITY, Outcome, Scene, State, load_scene
+from reference.problem import GRAVITY, Outcome, State, load_scene
 
 FLAT = {"isolator.period": None, "isolator.radius": math.inf}
-PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (0.867, 4.951), (4.0, 5.5)])
+PHASES = [(0.3, 1.1), (2.0, 0.7)]
 V_REG = 1e-3
-VERTICAL = {"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [2.0, 1.0]]}
-SCENES = {
-    "own axes": load_scene("fig3-I").with_values(FLAT),
-    "oblique": load_scene("fig3-II").with_values(FLAT),
-    "lubricated": load_scene("fig4-viscous").with_values(FLAT),
-    "vertical": load_scene("fig3-I").with_values({**FLAT, **VERTICAL}),
-    "one body": load_scene("fig3-I").with_values({**FLAT, "bodies": [{"mass": 1.0}], "excitation.scale": 3.0}),
-    "friction by speed": load_scene("fig3-I").with_values(
-        {**FLAT, "isolator.friction": {"slow": 0.05, "fast": 0.1, "rate": 20.0}}
-    ),
-    "damped links": load_scene("fig3-I").with_values({**FLAT, "bodies.1.damping": 0.1}),
-    "six bodies": frame(10.0, 6).with_values(
-        {"isolator": {"radius": math.inf, "friction": frame(10.0, 6).friction_coefficient}}
-    ),
-}
-
-
-def within_errors(scene: Scene, phases: np.ndarray, **asked: object) -> float:
-    """Largest difference to the exact equations over the sum of both errors; every point of both has an answer."""
-    regularization = None if scene.lubricated else V_REG
-    engine = multibody.amplification(scene, phases, regularization=regularization, **asked)
-    equations = reference.amplification(scene, phases, regularization=regularization)
-    assert set(engine.status) == set(equations.status) == {Outcome.OK}
-    np.testing.assert_allclose(engine.displacement, equations.displacement, rtol=5e-3)
-    return float((np.abs(engine.mu - equations.mu) / (engine.error + equations.error)).max())
-
-
-@pytest.mark.parametrize("name", ["own axes", "lubricated", "vertical", "friction by speed", "damped links"])
-def test_every_factor_lies_within_its_error(name):
-    scene = SCENES[name].with_values({"duration": 6.0})
-    assert within_errors(scene, PHASES if name == "own axes" else PHASES[:1]) <= 1.0
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", SCENES)
-def test_every_point_of_a_surface_lies_within_its_errors(name):
-    phases = np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (64, 2))
-    share = within_errors(SCENES[name], phases)
-    print(f"\n{name}: largest difference over the errors {share:.2f}")
-    assert share <= 1.0
-
-
-def test_a_recorded_motion_lies_within_its_error_too():
-    scene = load_scene("synthetic-pair").with_values({**FLAT, "duration": 4.0})
-    assert within_errors(scene, PHASES[:1]) <= 1.0
-
-
-def test_a_plate_that_moves_carries_the_plane_along():
-    scene = SCENES["own axes"].with_values({"duration": 4.0})
-    assert within_errors(scene, PHASES[:1], loading="plate") <= 1.0
+SCENE = load_scene("fig3-I").with_values(FLAT)
 
 
 def test_a_straight_slide_far_out_stops_after_v2_over_2_mu_g():
     still = {"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0]], "bodies": [{"mass": 1.0}], "duration": 2.0}
-    scene, speed = SCENES["own axes"].with_values(still), 1.0
+    scene, speed = SCENE.with_values(still), 1.0
     way = stopping_distance(speed, 0.1)
     for place in (0.0, 1e4):
         start = State(np.array([[place, 0.0]]), np.array([[0.6 * speed, 0.8 * speed]]))
@@ -83,13 +31,13 @@ def test_a_straight_slide_far_out_stops_after_v2_over_2_mu_g():
 
 
 def test_without_friction_nothing_moves_the_platform():
-    scene = SCENES["one body"].with_values({"isolator.friction": 0.0, "duration": 2.0})
+    scene = SCENE.with_values({"bodies": [{"mass": 1.0}], "isolator.friction": 0.0, "duration": 2.0})
     answer = multibody.amplification(scene, PHASES[:1], regularization=None)
     assert answer.mu[0, 0] <= answer.error[0, 0] < 1e-4
 
 
 def test_the_unit_of_length_follows_the_loading():
-    slow = SCENES["own axes"].with_values({"duration": 2.0})
+    slow = SCENE.with_values({"duration": 2.0})
     factor = 16.0  # times all periods: a motion in slow motion, loading and friction unchanged
     bodies = [{"mass": 1.0}, {"mass": 1.0, "period": [1.5 * factor, 1.2 * factor]}]
     changes = {"duration": 2.0 * factor, "bodies": bodies, "excitation.periods": [0.9 * factor, 1.1 * factor]}
@@ -103,7 +51,7 @@ def test_the_unit_of_length_follows_the_loading():
 
 # bodies that turn ----------------------------------------------------------------------------------------------------
 
-SPATIAL = SCENES["own axes"].with_values({"duration": 3.0})
+SPATIAL = SCENE.with_values({"duration": 3.0})
 RING, SPHERE = 1.0, 0.05  # m, of SPATIAL
 
 
@@ -121,16 +69,6 @@ def test_overturning_shifts_the_load_as_statics_says():
     assert run.status == Outcome.OK
     np.testing.assert_allclose(run.extra["support_force"][middle], expected, rtol=1e-5)
     assert np.abs(run.extra["yaw"]).max() < 1e-9
-
-
-def test_a_body_level_with_the_plane_does_not_turn():
-    level = [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}]
-    scene = SPATIAL.with_values({"bodies": level, "excitation.scale": 2.0})
-    spatial, translational = (
-        multibody.amplification(scene, PHASES[:1], model=model, full=True) for model in ("spatial", "translational")
-    )
-    assert (np.abs(spatial.mu - translational.mu) <= spatial.error + translational.error).all()
-    assert (spatial.error < 1e-3).all()
 
 
 def test_bodies_that_turn_on_large_spheres_tend_to_a_plane():

@@ -28,24 +28,6 @@ def example(name: str, scale: float = 1.0, duration: float | None = None) -> Sce
     return Scene.model_validate(data)
 
 
-@pytest.mark.parametrize(
-    ("name", "scale"),
-    [
-        ("synthetic-pair", 0.5),
-        ("synthetic-triple", 1.0),
-        *(pytest.param("synthetic-pair", scale, marks=pytest.mark.long) for scale in (0.2, 0.7, 1.0, 1.4, 2.0, 2.6)),
-        *(pytest.param("synthetic-triple", scale, marks=pytest.mark.long) for scale in (0.2, 0.5, 0.7, 1.4, 2.0, 2.6)),
-    ],
-)
-def test_like_for_like_the_factors_agree(name, scale):
-    scene = example(name, scale)
-    found = multibody.amplification(scene, [ANY], regularization=1e-3)
-    truth = reference.amplification(scene, [ANY], regularization=1e-3)
-    assert list(found.status) == list(truth.status) == ["ok"]
-    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
-    assert np.all(np.abs(found.mu - truth.mu) <= 1e-3 * truth.mu)
-
-
 def random_record() -> list[list[float]]:
     """Filtered noise, drawn as in the sample that it was found in, with the numbers that other kinds of records use."""
     random = np.random.default_rng([2311, 100711])
