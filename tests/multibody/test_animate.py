@@ -43,53 +43,57 @@ decay = [0.3, 0.3]
 """
 
 
-def test_a_film_is_written_off_screen(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.fixture
+def words(tmp_path: Path) -> list[str]:
     (tmp_path / "short.toml").write_text(SHORT)
-    out = tmp_path / "run.gif"
-    assert main([str(tmp_path / "short.toml"), "--phases", "0.3", "1.1", "--out", str(out)]) == 0
+    return [str(tmp_path / "short.toml"), "--phases", "0.3", "1.1", "--out", str(tmp_path / "run.gif")]
+
+
+def test_a_film_is_written_off_screen(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == 0
     assert "status ok" in capsys.readouterr().out
-    with Image.open(out) as film:
+    with Image.open(words[-1]) as film:
         assert film.n_frames == 6  # 25 per second and the first
 
 
-def test_a_refused_motion_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "long.toml").write_text(SHORT.replace("duration = 0.2", "duration = 1e4"))
-    words = [str(tmp_path / "long.toml"), "--phases", "0", "0", "--speed", "1e3", "--out", str(tmp_path / "run.gif")]
-    assert main(words) == 2
+def test_a_refused_motion_is_one_line(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    Path(words[0]).write_text(SHORT.replace("duration = 0.2", "duration = 1e4"))
+    assert main([*words, "--speed", "1e3"]) == 2
     message = capsys.readouterr().err
-    assert message.startswith("long: there is no motion to show: step limit: refused before any step")
+    assert message.startswith("short: there is no motion to show: step limit: refused before any step")
     assert "a looser tolerance does not help" in message
     assert message.count("\n") == 1
-    assert not (tmp_path / "run.gif").exists()
+    assert not Path(words[-1]).exists()
 
 
-def test_the_work_that_is_allowed_is_an_option(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "short.toml").write_text(SHORT)
-    words = [str(tmp_path / "short.toml"), "--phases", "0.3", "1.1", "--out", str(tmp_path / "run.gif")]
-    assert main([*words, "--max-work", "2"]) == 2
-    assert "a phase pair may take 2 " in capsys.readouterr().err
-    assert main([*words, "--max-work", "0"]) == 2
-    assert "max_work" in capsys.readouterr().err
-    assert main(words) == 0
+def test_the_work_that_is_allowed_is_an_option(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    for work, said in (("2", "a phase pair may take 2 "), ("0", "max_work")):
+        assert main([*words, "--max-work", work]) == 2
+        assert said in capsys.readouterr().err
 
 
-def test_a_dollar_in_a_title_is_a_letter_of_the_film(tmp_path: Path) -> None:
-    (tmp_path / "short.toml").write_text(SHORT.replace('title = "short"', r"title = 'x $\frac{$ y'"))
-    out = tmp_path / "run.gif"
-    assert main([str(tmp_path / "short.toml"), "--phases", "0", "0", "--speed", "0.2", "--out", str(out)]) == 0
-    assert out.exists()
+def test_a_dollar_in_a_title_is_a_letter_of_the_film(words: list[str]) -> None:
+    Path(words[0]).write_text(SHORT.replace('title = "short"', r"title = 'x $\frac{$ y'"))
+    assert main([*words, "--speed", "0.5"]) == 0
+    assert Path(words[-1]).exists()
 
 
-def test_a_film_never_takes_the_place_of_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "short.toml").write_text(SHORT)
-    out = tmp_path / "run.gif"
+def test_a_film_never_takes_the_place_of_a_file(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    out = Path(words[-1])
     out.write_bytes(b"mine")
-    assert main([str(tmp_path / "short.toml"), "--phases", "0.3", "1.1", "--out", str(out)]) == 0
+    assert main(words) == 0
     assert out.read_bytes() == b"mine"
-    said = capsys.readouterr()
-    assert said.err == f"{out} exists and stays: the film is in {tmp_path / 'run-2.gif'}\n"
-    with Image.open(tmp_path / "run-2.gif") as film:
+    assert capsys.readouterr().err == f"{out} exists and stays: the film is in {out.with_name('run-2.gif')}\n"
+    with Image.open(out.with_name("run-2.gif")) as film:
         assert film.n_frames == 6
+
+
+def test_size_and_rate_are_those_asked_for(words: list[str]) -> None:
+    assert main([*words, "--rate", "50", "--size", "640", "400"]) == 0
+    with Image.open(words[-1]) as film:
+        assert film.n_frames == 11
+        assert film.size == (640, 400)
+        assert film.info["duration"] == 20  # ms
 
 
 class Screen:
@@ -230,19 +234,7 @@ def test_the_picture_names_the_model_and_the_factors(monkeypatch: pytest.MonkeyP
     assert "displacements x 5" in titles[0]
 
 
-def test_size_and_rate_are_those_asked_for(tmp_path: Path) -> None:
-    (tmp_path / "short.toml").write_text(SHORT)
-    out = tmp_path / "run.gif"
-    words = [str(tmp_path / "short.toml"), "--phases", "0.3", "1.1", "--out", str(out)]
-    assert main([*words, "--rate", "50", "--size", "640", "400"]) == 0
-    with Image.open(out) as film:
-        assert film.n_frames == 11
-        assert film.size == (640, 400)
-        assert film.info["duration"] == 20  # ms
-
-
-@pytest.mark.parametrize("count", [2, 20])
-def test_what_does_not_move_is_drawn_once_for_all_frames(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_does_not_move_is_drawn_once_for_all_frames(monkeypatch: pytest.MonkeyPatch) -> None:
     panels: list[Axes] = []
     draw = Axes.draw
 
@@ -252,7 +244,7 @@ def test_what_does_not_move_is_drawn_once_for_all_frames(count: int, monkeypatch
 
     monkeypatch.setattr(Axes, "draw", counted)
     scene = changed(load_scene("fig3-I"), duration=0.5)
-    film(scene, multibody.trajectory(scene, (2.0, 0.7), tolerance=1e-2), "translational", Look(), count)
+    film(scene, multibody.trajectory(scene, (2.0, 0.7), tolerance=1e-2), "translational", Look(), 5)
     assert len(panels) == len(set(panels)) == 3
 
 

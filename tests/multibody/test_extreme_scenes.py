@@ -102,12 +102,6 @@ def test_work_beyond_the_budget_is_refused_before_any_step(scene: Scene, monkeyp
     assert np.isnan(result.mu).all()
 
 
-def test_a_motion_that_never_began_says_why() -> None:
-    motion = multibody.trajectory(strong(duration=1e4), PHASE[0], model="spatial")
-    assert motion.status == Outcome.STEP_LIMIT
-    assert motion.position.shape == (0, 2, 3)
-
-
 def test_levels_that_cannot_round_less_are_not_spent(monkeypatch: pytest.MonkeyPatch) -> None:
     # 1e-11 m/s^2 is less than what a contact force rounds to
     done = adaptive_runs(monkeypatch)

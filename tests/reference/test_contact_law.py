@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from chains import chain
 from oracle_cases import scene_of
 from oracle_law import Law
 
 import reference
-from reference.problem import GRAVITY, Scene
+from reference.problem import GRAVITY
 
 CASES = [
     (name, phase, equations)
@@ -56,16 +57,8 @@ def test_the_platform_rests_only_where_friction_can_hold_it(name, phase, equatio
 def test_a_drive_that_touches_the_friction_limit_moves_nothing(equations: str, tolerance: float) -> None:
     """The platform stays at rest, so its absolute acceleration is that of the ground."""
     limit = 0.1 * GRAVITY
-    scene = Scene.model_validate(
-        {
-            "title": "one body",
-            "name": "touching",
-            "duration": 3.0,
-            "isolator": {"period": 1.0, "friction": 0.1},
-            "bodies": [{"mass": 1.0}],
-            "excitation": {"amplitudes": [[limit, 0.0], [0.0, 0.0]], "periods": [0.9, 1.1], "decay": [0.0, 0.0]},
-        }
-    )
+    radius = GRAVITY / (2.0 * np.pi) ** 2
+    scene = chain(radius, 0.1, amplitudes=[[limit, 0.0], [0.0, 0.0]], decay=(0.0, 0.0), duration=3.0)
     result = reference.amplification(scene, [(0.0, 0.0)], equations=equations, tolerance=tolerance)
     assert result.status[0] == "ok"
     assert abs(result.mu[0, 0] - 1.0) <= result.error[0, 0]

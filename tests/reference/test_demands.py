@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from chains import chain
 
 import multibody
 import reference
@@ -16,38 +17,16 @@ from reference.problem import GRAVITY, Accuracy, Scene, State, Trajectory, groun
 
 PHASE = (2.0, 0.7)
 RHO = 0.25
-FRAME = {
-    "masses": [50.0, 40.0, 40.0, 40.0, 40.0, 30.0],
-    "period": [0.5, 0.6],
-    "isolator": {"radius": 1.0, "friction": 0.04},
-}
 
 
-def one_body(duration: float = 2.0, **isolator: object) -> Scene:
-    return Scene.model_validate(
-        {
-            "title": "one body",
-            "duration": duration,
-            "isolator": {"radius": RHO, **(isolator or {"friction": 0.0})},
-            "bodies": [{"mass": 3.0}],
-            "excitation": {"amplitudes": [[0.4, 0.0], [0.0, 0.3]], "periods": [0.9, 1.1], "decay": [0.0, 0.0]},
-        }
-    )
+def one_body(friction: float = 0.0) -> Scene:
+    return chain(RHO, friction, [3.0], (), [[0.4, 0.0], [0.0, 0.3]], decay=(0.0, 0.0), duration=2.0)
 
 
 def frame() -> Scene:
-    return Scene.model_validate(
-        {
-            "title": "six bodies",
-            "duration": 5.0,
-            "isolator": FRAME["isolator"],
-            "bodies": [
-                {"mass": mass, **({"period": FRAME["period"]} if number else {})}
-                for number, mass in enumerate(FRAME["masses"])
-            ],
-            "excitation": {"amplitudes": [[1.5, 0.5], [0.5, 1.5]], "periods": [0.9, 1.3], "decay": [0.2, 0.2]},
-        }
-    )
+    masses = np.array([50.0, 40.0, 40.0, 40.0, 40.0, 30.0])
+    links = np.outer(masses[1:], (2.0 * np.pi / np.array([0.5, 0.6])) ** 2).tolist()
+    return chain(1.0, 0.04, masses.tolist(), links, [[1.5, 0.5], [0.5, 1.5]], (0.9, 1.3), (0.2, 0.2), 5.0)
 
 
 def estimates(answer: Demands) -> dict[str, Estimate]:
@@ -194,15 +173,9 @@ def shaken_then_still(**isolator: float) -> Scene:
     time = np.append(np.arange(0.0, 2.0, 0.02), [2.0, 62.0])
     decay = np.where(time < 2.0, np.exp(-time), 0.0)
     shaking = np.column_stack([5.0 * np.sin(6.0 * time + time**2), 4.0 * np.cos(7.0 * time), 0.0 * time])
-    return Scene.model_validate(
-        {
-            "name": "shaken, then still",
-            "title": "shaken, then still",
-            "isolator": {"radius": 2.0, **(isolator or {"friction": 0.05})},
-            "bodies": [{"mass": 3.0}],
-            "excitation": {"record": {"time": time, "acceleration": shaking * decay[:, None]}},
-        }
-    )
+    record = {"time": time, "acceleration": shaking * decay[:, None]}
+    isolator = {"radius": 2.0, **(isolator or {"friction": 0.05})}
+    return one_body().with_values({"duration": 62.0, "isolator": isolator, "excitation": {"record": record}})
 
 
 def test_a_residual_after_creep_is_that_of_coulomb_friction() -> None:

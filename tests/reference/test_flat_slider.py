@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 import pytest
+from chains import chain
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -31,19 +32,8 @@ def flat(name: str = "fig3-I", **values) -> Scene:
 
 def block(amplitude: float, friction: float, duration: float, period: float = 1.0) -> Scene:
     """A rigid block under one undamped harmonic along x."""
-    return Scene.model_validate(
-        {
-            "title": "sliding block",
-            "duration": duration,
-            "isolator": {"radius": math.inf, "friction": friction},
-            "bodies": [{"mass": 3.0}],
-            "excitation": {
-                "amplitudes": [[amplitude, 0.0], [0.0, 0.0]],
-                "periods": [period, period],
-                "decay": [0.0, 0.0],
-            },
-        }
-    )
+    rows = [[amplitude, 0.0], [0.0, 0.0]]
+    return chain(math.inf, friction, [3.0], (), rows, (period, period), (0.0, 0.0), duration)
 
 
 # an independent solution ---------------------------------------------------------------------------------------------

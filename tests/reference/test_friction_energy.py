@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from chains import chain
 
 import multibody
 import reference
 from reference.measures import demands
-from reference.problem import GRAVITY, Scene, State, Trajectory
+from reference.problem import GRAVITY, State, Trajectory
 
 PHASE = (2.0, 0.7)
 RHO = 0.25
@@ -19,15 +20,8 @@ V_REG = 1e-3
 
 def released(offset: float, duration: float = 8.0, **isolator: float) -> Trajectory:
     """One body let go at an offset on a plate at rest."""
-    scene = Scene.model_validate(
-        {
-            "title": "let go",
-            "duration": duration,
-            "isolator": {"radius": RHO, **isolator},
-            "bodies": [{"mass": 3.0}],
-            "excitation": {"amplitudes": [[0.0, 0.0], [0.0, 0.0]], "periods": [0.9, 1.1], "decay": [0.0, 0.0]},
-        }
-    )
+    still = [[0.0, 0.0], [0.0, 0.0]]
+    scene = chain(RHO, masses=[3.0], amplitudes=still, duration=duration, **isolator)
     state = State(position=np.array([[offset, 0.0]]), velocity=np.zeros((1, 2)))
     return reference.trajectory(scene, PHASE, initial=state)
 

@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from chains import chain
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -14,26 +15,11 @@ from reference.analytical import uniform_chain_frequencies, uniform_chain_shapes
 from reference.natural_modes import linear_stiffness
 from reference.problem import GRAVITY, Scene
 
-LOADING = {"amplitudes": [[1.0, 0.0], [0.0, 1.0]], "periods": [0.9, 1.1], "decay": [0.3, 0.3]}
-
-
-def chain(masses: list[float], stiffness: list[list[float]], radius: float) -> Scene:
-    links = [{"mass": m, "stiffness": k} for m, k in zip(masses[1:], stiffness)]
-    return Scene.model_validate(
-        {
-            "title": "chain",
-            "duration": 1.0,
-            "isolator": {"radius": radius, "friction": 0.1},
-            "bodies": [{"mass": masses[0]}, *links],
-            "excitation": LOADING,
-        }
-    )
-
 
 def uniform_chain(count: int, mass: float = 3.0, radius: float = 0.25) -> Scene:
     """Every link as stiff as the pendulum m_sum g / rho: the fixed-free uniform chain."""
     pendulum = count * mass * GRAVITY / radius
-    return chain([mass] * count, [[pendulum, pendulum]] * (count - 1), radius)
+    return chain(radius, 0.1, [mass] * count, [[pendulum, pendulum]] * (count - 1))
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 17, 200, pytest.param(1000, marks=pytest.mark.long)])
@@ -71,7 +57,7 @@ def test_every_frequency_of_a_stiff_chain_is_right():
     masses = [5.0, 1.0, 2.0, 0.1, 3.0, 1.0, 1.0, 4.0]
     periods = [1e-2, 10.0, 1e-2, 3.0, 0.5, 1e-2, 10.0]
     stiffness = [[m * (2.0 * np.pi / t) ** 2] * 2 for m, t in zip(masses[1:], periods)]
-    scene = chain(masses, stiffness, 2.0)
+    scene = chain(2.0, 0.1, masses, stiffness)
     frequency = reference.modes(scene).frequency[0]
     k = linear_stiffness(scene)[:, 0]
     for number, omega in enumerate(frequency.tolist()):
@@ -98,7 +84,7 @@ def eigenvalues_below(masses: np.ndarray, stiffness: np.ndarray, bound: Fraction
 @settings(max_examples=60, deadline=None)
 def test_modes_diagonalize_mass_and_stiffness(masses, seed, radius):
     stiffness = 10.0 ** np.random.default_rng(seed).uniform(-1, 4, (len(masses) - 1, 2))
-    scene = chain(masses, stiffness.tolist(), radius)
+    scene = chain(radius, 0.1, masses, stiffness.tolist())
     modes = reference.modes(scene)
     assert np.all(np.diff(modes.frequency, axis=1) > 0.0)
     for axis in range(2):

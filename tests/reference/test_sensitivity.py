@@ -4,20 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from chains import chain
 
 import reference
 from reference import Estimate, Scene, SceneError, sensitivity
 from reference.problem import Amplification
 
-ONE_BODY = Scene.model_validate(
-    {
-        "title": "one body",
-        "duration": 6.0,
-        "isolator": {"radius": 0.25, "friction": 0.08},
-        "bodies": [{"mass": 2.0}],
-        "excitation": {"amplitudes": [[1.5, 0.4], [0.3, 1.2]], "periods": [0.9, 1.1], "decay": [0.3, 0.3]},
-    }
-)
+ONE_BODY = chain(0.25, 0.08, [2.0], (), [[1.5, 0.4], [0.3, 1.2]], duration=6.0)
 
 
 def test_a_power_of_a_value_has_its_derivative_within_the_error() -> None:

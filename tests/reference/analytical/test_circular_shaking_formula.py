@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from chains import chain
 
 from reference.analytical import circular_shaking
 from reference.problem import GRAVITY, Scene
@@ -11,22 +12,14 @@ from reference.problem import GRAVITY, Scene
 FREQUENCY = 2.0 * np.pi / 0.7
 
 
-def chain(friction: float = 0.08, links: tuple[float, ...] = (300.0, 120.0), masses=(2.0, 1.0, 0.7)) -> Scene:
-    bodies = [{"mass": masses[0]}, *({"mass": m, "stiffness": [k, k]} for m, k in zip(masses[1:], links))]
-    return Scene.model_validate(
-        {
-            "title": "chain",
-            "duration": 5.0,
-            "isolator": {"radius": 0.3, "friction": friction},
-            "bodies": bodies,
-            "excitation": {"amplitudes": [[3.0, 0.0], [0.0, 3.0]], "periods": [0.7, 0.7], "decay": [0.0, 0.0]},
-        }
-    )
+def circled(friction: float = 0.08, masses: tuple[float, ...] = (2.0, 1.0, 0.7)) -> Scene:
+    links = [[k, k] for k in (300.0, 120.0)][: len(masses) - 1]
+    return chain(0.3, friction, masses, links, [[3.0, 0.0], [0.0, 3.0]], (0.7, 0.7), (0.0, 0.0))
 
 
 @pytest.mark.parametrize("acceleration", [2.0, 3.0, 5.0])
 def test_forces_balance_on_the_sphere_at_every_instant(acceleration):
-    scene = chain()
+    scene = circled()
     motion = circular_shaking(scene, acceleration, FREQUENCY)
     for t in (0.0, 0.13, 0.4):
         turn = np.exp(1j * FREQUENCY * t)
@@ -50,7 +43,7 @@ def test_forces_balance_on_the_sphere_at_every_instant(acceleration):
 def test_small_amplitudes_agree_with_the_linearized_circle():
     gaps = []
     for scale in (1e-1, 1e-2):
-        scene = chain(friction=0.08 * scale)
+        scene = circled(0.08 * scale)
         exact = circular_shaking(scene, 3.0 * scale, FREQUENCY, "exact")
         small = circular_shaking(scene, 3.0 * scale, FREQUENCY, "small")
         gaps.append(np.abs(exact.amplification / small.amplification - 1.0).max())
@@ -59,7 +52,7 @@ def test_small_amplitudes_agree_with_the_linearized_circle():
 
 def test_one_body_has_the_textbook_amplitude():
     """|Z|^2 = (a^2 - (mu g)^2) / (g/rho - omega^2)^2, the platform as a plane oscillator with constant friction."""
-    scene = chain(links=(), masses=(2.0,), friction=0.05)
+    scene = circled(0.05, (2.0,))
     motion = circular_shaking(scene, 3.0, FREQUENCY, "small")
     exact = np.sqrt(9.0 - (0.05 * GRAVITY) ** 2) / abs(GRAVITY / 0.3 - FREQUENCY**2)
     assert abs(motion.amplitude[0]) == pytest.approx(exact, rel=1e-13)
@@ -68,12 +61,9 @@ def test_one_body_has_the_textbook_amplitude():
 @pytest.mark.parametrize("equations", ["exact", "small"])
 def test_friction_that_holds_the_platform_is_refused(equations):
     with pytest.raises(ValueError, match="friction is too strong"):
-        circular_shaking(chain(friction=0.9), 1.0, FREQUENCY, equations)
+        circular_shaking(circled(0.9), 1.0, FREQUENCY, equations)
 
 
 def test_unequal_springs_are_refused():
-    scene = chain()
-    data = scene.model_dump(exclude_none=True)
-    data["bodies"][1]["stiffness"] = [300.0, 301.0]
     with pytest.raises(ValueError, match="not circular"):
-        circular_shaking(Scene.model_validate(data), 3.0, FREQUENCY)
+        circular_shaking(circled().with_values({"bodies.1.stiffness": [300.0, 301.0]}), 3.0, FREQUENCY)

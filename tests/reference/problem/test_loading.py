@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from chains import chain
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
@@ -25,15 +26,7 @@ from reference.problem import (
 def scene(
     amplitudes=((1.0, 0.4), (-0.3, 1.2), (0.2, 0.7)), periods=(0.9, 1.1), decay=(0.33, 0.0), duration=20.0
 ) -> Scene:
-    return Scene.model_validate(
-        {
-            "title": "loading",
-            "duration": duration,
-            "isolator": {"period": 1.0, "friction": 0.1},
-            "bodies": [{"mass": 1.0}],
-            "excitation": {"amplitudes": [list(r) for r in amplitudes], "periods": list(periods), "decay": list(decay)},
-        }
-    )
+    return chain(amplitudes=amplitudes, periods=periods, decay=decay, duration=duration)
 
 
 PHASE = (0.3, 1.1)
