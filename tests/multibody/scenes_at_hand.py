@@ -5,13 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from rigid_chain import spatial_motion
 
+import multibody
 from multibody.integration.constant_step import set_initial_state, silence
 from multibody.models.assembly import assemble
 from multibody.models.depressions import angular_velocity_matrix
 from multibody.models.engine import exudyn
 from multibody.models.system import EngineState
-from reference.problem import Scene
+from reference.measures import demands
+from reference.problem import Outcome, Scene
 
 CONSTANT = 1e9  # s, period of a harmonic that stays at its first value
 
@@ -61,11 +64,7 @@ def frame(duration: float, count: int = 6, period: float = 0.17) -> Scene:
             "duration": duration,
             "isolator": {"radius": 2.24, "friction": 0.05, "supports": 4, "ring": 6.0, "sphere_radius": 0.05},
             "bodies": [{"mass": 1e3, "height": 0.2, "size": [12.0, 12.0, 0.4]}, *above],
-            "excitation": {
-                "amplitudes": [[2.943, 0.0], [0.0, 2.943]],
-                "periods": [0.8, 1.3],
-                "decay": [0.1, 0.1],
-            },
+            "excitation": {"amplitudes": [[2.943, 0.0], [0.0, 2.943]], "periods": [0.8, 1.3], "decay": [0.1, 0.1]},
         }
     )
 
@@ -87,3 +86,19 @@ def forces_of_links(scene: Scene, coordinates: Any, velocities: Any) -> tuple[An
     for body, angles in enumerate(np.reshape(coordinates, (-1, 6))[:, 3:]):
         pushed[body, 1] = np.linalg.solve(angular_velocity_matrix(angles).T, pushed[body, 1])
     return pushed[:, 0], pushed[:, 1], model
+
+
+def assert_agrees_with_newton_and_euler(scene: Scene, phase: tuple[float, float], outcome: Outcome = Outcome.OK) -> Any:
+    """
+    Factors and the platform's torsion are those of rigid_chain.py, whose motion is returned.
+
+    The first call takes a minute of compiling.
+    """
+    engine = multibody.amplification(scene, [phase], "spatial")
+    independent = spatial_motion(scene, phase, 1e-3, tolerance=1e-6)
+    assert engine.status[0] == outcome
+    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
+    torsion = demands(multibody.trajectory(scene, phase, "spatial")).torsion
+    assert torsion is not None
+    assert abs(torsion[0].value - np.abs(independent.yaw).max()) <= torsion[0].error
+    return independent

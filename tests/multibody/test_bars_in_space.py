@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from beam_columns import Tower, tower_of_beams
-from rigid_chain import spatial_motion
-from scenes_at_hand import forces_of_links
+from scenes_at_hand import assert_agrees_with_newton_and_euler, forces_of_links
 from scipy.optimize import brentq
 
 import multibody
@@ -19,7 +18,7 @@ from multibody.models.assembly import assemble
 from multibody.models.engine import exudyn, items
 from multibody.models.links import LINK_COMPLIANCE_RATIO, add_links
 from multibody.models.units import units_of
-from reference.problem import Outcome, Scene, SceneError, load_scene
+from reference.problem import Outcome, Scene, SceneError, load_scene, phase_grid
 
 SIZE = [2.0, 1.6, 0.2]
 GAP = 0.3  # m, from the upper ends of the bars to the center of mass
@@ -192,24 +191,15 @@ def building(name: str, **values: Any) -> Scene:
     return load_scene("fig3-I").with_values({"duration": 2.0, **bars, **values}).with_amplitude(1.5)
 
 
-@pytest.mark.long  # the equations take more than a minute to compile
-@pytest.mark.parametrize("name", BUILDINGS)
-def test_factors_agree_with_newton_euler_equations(name: str) -> None:
-    scene = building(name)
-    engine = multibody.amplification(scene, [(2.0, 0.7)], model="spatial")
-    independent = spatial_motion(scene, (2.0, 0.7), 1e-3, tolerance=1e-6)
-    assert engine.status[0] == Outcome.OK
-    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
+OFF_ITS_BARS = {"bodies.1.offset": [0.1, -0.05], "bodies.1.yaw": 0.5}
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", ["softened", "shortening"])
-def test_a_body_off_its_bars_agrees_with_newton_euler(name: str) -> None:
-    scene = building(name, **{"bodies.1.offset": [0.1, -0.05], "bodies.1.yaw": 0.5})
-    engine = multibody.amplification(scene, [(2.0, 0.7)], model="spatial")
-    independent = spatial_motion(scene, (2.0, 0.7), 1e-3, tolerance=1e-6)
-    assert engine.status[0] == Outcome.OK
-    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
+@pytest.mark.parametrize(
+    ("name", "values"), [*((name, {}) for name in BUILDINGS), ("softened", OFF_ITS_BARS), ("shortening", OFF_ITS_BARS)]
+)
+def test_factors_agree_with_newton_euler_equations(name: str, values: dict[str, Any]) -> None:
+    assert_agrees_with_newton_and_euler(building(name, **values), (2.0, 0.7))
 
 
 @pytest.mark.long
@@ -217,22 +207,14 @@ def test_three_stories_on_bars_agree_with_newton_euler() -> None:
     platform, first = building("shortening").bodies
     second = {"mass": 0.5, "height": 2.2, "size": SIZE, "stiffness": [30.0, 20.0]}
     third = {"mass": 0.3, "height": 3.1, "size": SIZE, "bars": {**BARS, "bending_stiffness": 0.3}}
-    scene = building("softened", bodies=[platform, first, second, third])
-    engine = multibody.amplification(scene, [(2.0, 0.7)], model="spatial")
-    independent = spatial_motion(scene, (2.0, 0.7), 1e-3, tolerance=1e-6)
-    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
+    assert_agrees_with_newton_and_euler(building("softened", bodies=[platform, first, second, third]), (2.0, 0.7))
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["softened", "shortening"])
 def test_a_whole_surface_agrees_with_newton_euler_equations(name: str) -> None:
-    scene = building(name)
-    values = np.arange(8) * np.pi / 4.0
-    phases = [(a, b) for a in values for b in values]
-    engine = multibody.amplification(scene, phases, model="spatial")
-    assert (engine.status == Outcome.OK).all()
-    independent = np.array([spatial_motion(scene, phase, 1e-3, tolerance=1e-6).mu for phase in phases])
-    assert (np.abs(engine.mu - independent) <= engine.error).all()
+    for phase in phase_grid(8):
+        assert_agrees_with_newton_and_euler(building(name), tuple(phase))
 
 
 def test_a_peak_where_supports_stop_has_its_error() -> None:

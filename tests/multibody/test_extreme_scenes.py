@@ -89,11 +89,7 @@ def test_the_error_holds_where_a_scene_is_quick(scene: Scene, regularization: fl
     assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [strong(duration=1e5), linked(1e-4)],
-    ids=["1e5 s", "link 1e-4 s"],
-)
+@pytest.mark.parametrize("scene", [strong(duration=1e5), linked(1e-4)], ids=["1e5 s", "link 1e-4 s"])
 def test_work_beyond_the_budget_is_refused_before_any_step(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Engine, "run", lambda *given: pytest.fail("a step was spent"))
     result = multibody.amplification(scene, PHASE)
@@ -125,9 +121,7 @@ def test_iterations_in_vain_are_work_as_well(monkeypatch: pytest.MonkeyPatch) ->
     assert result.status[0] == Outcome.STEP_LIMIT
 
 
-def test_what_the_compliance_leaves_is_part_of_the_error(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_what_the_compliance_leaves_is_part_of_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
     done = adaptive_runs(monkeypatch)
     scene = strong(duration=0.3)
     result = multibody.amplification(scene, PHASE, tolerance=1e-9)

@@ -161,8 +161,7 @@ def test_a_contact_made_stiff_by_a_small_v_reg_is_solved() -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize(
-    ("scene", "tolerance", "count", "largest"),
-    [("fig3-I", 1e-3, 256, 2e-3), ("fig3-II", 1e-3, 128, 2e-3)],
+    ("scene", "tolerance", "count", "largest"), [("fig3-I", 1e-3, 256, 2e-3), ("fig3-II", 1e-3, 128, 2e-3)]
 )
 def test_a_whole_surface_lies_within_its_errors(scene: str, tolerance: float, count: int, largest: float) -> None:
     phases = np.random.default_rng(11).uniform(0.0, 2.0 * np.pi, (count, 2))

@@ -30,13 +30,7 @@ def harmonics(random: Generator, horizontal: float, vertical: float) -> Table:
 def case(
     title: str, duration: float, isolator: Table, bodies: list[Table], excitation: Table, random: Generator
 ) -> Case:
-    scene = {
-        "title": title,
-        "duration": duration,
-        "isolator": isolator,
-        "bodies": bodies,
-        "excitation": excitation,
-    }
+    scene = {"title": title, "duration": duration, "isolator": isolator, "bodies": bodies, "excitation": excitation}
     return scene, tuple(random.uniform(0.0, 2.0 * np.pi, 2).tolist()), float(10.0 ** random.uniform(-3.0, -2.0))
 
 

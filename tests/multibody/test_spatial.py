@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rigid_chain import spatial_motion
-from scenes_at_hand import CONSTANT, changed, one_body
+from scenes_at_hand import CONSTANT, assert_agrees_with_newton_and_euler, changed, one_body
 
 import multibody
 from multibody.integration.adaptive import Budget
@@ -66,13 +65,6 @@ def other_scene(seed: int) -> Scene:
             },
         }
     )
-
-
-def assert_agrees_with_newton_and_euler(scene: Scene, phase: tuple[float, float], tolerance: float = 1e-3) -> None:
-    engine = multibody.amplification(scene, [phase], model="spatial", tolerance=tolerance)
-    independent = spatial_motion(scene, phase, 1e-3, tolerance=1e-6)
-    assert engine.status[0] == "ok"
-    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
 
 
 @pytest.mark.long  # a minute of compiling the independent equations

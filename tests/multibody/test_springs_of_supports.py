@@ -104,9 +104,7 @@ def test_an_answer_hardly_changed_by_bearings_stays(refined: Any) -> None:
     np.testing.assert_allclose(done.answer.errors, [5e-4 + level_error(1), 2.0 * level_error(1)])
 
 
-def test_a_change_without_room_asks_for_another_level(
-    refined: Any,
-) -> None:
+def test_a_change_without_room_asks_for_another_level(refined: Any) -> None:
     done = refined(lambda number, springs: result(1.0 + 9e-4 * (springs == REAL)))
     assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (2, STIFF), (2, REAL)]
     assert done.answer.outcome == Outcome.OK
@@ -256,9 +254,7 @@ def test_the_first_run_of_rattling_supports_has_a_share(refined: Any) -> None:
     assert done.answer.outcome == Outcome.OK
 
 
-def test_supports_opened_by_a_misfit_may_give_way_by_more(
-    refined: Any,
-) -> None:
+def test_supports_opened_by_a_misfit_may_give_way_by_more(refined: Any) -> None:
     load = 0.02
     wanted = REAL * load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * TOLERANCE)
 

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rigid_chain import spatial_motion
-from scenes_at_hand import changed
+from scenes_at_hand import assert_agrees_with_newton_and_euler, changed
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
 import multibody
@@ -18,7 +17,7 @@ from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from multibody.models.depressions import rotation
 from reference.measures import demands
-from reference.problem import GRAVITY, Outcome, Scene, SceneError, load_scene
+from reference.problem import GRAVITY, Outcome, Scene, SceneError, load_scene, phase_grid
 
 PHASE = (2.0, 0.7)
 PENTAGON = [[1.0, 0.8], [-0.9, 1.1], [-1.2, -0.7], [0.8, -1.0], [0.1, 0.9]]
@@ -62,28 +61,13 @@ def agree(one: Any, other: Any) -> bool:
 @pytest.mark.parametrize("name", UNEVEN)
 @pytest.mark.parametrize("phase", [PHASE, (0.3, 1.1)])
 def test_factors_and_torsion_agree_with_newton_euler_equations(name: str, phase: tuple[float, float]) -> None:
-    scene = uneven(name)
-    engine = multibody.amplification(scene, [phase], model="spatial")
-    independent = spatial_motion(scene, phase, 1e-3, tolerance=1e-6)
-    assert engine.status[0] == Outcome.OK
-    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
-    torsion = demands(multibody.trajectory(scene, phase, "spatial")).torsion
-    assert torsion is not None
-    assert abs(torsion[0].value - np.abs(independent.yaw).max()) <= torsion[0].error
+    assert_agrees_with_newton_and_euler(uneven(name), phase)
 
 
 @pytest.mark.long  # five minutes, of which the engine takes half a minute
 def test_a_whole_surface_agrees_with_newton_euler_equations() -> None:
-    scene = uneven("everything")
-    values = np.arange(8) * np.pi / 4.0
-    phases = [(a, b) for a in values for b in values]
-    engine = multibody.amplification(scene, phases, model="spatial")
-    misfits = []
-    for phase, status, mu, error in zip(phases, engine.status, engine.mu, engine.error):
-        independent = spatial_motion(scene, phase, 1e-3, tolerance=1e-6).mu
-        if status != Outcome.OK or not (np.abs(mu - independent) <= error).all():
-            misfits.append((phase, status, mu, independent, error))
-    assert not misfits
+    for phase in phase_grid(8):
+        assert_agrees_with_newton_and_euler(uneven("everything"), tuple(phase))
 
 
 def test_closed_supports_share_the_load_of_a_turned_platform() -> None:
@@ -96,10 +80,7 @@ def test_closed_supports_share_the_load_of_a_turned_platform() -> None:
 @pytest.mark.long
 def test_supports_under_a_tower_agree_with_newton_euler() -> None:
     scene = uneven("body above off the axis", 4.0, **{"isolator.ring": 0.3, "bodies.1.offset": [0.03, -0.02]})
-    engine = multibody.amplification(scene, [PHASE], model="spatial")
-    independent = spatial_motion(scene, PHASE, 1e-3, tolerance=1e-6)
-    assert independent.support_force.min() == 0.0
-    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
+    assert assert_agrees_with_newton_and_euler(scene, PHASE).support_force.min() == 0.0
 
 
 def static_shares(scene: Scene) -> np.ndarray:

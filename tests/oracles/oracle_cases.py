@@ -32,11 +32,7 @@ OWN: dict[str, dict[str, Any]] = {
     },
     "three-vertical": {
         "isolator": {"radius": 0.4, "friction": 0.07},
-        "bodies": [
-            {"mass": 2.0},
-            {"mass": 1.0, "period": [0.5, 0.6]},
-            {"mass": 0.5, "stiffness": [180.0, 240.0]},
-        ],
+        "bodies": [{"mass": 2.0}, {"mass": 1.0, "period": [0.5, 0.6]}, {"mass": 0.5, "stiffness": [180.0, 240.0]}],
         "excitation": {"amplitudes": [[1.0, 0.4], [-0.3, 1.2], [1.3, 0.9]], **HORIZONTAL},
     },
     "deep": {  # swings to 0.7 of the radius

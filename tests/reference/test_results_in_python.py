@@ -121,12 +121,7 @@ def test_a_surface_is_drawn_with_its_heights_where_they_belong(surface):
 def test_a_motion_is_drawn_with_a_line_for_every_body_and_axis():
     motion = reference.trajectory(SCENE, (2.0, 0.7), tolerance=1e-4)
     axes = motion.plot()
-    assert [line.get_label() for line in axes.get_lines()] == [
-        "body 1, x",
-        "body 1, y",
-        "body 2, x",
-        "body 2, y",
-    ]
+    assert [line.get_label() for line in axes.get_lines()] == ["body 1, x", "body 1, y", "body 2, x", "body 2, y"]
     np.testing.assert_array_equal(axes.get_lines()[3].get_ydata(), motion.position[:, 1, 1])
     assert len(axes.patches) == len(motion.stick) > 0
     assert motion.plot("velocity", axes=plt.figure().add_subplot()).get_ylabel().endswith("m/s")

@@ -155,9 +155,7 @@ def two_bursts(second: float) -> Scene:
     return Scene.model_validate({**values, "duration": float(time[-1])})
 
 
-def test_a_run_goes_on_only_where_something_large_comes(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_run_goes_on_only_where_something_large_comes(monkeypatch: pytest.MonkeyPatch) -> None:
     weak, strong = two_bursts(0.2), two_bursts(1.2)
     assert (ends_of_runs(monkeypatch, weak, full=False) < 10.0).all()
     assert (ends_of_runs(monkeypatch, strong, full=False) > 20.0).all()
