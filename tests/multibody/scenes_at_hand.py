@@ -88,17 +88,18 @@ def forces_of_links(scene: Scene, coordinates: Any, velocities: Any) -> tuple[An
     return pushed[:, 0], pushed[:, 1], model
 
 
-def assert_agrees_with_newton_and_euler(scene: Scene, phase: tuple[float, float], outcome: Outcome = Outcome.OK) -> Any:
+def assert_agrees_with_newton_and_euler(scene: Scene, phase: tuple[float, float]) -> Any:
     """
-    Factors and the platform's torsion are those of rigid_chain.py, whose motion is returned.
+    Factors are those of rigid_chain.py, whose motion is returned, and so is the torsion while all supports are closed.
 
     The first call takes a minute of compiling.
     """
     engine = multibody.amplification(scene, [phase], "spatial")
     independent = spatial_motion(scene, phase, 1e-3, tolerance=1e-6)
-    assert engine.status[0] == outcome
+    assert engine.status[0] == Outcome.OK
     assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
-    torsion = demands(multibody.trajectory(scene, phase, "spatial")).torsion
-    assert torsion is not None
-    assert abs(torsion[0].value - np.abs(independent.yaw).max()) <= torsion[0].error
+    if independent.support_force.min() > 0.0:
+        torsion = demands(multibody.trajectory(scene, phase, "spatial")).torsion
+        assert torsion is not None
+        assert abs(torsion[0].value - np.abs(independent.yaw).max()) <= torsion[0].error
     return independent
