@@ -9,6 +9,7 @@ trajectory      one motion, sampled in time
 peak_demands    what the motions at many phase pairs demand of isolator and structure, with errors
 demands         that of one motion
 floor_spectra   response spectra of its floors, with errors
+effective_isolator  effective period, damping and re-centering ratio of the isolator
 factor_for_spectrum  factor of a ground motion for a target spectrum
 modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
 damped_modes    complex modes and damping ratios of the chain with the dampers of its links
@@ -29,6 +30,7 @@ PhaseMaximum    what `worst_phases` returns
 Demands         what `demands` returns
 PeakDemands     what `peak_demands` returns
 Estimates       arrays of numbers and their errors
+EffectiveIsolator  what `effective_isolator` returns
 FloorSpectra    what `floor_spectra` returns
 Estimate        a number and its error
 Outcome         how the run of one phase pair ended
@@ -58,11 +60,13 @@ from typing import TYPE_CHECKING, Any
 
 from reference.measures import (
     Demands,
+    EffectiveIsolator,
     Estimate,
     Estimates,
     FloorSpectra,
     PeakDemands,
     demands,
+    effective_isolator,
     factor_for_spectrum,
     floor_spectra,
     phase_distribution,
@@ -103,6 +107,7 @@ LOADED_ON_FIRST_USE = {
 __all__ = [
     "Amplification",
     "Demands",
+    "EffectiveIsolator",
     "Estimate",
     "Estimates",
     "FloorSpectra",
@@ -117,6 +122,7 @@ __all__ = [
     "builtin_scenes",
     "damped_modes",
     "demands",
+    "effective_isolator",
     "example_scenes",
     "factor_for_spectrum",
     "floor_spectra",

@@ -4,6 +4,7 @@ What is read off motions and surfaces, whichever side computed them.
 Functions
 ---------
 demands                 what a motion demands of isolator and structure
+effective_isolator      effective period, damping and re-centering ratio of the isolator
 factor_for_spectrum     factor of a ground motion for a target spectrum
 floor_spectra           response spectra of the floors of a motion
 phase_distribution      mean and fractiles of mu over uniform phases
@@ -11,23 +12,26 @@ phase_distribution      mean and fractiles of mu over uniform phases
 Classes
 -------
 Demands, PeakDemands                demands of one motion; of the motions of many phase pairs
-FloorSpectra, PhaseDistribution     what the functions return
+EffectiveIsolator, FloorSpectra, PhaseDistribution     what the functions return
 Estimate, Estimates                 a number with its error; arrays of them
 """
 
 from reference.measures.demands import Demands, Estimate, demands
 from reference.measures.distribution import PhaseDistribution, phase_distribution
+from reference.measures.effective import EffectiveIsolator, effective_isolator
 from reference.measures.peak_demands import Estimates, PeakDemands
 from reference.measures.spectra import FloorSpectra, factor_for_spectrum, floor_spectra
 
 __all__ = [
     "Demands",
+    "EffectiveIsolator",
     "Estimate",
     "Estimates",
     "FloorSpectra",
     "PeakDemands",
     "PhaseDistribution",
     "demands",
+    "effective_isolator",
     "factor_for_spectrum",
     "floor_spectra",
     "phase_distribution",

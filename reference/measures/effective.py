@@ -1,0 +1,86 @@
+"""The linear isolator that design codes put in the place of a friction pendulum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from reference.problem import GRAVITY, Scene
+from reference.problem.scene import takes_scene
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class EffectiveIsolator:
+    """
+    What `effective_isolator` returns, each of the shape of the displacements.
+
+    Attributes
+    ----------
+    stiffness : ndarray, N/m
+        Secant stiffness W / rho + mu W / D.
+    period : ndarray, s
+        Of the whole mass on that stiffness.
+    damping : ndarray
+        Damping ratio with the same energy a cycle, 2 / pi mu / (mu + D / rho).
+    restoring : ndarray
+        Restoring force over friction force, D / (mu rho). Below 1 the platform may stay at D. Half of it is the energy
+        ratio E_S / E_H of EN 15129.
+    """
+
+    stiffness: Array
+    period: Array
+    damping: Array
+    restoring: Array
+
+
+@takes_scene
+def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolator:
+    """
+    Effective stiffness, period and damping of the isolator at a displacement, and its re-centering ratio.
+
+    Parameters
+    ----------
+    scene : Scene
+        With dry friction. Its coefficient at high speed counts, under the weight.
+    displacement : array_like, m
+        Amplitude D of the cycle, of any shape, above 0; usually the largest displacement under a ground motion.
+
+    Returns
+    -------
+    EffectiveIsolator
+
+    Raises
+    ------
+    ValueError
+        For a lubricated scene, and for a displacement that is not a positive number.
+
+    Notes
+    -----
+    ASCE/SEI 7-22, chapter 17, for a bilinear loop. The formulas are those of small slopes, D much smaller than rho.
+
+    Examples
+    --------
+    >>> import reference
+    >>> scene = reference.load_scene("fig3-I").with_values({"isolator": {"radius": 2.0, "friction": 0.05}})
+    >>> isolator = reference.effective_isolator(scene, 0.2)
+    >>> isolator.period.round(3).item(), isolator.damping.round(3).item(), isolator.restoring.round(3).item()
+    (2.316, 0.212, 2.0)
+    """
+    amplitude = np.asarray(displacement, dtype=float)
+    if scene.lubricated:
+        raise ValueError("effective_isolator: a lubricated scene has no dry friction; take one that has")
+    if not (np.isfinite(amplitude) & (amplitude > 0.0)).all():
+        raise ValueError(f"effective_isolator: displacement is {displacement!r}: pass lengths in m above 0")
+    friction, slope = scene.dry_friction.fast, amplitude / scene.radius
+    stiffness = scene.total_mass * GRAVITY * (friction + slope) / amplitude
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return EffectiveIsolator(
+            stiffness,
+            2.0 * np.pi * np.sqrt(scene.total_mass / stiffness),
+            2.0 / np.pi * friction / (friction + slope),
+            slope / friction,
+        )
