@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem import GRAVITY, Scene
-from reference.problem.scene import takes_scene
+from reference.problem.__init__ import GRAVITY
+from reference.problem.scene import Scene, takes_scene
 
 Array = NDArray[np.float64]
 
