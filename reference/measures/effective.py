@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.__init__ import GRAVITY
+from reference.problem.constants import GRAVITY
 from reference.problem.scene import Scene, takes_scene
 
 Array = NDArray[np.float64]
