@@ -13,6 +13,7 @@ import numpy as np
 from reference.measures.energy import Energy, energy_of
 from reference.problem.outcome import Outcome
 from reference.problem.result import Array, Trajectory, takes_motion
+from reference.problem.scene import Scene
 
 ANSWERED = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
 ROUNDING = 1e-9  # of the duration: the last instant of a motion may miss its end by it
@@ -78,6 +79,8 @@ class Demands:
         Largest rotation of every body about the vertical. None where the bodies do not turn.
     stops : Estimate
         Number of intervals of rest after the first slip; with a regularized law of creep below v_reg.
+    support_displacement : Estimate or None, m
+        Largest horizontal displacement of a support, with the platform's rotation. None where the bodies do not turn.
     uplift : Estimate or None, m
         Largest gap of a support that has lifted off. None where the model has no single supports.
     friction_energy : Estimate, J
@@ -103,6 +106,7 @@ class Demands:
     support_force_max: Estimate | None
     torsion: tuple[Estimate, ...] | None
     stops: Estimate
+    support_displacement: Estimate | None
     uplift: Estimate | None
     friction_energy: Estimate
     damping_energy: Estimate | None
@@ -168,6 +172,7 @@ def demands(trajectory: Trajectory) -> Demands:
         support_force_max=read.extreme(lambda samples: float(samples.support.max())) if supported else None,
         torsion=tuple(map(read.extreme, map(_torsion_of, bodies))) if read.samples.rotation.shape[1] else None,
         stops=read.count(_stops),
+        support_displacement=read.extreme(_support_displacement_of(scene)) if supported and turning else None,
         uplift=read.extreme(lambda samples: float(samples.uplift.max())) if supported else None,
         friction_energy=read.energy(Energy.dissipated),
         damping_energy=read.energy(Energy.damped) if scene.damping.any() and not turning else None,
@@ -325,6 +330,18 @@ def _drift_of(link: int) -> Read:
 def _torsion_of(body: int) -> Read:
     """Largest rotation of a body about the vertical."""
     return lambda samples: float(np.abs(samples.rotation[:, body]).max())
+
+
+def _support_displacement_of(scene: Scene) -> Read:
+    """Largest displacement of a support, which turns about the platform's center of mass."""
+    assert scene.support_places is not None
+    arms = (scene.support_places - scene.offsets[0]) @ [1.0, 1.0j]  # x + i y
+
+    def largest(samples: _Samples) -> float:
+        place, turn = samples.place[:, :1] @ [1.0, 1.0j], np.exp(1.0j * samples.rotation[:, :1])
+        return float(np.abs(place + (turn - 1.0) * arms).max())
+
+    return largest
 
 
 def _stops(motion: Trajectory) -> float:

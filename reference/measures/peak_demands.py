@@ -37,6 +37,7 @@ QUANTITIES = {  # fields of `Demands` in words, and their units
     "support_force_max": ("largest support force", "N"),
     "torsion": ("largest rotation about the vertical", "rad"),
     "stops": ("number of stops", "1"),
+    "support_displacement": ("largest displacement of a support", "m"),
     "uplift": ("largest uplift of a support", "m"),
     "friction_energy": ("energy dissipated by friction", "J"),
     "damping_energy": ("energy dissipated by dampers of the links", "J"),

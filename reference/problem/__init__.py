@@ -69,10 +69,17 @@ from reference.problem.scene_error import SceneError
 from reference.problem.scene_file import builtin_scenes, example_scenes, load_scene, parse_scene
 
 if TYPE_CHECKING:
-    from reference.measures.demands import Demands, Estimate, demands
-    from reference.measures.distribution import PhaseDistribution, phase_distribution
-    from reference.measures.peak_demands import Estimates, PeakDemands
-    from reference.measures.spectra import FloorSpectra, floor_spectra
+    from reference.measures import (
+        Demands,
+        Estimate,
+        Estimates,
+        FloorSpectra,
+        PeakDemands,
+        PhaseDistribution,
+        demands,
+        floor_spectra,
+        phase_distribution,
+    )
 
 __all__ = [
     "ADVICE",

@@ -18,6 +18,7 @@ OF_ISOLATOR = (
     "contact_force_max",
     "support_force_min",
     "support_force_max",
+    "support_displacement",
     "uplift",
     "friction_energy",
     "damping_energy",

@@ -182,7 +182,7 @@ def known_motions(study: Study, surfaces: xr.Dataset, *rest: object) -> list[Sto
 KNOWN = {
     "displacement": 0.15, "cap_share": 0.6, "acceleration": 2.1, "base_shear": 5.2, "drift": 0.037,
     "contact_force_min": 17.0, "contact_force_max": 23.0, "support_force_min": 3.1, "support_force_max": 7.3,
-    "torsion": 0.004, "stops": 9.0, "uplift": 0.0013, "friction_energy": 1.7,
+    "torsion": 0.004, "stops": 9.0, "uplift": 0.0013, "support_displacement": 0.19, "friction_energy": 1.7,
 }  # fmt: skip
 
 
@@ -202,7 +202,8 @@ def known_demands(scene: Scene, supported: bool) -> Demands:
         Outcome.OK.value, one("displacement"), Estimate(np.nan, np.nan, MOVING), one("cap_share"), None,
         many("acceleration"), one("base_shear"), many("drift", 1), one("contact_force_min"), one("contact_force_max"),
         of_supports("support_force_min"), of_supports("support_force_max"), many("torsion") if supported else None,
-        one("stops"), of_supports("uplift"), one("friction_energy"), None, None if supported else Estimate(0.0, 0.25),
+        one("stops"), of_supports("support_displacement"), of_supports("uplift"), one("friction_energy"),
+        None, None if supported else Estimate(0.0, 0.25),
     )  # fmt: skip
 
 

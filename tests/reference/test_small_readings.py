@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -27,7 +28,10 @@ def test_fractiles_are_named_in_rising_order_and_follow_hazen() -> None:
 
 def test_units_are_those_of_the_quantities() -> None:
     units = {name: unit for name, (_, unit) in QUANTITIES.items()}
-    of = {"m": "displacement residual drift uplift", "J": "friction_energy damping_energy energy_balance"}
+    of = {
+        "m": "displacement support_displacement residual drift uplift",
+        "J": "friction_energy damping_energy energy_balance",
+    }
     of |= {"rad": "torsion"}
     of |= {"N": "base_shear contact_force_min contact_force_max support_force_min support_force_max"}
     of |= {"m/s^2": "acceleration", "1": "cap_share travel_share stops"}
@@ -41,6 +45,31 @@ def test_a_drift_is_against_the_body_below() -> None:
     still = np.zeros_like(place)
     motion = Trajectory(time, place, still, still, np.ones(21), [], "ok", np.nan, scene, peak=np.zeros(4))
     assert [drift.value for drift in demands(motion).drift] == [2.0, 4.0, 1.0]
+
+
+def test_a_support_moves_with_the_turning_platform() -> None:
+    """A support of an eccentric platform, against its place before and after the turn about the center of mass."""
+    values = {
+        "isolator.ring": None,
+        "isolator.supports": [[1.0, 0.5], [-1.0, 0.5], [0.0, -1.0]],
+        "isolator.sphere_radius": 0.05,
+    }
+    scene = load_scene("fig3-I").with_values(values | {"bodies.0.offset": [0.2, -0.1]})
+    bodies, angle, moved, center = len(scene.bodies), 0.3, np.array([0.05, -0.02]), np.array([0.2, -0.1])
+    place, turns = np.zeros((11, bodies, 3)), np.zeros((11, bodies, 3))
+    place[5:, 0, :2], turns[5:, 0, 2] = moved, angle
+    still, extra = (
+        np.zeros_like(place),
+        {"turns": turns, "support_force": np.ones((11, 3)), "uplift": np.zeros((11, 3))},
+    )
+    time = np.linspace(0.0, 1.0, 11)
+    motion = Trajectory(time, place, still, still, np.ones(11), [], "ok", np.nan, scene, extra, np.zeros(bodies))
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    assert scene.support_places is not None
+    expected = max(np.linalg.norm(center + moved + turn @ (at - center) - at) for at in scene.support_places)
+    answer = demands(motion)
+    assert answer.support_displacement is not None
+    assert answer.support_displacement.value == pytest.approx(expected, rel=1e-12)
 
 
 def test_dampers_take_the_energy_of_a_body_on_a_held_platform() -> None:

@@ -10,12 +10,13 @@ from reference.measures.peak_demands import unit_of
 from reference.problem import GRAVITY
 
 ORDER = (
-    "displacement", "residual", "base_shear", "torsion", "acceleration", "drift", "uplift", "support_force_min",
-    "support_force_max", "contact_force_min", "contact_force_max", "travel_share", "cap_share", "stops",
-    "friction_energy", "damping_energy",
+    "displacement", "support_displacement", "residual", "base_shear", "torsion", "acceleration", "drift", "uplift",
+    "support_force_min", "support_force_max", "contact_force_min", "contact_force_max", "travel_share", "cap_share",
+    "stops", "friction_energy", "damping_energy",
 )  # fmt: skip
 TITLES = {
     "displacement": "isolator displacement",
+    "support_displacement": "displacement of a support",
     "residual": "residual displacement",
     "base_shear": "base shear",
     "torsion": "rotation of body {}",
