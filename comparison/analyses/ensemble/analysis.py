@@ -9,12 +9,26 @@ scene, the engine a stated subset of them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from comparison.analyses.ensemble.result import (
+    SCHEMA,
+    Curve,
+    Difference,
+    Engine,
+    EnsembleResult,
+    Fractile,
+    Spectrum,
+    Statistic,
+    Stripe,
+    Structure,
+)
 from comparison.analyses.families.analysis import listed_demands
 from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
@@ -25,6 +39,7 @@ from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL, Model, ha
 from comparison.study.study import Study
 from reference.measures import Demands, Estimate, FloorSpectra, demands, floor_spectra
 from reference.measures.distribution import fractile
+from reference.measures.peak_demands import unit_of
 from reference.problem import GRAVITY, Family, Scene, SceneError
 
 SCALE = "excitation.scale"
@@ -47,16 +62,6 @@ class Member:
     motion: str
     scale: float  # of the ensemble; a factor of the motion itself comes on top
     scene: Scene
-
-
-@dataclass(frozen=True)
-class Structure:
-    """What the statistics are of. weight: N."""
-
-    name: str
-    title: str
-    bodies: int
-    weight: float
 
 
 @dataclass(frozen=True)
@@ -88,72 +93,12 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Stripe:
-    """
-    One demand of one structure at one scale over all motions, by one model.
+class Points:
+    """equations: in the order of the members. engine: at the subset; alike: by the equations with its friction law."""
 
-    Every number is NaN where it rests on a motion without an answer.
-    """
-
-    structure: str
-    model: str  # key
-    quantity: Quantity
-    scale: float
-    mean: Estimate
-    fractiles: tuple[Estimate, ...]  # at FRACTILES
-    largest: Estimate
-    smallest: Estimate
-    answered: int  # motions that have the demand
-    reasons: dict[str, int]  # why the others do not have it: how many each
-
-
-@dataclass(frozen=True)
-class SpectrumBand:
-    """Floor spectrum of one body over all motions at one scale, by the equations; of x and y the larger, m/s^2."""
-
-    structure: str
-    body: int  # from 1
-    scale: float
-    damping: float
-    period: tuple[float, ...]  # s
-    mean: tuple[Estimate, ...]
-    fractiles: tuple[tuple[Estimate, ...], ...]  # at FRACTILES
-    largest: tuple[Estimate, ...]
-
-
-@dataclass(frozen=True)
-class Bound:
-    """How far the engine is from the equations in one demand, at the points that both have computed."""
-
-    structure: str
-    quantity: Quantity
-    largest: float  # |engine - equations| / |equations| of the ensemble; NaN without a common point
-    like_for_like: float  # the same against the equations with the engine's friction law
-    errors: float  # the two error estimates together, relative, at the point of `like_for_like`
-    points: int
-
-
-@dataclass(frozen=True)
-class EnsembleResult:
-    """points: by the equations, in the order of the members. engine: at the subset; alike: with its friction law."""
-
-    structures: Sequence[Structure]
-    model: Model  # of the engine
-    points: Sequence[Point]
+    equations: Sequence[Point]
     engine: Sequence[Point]
     alike: Sequence[Point]
-    stripes: Sequence[Stripe]
-    bounds: Sequence[Bound]
-    spectra: Sequence[SpectrumBand] = ()
-
-    def motions(self) -> int:
-        """How many motions there are."""
-        return len({point.curve for point in self.points})
-
-    def outcomes(self) -> dict[str, int]:
-        """How many motions ended with which status by the equations, the most frequent first."""
-        names = [point.status for point in self.points]
-        return {name: names.count(name) for name in sorted(set(names), key=lambda name: (-names.count(name), name))}
 
 
 Arguments = tuple[Scene, Model, float]
@@ -165,7 +110,7 @@ def _alike(scene: Scene) -> Model:
 
 
 @dataclass(frozen=True)
-class Ensemble(Analysis[EnsembleResult]):
+class Ensemble(Analysis[Points]):
     """
     Demands of every scene by the equations, and by the engine at `subset` of every structure's.
 
@@ -191,8 +136,8 @@ class Ensemble(Analysis[EnsembleResult]):
         tasks = {task.key: task for task in (self._task(scene, model) for scene, model in asked)}
         return list(tasks.values())
 
-    def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> EnsembleResult:
-        """Points, their statistics and the engine's bound."""
+    def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> Points:
+        """Every motion by every model that was asked for it."""
 
         def point(member: Member, model: Model) -> Point:
             scene = member.scene
@@ -204,11 +149,32 @@ class Ensemble(Analysis[EnsembleResult]):
             return Point(*named, answer.demands.status, answer.demands, answer.spectra)
 
         asked = [self.members[place] for place in self.chosen()]
-        points = [point(member, EXACT) for member in self.members]
-        engine = [point(member, self.model) for member in asked]
-        alike = [point(member, _alike(member.scene)) for member in asked]
-        listed = [*stripes(points), *stripes(engine)], list(bounds(points, engine, alike)), list(spectrum_bands(points))
-        return EnsembleResult(structures_of(self.members), self.model, points, engine, alike, *listed)
+        return Points(
+            [point(member, EXACT) for member in self.members],
+            [point(member, self.model) for member in asked],
+            [point(member, _alike(member.scene)) for member in asked],
+        )
+
+    def result(self, points: Points, run: Mapping[str, Any]) -> EnsembleResult:
+        """The statistics of the points, the curves of the motions and the engine's bound."""
+        both = points.equations, points.engine
+        statuses = Counter(sorted(point.status for point in points.equations))
+        return EnsembleResult(
+            schema=SCHEMA,
+            structures=structures_of(self.members),
+            scales=sorted({point.scale for point in points.equations}),
+            motions=len({point.curve for point in points.equations}),
+            outcomes=dict(statuses.most_common()),
+            stripes=[stripe for each in both for stripe in stripes(each)],
+            curves=list(curves(*both)),
+            spectra=list(spectrum_bands(points.equations)),
+            engine=Engine(
+                self.model.key,
+                [{"scene": point.scene, "status": point.status} for point in points.engine],
+                list(bounds(points.equations, points.engine, points.alike)),
+            ),
+            run=run,
+        )
 
     def chosen(self) -> list[int]:
         """Places of the engine's members: of every structure, the motions and the scales each spread evenly."""
@@ -314,23 +280,42 @@ def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
 def _stripe(name: str, quantity: Quantity, scale: float, points: Sequence[Point]) -> Stripe:
     numbers = [point.estimate(quantity) for point in points]
     worst = -np.inf if quantity[0] in SMALLEST else np.inf
-    mean, *shares = statistics(numbers, (*FRACTILES, 1.0, 0.0), worst)
-    ended = [point.status for point in points]
-    lacking = [number.reason or status for number, status in zip(numbers, ended) if not math.isfinite(number.value)]
-    reasons = {reason: lacking.count(reason) for reason in lacking}
-    known = len(numbers) - len(lacking)
+    mean, *shares, largest, smallest = statistics(numbers, (*FRACTILES, 1.0, 0.0), worst)
+    lacking = Counter(
+        number.reason or point.status for number, point in zip(numbers, points) if not math.isfinite(number.value)
+    )
     return Stripe(
-        name, points[0].model, quantity, scale, mean, tuple(shares[:-2]), shares[-2], shares[-1], known, reasons
+        name,
+        points[0].model,
+        *_named(quantity),
+        unit_of(quantity[0]),
+        scale,
+        len(numbers) - lacking.total(),
+        mean,
+        [Fractile(share, each.value, each.error) for share, each in zip(FRACTILES, shares)],
+        largest,
+        smallest,
+        dict(lacking),
     )
 
 
-def statistics(numbers: Sequence[Estimate], shares: Sequence[float], worst: float = math.inf) -> list[Estimate]:
+def _named(quantity: Quantity) -> tuple[str, int | None]:
+    return quantity[0], quantity[1] or None
+
+
+def _statistic(number: Estimate) -> Statistic:
+    return Statistic(finite_or_none(number.value), finite_or_none(number.error))
+
+
+def statistics(numbers: Sequence[Estimate], shares: Sequence[float], worst: float = math.inf) -> list[Statistic]:
     """Mean of numbers with errors, which has no value unless all are known, and their fractiles."""
     value, error = (float(np.mean([getattr(each, part) for each in numbers])) for part in ("value", "error"))
-    return [Estimate(value, error), *(uncertain_fractile(numbers, share, worst) for share in shares)]
+    return [
+        *map(_statistic, (Estimate(value, error), *(uncertain_fractile(numbers, share, worst) for share in shares)))
+    ]
 
 
-def spectrum_bands(points: Sequence[Point]) -> Iterator[SpectrumBand]:
+def spectrum_bands(points: Sequence[Point]) -> Iterator[Spectrum]:
     """Floor spectra of every body of every structure at the largest scale, over all motions."""
     top = max((point.scale for point in points), default=math.nan)
     for name in dict.fromkeys(point.structure for point in points):
@@ -338,9 +323,9 @@ def spectrum_bands(points: Sequence[Point]) -> Iterator[SpectrumBand]:
         known = [point.spectra for point in own if point.spectra is not None]
         for body in range(known[0].acceleration.shape[0] if known else 0):
             columns = zip(*(_envelope(point.spectra, body, len(known[0].period)) for point in own))
-            mean, *shares = zip(*(statistics(column, (*FRACTILES, 1.0)) for column in columns))
-            about = name, body + 1, top, known[0].damping, tuple(known[0].period.tolist())
-            yield SpectrumBand(*about, mean, tuple(shares[:-1]), shares[-1])
+            mean, *shares, largest = zip(*(statistics(column, (*FRACTILES, 1.0)) for column in columns))
+            about = name, body + 1, top, known[0].damping, known[0].period.tolist()
+            yield Spectrum(*about, mean, shares, largest)
 
 
 def _envelope(spectra: FloorSpectra | None, body: int, periods: int) -> list[Estimate]:
@@ -349,6 +334,29 @@ def _envelope(spectra: FloorSpectra | None, body: int, periods: int) -> list[Est
         return [Estimate(math.nan, math.nan)] * periods
     (x, y), error = spectra.acceleration[body], spectra.error[body].max(axis=0)
     return [Estimate(float(value), float(each)) for value, each in zip(np.maximum(x, y), error)]
+
+
+def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[Curve]:
+    """Every demand of every motion over its scales, by structure, demand, model and motion."""
+    for name in dict.fromkeys(point.structure for point in equations):
+        both = [[point for point in points if point.structure == name] for points in (equations, engine)]
+        for quantity in quantities([*equations, *engine]):
+            for own in both:
+                for motion in dict.fromkeys(point.curve for point in own) if quantity in quantities(own) else ():
+                    yield _curve(quantity, sorted((p for p in own if p.curve == motion), key=lambda point: point.scale))
+
+
+def _curve(quantity: Quantity, points: Sequence[Point]) -> Curve:
+    numbers = [_statistic(point.estimate(quantity)) for point in points]
+    return Curve(
+        points[0].structure,
+        *_named(quantity),
+        points[0].model,
+        points[0].curve,
+        [point.scale for point in points],
+        [number.value for number in numbers],
+        [number.error for number in numbers],
+    )
 
 
 def quantities(points: Sequence[Point]) -> list[Quantity]:
@@ -375,7 +383,7 @@ def uncertain_fractile(numbers: Sequence[Estimate], share: float, worst: float =
     return Estimate(middle, max(high - middle, middle - low)) if math.isfinite(middle) else Estimate(math.nan, math.nan)
 
 
-def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Point]) -> Iterator[Bound]:
+def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Point]) -> Iterator[Difference]:
     """The largest difference of every demand that both sides have, and the largest with the same friction law."""
     equations = {(point.structure, point.scene): point for point in points}
     for name in dict.fromkeys(point.structure for point in engine):
@@ -384,7 +392,8 @@ def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Poi
         for quantity in quantities(own):
             apart, same = ([*_differences(quantity, first, own)] for first in (matching, same_law))
             closest = max(same, default=(math.nan, math.nan))
-            yield Bound(name, quantity, max(apart, default=closest)[0], *closest, len(apart))
+            largest, alike_apart, errors = map(finite_or_none, (max(apart, default=closest)[0], *closest))
+            yield Difference(name, *_named(quantity), largest, alike_apart, errors, len(apart))
 
 
 def _differences(quantity: Quantity, first: Sequence[Point], second: Sequence[Point]) -> Iterator[tuple[float, float]]:
@@ -396,12 +405,12 @@ def _differences(quantity: Quantity, first: Sequence[Point], second: Sequence[Po
             yield abs(after.value - before.value) / size, (before.error + after.error) / size
 
 
-def as_rows(result: EnsembleResult) -> list[dict[str, object]]:
+def as_rows(points: Points) -> list[dict[str, object]]:
     """A row for every motion, scale and model, with all demands and their errors; None where there is no answer."""
-    names = quantities([*result.points, *result.engine])
+    names = quantities([*points.equations, *points.engine])
     rows = []
-    alike = [point for point in result.alike if point.model != EXACT.key]  # else it is among the points
-    for point in (*result.points, *alike, *result.engine):
+    alike = [point for point in points.alike if point.model != EXACT.key]  # else it is among the points
+    for point in (*points.equations, *alike, *points.engine):
         row: dict[str, object] = {
             "structure": point.structure,
             "scene": point.scene,
@@ -425,7 +434,7 @@ def as_rows(result: EnsembleResult) -> list[dict[str, object]]:
     return rows
 
 
-def quantity_name(quantity: Quantity) -> str:
+def quantity_name(quantity: tuple[str, int | None]) -> str:
     """A demand as one word, "drift_2" of body 2."""
     name, body = quantity
     return f"{name}_{body}" if body else name

@@ -25,14 +25,13 @@ from comparison.analyses.ensemble.analysis import (
     FRACTILES,
     SCALE,
     Ensemble,
-    EnsembleResult,
-    Stripe,
+    Points,
     as_rows,
     members_of,
     quantity_name,
     refuse_unfit,
 )
-from comparison.analyses.ensemble.result import PICTURE, STORED, stored
+from comparison.analyses.ensemble.result import PICTURE, STORED, EnsembleResult, Stripe
 from comparison.analyses.ensemble.units import figures_of, shown_stripes, unit_for_reading
 from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
 from comparison.cli.computing import computed, run_facts
@@ -83,14 +82,15 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         return 0
     begin = time.monotonic()
     results = computed("ensemble", options, argv, tasks, MODELS, console, executor)
-    result = ensemble.collect(None, None, results)
+    points = ensemble.collect(None, None, results)
     from comparison.analyses.ensemble.figure import draw_ensemble  # matplotlib: not needed to refuse a command
 
     cost = results.parts[ensemble.stage].seconds
     run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
+    result = ensemble.result(points, run)
     files = {
-        STORED.name: STORED.as_json(stored(result, run)),
-        TABLE: table_text(result).encode(),
+        STORED.name: STORED.as_json(result),
+        TABLE: table_text(points).encode(),
         **made_by(lambda folder: draw_ensemble(folder / PICTURE, result)),
     }
     with writing(out):
@@ -139,9 +139,9 @@ def _as_cell(value: object) -> object:
     return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
 
 
-def table_text(result: EnsembleResult) -> str:
+def table_text(points: Points) -> str:
     """The content of ensemble.csv: a row for every motion, scale and model."""
-    rows, stream = as_rows(result), io.StringIO()
+    rows, stream = as_rows(points), io.StringIO()
     writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
     writer.writeheader()
     writer.writerows({key: _as_cell(value) for key, value in row.items()} for row in rows)
@@ -150,16 +150,16 @@ def table_text(result: EnsembleResult) -> str:
 
 def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> None:
     """The demands at the largest scale, outcomes, and how far the engine is."""
-    top, motions = max(point.scale for point in result.points), result.motions()
+    top, motions = max(result.scales), result.motions
     for structure in result.structures:
         title = f"{structure.title} ({structure.name}): {motions} {'motion' if motions == 1 else 'motions'}"
         console.print(f"{title}, at scale {top:g}:", soft_wrap=True, markup=False)
         shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
         table = new_table("demand", "unit", "mean", *shares, "largest", "motions")
         for stripe in shown_stripes(result.stripes, structure.name, top):
-            unit, factor = unit_for_reading(stripe.quantity[0], structure.weight)
-            numbers = [stripe.mean, *stripe.fractiles, stripe.largest]
-            cells = [figures_of(factor * each.value) if math.isfinite(each.value) else "none" for each in numbers]
+            unit, factor = unit_for_reading(stripe.quantity, structure.weight)
+            values = [stripe.mean.value, *(each.value for each in stripe.fractiles), stripe.largest.value]
+            cells = ["none" if value is None else figures_of(factor * value) for value in values]
             table.add_row(row_name(stripe), unit, *cells, str(stripe.answered))
         console.print(table)
     lacking: dict[str, list[str]] = {}
@@ -168,22 +168,17 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
             lacking.setdefault(f"{count} {reason}", []).append(row_name(stripe))
     for what, names in lacking.items():
         console.print(f"Without a value: {', '.join(dict.fromkeys(names))}: {what}.", soft_wrap=True)
-    ended = ", ".join(f"{count} {name}" for name, count in result.outcomes().items())
-    console.print(
-        f"{len(result.points)} motions by the equations: {ended}. {seconds:.0f} s of compute.", soft_wrap=True
-    )
-    if result.engine:
-        where = ", ".join(f"{point.scene} ({point.status})" for point in result.engine)
-        line = (
-            f"The {result.model.title} ran {where}."
-            if len(result.engine) <= NAMED
-            else (f"The {result.model.title} ran {len(result.engine)} motions.")
-        )
-        console.print(line, soft_wrap=True, markup=False)
+    ended = ", ".join(f"{count} {name}" for name, count in result.outcomes.items())
+    count = sum(result.outcomes.values())
+    console.print(f"{count} motions by the equations: {ended}. {seconds:.0f} s of compute.", soft_wrap=True)
+    if asked := result.engine.points:
+        where = ", ".join(f"{point['scene']} ({point['status']})" for point in asked)
+        ran = where if len(asked) <= NAMED else f"{len(asked)} motions"
+        console.print(f"The {ENGINES[result.engine.model].title} ran {ran}.", soft_wrap=True, markup=False)
         table = new_table("engine: demand", "scene", "difference", "like for like", "errors")
-        for bound in result.bounds:
-            sizes = (percent(size) for size in (bound.largest, bound.like_for_like, bound.errors))
-            table.add_row(quantity_name(bound.quantity), bound.structure, *sizes)
+        for each in result.engine.differences:
+            sizes = (percent(math.nan if n is None else n) for n in (each.largest, each.like_for_like, each.errors))
+            table.add_row(quantity_name((each.quantity, each.body)), each.structure, *sizes)
         console.print(table)
         line = (
             "Largest difference from the equations of the ensemble, largest difference from the equations with the "
@@ -195,7 +190,7 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
 
 def row_name(stripe: Stripe) -> str:
     """A demand, and the model where that is the engine."""
-    name = quantity_name(stripe.quantity).replace("_", " ")
+    name = quantity_name((stripe.quantity, stripe.body)).replace("_", " ")
     return name if stripe.model == EXACT.key else f"{name} ({stripe.model})"
 
 

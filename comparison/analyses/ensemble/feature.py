@@ -6,8 +6,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.ensemble.result import STORED, StoredCurve, StoredEnsemble
-from comparison.analyses.ensemble.units import figures_of, shown_stripes, title_of, unit_for_reading
+from comparison.analyses.ensemble.result import STORED, Curve, EnsembleResult
+from comparison.analyses.ensemble.units import (
+    band,
+    figures_of,
+    fractiles_of,
+    scaled,
+    shown_stripes,
+    title_of,
+    unit_for_reading,
+)
 from comparison.report.plots import Panel
 from comparison.report.section import Feature, Report, Section
 from comparison.study.models import EXACT
@@ -17,7 +25,7 @@ SHOWN = ("displacement", "residual", "base_shear", "uplift", "support_force_max"
 WIDTH = 0.3  # of a strip, in steps from one structure to the next
 
 
-def ensemble_panels(ensemble: StoredEnsemble) -> list[Panel]:
+def ensemble_panels(ensemble: EnsembleResult) -> list[Panel]:
     """Isolator, base shear and supports over the scale or as strips; profiles over the height; floor spectra."""
     if not ensemble.curves:
         return []
@@ -25,24 +33,21 @@ def ensemble_panels(ensemble: StoredEnsemble) -> list[Panel]:
     return [*panels, *_profiles(ensemble), *_spectra(ensemble)]
 
 
-def _panel(ensemble: StoredEnsemble, quantity: str) -> Panel:
+def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     one, series = len(ensemble.scales) == 1, []
     for place, structure in enumerate(ensemble.structures):
         unit, factor = unit_for_reading(quantity, structure.weight)
-        own = [c for c in ensemble.curves if (c.quantity, c.structure) == (quantity, structure.name)]
-        motions = [curve for curve in own if curve.model == EXACT.key]
-        asked = [curve for curve in own if curve.model != EXACT.key]
+        motions, asked = ensemble.curves_of(structure.name, quantity)
         look = {"color": place, "name": f"{structure.name}: one motion", "legend": False}
         if one:
             series += _strips(motions, factor, place, {**look, "legend": True})
         else:
             series += [{**_over_scales(curve, factor), **look, "width": 0.7} for curve in motions]
-        stripes = [s for s in ensemble.stripes if (s.quantity, s.structure) == (quantity, structure.name)]
-        stripes = [s for s in stripes if s.model == EXACT.key] or stripes
-        low, median, high = ([_scaled(each.fractiles[n].value, factor) for each in stripes] for n in range(3))
-        band = {"name": f"{structure.name}: median, 16 % to 84 %", "y": median, "low": low, "high": high}
+        stripes = ensemble.stripes_of(structure.name, quantity)
+        low, median, high = fractiles_of(stripes, factor)
+        values = {"name": f"{structure.name}: median, 16 % to 84 %", "y": median, "low": low, "high": high}
         x = [place + WIDTH if one else stripe.scale for stripe in stripes]
-        series.append({**band, "x": x, "color": place, "band": not one, "marks": True, "line": not one, "width": 2.4})
+        series.append({**values, "x": x, "color": place, "band": not one, "marks": True, "line": not one, "width": 2.4})
         name = f"{structure.name}: engine"
         if one:
             series += _strips(asked, factor, place - WIDTH, {"color": "ink", "name": name})
@@ -60,26 +65,25 @@ def _panel(ensemble: StoredEnsemble, quantity: str) -> Panel:
     return {"title": title, "plot": {"label": label, "x": x_axis, "y": y_axis, "series": series}}
 
 
-def _strips(curves: Sequence[StoredCurve], factor: float, place: float, look: dict[str, Any]) -> list[dict[str, Any]]:
+def _strips(curves: Sequence[Curve], factor: float, place: float, look: dict[str, Any]) -> list[dict[str, Any]]:
     """A dot for every motion, side by side."""
     if not curves:
         return []
     spread = [place + WIDTH * ((n + 0.5) / len(curves) - 0.5) for n in range(len(curves))]
-    values = [_scaled(curve.values[0], factor) for curve in curves]
+    values = [scaled(curve.values[0], factor) for curve in curves]
     titles = [curve.motion for curve in curves]
     return [{"x": spread, "y": values, "titles": titles, "marks": True, "line": False, **look}]
 
 
-def _profiles(ensemble: StoredEnsemble) -> list[Panel]:
+def _profiles(ensemble: EnsembleResult) -> list[Panel]:
     """Median and band of accelerations and drifts over the bodies, at the largest scale."""
     top, panels = max(ensemble.scales), []
     for quantity in ("acceleration", "drift"):
         series = []
         for place, structure in enumerate(ensemble.structures):
             unit, factor = unit_for_reading(quantity, structure.weight)
-            rows = [s for s in ensemble.stripes if (s.quantity, s.structure) == (quantity, structure.name)]
-            rows = [s for s in rows if s.model == EXACT.key and s.scale == top]
-            low, median, high = ([_scaled(each.fractiles[n].value, factor) for each in rows] for n in range(3))
+            rows = ensemble.profile(structure.name, quantity)
+            low, median, high = fractiles_of(rows, factor)
             values = {"x": [s.body for s in rows], "y": median, "low": low, "high": high, "band": True, "marks": True}
             series.append({"name": f"{structure.name}: median, 16 % to 84 %", "color": place, **values})
         if any(each["x"] for each in series):
@@ -92,17 +96,17 @@ def _profiles(ensemble: StoredEnsemble) -> list[Panel]:
     return panels
 
 
-def _spectra(ensemble: StoredEnsemble) -> list[Panel]:
+def _spectra(ensemble: EnsembleResult) -> list[Panel]:
     """Floor spectra of platform and uppermost body: median and band."""
     panels = []
     tops = {structure.name: structure.bodies for structure in ensemble.structures}
     for title, body_of in (("platform", lambda name: 1), ("top", tops.__getitem__)):
         series = []
         for place, structure in enumerate(ensemble.structures):
-            for band in ensemble.spectra:
-                if (band.structure, band.body) == (structure.name, body_of(structure.name)):
-                    low, median, high = ([_scaled(each.value, 1.0 / GRAVITY) for each in row] for row in band.fractiles)
-                    values = {"x": list(band.period), "y": median, "low": low, "high": high, "band": True}
+            for spectrum in ensemble.spectra:
+                if (spectrum.structure, spectrum.body) == (structure.name, body_of(structure.name)):
+                    low, median, high = band(spectrum.fractiles, 1.0 / GRAVITY)
+                    values = {"x": list(spectrum.period), "y": median, "low": low, "high": high, "band": True}
                     series.append({"name": f"{structure.name}: median, 16 % to 84 %", "color": place, **values})
         if series and (title == "platform" or max(tops.values()) > 1):
             damping = f"{100.0 * ensemble.spectra[0].damping:g} % damping"
@@ -119,16 +123,12 @@ def _top(series: Sequence[dict[str, Any]]) -> float:
     return 1.06 * max(values, default=0.0) or 1.0
 
 
-def _over_scales(curve: StoredCurve, factor: float) -> dict[str, Any]:
-    values = [_scaled(value, factor) for value in curve.values]
+def _over_scales(curve: Curve, factor: float) -> dict[str, Any]:
+    values = [scaled(value, factor) for value in curve.values]
     return {"x": list(curve.scales), "y": values, "titles": [f"{curve.motion}, {scale:g}" for scale in curve.scales]}
 
 
-def _scaled(value: float | None, factor: float) -> float | None:
-    return None if value is None else factor * value
-
-
-def demand_rows(ensemble: StoredEnsemble) -> list[dict[str, Any]]:
+def demand_rows(ensemble: EnsembleResult) -> list[dict[str, Any]]:
     """Rows of the table of demands: those of every structure at the largest scale first, then the other scales."""
     rows = []
     for scale in sorted(ensemble.scales, reverse=True):
@@ -159,7 +159,7 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
 
 FEATURE = Feature(
     "ensemble",
-    StoredEnsemble,
+    EnsembleResult,
     "demands under many motions at many scales; null unless python -m comparison.ensemble left it beside the report",
     load=STORED.load,
     section=Section(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -13,8 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from comparison.analyses.ensemble.analysis import EnsembleResult, Point, Quantity, Stripe, Structure
-from comparison.analyses.ensemble.units import title_of, unit_for_reading
+from comparison.analyses.ensemble.result import Curve, EnsembleResult, Stripe, Structure
+from comparison.analyses.ensemble.units import band, fractiles_of, title_of, unit_for_reading
 from comparison.study.models import EXACT
 from comparison.surfaces.figures.pairs import save
 from reference.drawing import verbatim
@@ -23,6 +22,8 @@ from reference.problem import GRAVITY
 COLORS = ("#1f4e8c", "#b3541e", "#2a7f4f", "#7b3f98", "#8a6d00", "#37808c")
 ENGINE = "#222222"
 WIDTH = 0.3  # of a strip, in steps from one structure to the next
+
+Quantity = tuple[str, int | None]  # demand, and body from 1 or None for the isolator
 
 
 def draw_ensemble(path: Path, result: EnsembleResult) -> None:
@@ -33,7 +34,7 @@ def draw_ensemble(path: Path, result: EnsembleResult) -> None:
     rows = -(-count // columns)
     figure = Figure(figsize=(4.4 * columns, 3.5 * rows + 0.6), dpi=110, layout="constrained")
     FigureCanvasAgg(figure)
-    motions = result.motions()
+    motions = result.motions
     names = ", ".join(each.title if len(result.structures) == 1 else each.name for each in result.structures)
     title = verbatim(f"{names}: {motions} {'motion' if motions == 1 else 'motions'}")
     if any(stripe.answered < motions for stripe in result.stripes if stripe.model == EXACT.key):
@@ -42,9 +43,8 @@ def draw_ensemble(path: Path, result: EnsembleResult) -> None:
     panels = list(np.atleast_1d(figure.subplots(rows, columns)).ravel())
     for quantity in shown:
         _draw(panels.pop(0), result, quantity)
-    top = max(point.scale for point in result.points)
     for name in ("acceleration", "drift") if several else ():
-        _draw_profile(panels.pop(0), result, name, top)
+        _draw_profile(panels.pop(0), result, name)
     if result.spectra:
         _draw_spectra(panels.pop(0), result)
     for axes in panels:
@@ -56,14 +56,14 @@ def draw_ensemble(path: Path, result: EnsembleResult) -> None:
 
 def shown_quantities(result: EnsembleResult) -> list[Quantity]:
     """Isolator, base shear, and what only the engine has of the supports; bodies are in the profiles."""
-    asked: list[Quantity] = [("displacement", 0), ("residual", 0), ("base_shear", 0)]
     known = {stripe.quantity for stripe in result.stripes}
-    asked += [(name, 0) for name in ("uplift", "support_force_max") if (name, 0) in known]
+    supports = [name for name in ("uplift", "support_force_max") if name in known]
+    asked: list[Quantity] = [(name, None) for name in ("displacement", "residual", "base_shear", *supports)]
     return asked if max(each.bodies for each in result.structures) > 1 else [*asked, ("acceleration", 1)]
 
 
 def _draw(axes: Axes, result: EnsembleResult, quantity: Quantity) -> None:
-    one = len({point.scale for point in result.points}) == 1
+    one = len(result.scales) == 1
     highest = 0.0
     for place, structure in enumerate(result.structures):
         unit, factor = unit_for_reading(quantity[0], structure.weight)
@@ -80,91 +80,73 @@ def _draw(axes: Axes, result: EnsembleResult, quantity: Quantity) -> None:
     axes.grid(color="0.92")
 
 
-def _own(points: Sequence[Point], structure: Structure) -> list[Point]:
-    return [point for point in points if point.structure == structure.name]
-
-
-def _of(result: EnsembleResult, structure: Structure, quantity: Quantity) -> list[Stripe]:
-    """Statistics by the equations, or by the engine of what the equations do not have."""
-    own = [each for each in result.stripes if (each.structure, each.quantity) == (structure.name, quantity)]
-    return [each for each in own if each.model == EXACT.key] or own
-
-
 def _draw_strip(
     axes: Axes, result: EnsembleResult, structure: Structure, quantity: Quantity, place: int, factor: float
 ) -> float:
     """One dot for every motion at its structure, median and fractiles beside them; the largest value."""
-    color, listed = COLORS[place % len(COLORS)], _of(result, structure, quantity)
-    models = {stripe.model for stripe in listed}
-    points = [point for point in _own([*result.points, *result.engine], structure) if point.model in models]
-    values = _column([point.estimate(quantity).value for point in points], factor)
+    color, listed = COLORS[place % len(COLORS)], result.stripes_of(structure.name, *quantity)
+    motions, engine = result.curves_of(structure.name, *quantity)
+    values = _column([curve.values[0] for curve in motions or engine], factor)
     beside = place + WIDTH * ((np.arange(len(values)) + 0.5) / max(len(values), 1) - 0.5)
     axes.plot(beside, values, color=color, ls="", marker=".", ms=5, alpha=0.6, label=f"{structure.name}: one motion")
-    for stripe in listed:
-        low, middle, high = (factor * each.value for each in stripe.fractiles)
-        at = place + WIDTH
+    at = place + WIDTH
+    for stripe, low, middle, high in zip(listed, *map(_column, fractiles_of(listed, factor))):
         axes.plot([at, at], [low, high], color=color, lw=5, alpha=0.3, solid_capstyle="butt", label="16 % to 84 %")
         axes.plot([at], [middle], color=color, marker="_", ms=13, mew=2.2, ls="", label="median")
-        _count_missing(axes, stripe, len(points), place)
-    largest = _largest(values)
-    return max(largest, _draw_engine(axes, result, structure, quantity, factor, place - WIDTH))
+        _count_missing(axes, stripe, place)
+    return max(_largest(values), _draw_engine(axes, engine, factor, place - WIDTH))
 
 
 def _draw_curves(
     axes: Axes, result: EnsembleResult, structure: Structure, quantity: Quantity, place: int, factor: float
 ) -> float:
     """One thin curve for every motion over its scale, median and band; the largest value."""
-    color, listed, largest = COLORS[place % len(COLORS)], _of(result, structure, quantity), 0.0
-    own = _own(result.points, structure)
-    for curve in dict.fromkeys(point.curve for point in own):
-        points = sorted((point for point in own if point.curve == curve), key=lambda point: point.scale)
-        values = _column([point.estimate(quantity).value for point in points], factor)
+    color, listed, largest = COLORS[place % len(COLORS)], result.stripes_of(structure.name, *quantity), 0.0
+    motions, engine = result.curves_of(structure.name, *quantity)
+    for curve in motions:
+        values = _column(curve.values, factor)
         look: dict[str, Any] = {"color": color, "alpha": 0.35, "lw": 0.7, "marker": ".", "ms": 3}
-        axes.plot([point.scale for point in points], values, label=f"{structure.name}: one motion", **look)
+        axes.plot(curve.scales, values, label=f"{structure.name}: one motion", **look)
         largest = max(largest, _largest(values))
     if listed:
         scales = [stripe.scale for stripe in listed]
-        low, middle, high = (_column([stripe.fractiles[n].value for stripe in listed], factor) for n in range(3))
+        low, middle, high = map(_column, fractiles_of(listed, factor))
         axes.fill_between(scales, low, high, color=color, alpha=0.18, lw=0.0, label="16 % to 84 %")
         axes.plot(scales, middle, color=color, lw=2.0, marker="o", ms=4, label="median")
         for stripe in listed:
-            _count_missing(axes, stripe, sum(point.scale == stripe.scale for point in own), stripe.scale)
-    return max(largest, _draw_engine(axes, result, structure, quantity, factor, None))
+            _count_missing(axes, stripe, stripe.scale)
+    return max(largest, _draw_engine(axes, engine, factor, None))
 
 
-def _draw_engine(
-    axes: Axes, result: EnsembleResult, structure: Structure, quantity: Quantity, factor: float, place: float | None
-) -> float:
+def _draw_engine(axes: Axes, engine: Sequence[Curve], factor: float, place: float | None) -> float:
     """The engine's values with their errors, at their scales or at one place; the largest."""
-    engine = _own(result.engine, structure)
     if not engine:
         return 0.0
-    found = [point.estimate(quantity) for point in engine]
-    heights, errors = (_column([getattr(each, part) for each in found], factor) for part in ("value", "error"))
-    places = [point.scale if place is None else place for point in engine]
+    heights = _column([value for curve in engine for value in curve.values], factor)
+    errors = _column([error for curve in engine for error in curve.errors], factor)
+    places = [scale if place is None else place for curve in engine for scale in curve.scales]
     bars: dict[str, Any] = {"fmt": "x", "color": ENGINE, "ms": 6, "mew": 1.3, "capsize": 3}
     axes.errorbar(places, heights, np.nan_to_num(errors), label="engine with its error", **bars)
     return _largest(heights)
 
 
-def _count_missing(axes: Axes, stripe: Stripe, motions: int, place: float) -> None:
-    if motions > stripe.answered:
+def _count_missing(axes: Axes, stripe: Stripe, place: float) -> None:
+    if missing := sum(stripe.reasons.values()):
         where: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "ha": "center", "va": "top"}
-        axes.text(place, 0.985, f"↑{motions - stripe.answered}", fontsize=7.5, color=ENGINE, **where)
+        axes.text(place, 0.985, f"↑{missing}", fontsize=7.5, color=ENGINE, **where)
 
 
-def _draw_profile(axes: Axes, result: EnsembleResult, name: str, scale: float) -> None:
+def _draw_profile(axes: Axes, result: EnsembleResult, name: str) -> None:
     """Median and band of a demand over the height: one level for every body."""
     for place, structure in enumerate(result.structures):
         unit, factor = unit_for_reading(name, structure.weight)
         color = COLORS[place % len(COLORS)]
-        rows = [each for each in result.stripes if (each.structure, each.model) == (structure.name, EXACT.key)]
-        rows = [each for each in rows if each.quantity[0] == name and each.scale == scale]
-        low, middle, high = (_column([each.fractiles[n].value for each in rows], factor) for n in range(3))
-        bodies = [each.quantity[1] for each in rows]
+        rows = result.profile(structure.name, name)
+        low, middle, high = map(_column, fractiles_of(rows, factor))
+        bodies = _column([each.body for each in rows])
         axes.fill_betweenx(bodies, low, high, color=color, alpha=0.18, lw=0.0)
         axes.plot(middle, bodies, color=color, lw=2.0, marker="o", ms=4)
-    axes.set_xlabel(f"{name}, {unit}, at scale {scale:g}")
+    axes.set_xlabel(f"{name}, {unit}, at scale {max(result.scales):g}")
     axes.set_ylabel("body" if name == "acceleration" else "body above the link")
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlim(left=0.0)
@@ -174,13 +156,13 @@ def _draw_profile(axes: Axes, result: EnsembleResult, name: str, scale: float) -
 def _draw_spectra(axes: Axes, result: EnsembleResult) -> None:
     """Floor spectra of the uppermost body: median and band."""
     for place, structure in enumerate(result.structures):
-        for band in result.spectra:
-            if (band.structure, band.body) == (structure.name, structure.bodies):
+        for spectrum in result.spectra:
+            if (spectrum.structure, spectrum.body) == (structure.name, structure.bodies):
                 color = COLORS[place % len(COLORS)]
-                low, middle, high = (_column([each.value for each in row], 1.0 / GRAVITY) for row in band.fractiles)
-                axes.fill_between(band.period, low, high, color=color, alpha=0.18, lw=0.0)
-                axes.plot(band.period, middle, color=color, lw=2.0)
-                axes.set_ylabel(f"floor spectrum of the top, {100.0 * band.damping:g} % damping, g")
+                low, middle, high = map(_column, band(spectrum.fractiles, 1.0 / GRAVITY))
+                axes.fill_between(spectrum.period, low, high, color=color, alpha=0.18, lw=0.0)
+                axes.plot(spectrum.period, middle, color=color, lw=2.0)
+                axes.set_ylabel(f"floor spectrum of the top, {100.0 * spectrum.damping:g} % damping, g")
     axes.set_xscale("log")
     axes.set_xlabel("period, s")
     axes.set_ylim(bottom=0.0)
@@ -191,5 +173,6 @@ def _largest(values: np.ndarray) -> float:
     return float(values[np.isfinite(values)].max(initial=0.0))
 
 
-def _column(values: Sequence[float], factor: float) -> np.ndarray:
-    return factor * np.array([value if math.isfinite(value) else math.nan for value in values], dtype=float)
+def _column(values: Sequence[float | None], factor: float = 1.0) -> np.ndarray:
+    """Values as an array, NaN where one is unknown."""
+    return factor * np.array(values, dtype=float)

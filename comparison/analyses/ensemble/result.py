@@ -6,18 +6,26 @@ from collections.abc import Mapping, Sequence
 from dataclasses import field
 from typing import Any, Literal
 
-from comparison.analyses.ensemble.analysis import FRACTILES, EnsembleResult, Point, Quantity, quantities
-from comparison.json_file import StoredFile, finite_or_none
+from comparison.json_file import StoredFile
 from comparison.result_types import result
-from reference.measures import Estimate
-from reference.measures.peak_demands import unit_of
+from comparison.study.models import EXACT
 
 FILE, PICTURE = "ensemble.json", "ensemble.png"
 SCHEMA: Literal["phase-resonance/ensemble/2"] = "phase-resonance/ensemble/2"
 
 
 @result
-class StoredFractile:
+class Statistic:
+    """A statistic of a demand over the motions."""
+
+    value: float | None
+    """in the unit of the demand; null where it rests on a motion without an answer"""
+    error: float | None
+    """largest change within the errors of the motions"""
+
+
+@result
+class Fractile:
     """A fractile of a demand over the motions."""
 
     share: float
@@ -29,17 +37,7 @@ class StoredFractile:
 
 
 @result
-class StoredNumber:
-    """A statistic of a demand over the motions."""
-
-    value: float | None
-    """in the unit of the demand; null where it rests on a motion without an answer"""
-    error: float | None
-    """largest change within the errors of the motions"""
-
-
-@result
-class StoredStructure:
+class Structure:
     """What the statistics are of: a file, or one of the values that run in it beside motion and scale."""
 
     name: str
@@ -53,7 +51,7 @@ class StoredStructure:
 
 
 @result
-class StoredSpectrum:
+class Spectrum:
     """Floor spectrum of a body over all motions at the largest scale, by the equations; the larger of x and y."""
 
     structure: str
@@ -66,16 +64,16 @@ class StoredSpectrum:
     """damping ratio of the oscillators"""
     period: Sequence[float]
     """s"""
-    mean: Sequence[StoredNumber]
+    mean: Sequence[Statistic]
     """pseudo-acceleration at every period, m/s^2"""
-    fractiles: Sequence[Sequence[StoredNumber]]
+    fractiles: Sequence[Sequence[Statistic]]
     """16, 50 and 84 % at every period, m/s^2"""
-    largest: Sequence[StoredNumber]
+    largest: Sequence[Statistic]
     """at every period, m/s^2"""
 
 
 @result
-class StoredStripe:
+class Stripe:
     """A demand at one scale over all motions by one model."""
 
     structure: str
@@ -92,20 +90,20 @@ class StoredStripe:
     """factor of the motions"""
     answered: int
     """motions that have the demand"""
-    mean: StoredNumber
+    mean: Statistic
     """mean over the motions"""
-    fractiles: Sequence[StoredFractile]
+    fractiles: Sequence[Fractile]
     """from small to large shares"""
-    largest: StoredNumber
+    largest: Statistic
     """largest over the motions"""
-    smallest: StoredNumber
+    smallest: Statistic
     """smallest over the motions"""
     reasons: Mapping[str, int] = field(default_factory=dict)
     """why the other motions do not have it, and how many each"""
 
 
 @result
-class StoredCurve:
+class Curve:
     """A demand of one motion over its scale factors."""
 
     structure: str
@@ -127,7 +125,7 @@ class StoredCurve:
 
 
 @result
-class StoredDifference:
+class Difference:
     """How far the engine is from the equations in one demand."""
 
     structure: str
@@ -147,24 +145,24 @@ class StoredDifference:
 
 
 @result
-class StoredEngine:
+class Engine:
     """The engine at its subset."""
 
     model: str
     """key of the model"""
     points: Sequence[Mapping[str, str]]
     """scene and status of every motion"""
-    differences: Sequence[StoredDifference]
+    differences: Sequence[Difference]
     """one for each demand"""
 
 
 @result
-class StoredEnsemble:
+class EnsembleResult:
     """Content of the file."""
 
     schema: Literal["phase-resonance/ensemble/2"]
     """what the file is"""
-    structures: Sequence[StoredStructure]
+    structures: Sequence[Structure]
     """what the statistics are of"""
     scales: Sequence[float]
     """scale factors"""
@@ -172,103 +170,33 @@ class StoredEnsemble:
     """number of motions"""
     outcomes: Mapping[str, int]
     """motions by the equations with every status"""
-    stripes: Sequence[StoredStripe]
+    stripes: Sequence[Stripe]
     """by structure, demand and scale; by the equations, then by the engine over its subset"""
-    curves: Sequence[StoredCurve]
+    curves: Sequence[Curve]
     """by structure, demand, model and motion"""
-    spectra: Sequence[StoredSpectrum]
+    spectra: Sequence[Spectrum]
     """by structure and body"""
-    engine: StoredEngine
+    engine: Engine
     """the engine's subset"""
     run: Mapping[str, Any]
     """command, times, provenance"""
 
+    def stripes_of(self, structure: str, quantity: str, body: int | None = None) -> list[Stripe]:
+        """Of one demand over the scales, by the equations, or by the engine what the equations do not have."""
+        asked = structure, quantity, body
+        own = [each for each in self.stripes if (each.structure, each.quantity, each.body) == asked]
+        return [each for each in own if each.model == EXACT.key] or own
 
-STORED = StoredFile(FILE, StoredEnsemble, "an ensemble", "python -m comparison.ensemble")
+    def profile(self, structure: str, quantity: str) -> list[Stripe]:
+        """Of one demand of every body at the largest scale, by the equations."""
+        asked = structure, quantity, EXACT.key, max(self.scales)
+        return [each for each in self.stripes if (each.structure, each.quantity, each.model, each.scale) == asked]
 
-
-def stored(result: EnsembleResult, run: Mapping[str, Any]) -> StoredEnsemble:
-    """The content of the file."""
-    stripes = [
-        StoredStripe(
-            stripe.structure,
-            stripe.model,
-            *_named(stripe.quantity),
-            unit_of(stripe.quantity[0]),
-            stripe.scale,
-            stripe.answered,
-            StoredNumber(*_finite(stripe.mean)),
-            [StoredFractile(share, *_finite(value)) for share, value in zip(FRACTILES, stripe.fractiles)],
-            StoredNumber(*_finite(stripe.largest)),
-            StoredNumber(*_finite(stripe.smallest)),
-            stripe.reasons,
-        )
-        for stripe in result.stripes
-    ]
-    curves = [
-        _curve(structure.name, quantity, [point for point in own if point.curve == motion])
-        for structure in result.structures
-        for quantity in quantities([*result.points, *result.engine])
-        for points in (result.points, result.engine)
-        for own in [[point for point in points if point.structure == structure.name]]
-        if quantity in quantities(own)
-        for motion in dict.fromkeys(point.curve for point in own)
-    ]
-    differences = [
-        StoredDifference(
-            bound.structure,
-            *_named(bound.quantity),
-            finite_or_none(bound.largest),
-            finite_or_none(bound.like_for_like),
-            finite_or_none(bound.errors),
-            bound.points,
-        )
-        for bound in result.bounds
-    ]
-    spectra = [
-        StoredSpectrum(
-            band.structure,
-            band.body,
-            band.scale,
-            band.damping,
-            band.period,
-            _numbers(band.mean),
-            [_numbers(row) for row in band.fractiles],
-            _numbers(band.largest),
-        )
-        for band in result.spectra
-    ]
-    asked = [{"scene": point.scene, "status": point.status} for point in result.engine]
-    return StoredEnsemble(
-        schema=SCHEMA,
-        structures=[StoredStructure(each.name, each.title, each.bodies, each.weight) for each in result.structures],
-        scales=sorted({point.scale for point in result.points}),
-        motions=result.motions(),
-        outcomes=result.outcomes(),
-        stripes=stripes,
-        curves=curves,
-        spectra=spectra,
-        engine=StoredEngine(result.model.key, asked, differences),
-        run=run,
-    )
+    def curves_of(self, structure: str, quantity: str, body: int | None = None) -> tuple[list[Curve], list[Curve]]:
+        """Of one demand, by the equations and by the engine."""
+        asked = structure, quantity, body
+        own = [each for each in self.curves if (each.structure, each.quantity, each.body) == asked]
+        return [each for each in own if each.model == EXACT.key], [each for each in own if each.model != EXACT.key]
 
 
-def _numbers(estimates: Sequence[Estimate]) -> list[StoredNumber]:
-    return [StoredNumber(*_finite(estimate)) for estimate in estimates]
-
-
-def _named(quantity: Quantity) -> tuple[str, int | None]:
-    return quantity[0], quantity[1] or None
-
-
-def _finite(estimate: Estimate) -> tuple[float | None, float | None]:
-    return finite_or_none(estimate.value), finite_or_none(estimate.error)
-
-
-def _curve(structure: str, quantity: Quantity, points: Sequence[Point]) -> StoredCurve:
-    points = sorted(points, key=lambda point: point.scale)
-    values, errors = zip(*(_finite(point.estimate(quantity)) for point in points))
-    scales = [point.scale for point in points]
-    return StoredCurve(
-        structure, *_named(quantity), points[0].model, points[0].curve, scales, list(values), list(errors)
-    )
+STORED = StoredFile(FILE, EnsembleResult, "an ensemble", "python -m comparison.ensemble")

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol, TypeVar
 
+from comparison.analyses.ensemble.result import Fractile, Statistic, Stripe
 from comparison.study.models import EXACT
 from reference.measures.peak_demands import unit_of
 from reference.problem import GRAVITY
@@ -58,28 +58,28 @@ def figures_of(value: float) -> str:
     return f"{value:.4g}" if abs(value) < 1e4 else f"{float(f'{value:.4g}'):.0f}"
 
 
-class _Statistics(Protocol):
-    @property
-    def structure(self) -> str: ...
-    @property
-    def model(self) -> str: ...
-    @property
-    def scale(self) -> float: ...
-
-
-S = TypeVar("S", bound=_Statistics)
-
-
-def shown_stripes(stripes: Sequence[S], structure: str, scale: float) -> list[S]:
+def shown_stripes(stripes: Sequence[Stripe], structure: str, scale: float) -> list[Stripe]:
     """Those of one structure at one scale, in the order of reading: by the engine what the equations do not have."""
     own = [stripe for stripe in stripes if (stripe.structure, stripe.scale) == (structure, scale)]
     known = {_place(stripe) for stripe in own if stripe.model == EXACT.key}
-    shown = [stripe for stripe in own if stripe.model == EXACT.key or _place(stripe) not in known]
-    return sorted(shown, key=_place)
+    return sorted((each for each in own if each.model == EXACT.key or _place(each) not in known), key=_place)
 
 
-def _place(stripe: object) -> tuple[int, int]:
-    """Place of a demand in the order of reading. A stored one has its body apart."""
-    quantity = stripe.quantity  # type: ignore[attr-defined]
-    name, body = quantity if isinstance(quantity, tuple) else (quantity, stripe.body or 0)  # type: ignore[attr-defined]
-    return ORDER.index(name), body
+def _place(stripe: Stripe) -> tuple[int, int]:
+    """Place of a demand in the order of reading."""
+    return ORDER.index(stripe.quantity), stripe.body or 0
+
+
+def band(rows: Sequence[Sequence[Statistic | Fractile]], factor: float) -> list[list[float | None]]:
+    """The values of each row in the unit of reading: low, median and high of a band."""
+    return [[scaled(each.value, factor) for each in row] for row in rows]
+
+
+def scaled(value: float | None, factor: float) -> float | None:
+    """A value, which may be unknown, in the unit of reading."""
+    return None if value is None else factor * value
+
+
+def fractiles_of(stripes: Sequence[Stripe], factor: float) -> list[list[float | None]]:
+    """Low, median and high of stripes in the unit of reading."""
+    return band([[each.fractiles[n] for each in stripes] for n in range(3)], factor)

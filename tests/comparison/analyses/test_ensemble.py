@@ -17,9 +17,9 @@ import pytest
 import reference
 from comparison.analyses.ensemble.analysis import (
     Ensemble,
-    EnsembleResult,
+    Member,
     Point,
-    Structure,
+    Points,
     bounds,
     members_of,
     stripes,
@@ -27,10 +27,9 @@ from comparison.analyses.ensemble.analysis import (
 )
 from comparison.analyses.ensemble.command import FILES, main, table_text
 from comparison.analyses.ensemble.figure import draw_ensemble
-from comparison.study.models import TRANSLATIONAL
 from reference.measures import Demands, Estimate, phase_distribution
 from reference.measures.distribution import FRACTILES
-from reference.problem import load_family
+from reference.problem import load_family, load_scene
 from reference.problem.record_suites import suite_samples
 
 SCENE = """title = "two bodies"
@@ -109,18 +108,20 @@ def test_what_has_no_answer_counts_as_larger_than_all_others() -> None:
     assert math.isnan(uncertain_fractile([Estimate(NAN, NAN)], 0.5).value)
 
 
-def demanding(displacement: float, error: float, residual: Estimate, model: str = "exact") -> Point:
+def demanding(
+    displacement: float, error: float, residual: Estimate, model: str = "exact", motion: str = "motion 1"
+) -> Point:
     """A motion of which two demands are known, every other is lacking."""
     known = {"status": "ok", "displacement": Estimate(displacement, error), "residual": residual}
     demands = Demands(**{**{field.name: None for field in fields(Demands)}, **known})  # type: ignore[arg-type]
-    return Point("mine", "motion 1", 1.0, 1.0, "mine", model, "ok", demands)
+    return Point("mine", motion, 1.0, 1.0, "mine", model, "ok", demands)
 
 
 def test_the_bound_of_the_engine_has_the_errors_of_both_sides() -> None:
     rest = Estimate(1.0, 0.0)
     equations, alike, engine = demanding(2.0, 0.1, rest), demanding(2.5, 0.2, rest), demanding(3.0, 0.4, rest)
     (bound, _) = bounds([equations], [engine], [alike])
-    assert (bound.quantity, bound.points) == (("displacement", 0), 1)
+    assert (bound.quantity, bound.body, bound.points) == ("displacement", None, 1)
     assert bound.largest == pytest.approx(0.5)
     assert bound.like_for_like == pytest.approx(0.2)
     assert bound.errors == pytest.approx((0.2 + 0.4) / 2.5)
@@ -135,8 +136,7 @@ def test_without_an_answer_the_smallest_force_is_not_known() -> None:
     ]
     displacement, _, force = stripes(points)
     assert (displacement.smallest.value, force.largest.value) == (1.0, 1.0)
-    assert math.isnan(displacement.largest.value)
-    assert math.isnan(force.smallest.value)
+    assert (displacement.largest.value, force.smallest.value) == (None, None)
 
 
 def test_a_motion_that_still_moves_is_counted_with_its_reason() -> None:
@@ -173,11 +173,11 @@ def test_the_picture_has_the_numbers_in_the_units_of_its_axes(monkeypatch: pytes
     """Displacements in m of eleven motions, and the engine with its error bar."""
     figures = []
     monkeypatch.setattr("comparison.analyses.ensemble.figure.save", lambda figure, path: figures.append(figure))
-    points = [demanding(float(number), 0.0, Estimate(1.0, 0.0)) for number in range(11)]
+    points = [demanding(float(n), 0.0, Estimate(1.0, 0.0), motion=f"motion {n}") for n in range(11)]
     engine = [demanding(5.5, 0.25, Estimate(1.0, 0.0), "translational")]
-    listed = list(stripes(points)), list(bounds(points, engine, engine))
-    structures = [Structure("mine", "a title", 1, 1.0)]
-    draw_ensemble(tmp_path / "ensemble.png", EnsembleResult(structures, TRANSLATIONAL, points, engine, engine, *listed))
+    one_body = load_scene("fig3-I").with_values({"bodies": [{"mass": 1.0}]})
+    ensemble = Ensemble((Member("mine", "motion 1", 1.0, one_body),))
+    draw_ensemble(tmp_path / "ensemble.png", ensemble.result(Points(points, engine, engine), {}))
     axes = figures[0].axes[0]
     assert axes.get_ylabel() == "isolator displacement, mm"
     assert axes.get_ylim()[0] == 0.0

@@ -53,33 +53,33 @@ def known_growth() -> growth.MeasuredGrowth:
     return growth.MeasuredGrowth(growth.SCHEMA, "fig3-I", "a scene", series, MADE)
 
 
-def known_ensemble() -> ensemble.StoredEnsemble:
+def known_ensemble() -> ensemble.EnsembleResult:
     """Displacements of three motions at two scales: the third reaches the rim at the larger one."""
     known = {"motion 1": (0.1, 0.2), "motion 2": (0.2, 0.5), "motion 3": (0.3, None)}
     curves = [
-        ensemble.StoredCurve(
+        ensemble.Curve(
             "tower", "displacement", None, "exact", motion, (1.0, 2.0), values, (0.0, 0.0 if values[1] else None)
         )
         for motion, values in known.items()
     ]
-    engine = ensemble.StoredCurve("tower", "displacement", None, "translational", "motion 2", (2.0,), (0.51,), (1e-3,))
+    engine = ensemble.Curve("tower", "displacement", None, "translational", "motion 2", (2.0,), (0.51,), (1e-3,))
     low, high = (
         [
-            ensemble.StoredFractile(share, value, None if value is None else 0.0)
+            ensemble.Fractile(share, value, None if value is None else 0.0)
             for share, value in zip((0.16, 0.5, 0.84), values)
         ]
         for values in ((0.132, 0.2, 0.268), (0.296, 0.5, None))
     )
-    mean, largest, smallest = (ensemble.StoredNumber(value, 0.0) for value in (0.21, 0.3, 0.1))
-    none, named = ensemble.StoredNumber(None, None), ("tower", "exact", "displacement", None, "m")
-    stripes = [ensemble.StoredStripe(*named, 1.0, 3, mean, low, largest, smallest),
-               ensemble.StoredStripe(*named, 2.0, 2, none, high, none, ensemble.StoredNumber(0.2, 1e-3))]  # fmt: skip
-    difference = ensemble.StoredDifference("tower", "displacement", None, 0.02, 1e-4, 2e-3, 1)
-    return ensemble.StoredEnsemble(
-        schema=ensemble.SCHEMA, structures=[ensemble.StoredStructure("tower", "Tower & <town>", 1, 9.81e3)],
+    mean, largest, smallest = (ensemble.Statistic(value, 0.0) for value in (0.21, 0.3, 0.1))
+    none, named = ensemble.Statistic(None, None), ("tower", "exact", "displacement", None, "m")
+    stripes = [ensemble.Stripe(*named, 1.0, 3, mean, low, largest, smallest),
+               ensemble.Stripe(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
+    difference = ensemble.Difference("tower", "displacement", None, 0.02, 1e-4, 2e-3, 1)
+    return ensemble.EnsembleResult(
+        schema=ensemble.SCHEMA, structures=[ensemble.Structure("tower", "Tower & <town>", 1, 9.81e3)],
         scales=(1.0, 2.0), spectra=[],
         motions=3, outcomes={"ok": 5, "rim reached": 1}, stripes=stripes, curves=[*curves, engine],
-        engine=ensemble.StoredEngine("translational", [{"scene": "tower[2]", "status": "ok"}], [difference]), run=MADE,
+        engine=ensemble.Engine("translational", [{"scene": "tower[2]", "status": "ok"}], [difference]), run=MADE,
     )  # fmt: skip
 
 
