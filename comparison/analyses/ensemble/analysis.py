@@ -24,6 +24,7 @@ from comparison.analyses.ensemble.result import (
     Engine,
     EnsembleResult,
     Fractile,
+    Isolator,
     Spectrum,
     Statistic,
     Stripe,
@@ -37,7 +38,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL, Model, has_spatial_data, why_not_spatial
 from comparison.study.study import Study
-from reference.measures import Demands, Estimate, FloorSpectra, demands, floor_spectra
+from reference.measures import Demands, Estimate, FloorSpectra, demands, effective_isolator, floor_spectra
 from reference.measures.distribution import fractile
 from reference.measures.peak_demands import unit_of
 from reference.problem import GRAVITY, Family, Scene, SceneError
@@ -45,6 +46,7 @@ from reference.problem import GRAVITY, Family, Scene, SceneError
 SCALE = "excitation.scale"
 RECORD = "excitation.record"
 FRACTILES = (0.16, 0.5, 0.84)
+ISOLATOR = ("displacement", EXACT.key)  # demand and model that the effective isolator is for
 SMALLEST = ("contact_force_min", "support_force_min")  # demands of which the smallest value is the worst
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # steps of which fill an interval evenly
 REST = (0.0, 0.0)  # a record has no phases
@@ -158,14 +160,17 @@ class Ensemble(Analysis[Points]):
     def result(self, points: Points, run: Mapping[str, Any]) -> EnsembleResult:
         """The statistics of the points, the curves of the motions and the engine's bound."""
         both = points.equations, points.engine
+        rows = [stripe for each in both for stripe in stripes(each)]
+        top = max(point.scale for point in points.equations)
+        means = {s.structure: s.mean.value for s in rows if (s.quantity, s.model, s.scale) == (*ISOLATOR, top)}
         statuses = Counter(sorted(point.status for point in points.equations))
         return EnsembleResult(
             schema=SCHEMA,
-            structures=structures_of(self.members),
+            structures=structures_of(self.members, means),
             scales=sorted({point.scale for point in points.equations}),
             motions=len({point.curve for point in points.equations}),
             outcomes=dict(statuses.most_common()),
-            stripes=[stripe for each in both for stripe in stripes(each)],
+            stripes=rows,
             curves=list(curves(*both)),
             spectra=list(spectrum_bands(points.equations)),
             engine=Engine(
@@ -242,14 +247,24 @@ def refuse_unfit(members: Sequence[Member], model: Model) -> None:
             raise SceneError(scene.name, "--model", "spatial", rule)
 
 
-def structures_of(members: Sequence[Member]) -> list[Structure]:
-    """The structures in their order."""
+def structures_of(members: Sequence[Member], means: Mapping[str, float | None]) -> list[Structure]:
+    """The structures in their order. means: of their largest isolator displacements, m."""
     scenes = {member.structure: member.scene for member in reversed(members)}
-    names = dict.fromkeys(member.structure for member in members)
-    return [
-        Structure(name, scenes[name].title, len(scenes[name].bodies), scenes[name].total_mass * GRAVITY)
-        for name in names
-    ]
+    found = []
+    for name in dict.fromkeys(member.structure for member in members):
+        scene, mean = scenes[name], means.get(name)
+        weight = scene.total_mass * GRAVITY
+        found.append(Structure(name, scene.title, len(scene.bodies), weight, _isolator(scene, mean)))
+    return found
+
+
+def _isolator(scene: Scene, displacement: float | None) -> Isolator | None:
+    if not displacement or scene.flat or not scene.dry_friction.fast:
+        return None
+    effective = effective_isolator(scene, displacement)
+    return Isolator(
+        displacement, *(float(value) for value in (effective.period, effective.damping, effective.restoring))
+    )
 
 
 def answered(task: Arguments) -> Answer:

@@ -155,13 +155,19 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
         title = f"{structure.title} ({structure.name}): {motions} {'motion' if motions == 1 else 'motions'}"
         console.print(f"{title}, at scale {top:g}:", soft_wrap=True, markup=False)
         shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
-        table = new_table("demand", "unit", "mean", *shares, "largest", "motions")
+        table = new_table("demand", "unit", "mean", "±", *shares, "largest", "motions")
         for stripe in shown_stripes(result.stripes, structure.name, top):
             unit, factor = unit_for_reading(stripe.quantity, structure.weight)
-            values = [stripe.mean.value, *(each.value for each in stripe.fractiles), stripe.largest.value]
-            cells = ["none" if value is None else figures_of(factor * value) for value in values]
-            table.add_row(row_name(stripe), unit, *cells, str(stripe.answered))
+            mean, *cells = [_cell(each.value, factor) for each in (stripe.mean, *stripe.fractiles, stripe.largest)]
+            error = "none" if stripe.mean.error is None else f"{factor * stripe.mean.error:.1g}"
+            table.add_row(row_name(stripe), unit, mean, error, *cells, str(stripe.answered))
         console.print(table)
+        if at := structure.isolator:
+            line = (
+                f"Effective isolator at the mean displacement, {figures_of(1e3 * at.displacement)} mm: period "
+                f"{at.period:.3g} s, damping {percent(at.damping)}, re-centering ratio {at.restoring:.3g}."
+            )
+            console.print(line, soft_wrap=True)
     lacking: dict[str, list[str]] = {}
     for stripe in result.stripes:
         for reason, count in stripe.reasons.items() if stripe.scale == top else ():
@@ -176,7 +182,7 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
         ran = where if len(asked) <= NAMED else f"{len(asked)} motions"
         console.print(f"The {ENGINES[result.engine.model].title} ran {ran}.", soft_wrap=True, markup=False)
         table = new_table("engine: demand", "scene", "difference", "like for like", "errors")
-        for each in result.engine.differences:
+        for each in (each for each in result.engine.differences if each.points):
             sizes = (percent(math.nan if n is None else n) for n in (each.largest, each.like_for_like, each.errors))
             table.add_row(quantity_name((each.quantity, each.body)), each.structure, *sizes)
         console.print(table)
@@ -186,6 +192,10 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
             "error of its residual displacement includes the creep of regularized friction."
         )
         console.print(line, soft_wrap=True)
+
+
+def _cell(value: float | None, factor: float) -> str:
+    return "none" if value is None else figures_of(factor * value)
 
 
 def row_name(stripe: Stripe) -> str:

@@ -136,9 +136,10 @@ def demand_rows(ensemble: EnsembleResult) -> list[dict[str, Any]]:
             for stripe in shown_stripes(ensemble.stripes, structure.name, scale):
                 unit, factor = unit_for_reading(stripe.quantity, structure.weight)
                 name = title_of((stripe.quantity, stripe.body))
-                numbers = [stripe.mean, *stripe.fractiles, stripe.largest, stripe.smallest]
-                cells = [_text(number, factor) for number in numbers]
                 model = "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
+                cells = [
+                    _text(each, factor) for each in (stripe.mean, *stripe.fractiles, stripe.largest, stripe.smallest)
+                ]
                 about = {"scene": structure.name, "name": f"{name}{model}", "unit": unit, "scale": scale}
                 rows.append({**about, "cells": cells, "stripe": stripe})
     return rows

@@ -37,6 +37,20 @@ class Fractile:
 
 
 @result
+class Isolator:
+    """The linear isolator that design codes put in the place of the bearing; see `reference.effective_isolator`."""
+
+    displacement: float
+    """mean of the largest isolator displacements at the largest scale, by the equations, m"""
+    period: float
+    """effective period at that displacement, s"""
+    damping: float
+    """effective damping ratio at that displacement"""
+    restoring: float
+    """re-centering ratio: restoring force over friction force at that displacement"""
+
+
+@result
 class Structure:
     """What the statistics are of: a file, or one of the values that run in it beside motion and scale."""
 
@@ -48,6 +62,8 @@ class Structure:
     """number of bodies"""
     weight: float
     """N"""
+    isolator: Isolator | None = None
+    """null without dry friction, on a plane, and where the mean displacement is not known"""
 
 
 @result

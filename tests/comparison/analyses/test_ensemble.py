@@ -328,6 +328,16 @@ def test_several_scenes_have_statistics_of_their_own(folder: Path, undrawn: None
     largest = [s["largest"]["value"] for s in files["stripes"] if s["quantity"] == "displacement"]
     assert len(largest) == 2
     assert largest[0] > largest[1], "more friction, less displacement"
+    for each, friction in zip(files["structures"], (0.04, 0.08)):
+        means = [
+            s["mean"]["value"]
+            for s in files["stripes"]
+            if (s["structure"], s["quantity"]) == (each["name"], "displacement")
+        ]
+        stiffness = 1.0 / 0.25 + friction / means[0]  # over the weight
+        expected = {"displacement": means[0], "period": 2 * math.pi / math.sqrt(9.81 * stiffness)}
+        expected |= {"damping": 2 / math.pi * friction / means[0] / stiffness, "restoring": means[0] / 0.25 / friction}
+        assert each["isolator"] == pytest.approx(expected, rel=1e-9)
 
 
 def test_bands_of_floor_spectra_are_those_of_the_motions(folder: Path, undrawn: None) -> None:
