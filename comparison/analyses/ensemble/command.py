@@ -158,7 +158,8 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
         table = new_table("demand", "unit", "mean", "±", *shares, "largest", "motions")
         for stripe in shown_stripes(result.stripes, structure.name, top):
             unit, factor = unit_for_reading(stripe.quantity, structure.weight)
-            mean, *cells = [_cell(each.value, factor) for each in (stripe.mean, *stripe.fractiles, stripe.largest)]
+            values = stripe.mean.value, *(each.value for each in stripe.fractiles), stripe.largest.value
+            mean, *cells = ["none" if value is None else figures_of(factor * value) for value in values]
             error = "none" if stripe.mean.error is None else f"{factor * stripe.mean.error:.1g}"
             table.add_row(row_name(stripe), unit, mean, error, *cells, str(stripe.answered))
         console.print(table)
@@ -192,10 +193,6 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
             "error of its residual displacement includes the creep of regularized friction."
         )
         console.print(line, soft_wrap=True)
-
-
-def _cell(value: float | None, factor: float) -> str:
-    return "none" if value is None else figures_of(factor * value)
 
 
 def row_name(stripe: Stripe) -> str:
