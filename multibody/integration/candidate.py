@@ -35,6 +35,7 @@ class Candidate:
     coarser: tuple[tuple[EngineRun, float], ...]  # other runs, and the share of their difference to this one
     confirmed: bool = True  # whether a run on springs of real bearings, if it needs one, ended
     compliance: Array | None = None  # errors (N,) that the contact's compliance leaves, once a run has shown them
+    floor: float = 0.0  # lower bound of the relative error of any number of the run
 
     @property
     def errors(self) -> Array:

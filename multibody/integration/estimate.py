@@ -110,11 +110,16 @@ def from_contact_noise(run: EngineRun, level: Level, scene: Scene, model: Engine
     return error
 
 
+def floor_with_impacts(before: int) -> float:
+    """Least relative error of a motion with impacts, with so many levels before it on the same springs."""
+    return MIN_ERROR_WITH_IMPACTS / 2.0**before
+
+
 def widened_by_impacts(errors: Array, peaks: list[Peaks], run: EngineRun, before: int) -> Array:
     """Errors (N,) that impacts do not let fall below a share of the peaks, nor below levels that scatter."""
     if not run.impacts:
         return errors
-    widened = np.maximum(errors, MIN_ERROR_WITH_IMPACTS / 2.0**before * run.peaks.value)
+    widened = np.maximum(errors, floor_with_impacts(before) * run.peaks.value)
     if len(peaks) < 3:
         return widened
     values = np.array([each.value for each in peaks])

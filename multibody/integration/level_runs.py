@@ -22,6 +22,7 @@ from multibody.integration.candidate import Candidate
 from multibody.integration.estimate import (
     ERROR_PER_WARPING_LOAD,
     SAFETY_OF_BEARINGS,
+    floor_with_impacts,
     from_contact_noise,
     from_levels,
     from_rounding,
@@ -135,7 +136,9 @@ class LevelRuns:
             errors = widened_by_impacts(errors + change, [], run, self._levels_on_the_same_springs())
         coarser = ((self.runs[-2], share_of_change(before, model)),)
         least = from_contact_noise(run, level, self.pair.scene, model)
-        return Candidate(run, level, self.shares_contact(number), errors, rounding, least, coarser, confirmed)
+        floor = max(level.error_floor, floor_with_impacts(self._levels_on_the_same_springs()) if run.impacts else 0.0)
+        shared = self.shares_contact(number)
+        return Candidate(run, level, shared, errors, rounding, least, coarser, confirmed, floor=floor)
 
     def _levels_on_the_same_springs(self) -> int:
         """How many levels before the last one have its springs: others are another motion, and confirm nothing."""

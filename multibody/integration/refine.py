@@ -127,7 +127,7 @@ def _beyond_tolerance(pair: PhasePair, finest: Candidate, complete: Candidate | 
     # the run that shows what the compliance leaves has no answer
     if complete is not None:
         answer = _answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET)
-        return replace(answer, finest=finest.run, coarser=finest.coarser[:1], floor=finest.level.error_floor)
+        return replace(answer, finest=finest.run, coarser=finest.coarser[:1], floor=finest.floor)
     why = next((run.outcome for run, _ in finest.coarser if run.outcome in UNFINISHED), Outcome.SOLVER_FAILED)
     return _no_answer(pair.model, finest.run, why, pair.scene.duration)
 
@@ -146,7 +146,7 @@ def _answer(model: EngineModel, candidate: Candidate, outcome: Outcome) -> Refin
     worst = float(peaks.instant[(errors / peaks.value).argmax()]) * model.units.time
     instant = math.nan if outcome == Outcome.OK else worst
     answered = Refinement(peaks.value * unit, errors * unit, outcome, instant, candidate.run)
-    return replace(answered, coarser=candidate.coarser, floor=candidate.level.error_floor)
+    return replace(answered, coarser=candidate.coarser, floor=candidate.floor)
 
 
 def _no_answer(model: EngineModel, run: EngineRun, outcome: Outcome, instant: float) -> Refinement:

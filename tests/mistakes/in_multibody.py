@@ -392,4 +392,32 @@ MISTAKES = (
         "Dampers are in a wrong unit.",
         (TESTS + "test_damped_links.py::test_a_damped_body_on_a_held_platform_decays_in_closed_form",),
     ),
+    Mistake(
+        INTEGRATION + "estimate.py",
+        "change: Array = SAFETY_TWO_LEVELS * np.abs(stiff.value",
+        "change: Array = 0.5 * SAFETY_TWO_LEVELS * np.abs(stiff.value",
+        "The error that a softer contact shows is halved.",
+        (NUMBERS + "test_a_softer_contact_leaves_at_least_its_share_of_rho_open",),
+    ),
+    Mistake(
+        INTEGRATION + "level_runs.py",
+        "floor_with_impacts(self._levels_on_the_same_springs()) if run.impacts else 0.0",
+        "0.0",
+        "Levels that agree by chance behind impacts are believed by all demands but mu.",
+        (TESTS + "test_spatial.py::test_the_torsion_has_its_error_where_supports_open",),
+    ),
+    Mistake(
+        MODELS + "impact.py",
+        "-= lag * float(along",
+        "+= lag * float(along",
+        "Bars are stretched the wrong way behind an impact, and their dampers push.",
+        (NUMBERS + "test_behind_an_impact_stretched_bars_balance_their_dampers",),
+    ),
+    Mistake(
+        MODELS + "speed_friction.py",
+        "(self._mass_ratio * steepness",
+        "(steepness",
+        "Friction of the speed acts back on the mass of all bodies, not on the platform's.",
+        (TESTS + "test_speed_friction.py::test_a_change_of_the_coefficient_acts_back_on_the_slip",),
+    ),
 )

@@ -461,4 +461,18 @@ MISTAKES = (
         "The weight on bars takes bending stiffness away that it gives.",
         ("tests/multibody/test_bars_in_space.py::test_a_body_on_bars_has_the_frequencies_of_beams_under_load",),
     ),
+    Mistake(
+        SOLVER + "contact/load.py",
+        "(1.0 + elasticity(system, reaction)) * factor * taken\n    determinant = where",
+        "(1.0 - elasticity(system, reaction)) * factor * taken\n    determinant = where",
+        "The inertia takes friction that eases with the load for one that grows.",
+        (TESTS + "test_light_platform.py::test_friction_that_a_load_eases_takes_less_of_the_inertia",),
+    ),
+    Mistake(
+        SOLVER + "contact/friction.py",
+        "tz = rz - normal * nz",
+        "tz = 0.0 * rz",
+        "The force that holds the platform at rest has no vertical part.",
+        (TESTS + "test_contact_law.py",),
+    ),
 )

@@ -13,7 +13,7 @@ from scenes_at_hand import forces_of_links
 import multibody
 import reference
 from multibody.integration.candidate import Candidate
-from multibody.integration.estimate import from_compliance, from_levels
+from multibody.integration.estimate import from_compliance, from_levels, lag
 from multibody.integration.peak import Peaks
 from multibody.integration.travel import travel_reached
 from multibody.models.assembly import assemble
@@ -67,10 +67,12 @@ def test_a_corner_is_the_mean_of_what_both_sides_say() -> None:
 
 def test_a_softer_contact_leaves_at_least_its_share_of_rho_open() -> None:
     stiff, soft = Peaks(2, 1.0), SimpleNamespace(outcome=Outcome.OK, peaks=Peaks(2, 1.0))
-    stiff.value[:] = soft.peaks.value[:] = 1.0, 2.0
-    level = multibody.levels(BRIEF)[0]
-    error = from_compliance(stiff, soft, level, assemble(BRIEF, "translational", 1e-3))  # type: ignore[arg-type]
-    np.testing.assert_allclose(error, level.penetration * stiff.value)
+    level, model = multibody.levels(BRIEF)[0], assemble(BRIEF, "translational", 1e-3)
+    for change in (0.0, 0.01):  # which counts with a safety of 1.5, and more where the contact is slow
+        stiff.value[:], soft.peaks.value[:] = (1.0, 2.0), (1.0 + change, 2.0 - change)
+        error = from_compliance(stiff, soft, level, model)  # type: ignore[arg-type]
+        expected = 1.5 * change * (1.0 + lag(level, model)) + level.penetration * stiff.value
+        np.testing.assert_allclose(error, expected)
 
 
 def test_the_error_of_two_levels_is_at_least_their_change() -> None:
@@ -168,6 +170,18 @@ def test_a_chain_that_moves_as_one_stretches_and_bends_no_link() -> None:
         shift = np.tile(np.concatenate([axis, np.zeros(3)]), 3)
         for velocity in (turn, shift):
             np.testing.assert_allclose(law._bars(coordinates, turned) @ velocity, 0.0, atol=1e-12)
+
+
+def test_behind_an_impact_stretched_bars_balance_their_dampers() -> None:
+    """Stiffness times stretch and damping times its rate: the jump of one makes up for that of the other."""
+    law, lags = three_bodies_on_bars(), np.array([0.03, 0.07])
+    before, after = np.random.default_rng(3).normal(size=(2, 18))
+    stretched = law.with_bars_at_rest(np.zeros(18), before, after, lags).reshape(3, 6)[:, :3]
+    jump = (after - before).reshape(3, 2, 3)
+    for link, lag_of_link in enumerate(lags):
+        end = np.array([0.0, 0.0, law.centers[link : link + 2, 2].mean()])
+        below, above = (jump[body, 0] + np.cross(jump[body, 1], end - law.centers[body]) for body in (link, link + 1))
+        np.testing.assert_allclose(stretched[link + 1] - stretched[link], [0.0, 0.0, -lag_of_link * (above - below)[2]])
 
 
 @pytest.mark.parametrize("body", [1, 2])

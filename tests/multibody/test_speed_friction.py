@@ -10,7 +10,7 @@ import multibody
 from multibody.integration.constant_step import silence
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
-from reference.problem import GRAVITY, DryFriction, State
+from reference.problem import GRAVITY, DryFriction, State, load_scene
 
 V_REG = 1e-3
 FLAT = 1e6  # m, radius of a cap that is nearly flat
@@ -42,6 +42,18 @@ def test_a_force_between_frictions_makes_a_steady_creep() -> None:
     motion = multibody.trajectory(changed(scene, isolator={"friction": law}), (0.0, 0.0), tolerance=1e-4)
     share = (law["fast"] - force / GRAVITY) / (law["fast"] - law["slow"])
     assert motion.velocity[-1, 0, 0] == pytest.approx(-np.log(share) / law["rate"], rel=1e-4)
+
+
+def test_a_change_of_the_coefficient_acts_back_on_the_slip() -> None:
+    """The slope of mu by the slip speed times the weight over the platform's mass, in units of the model."""
+    law = DryFriction(0.03, 0.1, 20.0)
+    table = {"isolator.friction": {"slow": law.slow, "fast": law.fast, "rate": law.rate}}
+    scene = load_scene("fig3-I").with_values({**table, "bodies.1.mass": 3.0})
+    model = assemble(scene, "translational", V_REG)
+    assert model.friction is not None
+    slip, unit = np.array([[0.02], [0.1]]), model.units.velocity
+    slope = (law.at(slip[:, 0] + 1e-6) - law.at(slip[:, 0] - 1e-6)) / 2e-6 * unit
+    np.testing.assert_allclose(model.friction.feedback(slip / unit), 4.0 * slope, rtol=1e-6)
 
 
 def test_the_error_falls_with_the_square_of_the_step() -> None:

@@ -28,6 +28,13 @@ def test_every_pair_has_an_answer_where_inertia_has_its_sign(regularization):
     assert set(found.status) == {Outcome.OK}
 
 
+def test_friction_that_a_load_eases_takes_less_of_the_inertia():
+    """D takes the derivative of friction by the load: (1 + n) mu, a half of mu, where 1.5 mu would be a paradox."""
+    phases = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, (20, 2))
+    scene = light(0.005).with_values({"isolator.friction": {"slow": FRICTION, "load_exponent": -0.5}})
+    assert set(reference.amplification(scene, phases).status) == {Outcome.OK}
+
+
 def test_creep_at_a_vanishing_speed_ends_as_coulomb_friction():
     """Where D comes down to 0.08 creep answers within 1e-11 s: a step too long for that is no paradox."""
     phases = np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, (20, 2))

@@ -153,6 +153,6 @@ def decay_rate(system: System, contact: int) -> float:
 
 @compiled
 def turning_rate(system: System, speed: float) -> float:
-    """Rate at which friction answers to the velocity of a slide, 1/s: by its direction, or by its speed if faster."""
+    """Rate at which friction answers to the velocity of a slide, 1/s: by its direction, more than ever by its speed."""
     rate: float = largest_coefficient(system) * system.mass_ratio * system.gravity / max(speed, SMALLEST_SPEED)
-    return max(rate, rising_rate(system, speed))
+    return rate
