@@ -153,6 +153,6 @@ def decay_rate(system: System, contact: int) -> float:
 
 @compiled
 def turning_rate(system: System, speed: float) -> float:
-    """Rate at which friction answers to the velocity of a slide, 1/s: by its direction, more than ever by its speed."""
+    """Rate at which friction changes as a slide turns, 1/s; its change with the speed is at most 1/e of that."""
     rate: float = largest_coefficient(system) * system.mass_ratio * system.gravity / max(speed, SMALLEST_SPEED)
     return rate
