@@ -10,6 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from comparison.study.models import V_REG, Model, dry, has_spatial_data
 from comparison.study.user_models import engine_of
 from reference.problem import Scene
@@ -38,8 +40,7 @@ Settings = Mapping[str, Any]
 @dataclass(frozen=True)
 class Question:
     """
-    One panel of the diagram. reference_solution: function and settings of its reference solution. check: how good that
-    is known to be, in words that the measured numbers complete. points, quick: phase pairs of the sample.
+    One panel of the diagram. reference_solution: its function and settings. points, quick: phase pairs of the sample.
     """
 
     key: str
@@ -72,33 +73,19 @@ class Setting:
     against: tuple[str, Settings] | None = None
 
 
+_LAWS: Mapping[str, Settings] = {
+    "exact": {},
+    "small": {"equations": "small"},
+    "regularised": {"regularization": V_REG},
+}  # of the equations, by question
+_SPATIAL = {"model": "spatial", "regularization": V_REG, "tolerance": SPATIAL_TIGHT}
+_TIGHT = {question: (REFERENCE, {**law, "tolerance": TIGHT}) for question, law in _LAWS.items()}
 QUESTIONS = (
-    Question("exact", "exact equations, supremum", (REFERENCE, {"tolerance": TIGHT}), 48, 12, 0.006),
-    Question(
-        "small",
-        "small equations, supremum",
-        (REFERENCE, {"equations": "small", "tolerance": TIGHT}),
-        48,
-        12,
-        0.006,
-    ),
-    Question(
-        "regularised",
-        "exact equations, v_reg = 1e-3 m/s",
-        (REFERENCE, {"regularization": V_REG, "tolerance": TIGHT}),
-        12,
-        3,
-        0.01,
-    ),
-    Question(
-        "spatial",
-        "spatial engine model, v_reg = 1e-3 m/s",
-        (ENGINE, {"model": "spatial", "regularization": V_REG, "tolerance": SPATIAL_TIGHT}),
-        6,
-        2,
-        3.0,
-    ),
-)  # fmt: skip
+    Question("exact", "exact equations, supremum", _TIGHT["exact"], 48, 12, 0.006),
+    Question("small", "small equations, supremum", _TIGHT["small"], 48, 12, 0.006),
+    Question("regularised", "exact equations, v_reg = 1e-3 m/s", _TIGHT["regularised"], 12, 3, 0.01),
+    Question("spatial", "spatial engine model, v_reg = 1e-3 m/s", (ENGINE, _SPATIAL), 6, 2, 3.0),
+)
 
 
 def asked(scene: Scene) -> list[Question]:
@@ -109,97 +96,80 @@ def asked(scene: Scene) -> list[Question]:
 def settings(scene: Scene, quick: bool = False) -> list[Setting]:
     """Every setting that is measured for a scene; quick: every other one of the expensive ones."""
     keys = {question.key for question in asked(scene)}
-    every = [*_reference(scene), *_scipy(quick), *_engine(quick)]
+    every = [*_reference(scene), *_scipy(quick), *_levels(quick), *_constant(quick)]
     return [setting for setting in every if setting.question in keys]
+
+
+def _curve(
+    question: str, method: str, parameter: str, call: tuple[str, str, Settings], values: Sequence[float],
+    seconds: float | Sequence[float], unit: str = "", **marks: Any,
+) -> list[Setting]:  # fmt: skip
+    """The settings of a curve. call: function, the key of it that has each of the values, its other settings."""
+    function, key, others = call
+    return [
+        Setting(question, method, parameter, unit, value, function, {**others, key: value}, time, **marks)
+        for value, time in zip(values, np.broadcast_to(seconds, len(values)).tolist())
+    ]
 
 
 def _reference(scene: Scene) -> list[Setting]:
     measured = []
-    laws: Sequence[tuple[str, Settings]] = (
-        ("exact", {}),
-        ("small", {"equations": "small"}),
-        ("regularised", {"regularization": V_REG}),
-    )
-    for question, law in laws:
-        for power in range(2, 9):
-            value = 10.0**-power
-            measured.append(
-                Setting(question, "reference, two runs and an estimate", "tolerance of mu", "", value, REFERENCE,
-                        {**law, "tolerance": value}, 0.003, controlled=True)
-            )  # fmt: skip
-        for power in range(1, 9):
-            value = 10.0**-power
-            measured.append(
-                Setting(question, "reference, one run", "tolerance inside a step", "", value, RUN,
-                        {**law, "inside": value}, 0.0015)
-            )  # fmt: skip
+    powers = [10.0**-power for power in range(1, 9)]
+    for question, law in _LAWS.items():
+        held, single = (REFERENCE, "tolerance", law), (RUN, "inside", law)
+        method = "reference, two runs and an estimate"
+        measured += _curve(question, method, "tolerance of mu", held, powers[1:], 0.003, controlled=True)
+        measured += _curve(question, "reference, one run", "tolerance inside a step", single, powers, 0.0015)
+    call = REFERENCE, "regularization", {"tolerance": 1e-6}
     for speed in DRY_SPEEDS if dry(scene) and scene.friction_coefficient > 0.0 else ():
-        for what, against in (
-            ("supremum", None),
-            ("peak faster than v_reg", (REFERENCE, {"cutoff": speed, "tolerance": TIGHT})),
-        ):
-            measured.append(
-                Setting("exact", f"v_reg, model error against the {what}", "v_reg", "m/s", speed, REFERENCE,
-                        {"regularization": speed, "tolerance": 1e-6}, 0.004, model_error=True, against=against)
-            )  # fmt: skip
+        faster = REFERENCE, {"cutoff": speed, "tolerance": TIGHT}
+        for what, against in (("supremum", None), ("peak faster than v_reg", faster)):
+            method, marks = f"v_reg, model error against the {what}", {"model_error": True, "against": against}
+            measured += _curve("exact", method, "v_reg", call, [speed], 0.004, "m/s", **marks)
     return measured
 
 
 def _scipy(quick: bool) -> list[Setting]:
-    seconds = {"LSODA": 0.15, "Radau": 1.0, "DOP853": 1.0}
-    lsoda, others = (
-        ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
-    )  # LSODA checks the reference solution, too
-    powers = {"LSODA": lsoda, "Radau": others, "DOP853": others}
-    return [
-        Setting("regularised", f"SciPy {method}", "relative tolerance of a step", "", 10.0**-power, SCIPY,
-                {"method": method, "tolerance": 10.0**-power, "v_reg": V_REG}, seconds[method])
-        for method in seconds
-        for power in powers[method]
-    ]  # fmt: skip
-
-
-def _engine(quick: bool) -> list[Setting]:
-    return [*_levels(quick), *_constant(quick)]
+    lsoda, others = ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
+    measured = []
+    # LSODA checks the reference solution, too
+    for method, powers, seconds in (("LSODA", lsoda, 0.15), ("Radau", others, 1.0), ("DOP853", others, 1.0)):
+        call = SCIPY, "tolerance", {"method": method, "v_reg": V_REG}
+        values = [10.0**-power for power in powers]
+        measured += _curve("regularised", f"SciPy {method}", "relative tolerance of a step", call, values, seconds)
+    return measured
 
 
 def _levels(quick: bool) -> list[Setting]:
     """The engine as the package runs it: error-controlled, and single runs with one parameter changed."""
-    parameters: Sequence[tuple[str, str, str, Sequence[float]]] = (
+    parameters = (
         ("step", "largest step over the usual one", "step", (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)),
         ("contact compliance", PENETRATION, "penetration", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)),
         ("Newton", "relative tolerance of Newton's iteration", "newton", (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)),
     )
-    models: Sequence[tuple[str, str, Sequence[float], float]] = (
-        ("regularised", "translational", (1e-2, 1e-3, 1e-4, 1e-5), 1.0),
-        ("spatial", "spatial", (1e-2, 1e-3), 1.7),
-    )
     measured = []
-    for question, model, tolerances, dearer in models:
+    for question, model, tolerances, dearer in (
+        ("regularised", "translational", {1e-2: 0.35, 1e-3: 0.35, 1e-4: 1.0, 1e-5: 1.8}, 1.0),
+        ("spatial", "spatial", {1e-2: 0.35, 1e-3: 0.35}, 1.7),
+    ):
         law = {"model": model, "regularization": V_REG}
-        for value, seconds in zip(tolerances, (0.35, 0.35, 1.0, 1.8)):
-            measured.append(
-                Setting(question, f"{model} engine, two levels and an estimate", "tolerance of mu", "", value, ENGINE,
-                        {**law, "tolerance": value}, seconds * dearer, controlled=True)
-            )  # fmt: skip
+        method, seconds = f"{model} engine, two levels and an estimate", [dearer * each for each in tolerances.values()]
+        held = ENGINE, "tolerance", law
+        measured += _curve(question, method, "tolerance of mu", held, list(tolerances), seconds, controlled=True)
         for name, parameter, key, values in parameters:
-            for value in values[:: 3 if quick else 1]:
-                measured.append(
-                    Setting(question, f"{model} engine, one run: {name}", parameter, "", value, LEVEL,
-                            {**law, key: value}, 0.25 * dearer)
-                )  # fmt: skip
+            method, few = f"{model} engine, one run: {name}", values[:: 3 if quick else 1]
+            measured += _curve(question, method, parameter, (LEVEL, key, law), few, 0.25 * dearer)
     return measured
 
 
 def _constant(quick: bool) -> list[Setting]:
     """The engine at constant step, by its integrators."""
-    curves = [(f"Exudyn, {solver}", {"solver": solver}, steps, 0.25e-3) for solver, steps in STEPS.items()]
-    return [
-        Setting("regularised", method, "constant step", "s", step, CONSTANT,
-                {**integrator, "step": step, "v_reg": V_REG}, cost / step)
-        for method, integrator, steps, cost in curves
-        for step in steps[:: 2 if quick else 1]
-    ]  # fmt: skip
+    measured = []
+    for solver, steps in STEPS.items():
+        call, few = (CONSTANT, "step", {"solver": solver, "v_reg": V_REG}), steps[:: 2 if quick else 1]
+        seconds = [0.25e-3 / step for step in few]
+        measured += _curve("regularised", f"Exudyn, {solver}", "constant step", call, few, seconds, "s")
+    return measured
 
 
 def user_settings(models: Sequence[Model]) -> list[Setting]:
@@ -211,11 +181,9 @@ def user_settings(models: Sequence[Model]) -> list[Setting]:
         question, against = (
             (model.like, None) if model.like in keys else ("exact", (REFERENCE, {**law, "tolerance": TIGHT}))
         )
-        takes_tolerance = "tolerance" in engine_of(model.settings).get("names", "")
-        for value in (1e-2, 1e-3, 1e-4, 1e-5) if takes_tolerance else (1e-3,):
-            parameter = "tolerance of mu" if takes_tolerance else "as it is, beside a tolerance of"
-            measured.append(
-                Setting(str(question), f"user model: {model.title}", parameter, "", value, model.amplification,
-                        {**model.settings, "tolerance": value}, 1.0, against=against)
-            )  # fmt: skip
+        parameter, values = "as it is, beside a tolerance of", [1e-3]
+        if "tolerance" in engine_of(model.settings).get("names", ""):
+            parameter, values = "tolerance of mu", [1e-2, 1e-3, 1e-4, 1e-5]
+        call = model.amplification, "tolerance", model.settings
+        measured += _curve(str(question), f"user model: {model.title}", parameter, call, values, 1.0, against=against)
     return measured
