@@ -363,7 +363,7 @@ MISTAKES = (
             "E has the wrong sign.", (OF + "validation.py::test_a_comparison_error_is_within_all_uncertainties",)),
     Mistake(ANALYSES + "benchmarks/analysis.py", "error + published.uncertainty, value)", "published.uncertainty, value)",
             "A published number is met within its digits alone.", (OF + "benchmarks.py::test_a_number_is_met_within_both_errors",)),
-    Mistake(ANALYSES + "extremes/verdicts.py", "error + other.error[m] + ROUNDING", "10.0 * error + other.error[m] + ROUNDING",
+    Mistake(ANALYSES + "extremes/verdicts.py", "error + estimate + ROUNDING", "10.0 * error + estimate + ROUNDING",
             "An error ten times too small passes.", (OF + "extremes.py::test_a_model_that_is_wrong_fails_and_is_told_why",
              OF + "extremes.py::test_an_error_half_of_what_it_should_be_fails")),
     Mistake(ANALYSES + "extremes/figure.py", "axes.text(place + 0.5, -0.3, title", "axes.text(len(columns) - place - 0.5, -0.3, title",

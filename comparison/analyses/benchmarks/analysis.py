@@ -110,9 +110,9 @@ def _read(reading: Reading, motion: Trajectory) -> tuple[list[float], list[float
     if any(len(other) != len(values) for other in coarser):  # another number of swings: nothing is known of the error
         return values, [math.nan] * len(values)
     halved = reading.of(thinned(motion))
-    sampling = (
-        [abs(a - b) / 3.0 for a, b in zip(values, halved)] if len(halved) == len(values) else [math.nan] * len(values)
-    )
+    if len(halved) != len(values):
+        return values, [math.nan] * len(values)
+    sampling = [abs(a - b) / 3.0 for a, b in zip(values, halved)]
     return values, [accuracy.error_of(value, others) + part for value, part, *others in zip(values, sampling, *coarser)]
 
 
@@ -145,13 +145,8 @@ def _row(case: Case, published: Published, place: int, answers: Mapping[str, Ans
         verdict = _verdict(case, published, value, error, smoothed if side == ENGINE else None)
         return Number(finite_or_none(value), finite_or_none(error), verdict)
 
-    return Row(
-        published.quantity,
-        published.unit,
-        published.value,
-        published.uncertainty,
-        {side: judged(side, *number) for side, number in numbers.items()},
-    )
+    judged_numbers = {side: judged(side, *number) for side, number in numbers.items()}
+    return Row(published.quantity, published.unit, published.value, published.uncertainty, judged_numbers)
 
 
 def _number_at(answer: Answer, count: int, place: int) -> tuple[float, float]:

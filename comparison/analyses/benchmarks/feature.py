@@ -12,7 +12,7 @@ COLORS = {
     Verdict.MODEL: "v-limit",
     Verdict.OFF: "v-FAILED",
     Verdict.NONE: "v-FAILED",
-}  # class of each verdict  # class of each verdict
+}  # class of each verdict
 
 FEATURE = Feature(
     "benchmarks",

@@ -59,26 +59,13 @@ def _section(each: Benchmark) -> str:
         f"## {each.title}",
         f"Source: {each.source}. Evidence for: {each.evidence}. v_reg of the engine: {each.regularization:g} m/s.",
         *([f"Difference of the models: {each.difference}."] if each.difference else []),
-        "\n".join(
-            [
-                "| quantity | published | equations | | equations with the engine's friction | engine | |",
-                "|---|---|---|---|---|---|---|",
-                *map(_line, each.rows),
-            ]
-        ),
+        "| quantity | published | equations | | equations with the engine's friction | engine | |\n"
+        "|---|---|---|---|---|---|---|\n" + "\n".join(map(_line, each.rows)),
     ]
     return "\n\n".join(lines)
 
 
 def _line(row: Row) -> str:
     equations, smoothed, engine = (row.numbers[side] for side in (EQUATIONS, SMOOTHED, ENGINE))
-    cells = [
-        row.quantity,
-        stated(row),
-        with_error(equations),
-        equations.verdict,
-        with_error(smoothed),
-        with_error(engine),
-        engine.verdict,
-    ]
-    return f"| {' | '.join(cells)} |"
+    ours, theirs = (f"{with_error(side)} | {side.verdict}" for side in (equations, engine))
+    return f"| {row.quantity} | {stated(row)} | {ours} | {with_error(smoothed)} | {theirs} |"

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -41,9 +42,7 @@ def _softened(scene: Scene) -> Array | None:
     for number, link in enumerate(scene.stiffness, start=1):
         softer |= {f"bodies.{number}.{key}": None for key in ("period", "bars")}
         softer |= {f"bodies.{number}.stiffness": link / 144.0}
-    return _change(
-        reference.amplification(scene.with_values(softer), PHASES).mu, reference.amplification(scene, PHASES).mu
-    )
+    return _change(*(reference.amplification(each, PHASES).mu for each in (scene.with_values(softer), scene)))
 
 
 def _without_coefficient(scene: Scene) -> Array | None:
@@ -51,17 +50,14 @@ def _without_coefficient(scene: Scene) -> Array | None:
     if scene.lubricated:
         return None
     rough = scene.with_values({"isolator.friction": 1.0})
-    return _change(reference.amplification(rough, PHASES).mu, reference.amplification(scene, PHASES).mu)
+    return _change(*(reference.amplification(each, PHASES).mu for each in (rough, scene)))
 
 
 def _printed_rest(scene: Scene) -> Array | None:
     if scene.lubricated:
         return None
-    printed, mended = (
-        reference.amplification(scene, PHASES, equations="small", rest_condition=rule).mu
-        for rule in ("printed", "consistent")
-    )
-    return _change(printed, mended)
+    ask = partial(reference.amplification, scene, PHASES, equations="small")
+    return _change(*(ask(rest_condition=rule).mu for rule in ("printed", "consistent")))
 
 
 def _wrong_spring(scene: Scene) -> Array | None:

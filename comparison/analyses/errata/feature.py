@@ -40,9 +40,5 @@ FEATURE = Feature(
     list[MeasuredErratum],
     "in the order of the paper; null where they were not asked for",
     analysis=Errata(),
-    section=Section(
-        "Errata of the paper",
-        context=_context,
-        verifies=True,
-    ),
+    section=Section("Errata of the paper", context=_context, verifies=True),
 )

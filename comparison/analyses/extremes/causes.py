@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from comparison.analyses.extremes.rows import Row
-
 _TINY = (
     "mu_2 is so small beside mu_1 that a contact stiff enough not to change it rounds by as much, and a softer one "
     "changes it"
@@ -53,8 +51,3 @@ CAUSES: dict[tuple[str, str], dict[str, str]] = {
         "translational": "the error estimate of the engine counts 1e-6 of a peak at least: less is not measured"
     },
 }
-
-
-def cause(row: Row, model: str) -> str:
-    """Why a model may have no answer, in one sentence; empty if no reason is known."""
-    return CAUSES.get((row.group, row.title), {}).get(model, "")

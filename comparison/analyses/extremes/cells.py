@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
-from comparison.analyses.extremes.causes import cause
+from comparison.analyses.extremes.causes import CAUSES
 from comparison.analyses.extremes.matrix import Entry
 from comparison.analyses.extremes.rows import COLUMNS, Column, Row
 from comparison.analyses.extremes.verdicts import NUMERICS, Reply, Verdict, judged
@@ -57,8 +57,8 @@ def solve_cell(cell: Cell) -> Entry:
     verdict = judged(reply, finer, tolerance, row.invalid, row.right)
     error = finite_or_none(verdict.error)
     total = time.process_time() - begin
-    known = cause(row, column.key) if verdict.verdict == Verdict.LIMIT else ""
-    reason = " ".join(f"{verdict.reason}: {known}".split()) if known else " ".join(verdict.reason.split())
+    cause = CAUSES.get((row.group, row.title), {}).get(column.key) if verdict.verdict == Verdict.LIMIT else None
+    reason = " ".join(": ".join(filter(None, (verdict.reason, cause))).split())
     return Entry(verdict.verdict, reason, verdict.status, error, round(seconds, 3), round(total, 3))
 
 

@@ -74,19 +74,12 @@ def _panels(lines: Sequence[Line]) -> list[list[Line]]:
 def _lines(matrix: Matrix) -> list[Line]:
     """A heading for every group, and below it a line for every extreme."""
     lines: list[Line] = []
-    group = None
-    for row in matrix.rows:
-        if row.group != group:
-            group = row.group
-            lines.append((group, None))
-        lines.append((row.title, dict(row.entries)))
+    for rows in matrix.groups():
+        lines += [(rows[0].group, None), *((row.title, row.entries) for row in rows)]
     return lines
 
 
 def _field(axes: Axes, place: int, line: int, entry: Entry) -> None:
-    dark = entry.verdict == Verdict.FAILED
+    color = "white" if entry.verdict == Verdict.FAILED else "#1b1f24"
     axes.add_patch(Rectangle((place + 0.02, line + 0.06), 0.96, 0.88, color=COLORS[entry.verdict], lw=0))
-    axes.text(
-        place + 0.5, line + 0.52, describe(entry), ha="center", va="center", fontsize=6.5,
-        color="white" if dark else "#1b1f24",
-    )  # fmt: skip
+    axes.text(place + 0.5, line + 0.52, describe(entry), ha="center", va="center", fontsize=6.5, color=color)

@@ -91,21 +91,11 @@ COLUMNS = (
         _TRANSLATIONAL,
         1e-3,
         # the same law and geometry by other means and far closer; the engine itself where that has no answer
-        (
-            ("reference:amplification", _REGULARIZED, 1e-6),
-            (ENGINE, _TRANSLATIONAL, 3e-5),
-            (ENGINE, _TRANSLATIONAL, 1e-4),
-        ),
+        ((EQUATIONS, _REGULARIZED, 1e-6), (ENGINE, _TRANSLATIONAL, 3e-5), (ENGINE, _TRANSLATIONAL, 1e-4)),
         1.0,
     ),
     Column(
-        "spatial",
-        "spatial engine",
-        ENGINE,
-        _SPATIAL,
-        1e-2,
-        ((ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)),
-        8.5,
+        "spatial", "spatial engine", ENGINE, _SPATIAL, 1e-2, ((ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)), 8.5
     ),
 )
 ALL = tuple(column.key for column in COLUMNS)
@@ -205,14 +195,8 @@ def _friction_laws() -> Iterator[Row]:
 def _numerics_of_the_engine() -> Iterator[Row]:
     for exponent in (2, 4, 6, 8, 10, 12):
         changed = {"contact_stiffness": 10.0**exponent, "tolerance": 1e-2}
-        yield Row(
-            "contact stiffness, N/m",
-            f"1e{exponent}",
-            scene(duration=1.0),
-            WITH_ENGINE,
-            settings=changed,
-            amplification=STATED,
-        )
+        brief, group = scene(duration=1.0), "contact stiffness, N/m"
+        yield Row(group, f"1e{exponent}", brief, WITH_ENGINE, settings=changed, amplification=STATED)
     for exponent in (-6, -5, -4, -3, -2, -1):
         changed = {"step": 10.0**exponent, "tolerance": 1e-2}
         brief = scene(duration=0.02 if exponent == -6 else 0.2 if exponent == -5 else 1.0)
@@ -241,13 +225,8 @@ def _above_its_contacts(stated: dict[str, Any]) -> dict[str, Any]:
 
 
 def _chains() -> Iterator[Row]:
-    for count, link in (
-        (1, 1.0),
-        (2, 1.0),
-        (10, 0.3),
-        (100, 0.03),
-        (1000, 0.01),
-    ):  # a shock climbs them in 0.5 to 1.6 s
+    # a shock climbs the towers in 0.5 to 1.6 s
+    for count, link in ((1, 1.0), (2, 1.0), (10, 0.3), (100, 0.03), (1000, 0.01)):
         tower = scene(masses=[1.0] * count, link=(link, 0.8 * link), storey=0.3, duration=3.0 if count <= 10 else 2.0)
         few = PHASES if count <= 10 else PHASES[:1]
         models, work = ALL if count <= 10 else PLANAR, TOWER_WORK.get(count, MAX_WORK)
@@ -269,10 +248,9 @@ def _chains() -> Iterator[Row]:
         yield Row("link periods, s", f"{period:g}", scene(link=(period, 0.8 * period)), ALL)
     for zeta in (0.0, 1e-6, 0.05, 1.0, 5.0):
         yield Row("damping of the links, of critical", f"{zeta:g}", scene(damping=zeta), ALL)
-    yield Row("damping of the links, of critical", "0 along x, 2 along y", scene(damping=[0.0, 20.0]), ALL)
-    yield Row(
-        "damping of the links, of critical", "5, link periods 0.01 s", scene(damping=5.0, link=(0.01, 0.008)), ALL
-    )
+    group, quick = "damping of the links, of critical", scene(damping=5.0, link=(0.01, 0.008))
+    yield Row(group, "0 along x, 2 along y", scene(damping=[0.0, 20.0]), ALL)
+    yield Row(group, "5, link periods 0.01 s", quick, ALL)
 
 
 def _bars() -> Iterator[Row]:

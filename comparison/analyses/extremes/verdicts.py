@@ -10,7 +10,7 @@ finer run contradicts.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]
+Finer = tuple[str, Array, Array]  # status, mu and error of a finer run at a phase pair
 
 PHYSICS = {
     Outcome.RIM_REACHED,
@@ -87,57 +88,50 @@ def judged(reply: Reply, finer: Sequence[Reply], tolerance: float, invalid: bool
 
 def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right: Sequence[str]) -> Judged:
     status, mu, error = reply.status[m], reply.mu[m], reply.error[m]
+    replies = [(other.status[m], other.mu[m], other.error[m]) for other in finer if len(other.status) > m]
     if status not in (PHYSICS | NUMERICS | {Outcome.OK}):
         return Judged(Verdict.FAILED, f"status {status!r} is no answer of a model", status)
     if right and status != Outcome.OK and status not in right:
         return Judged(Verdict.FAILED, f"refused as {status!r} instead of {' or '.join(right)}", status)
     if status in (Outcome.OK, Outcome.TOLERANCE_NOT_MET):
-        return _value(status, mu, error, [(other, m) for other in finer], tolerance)
+        return _value(status, mu, error, replies, tolerance)
     if not np.isnan(mu).all():
         return Judged(Verdict.FAILED, f"{status}, and yet a value", status)
     if status in NUMERICS:
         return Judged(Verdict.LIMIT, status, status)
-    answered = [other.status[m] for other in finer if len(other.status) > m and other.status[m] not in NUMERICS]
-    if answered and answered[0] != status and status not in right:
-        return Judged(Verdict.FAILED, f"{status}, but a finer run: {answered[0]}", status)
+    answered = next((other for other, _, _ in replies if other not in NUMERICS), status)
+    if answered != status and status not in right:
+        return Judged(Verdict.FAILED, f"{status}, but a finer run: {answered}", status)
     return Judged(Verdict.REFUSED, status, status)
 
 
-def _value(status: str, mu: Array, error: Array, finer: Sequence[tuple[Reply, int]], tolerance: float) -> Judged:
-    """Judge a value with its error estimate."""
+def _value(status: str, mu: Array, error: Array, finer: Sequence[Finer], tolerance: float) -> Judged:
+    """Judge a value with its error estimate; one that claims nothing, by whether it is as good as asked."""
+    known = [(value, estimate) for _, value, estimate in finer if np.isfinite(value).all()]
+    refused = next((other for other, _, _ in finer), "none")
+    unconfirmed = Judged(Verdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
     if np.isfinite(mu).all() and np.isnan(error).all():
-        return _without_error(status, mu, finer, tolerance)
+        if not known:
+            return unconfirmed
+        with np.errstate(divide="ignore", invalid="ignore"):
+            difference = float(np.nan_to_num(np.abs(mu - known[0][0]) / np.abs(known[0][0]), nan=0.0).max())
+        verdict = Verdict.CONVERGED if difference <= tolerance else Verdict.LIMIT
+        return Judged(verdict, f"states no error, off by {difference:.1e}", status)
     if not (np.isfinite(mu).all() and np.isfinite(error).all()):
         return Judged(Verdict.FAILED, f"{status}, but no finite number", status)
     claimed = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
     if (error < 0.0).any() or (status == Outcome.OK and claimed > tolerance * (1.0 + ROUNDING)):
-        return Judged(
-            Verdict.FAILED, f"{status} with an error estimate of {claimed:.1e}, asked: {tolerance:g}", status, claimed
-        )
-    for other, m in finer:
-        if len(other.status) <= m or not np.isfinite(other.mu[m]).all():
-            continue
-        off, allowed = np.abs(mu - other.mu[m]), error + other.error[m] + ROUNDING * np.abs(mu)
+        reason = f"{status} with an error estimate of {claimed:.1e}, asked: {tolerance:g}"
+        return Judged(Verdict.FAILED, reason, status, claimed)
+    for value, estimate in known:
+        off, allowed = np.abs(mu - value), error + estimate + ROUNDING * np.abs(mu)
         worst = int((off / allowed).argmax())
         if off[worst] > allowed[worst]:
             share = off[worst] / allowed[worst]
             reason = f"mu_{worst + 1} is off by {off[worst] / abs(mu[worst]):.1e}, {share:.2g} times what is claimed"
             return Judged(Verdict.FAILED, reason, status, claimed)
-        if status == Outcome.OK and (other.error[m] <= np.maximum(error, FINE * tolerance * np.abs(mu))).all():
+        if status == Outcome.OK and (estimate <= np.maximum(error, FINE * tolerance * np.abs(mu))).all():
             return Judged(Verdict.CONVERGED, f"error {claimed:.1e} confirmed", status, claimed)
     if status == Outcome.TOLERANCE_NOT_MET:
         return Judged(Verdict.LIMIT, f"{status}: {claimed:.1e}", status, claimed)
-    refused = next((other.status[m] for other, m in finer if len(other.status) > m), "none")
-    return Judged(Verdict.FAILED, f"ok, but no finer run confirms it: {refused}", status, claimed)
-
-
-def _without_error(status: str, mu: Array, finer: Sequence[tuple[Reply, int]], tolerance: float) -> Judged:
-    """Judge a value that claims nothing: whether it is as good as asked is all that can be said."""
-    for other, m in finer:
-        if len(other.status) > m and np.isfinite(other.mu[m]).all():
-            with np.errstate(divide="ignore", invalid="ignore"):
-                off = float(np.nan_to_num(np.abs(mu - other.mu[m]) / np.abs(other.mu[m]), nan=0.0).max())
-            verdict = Verdict.CONVERGED if off <= tolerance else Verdict.LIMIT
-            return Judged(verdict, f"states no error, off by {off:.1e}", status)
-    refused = next((other.status[m] for other, m in finer if len(other.status) > m), "none")
-    return Judged(Verdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
+    return replace(unconfirmed, error=claimed)

@@ -15,12 +15,7 @@ from comparison.report.section import Feature, Report, Section
 from comparison.surfaces.figures.file_names import figure_file
 from comparison.wording import scientific
 
-TARGETS = (
-    1e-2,
-    1e-3,
-    1e-4,
-    1e-6,
-)  # relative errors for which the trade is put into words
+TARGETS = 1e-2, 1e-3, 1e-4, 1e-6  # relative errors for which the trade is put into words
 
 
 def tradeoff_panels(trade: Trade) -> list[Panel]:
@@ -122,8 +117,7 @@ def _meets(entry: Entry, target: float) -> bool:
 
 
 def _draw(figures: Path, report: Report) -> None:
-    from comparison.analyses.tradeoff.figure import draw_tradeoff  # matplotlib: only a report that draws needs it
-    from comparison.analyses.tradeoff.growth_figure import draw_growth
+    from comparison.analyses.tradeoff.figure import draw_growth, draw_tradeoff  # matplotlib: only to draw
 
     for each in report.results.of("tradeoff") or ():
         draw_tradeoff(figures / figure_file(each.scene, "tradeoff"), each)

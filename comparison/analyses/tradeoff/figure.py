@@ -1,8 +1,9 @@
-"""Work-precision diagrams: error of mu against compute time per point, one panel per question and body."""
+"""Work-precision diagrams, one panel per question and body, and how the cost grows."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
+from comparison.analyses.tradeoff.growth import Series
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
 from comparison.surfaces.figures.pairs import save
 from comparison.wording import mathtext
@@ -27,6 +29,7 @@ FAMILIES = (
     ("user", "#b3124b", "#ec7aa2"),
 )
 MARKERS = "osD^v<>PX*"
+GROWTH_COLORS = "#1f4e8c", "#b3541e", "#6a1b9a", "#2e7d32"  # of the models
 MAX_TICKS = 6  # labels of the axis of times that do not touch
 
 
@@ -54,6 +57,23 @@ def draw_tradeoff(path: Path, trade: Trade) -> None:
         + "\nshaded: below the error estimate of the reference solution",
         fontsize=11,
     )
+    save(figure, path)
+
+
+def draw_growth(path: Path, series: Sequence[Series]) -> None:
+    """Write how the cost grows to `path`, PNG, and as PDF: a panel for every quantity, a line for every model."""
+    quantities = list(dict.fromkeys(each.quantity for each in series))
+    figure = Figure(figsize=(4.4 * len(quantities), 3.8), dpi=110, layout="constrained")
+    for axes, quantity in zip(np.atleast_1d(figure.subplots(1, len(quantities))), quantities):
+        shown = [each for each in series if each.quantity == quantity]
+        for each, color, marker in zip(shown, GROWTH_COLORS, MARKERS):
+            exponent = "" if each.slope is None else f", slope {each.slope:.2f}"
+            seconds = [math.nan if value is None else value for value in each.seconds]
+            axes.loglog(each.values, seconds, color=color, marker=marker, ms=4.5, label=f"{each.model}{exponent}")
+        axes.set_xlabel(f"{quantity}, {shown[0].unit}".rstrip(", "))
+        axes.set_ylabel("wall time, s" if quantity == "workers" else "processor time, s")
+        axes.grid(alpha=0.25)
+        axes.legend(fontsize=7.5, frameon=False)
     save(figure, path)
 
 

@@ -69,18 +69,14 @@ def _usual_points(model: Model, value: float) -> int:
     return POINTS[model.side]
 
 
+def _lasting(scene: Scene, duration: float) -> Scene:
+    return scene.with_values({"duration": duration})
+
+
+_EACH = EXACT, TRANSLATIONAL, SPATIAL
 QUANTITIES = (
-    Quantity(
-        "bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), _usual_points, (EXACT, TRANSLATIONAL, SPATIAL)
-    ),
-    Quantity(
-        "duration",
-        "s",
-        DURATIONS,
-        lambda scene, duration: scene.with_values({"duration": duration}),
-        _usual_points,
-        (EXACT, TRANSLATIONAL, SPATIAL),
-    ),
+    Quantity("bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), _usual_points, _EACH),
+    Quantity("duration", "s", DURATIONS, _lasting, _usual_points, _EACH),
     Quantity("phase pairs", "", PHASES, lambda scene, n: scene, lambda model, n: int(n), (EXACT,)),
 )
 
@@ -164,12 +160,11 @@ class Growth(Analysis[list[Series]]):
         collected = []
         for quantity, model, tasks in self._series(study):
             answers = [results.value(task, without_value) for task in tasks]
-            seconds = tuple(
-                answer.seconds / (1 if quantity.name == "phase pairs" else len(answer.mu))
-                if np.isfinite(answer.mu).all()
-                else float("nan")
+            whole = quantity.name == "phase pairs"
+            seconds = [
+                answer.seconds / (1 if whole else len(answer.mu)) if np.isfinite(answer.mu).all() else float("nan")
                 for answer in answers
-            )
+            ]
             collected.append(with_slope(quantity.name, quantity.unit, model.title, quantity.values, seconds))
         return collected
 

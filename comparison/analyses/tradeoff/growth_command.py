@@ -9,16 +9,7 @@ from concurrent.futures import Executor
 
 from rich.console import Console
 
-from comparison.analyses.tradeoff.growth import (
-    FILE,
-    PICTURE,
-    SCHEMA,
-    STORED,
-    Growth,
-    MeasuredGrowth,
-    Series,
-    with_slope,
-)
+from comparison.analyses.tradeoff.growth import PICTURE, SCHEMA, STORED, Growth, MeasuredGrowth, Series, with_slope
 from comparison.analyses.tradeoff.measure import Measurement, measure, sample
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table
@@ -29,7 +20,7 @@ from comparison.study.models import EXACT
 from comparison.study.study import Study
 from reference.problem import Scene
 
-FILES = (FILE, PICTURE, "growth.pdf")
+FILES = (STORED.name, PICTURE, "growth.pdf")
 TOLERANCE = 1e-3  # of a study; every measurement has one of its own
 CALLS, PAIRS = 16, 64  # of the equations, shared by the workers
 
@@ -65,7 +56,7 @@ def by_workers(scene: Scene, pool: Callable[[int], Executor], most: int | None =
 
 def growth_files(growth: MeasuredGrowth) -> dict[str, bytes]:
     """Table and figure."""
-    from comparison.analyses.tradeoff.growth_figure import draw_growth  # plotting: not needed to refuse
+    from comparison.analyses.tradeoff.figure import draw_growth  # plotting: not needed to refuse
 
     return {STORED.name: STORED.as_json(growth), **made_by(lambda folder: draw_growth(folder / PICTURE, growth.series))}
 

@@ -185,17 +185,14 @@ def labeled(
     axes = ("setting", "point", "body")
     return xr.Dataset(
         {
-            "mu": (axes, padded(mu), {"long_name": "amplification factor (5.1)", "units": "1"}),
-            "reference_solution": (
-                axes,
-                padded(reference_solution),
-                {"long_name": "the same by the reference solution of the question", "units": "1"},
-            ),
-            "error_estimate": (
-                axes,
-                padded(error_estimate),
-                {"long_name": "estimated absolute error of mu", "units": "1"},
-            ),
+            **{
+                name: (axes, padded(values), {"long_name": meaning, "units": "1"})
+                for name, values, meaning in (
+                    ("mu", mu, "amplification factor (5.1)"),
+                    ("reference_solution", reference_solution, "the same by the reference solution of the question"),
+                    ("error_estimate", error_estimate, "estimated absolute error of mu"),
+                )
+            },
             "seconds": ("setting", [entry.seconds for entry in entries], {"units": "s", "long_name": "per point"}),
             "value": ("setting", [entry.value for entry in entries]),
             **{

@@ -176,20 +176,11 @@ def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolera
         return Worst(scene.name, model.key, worst.quantity, worst.body, reason=engine.outcome)
     alpha1, alpha2 = (climb.phases % (2.0 * np.pi)).tolist()
     return Worst(
-        scene=scene.name,
-        model=model.key,
-        quantity=worst.quantity,
-        body=worst.body,
-        value=climb.value,
-        error=climb.error,
-        phases=(alpha1, alpha2),
-        kind="nearby",
-        climbs=1,
-        reached=1,
-        evaluations=engine.evaluations,
+        scene.name, model.key, worst.quantity, worst.body, climb.value, climb.error, (alpha1, alpha2), "nearby",
+        climbs=1, reached=1, evaluations=engine.evaluations,
         at_start=float(start.numerator[0] / start.denominator[0]),
         start_error=float(start.error[0]),
-    )
+    )  # fmt: skip
 
 
 def _surface(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:

@@ -65,10 +65,7 @@ def trade(scene: Scene) -> Trade:
 def test_nothing_on_the_front_is_beaten_and_all_else_is() -> None:
     cost, error = [1.0, 2.0, 3.0, 2.5, 1.0, 4.0], [1e-2, 1e-3, 1e-4, 2e-3, 1e-1, float("inf")]
     assert on_pareto_front(cost, error) == [True, True, True, False, False, False]
-
-
-def test_two_settings_that_are_alike_are_both_on_the_front() -> None:
-    assert on_pareto_front([1.0, 1.0], [1e-3, 1e-3]) == [True, True]
+    assert on_pareto_front([1.0, 1.0], [1e-3, 1e-3]) == [True, True], "two that are alike"
 
 
 def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
@@ -78,24 +75,13 @@ def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
 
 def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     setting = Setting("exact", "one", "step", "", 1.0, RUN, {}, 1.0)
-    reference_solution = np.ones((3, 1))
-    good = entry(
-        setting, Measured(reference_solution * 1.1, reference_solution * np.nan, 3.0, np.nan), reference_solution
+    ones = np.ones((3, 1))
+    good, lost, other = (
+        entry(setting, Measured(ones * mu, ones * np.nan, seconds, np.nan), ones)
+        for mu, seconds in ((1.1, 3.0), ([[1.0], [np.nan], [1.0]], 1.0), (1.0, 0.1))
     )
-    lost = entry(
-        setting,
-        Measured(reference_solution * [[1.0], [np.nan], [1.0]], reference_solution * np.nan, 1.0, np.nan),
-        reference_solution,
-    )
-    other = replace(
-        entry(setting, Measured(reference_solution, reference_solution, 0.1, np.nan), reference_solution),
-        model_error=True,
-    )
-    assert [setting.pareto_front for setting in with_pareto_fronts([good, lost, other], 1)] == [
-        (True,),
-        (False,),
-        (False,),
-    ]
+    marked = with_pareto_fronts([good, lost, replace(other, model_error=True)], 1)
+    assert [setting.pareto_front for setting in marked] == [(True,), (False,), (False,)]
     assert lost.answered == 2
 
 

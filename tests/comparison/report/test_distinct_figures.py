@@ -42,9 +42,8 @@ from comparison.analyses.assumptions.variations import AssumptionCell, Variation
 from comparison.analyses.extremes.figure import draw_extremes
 from comparison.analyses.families.analysis import family_steps
 from comparison.analyses.families.figure import draw_family
-from comparison.analyses.tradeoff.figure import draw_tradeoff
+from comparison.analyses.tradeoff.figure import draw_growth, draw_tradeoff
 from comparison.analyses.tradeoff.growth import with_slope
-from comparison.analyses.tradeoff.growth_figure import draw_growth
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
 from comparison.run import main
 from comparison.study.study import Study
