@@ -108,6 +108,7 @@ AGAINST_A_RULE = replace(PLAIN, scene=scene(friction=-0.1))
     [
         (PLAIN, fake("honest"), "converged", "confirmed"),
         (PLAIN, fake("at_the_rim"), "refused", "rim reached"),
+        (PLAIN, fake("at_the_rim", finer="unable"), "refused", "rim reached"),
         (PLAIN, fake("unable"), "limit", "step limit"),
         (PLAIN, fake("honest", finer="unable"), "FAILED", "no finer run confirms it: step limit"),
         (replace(PLAIN, right=("contact lost",)), fake("at_the_rim"), "FAILED", "instead of contact lost"),
@@ -307,6 +308,6 @@ def test_a_value_that_says_nothing_is_not_confirmed() -> None:
 
 @pytest.mark.parametrize(("off", "verdict"), [(0.9, "converged"), (1.5, "FAILED")])
 def test_an_error_half_of_what_it_should_be_fails(off: float, verdict: str) -> None:
-    mu, claimed = np.array([[1.0, 2.0]]), 1e-3
-    reply = Reply(mu * [1.0, 1.0 + off * claimed], claimed * mu, ("ok",))
-    assert judged(reply, [Reply(mu, 1e-6 * mu, ("ok",))], 1e-2, False, ()).verdict == verdict
+    mu, claimed = np.array([[1.0, 2.0], [1.0, 2.0]]), 1e-3
+    reply = Reply(mu * [[1.0, 1.0], [1.0, 1.0 + off * claimed]], claimed * mu, ("ok", "ok"))
+    assert judged(reply, [Reply(mu, 1e-6 * mu, ("ok", "ok"))], 1e-2, False, ()).verdict == verdict

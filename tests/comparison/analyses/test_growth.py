@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from known_analyses import collected
+from scipy.stats import linregress
 
 from comparison.analyses.tradeoff import command as tradeoff
 from comparison.analyses.tradeoff import growth_command as command
@@ -35,6 +36,8 @@ def test_a_known_slope_is_found_in_the_larger_half() -> None:
     assert fitted_slope(values, seconds) == pytest.approx((1.5, 0.0), abs=1e-12)
     assert fitted_slope([*values, 64.0], [*seconds, np.nan])[0] == pytest.approx(1.5), "no answer does not count"
     assert np.isnan(fitted_slope(values[:2], seconds[:2])[0])
+    line = linregress(np.log([1.0, 2.0, 4.0]), np.log([1.0, 3.0, 5.0]))
+    assert fitted_slope([1.0, 2.0, 4.0], [1.0, 3.0, 5.0]) == pytest.approx((line.slope, line.stderr))
 
 
 @pytest.mark.parametrize("bodies", [2, 6, 100])

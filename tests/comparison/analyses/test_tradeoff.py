@@ -21,7 +21,7 @@ from known_results import known_trade
 from comparison.analyses.tradeoff import analysis, command, measure
 from comparison.analyses.tradeoff.analysis import MeasuredTrade, TradeOff, entry
 from comparison.analyses.tradeoff.figure import MAX_TICKS, round_ticks
-from comparison.analyses.tradeoff.measure import Measured, Measurement, sample
+from comparison.analyses.tradeoff.measure import Measured, Measurement, joined, sample
 from comparison.analyses.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
 from comparison.analyses.tradeoff.trade import (
     FILE,
@@ -77,12 +77,18 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     setting = Setting("exact", "one", "step", "", 1.0, RUN, {}, 1.0)
     ones = np.ones((3, 1))
     good, lost, other = (
-        entry(setting, Measured(ones * mu, ones * np.nan, seconds, np.nan), ones)
+        entry(setting, Measured(ones * mu, 0.1 * ones * mu, seconds, np.nan), ones)
         for mu, seconds in ((1.1, 3.0), ([[1.0], [np.nan], [1.0]], 1.0), (1.0, 0.1))
     )
     marked = with_pareto_fronts([good, lost, replace(other, model_error=True)], 1)
     assert [setting.pareto_front for setting in marked] == [(True,), (False,), (False,)]
     assert lost.answered == 2
+    assert (good.seconds, good.error_estimate) == (1.0, [pytest.approx(0.1)]), "per point, and relative"
+
+
+def test_times_add_up_and_a_part_has_its_share() -> None:
+    both = joined([Measured(np.ones((2, 1)), np.ones((2, 1)), seconds, np.nan) for seconds in (2.0, 4.0)])
+    assert (both.seconds, both.upto(3).seconds) == (6.0, 4.5)
 
 
 @pytest.mark.long
