@@ -7,13 +7,12 @@ A wrong option ends every command with exit code 2 and one line that names the o
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
-from typing import Concatenate, ParamSpec
+from typing import Concatenate, ParamSpec, TypeVar
 
 from comparison.runner.executors import cores
 from comparison.runner.resume import invocation
@@ -21,6 +20,7 @@ from reference.command import OneLineParser, UsageError
 from reference.problem import SceneError
 
 Rest = ParamSpec("Rest")
+Value = TypeVar("Value", int, float)
 
 STORED_RESULTS = "report whose stored results, in DIR.tiles, are used and added to"  # --out of what writes nothing else
 
@@ -71,24 +71,20 @@ def jobs(options: argparse.Namespace) -> int:
 
 def whole_number(option: str, text: str, least: int, most: int) -> int:
     """The value of an option that takes a whole number. Raises SceneError."""
-    rule = f"must be a whole number from {least} to {most}"
-    try:
-        value = int(text)
-    except ValueError:
-        raise SceneError("command line", option, text, rule) from None
-    if not least <= value <= most:
-        raise SceneError("command line", option, value, rule)
-    return value
+    return _within(option, text, int, least, most, f"must be a whole number from {least} to {most}")
 
 
 def number(option: str, text: str, least: float, most: float, unit: str) -> float:
     """The value of an option that takes a number. Raises SceneError."""
-    rule = f"must be a number from {least:g} to {most:g}, {unit}"
+    return _within(option, text, float, least, most, f"must be a number from {least:g} to {most:g}, {unit}")
+
+
+def _within(option: str, text: str, kind: type[Value], least: Value, most: Value, rule: str) -> Value:
     try:
-        value = float(text)
+        value = kind(text)
     except ValueError:
         raise SceneError("command line", option, text, rule) from None
-    if not (math.isfinite(value) and least <= value <= most):
+    if not least <= value <= most:  # also NaN
         raise SceneError("command line", option, value, rule)
     return value
 

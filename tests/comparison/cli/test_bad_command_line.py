@@ -17,19 +17,17 @@ WRONG = {
     "grid too large": (["--grid", "513"], "command line: --grid = 513: must be a whole number from 2 to 512"),
     "grid not whole": (["--grid", "3.5"], "command line: --grid = '3.5': must be a whole number from 2 to 512"),
     "jobs zero": (["--jobs", "0"], "command line: --jobs = 0: must be a whole number from 1 to 1024"),
-    "jobs a word": (["--jobs", "all"], "command line: --jobs = 'all': must be a whole number from 1 to 1024"),
     "tolerance zero": (["--tolerance", "0"], "command line: --tolerance = 0.0: must be a number from 1e-08 to 0.1"),
-    "tolerance negative": (["--tolerance=-1e-3"], "command line: --tolerance = -0.001: must be a number"),
     "tolerance nan": (["--tolerance", "nan"], "command line: --tolerance = nan: must be a number"),
     "budget zero": (["--budget", "0"], "command line: --budget = 0.0: must be a number from 1 to 1e+07"),
     "budget a word": (["--budget", "soon"], "command line: --budget = 'soon': must be a number from 1 to 1e+07"),
-    "tolerance a word": (["--tolerance", "fine"], "command line: --tolerance = 'fine': must be a number"),
     "amplitude zero": (["--amplitude", "0"], "command line: --amplitude = 0.0: must be a number"),
     "amplitude infinite": (["--amplitude", "inf"], "command line: --amplitude = inf: must be a number"),
     "unknown option": (["--gird", "3"], "command line: unrecognized arguments: --gird"),
     "shortened option": (["--gri", "3"], "command line: unrecognized arguments: --gri"),
     "option without value": (["--grid"], "command line: argument --grid: expected one argument"),
     "unknown scene": (["fig9"], "fig9: scene = 'fig9': No such file or directory; give a TOML file or one of fig3-I"),
+    "second scene unknown": (["fig3-I", "missing.toml"], "missing.toml: "),
     "scene twice": (["fig3-I", "fig3-I"], "fig3-I: scene = 'fig3-I': same name as fig3-I"),
     "scene a directory": (["/"], "/: scene = '/': Is a directory"),
 }
@@ -71,13 +69,6 @@ def test_a_wrong_scene_file_is_named_with_key_value_and_rule(
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_a_wrong_second_scene_stops_the_run_at_the_start(command: Callable[..., Run]) -> None:
-    run = command("fig3-I", "missing.toml", hierarchy=fake_hierarchy("forbidden"))
-    assert run.code == 2
-    assert run.err.startswith("missing.toml: ")
-    assert not run.report.exists()
-
-
 def test_an_impossible_amplitude_names_the_scene(command: Callable[..., Run], tmp_path: Path) -> None:
     good = ROOT / "reference/problem/scenes/fig3-I.toml"
     file = tmp_path / "still.toml"
@@ -111,8 +102,12 @@ def test_out_refuses_a_file_and_the_working_directory(
     command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     file = tmp_path / "report.html"
-    file.write_text("", encoding="utf-8")
-    assert "is a file: give a directory" in command("--out", str(file)).err
+    file.write_text("mine", encoding="utf-8")
+    for out, rule in ((file, "is a file: give a directory"), (file / "below", "cannot be written: Not a directory")):
+        run = command("--out", str(out), hierarchy=fake_hierarchy("forbidden"))
+        assert run.code == 2
+        assert rule in run.err
+    assert file.read_text(encoding="utf-8") == "mine"
     empty = tmp_path / "here"
     empty.mkdir()
     monkeypatch.chdir(empty)
@@ -130,12 +125,3 @@ def test_out_that_cannot_be_written_is_refused_at_the_start(command: Callable[..
     run = command("--out", str(locked / "report"), hierarchy=fake_hierarchy("forbidden"))
     assert run.code == 2
     assert "cannot be written: Permission denied" in run.err
-
-
-def test_out_below_a_file_is_refused_before_anything_is_computed(command: Callable[..., Run], tmp_path: Path) -> None:
-    file = tmp_path / "notes"
-    file.write_text("mine", encoding="utf-8")
-    run = command("--out", str(file / "report"), hierarchy=fake_hierarchy("forbidden"))
-    assert run.code == 2
-    assert "cannot be written: Not a directory" in run.err
-    assert file.read_text(encoding="utf-8") == "mine"
