@@ -18,7 +18,7 @@ import reference
 
 PIECES = (" ", "a", "9", ".", "_", "=", '"', "(", "[", "`", "a.", "a ", "Cause: ")
 BEGINNINGS = ("", "UNITS", "ax [", "a=a:a", '"', "9")
-LENGTHS = 500, 1_000, 10_000  # letters; a pattern that needs the cube of them never ends at the last
+LENGTHS = 500, 1_000, 20_000  # letters; a pattern that needs the cube of them never ends at the last
 MOMENT = 0.3  # s of processor time; what grows as the square takes more
 
 
