@@ -14,14 +14,14 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.analyses.assumptions.feature import figure_name
+from comparison.analyses.assumptions.feature import draw_assumption_figure
 from comparison.analyses.assumptions.validity import Assumptions, lines
 from comparison.analyses.assumptions.variations import CLOSE_ENOUGH, DURATION, MANY, PHASES, AssumptionCell
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
 from comparison.cli.terminal import new_table
 from comparison.runner.executors import Pool
-from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
+from comparison.runner.output import destination, publish, refuse_foreign_files
 from comparison.runner.processes import process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.models import has_spatial_data
@@ -63,16 +63,8 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         _print(console, scene, cells)
         if figures:
             with writing(figures, "--figures"):
-                _draw(figures, scene, cells)
+                publish(figures, dict(draw_assumption_figure((scene, cells))), "comparison.assumptions")
     return 0
-
-
-def _draw(folder: Path, scene: Scene, cells: Sequence[AssumptionCell]) -> None:
-    """Write the picture of a scene."""
-    from comparison.analyses.assumptions.figure import draw_assumptions  # plotting: not needed to refuse
-
-    files = made_by(lambda new: draw_assumptions(new / figure_name(scene), scene, cells))
-    publish(folder, files, "comparison.assumptions")
 
 
 def _spatial(name: str) -> Scene:

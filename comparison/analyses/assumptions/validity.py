@@ -19,9 +19,11 @@ from comparison.analyses.assumptions.variations import (
     AssumptionCell,
     ValidityRange,
     Variation,
-    assumption_cells,
+    arguments,
+    cell_of,
     ranges,
-    variation_tasks,
+    varied,
+    without_value,
 )
 from comparison.result_types import Phases, result
 from comparison.runner.analysis import Analysis
@@ -114,13 +116,13 @@ class Validity:
 
 def lines(scene: Scene, cells: Sequence[AssumptionCell]) -> list[str]:
     """One line per body, share and direction, and those of uneven variations and loaded bars."""
-    return [describe(validity) for validity in ranges([scene], cells)] + uneven_lines(scene, cells)
+    return [describe(validity) for validity in ranges(scene, cells)] + uneven_lines(scene, cells)
 
 
 def uneven_lines(scene: Scene, cells: Sequence[AssumptionCell]) -> list[str]:
     """One line per uneven variation, and one on bars under load, from the cells of a scene."""
     uneven = [describe_torsion(scene, cell) for cell in cells if cell.variation.is_uneven]
-    return uneven + describe_shortening(scene, [cell for cell in cells if cell.variation in UNDER_LOAD])
+    return uneven + describe_shortening([cell for cell in cells if cell.variation in UNDER_LOAD])
 
 
 @dataclass(frozen=True)
@@ -132,16 +134,25 @@ class Assumptions(Analysis[Validity]):
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """The translational model and every variation of the spatial one, for every scene to which both apply."""
-        return variation_tasks(study, self.stage, self.variations)
+        return [
+            Task(varied, argument, self.stage, about=argument[0], needs_compiled_reference=False)
+            for argument in arguments(study, self.variations)
+        ]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Validity | None:
         """The cells; None if no scene has both models of the engine."""
-        cells = assumption_cells(self.tasks(study), results)
+        solved = [(task.argument, results.value(task, without_value)) for task in self.tasks(study)]
+        plain = {scene.name: of_scene for (scene, _, variation, _), of_scene in solved if variation is None}
+        cells = tuple(
+            cell_of(scene, variation, spatial, plain[scene.name])
+            for (scene, _, variation, _), spatial in solved
+            if variation is not None
+        )
         if not cells:
             return None
         phases = tuple((float(first), float(second)) for first, second in PHASES)
-        scenes = [scene for scene in study.scenes if any(cell.scene == scene.name for cell in cells)]
-        return Validity(ASSUMPTIONS, phases, DURATION, tuple(cells), tuple(ranges(scenes, cells)))
+        within = tuple(validity for scene in study.scenes for validity in ranges(scene, cells))
+        return Validity(ASSUMPTIONS, phases, DURATION, cells, within)
 
 
 def describe(validity: ValidityRange) -> str:
@@ -168,7 +179,7 @@ def describe(validity: ValidityRange) -> str:
     return f"{what} with heights up to {validity.holds:g} times the stated ones, {fails}"
 
 
-def describe_shortening(scene: Scene, loaded: Sequence[AssumptionCell]) -> list[str]:
+def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
     """One line on assumption (iv): what it changes that bars shorten as they sway; none without both of UNDER_LOAD."""
     if len(loaded) != len(UNDER_LOAD):
         return []

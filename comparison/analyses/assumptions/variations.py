@@ -8,15 +8,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal
+from dataclasses import dataclass, replace
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparison.result_types import Number, Text, result
-from comparison.runner.task import Task, TaskResult
-from comparison.runner.task_results import TaskResults
+from comparison.runner.task import TaskResult
 from comparison.study.batches import imported
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
@@ -171,7 +170,7 @@ class Solved:
             raise ValueError(f"mu {self.mu.shape}, error {self.error.shape}, {len(self.status)} statuses")
 
 
-def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> list[Arguments]:
+def arguments(study: Study, variations: Sequence[Variation]) -> list[Arguments]:
     """
     What has to be computed: the translational model and every variation of the spatial one.
 
@@ -189,31 +188,6 @@ def variation_arguments(study: Study, variations: Sequence[Variation] = FEW) -> 
             loaded = UNDER_LOAD if any(link is not None for link in scene.bar_links) else ()
             asked += [(scene, spatial, variation, tolerance) for variation in (*variations, *loaded)]
     return asked
-
-
-def variation_tasks(study: Study, stage: str, variations: Sequence[Variation] = FEW) -> list[Task]:
-    """`variation_arguments` as tasks."""
-    return [
-        Task(
-            varied,
-            argument,
-            stage,
-            about=argument[0],
-            needs_compiled_reference=False,
-        )
-        for argument in variation_arguments(study, variations)
-    ]
-
-
-def assumption_cells(tasks: Sequence[Task], results: TaskResults) -> list[AssumptionCell]:
-    """Every variation against the translational model of its scene."""
-    answers = [(task.argument, results.value(task, _without_value)) for task in tasks]
-    held_against = {scene.name: answer for (scene, _, variation, _), answer in answers if variation is None}
-    return [
-        _cell(scene, variation, answer, held_against[scene.name])
-        for (scene, _, variation, _), answer in answers
-        if variation is not None
-    ]
 
 
 def varied(task: Arguments) -> Solved:
@@ -238,61 +212,55 @@ def _moved(scene: Scene, model: Model, tolerance: float) -> Solved:
     trajectory: Callable[..., Trajectory] = imported(str(model.trajectory))
     motions = [trajectory(scene, phase, **model.settings, tolerance=tolerance) for phase in PHASES]
     nothing = np.full(len(scene.bodies), np.nan)
-    known = [motion.status in ANSWERED and motion.accuracy is not None for motion in motions]
-    peaks = [motion.peak if whole else nothing for motion, whole in zip(motions, known)]
-    errors = [
-        motion.accuracy.peak_error if motion.accuracy and whole else nothing for motion, whole in zip(motions, known)
+    rows = [
+        (motion.peak, motion.accuracy.peak_error)
+        if motion.status in ANSWERED and motion.accuracy is not None
+        else (nothing, nothing)
+        for motion in motions
     ]
-    ground = ground_peak(scene, PHASES)[:, None]
+    peaks, errors = np.moveaxis(np.array(rows), 1, 0) / ground_peak(scene, PHASES)[:, None]
     turns = tuple(tuple(turn.value for turn in demands(motion).torsion or ()) for motion in motions)
     status, cost = tuple(str(motion.status) for motion in motions), time.process_time() - clock
-    return Solved(np.array(peaks) / ground, np.array(errors) / ground, status, "", cost, turns)
+    return Solved(peaks, errors, status, "", cost, turns)
 
 
-def _without_value(task: Arguments, failed: TaskResult) -> Solved:
+def without_value(task: Arguments, failed: TaskResult) -> Solved:
+    """In place of what a task did not return."""
     nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
     return Solved(nothing, nothing, (failed.outcome.value,) * len(PHASES), failed.error_message, 0.0)
 
 
-def _cell(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> AssumptionCell:
-    change = spatial.mu / plain.mu - 1.0
-    uncertainty = np.hypot(spatial.error, plain.error) / plain.mu
+def cell_of(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> AssumptionCell:
+    """A variation of the spatial model against the translational model."""
+    shares = spatial.mu / plain.mu - 1.0, np.hypot(spatial.error, plain.error) / plain.mu
+    change, uncertainty = (tuple(map(tuple, share.tolist())) for share in shares)
     error_message = spatial.error_message or plain.error_message
-    rows = _rows(change), _rows(uncertainty)
-    return AssumptionCell(scene.name, variation, *rows, spatial.status, error_message, spatial.cost, spatial.torsion)
+    return AssumptionCell(
+        scene.name, variation, change, uncertainty, spatial.status, error_message, spatial.cost, spatial.torsion
+    )
 
 
-def _rows(array: Array) -> Rows:
-    return tuple(tuple(map(float, row)) for row in array)
-
-
-def ranges(scenes: Sequence[Scene], cells: Sequence[AssumptionCell]) -> list[ValidityRange]:
+def ranges(scene: Scene, cells: Sequence[AssumptionCell]) -> list[ValidityRange]:
     """
     Where every mu_i stays within each share of WITHIN, over rings, heights, offsets and angles, all else as stated.
+
+    cells: those of other scenes are left out. Offsets and angles are there only where one was tried.
     """
-    validity = []
-    for scene in scenes:
-        ring = scene.support_radius or float("nan")
-        of_scene = [(cell.variation, cell) for cell in cells if cell.scene == scene.name]
-        usual = [(variation, cell) for variation, cell in of_scene if variation.is_usual]
-        stated = [(variation, cell) for variation, cell in usual if variation == Variation()]
-        moved = [(variation, cell) for variation, cell in of_scene if variation.offset]
-        angled = [(variation, cell) for variation, cell in of_scene if variation.yaw]
-        lines: dict[Axis, list[tuple[float, AssumptionCell]]] = {
-            "ring": [(variation.ring * ring, cell) for variation, cell in usual if variation.height == 1.0],
-            "height": [(variation.height, cell) for variation, cell in usual if variation.ring == 1.0],
-            **({"offset": [(variation.offset * ring, cell) for variation, cell in stated + moved]} if moved else {}),
-            **({"yaw": [(variation.yaw, cell) for variation, cell in stated + angled]} if angled else {}),
-        }
-        for key, line in lines.items():
-            line.sort(key=lambda pair: pair[0], reverse=key == "ring")
-        validity += [
-            ValidityRange(scene.name, body, share, key, *_bracket(line, body, share))
-            for body in range(1, len(scene.bodies) + 1)
-            for share in WITHIN
-            for key, line in lines.items()
-        ]
-    return validity
+    lines: dict[Axis, list[tuple[float, AssumptionCell]]] = {}
+    of_scene = [cell for cell in cells if cell.scene == scene.name]
+    for key in get_args(Axis):
+        unit = scene.support_radius or float("nan") if key in ("ring", "offset") else 1.0
+        stated = getattr(Variation(), key)
+        varied_alone = [cell for cell in of_scene if replace(cell.variation, **{key: stated}) == Variation()]
+        line = [(getattr(cell.variation, key) * unit, cell) for cell in varied_alone]
+        if line if key in ("ring", "height") else any(value for value, _ in line):
+            lines[key] = sorted(line, key=lambda pair: pair[0], reverse=key == "ring")
+    return [
+        ValidityRange(scene.name, body, share, key, *_bracket(line, body, share))
+        for body in range(1, len(scene.bodies) + 1)
+        for share in WITHIN
+        for key, line in lines.items()
+    ]
 
 
 def _bracket(

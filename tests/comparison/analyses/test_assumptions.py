@@ -23,8 +23,8 @@ from comparison.analyses.assumptions.variations import (
     UNDER_LOAD,
     AssumptionCell,
     Variation,
+    arguments,
     ranges,
-    variation_arguments,
     varied,
 )
 from comparison.study.models import MODEL_HIERARCHY
@@ -50,7 +50,7 @@ def _cell(variation: Variation, first: float, second: float, uncertainty: float 
 
 
 def _said(cells: Sequence[AssumptionCell], key: str, share: float = 0.01) -> tuple[float | None, float | None]:
-    validity = next(line for line in ranges([STATED], cells) if (line.body, line.key, line.share) == (1, key, share))
+    validity = next(line for line in ranges(STATED, cells) if (line.body, line.key, line.share) == (1, key, share))
     return validity.holds, validity.fails
 
 
@@ -87,7 +87,7 @@ def test_the_uncertainty_counts_against_the_range() -> None:
 
 def test_the_sentences_name_what_holds_and_what_was_tried_next() -> None:
     cells = [_cell(Variation(ring=2.0), 0.0, 0.0), _cell(Variation(), 0.02, 0.0)]
-    lines = [describe(validity) for validity in ranges([STATED], cells) if validity.body == 1]
+    lines = [describe(validity) for validity in ranges(STATED, cells) if validity.body == 1]
     assert "mu_1 stays within 1 % with rings from 2 m, no longer at 1 m" in lines
     assert "mu_1 stays within 5 % with rings from 1 m, every smaller one tried too" in lines
     assert "mu_1 stays within 1 % at no heights tried" in lines
@@ -211,7 +211,7 @@ def test_bars_under_load_are_varied_only_where_they_give_way() -> None:
     for bars, expected in ((BARS, UNDER_LOAD), (rigid, ())):
         scene = STATED.with_values({"bodies.1.period": None, "bodies.1.bars": bars})
         study = Study((scene,), 1, 1e-3, MODEL_HIERARCHY)
-        asked = [variation for _, _, variation, _ in variation_arguments(study, ())]
+        asked = [variation for _, _, variation, _ in arguments(study, ())]
         assert asked == [None, *expected]
     softening, shortening = (
         variation.of(STATED.with_values({"bodies.1.period": None, "bodies.1.bars": BARS})) for variation in UNDER_LOAD
@@ -248,7 +248,7 @@ def test_the_command_prints_the_change_of_every_body(
         )
         for number, variation in enumerate((Variation(ring=0.5), Variation(height=2.0, supports=3)), start=1)
     ]  # fmt: skip
-    validity = Validity(ASSUMPTIONS, ((0.0, 0.0),), 1.0, tuple(cells), tuple(ranges([STATED], cells)))
+    validity = Validity(ASSUMPTIONS, ((0.0, 0.0),), 1.0, tuple(cells), tuple(ranges(STATED, cells)))
     monkeypatch.setattr(command, "computed", lambda *rest: None)
     monkeypatch.setattr(Assumptions, "collect", lambda *rest: validity)
     assert command.main(["fig3-I", "--out", str(tmp_path / "report"), "--figures", str(tmp_path / "drawn")]) == 0
