@@ -15,8 +15,10 @@ its peaks converge where those of the translational model climb towards the supr
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
+from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -30,7 +32,7 @@ from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study
-from reference.problem import Outcome, Scene, exponents, ground_peak, loading_period
+from reference.problem import Amplification, Outcome, Scene, exponents, ground_peak, loading_period
 
 Array = NDArray[np.float64]
 Values = tuple[Array, Array]  # relative sizes and their errors, (P, S, N)
@@ -52,21 +54,24 @@ NEWTON, RESIDUAL = 1e-8, 1e-12  # of the engine's steps
 SAFETY = 1.5  # on the difference of two steps, which is half to once the error of the coarser one
 
 
-def _regularized(scene: Scene) -> Values:
-    """The equations at v_reg against the resolved peak at the same speed."""
-    return _against(scene, PHASES, REGULARIZATIONS, _by_equations, lambda v: v)
-
-
-def _to_supremum(scene: Scene) -> Values:
-    return _against(scene, PHASES, REGULARIZATIONS, _by_equations, lambda v: None)
-
-
-def _by_engine(scene: Scene) -> Values:
-    def solved(scene: Scene, phases: Array, v: float) -> Values:
-        answer = multibody.amplification(scene, phases, regularization=v, tolerance=ENGINE_TOLERANCE)
-        return answer.mu, answer.error
-
-    return _against(_short(scene, FEW_PERIODS), FEW, ENGINE_REGULARIZATIONS, solved, lambda v: v)
+def _against(
+    side: ModuleType,
+    phases: Array,
+    periods: float,
+    tolerance: float,
+    speeds: Sequence[float],
+    resolved: bool,
+    scene: Scene,
+) -> Values:
+    """The motion at each v_reg against the set-valued one, resolved at the same speed or the supremum."""
+    short = _short(scene, periods)
+    return _relative(
+        (
+            side.amplification(short, phases, regularization=v, tolerance=tolerance),
+            reference.amplification(short, phases, tolerance=REFERENCE_TOLERANCE, cutoff=v if resolved else None),
+        )
+        for v in speeds
+    )
 
 
 def _with_turning(scene: Scene) -> Values:
@@ -76,31 +81,14 @@ def _with_turning(scene: Scene) -> Values:
         multibody.amplification(short, FEW, model="spatial", regularization=v, tolerance=ENGINE_TOLERANCE)
         for v in (SMALLEST, *ENGINE_REGULARIZATIONS)
     )
-    sizes = np.stack([answer.mu / limit.mu - 1.0 for answer in answers], axis=1)
-    return sizes, np.stack([np.hypot(answer.error, limit.error) / limit.mu for answer in answers], axis=1)
+    return _relative((answer, limit) for answer in answers)
 
 
-def _by_equations(scene: Scene, phases: Array, v: float) -> Values:
-    answer = reference.amplification(scene, phases, tolerance=REFERENCE_TOLERANCE, regularization=v)
-    return answer.mu, answer.error
-
-
-def _against(
-    scene: Scene,
-    phases: Array,
-    speeds: tuple[float, ...],
-    solved: Callable[[Scene, Array, float], Values],
-    cutoff: Callable[[float], float | None],
-) -> Values:
-    """A regularized motion against the set-valued one."""
-    short = _short(scene, PERIODS)
-    sizes, errors = [], []
-    for v in speeds:
-        mu, error = solved(short, phases, v)
-        exact = reference.amplification(short, phases, tolerance=REFERENCE_TOLERANCE, cutoff=cutoff(v))
-        sizes.append(mu / exact.mu - 1.0)
-        errors.append(np.hypot(error, exact.error) / exact.mu)
-    return np.stack(sizes, axis=1), np.stack(errors, axis=1)
+def _relative(pairs: Iterable[tuple[Amplification, Amplification]]) -> Values:
+    """Answers against their limits."""
+    parts = [(a.mu / limit.mu - 1.0, np.hypot(a.error, limit.error) / limit.mu) for a, limit in pairs]
+    sizes, errors = (np.stack(each, axis=1) for each in zip(*parts))
+    return sizes, errors
 
 
 def _short(scene: Scene, periods: float) -> Scene:
@@ -136,8 +124,7 @@ def _at_constant_step(scene: Scene, v_reg: float | None, penetration: float, fac
     return mu
 
 
-@dataclass(frozen=True)
-class Limit:
+class Limit(NamedTuple):
     """One row for each body of the table: what tends to what, with which parameter, like which power of it."""
 
     what: str
@@ -151,21 +138,19 @@ def _dry(scene: Scene) -> bool:
     return not scene.lubricated and scene.friction_coefficient > 0.0
 
 
-def _dry_on_supports(scene: Scene) -> bool:
-    return _dry(scene) and has_spatial_data(scene)
-
-
-def _any(scene: Scene) -> bool:
-    return True
-
+_by_equations = partial(_against, reference, PHASES, PERIODS, REFERENCE_TOLERANCE, REGULARIZATIONS)
+_by_engine = partial(_against, multibody, FEW, FEW_PERIODS, ENGINE_TOLERANCE, ENGINE_REGULARIZATIONS, True)
 
 LIMITS = (
-    Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, _regularized, _dry),
-    Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, _to_supremum, _dry),
+    Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, partial(_by_equations, True), _dry),
+    Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, partial(_by_equations, False), _dry),
     Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, _dry),
-    Limit("bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARIZATIONS, 1.0, _with_turning, _dry_on_supports),
-    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, _any),
-)
+    Limit(
+        "bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARIZATIONS, 1.0, _with_turning,
+        lambda scene: _dry(scene) and has_spatial_data(scene),
+    ),
+    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, lambda scene: True),
+)  # fmt: skip
 
 Arguments = tuple[Scene, int]  # and the number of the limit
 
@@ -194,18 +179,19 @@ class Convergence(Analysis[list[Trend]]):
 def limit_trends(task: Arguments) -> list[Trend]:
     """One limit in one scene. Runs inside a worker process."""
     scene, number = task
-    limit = LIMITS[number]
-    sizes, errors = limit.measure(scene)
-    return [
-        trend(scene.name, body + 1, limit.what, limit.parameter, sizes[..., body], errors[..., body], limit.expected)
-        for body in range(len(scene.bodies))
-    ]
+    sizes, errors = LIMITS[number].measure(scene)
+    return _trends(task, np.moveaxis(sizes, -1, 0), np.moveaxis(errors, -1, 0))
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
+    nothing = [NONE] * len(task[0].bodies)
+    return _trends(task, nothing, nothing, failed.reason)
+
+
+def _trends(task: Arguments, sizes: Iterable[Array], errors: Iterable[Array], error_message: str = "") -> list[Trend]:
     scene, number = task
-    limit = LIMITS[number]
+    what, parameter, expected, *_ = LIMITS[number]
     return [
-        trend(scene.name, body + 1, limit.what, limit.parameter, NONE, NONE, limit.expected, failed.reason)
-        for body in range(len(scene.bodies))
+        trend(scene.name, body, what, parameter, *numbers, expected, error_message)
+        for body, numbers in enumerate(zip(sizes, errors), start=1)
     ]

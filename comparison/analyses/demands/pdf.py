@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 
 from comparison.analyses.demands.analysis import DemandStatistics, PhaseExtreme
 from comparison.analyses.motions.result import MotionDemands
@@ -38,39 +39,36 @@ def demands_note(results: Results) -> str:
 
 
 def _of_two_models(scene: SceneResult, titles: dict[str, str]) -> Iterator[tuple[str, list[str]]]:
-    held = {row.model for row in (scene.of("demand_statistics") or scene.of("demands"))}
-    keys = [key for key in titles if key in held]
+    over_phases = scene.of("demand_statistics")
+    rows = over_phases or scene.of("demands")
+    keys = [key for key in titles if key in {row.model for row in rows}]
     for key in dict.fromkeys((keys[0], keys[-1])):
-        if scene.of("demand_statistics"):
-            yield key, _over_phases([row for row in scene.of("demand_statistics") if row.model == key], scene.bodies)
-        else:
-            yield key, _over_motions([motion for motion in scene.of("demands") if motion.model == key])
+        of_model = [row for row in rows if row.model == key]
+        yield key, _cells(partial(_extremes if over_phases else _of_motions, of_model), scene.bodies)
 
 
-def _over_phases(rows: Sequence[DemandStatistics], bodies: int) -> list[str]:
-    def largest(quantity: str, body: int = 0, factor: float = 1.0) -> str:
-        return _text([row.highest.value for row in rows if (row.quantity, row.body) == (quantity, body)], factor)
-
-    drifts = [row.highest.value for row in rows if row.quantity == "drift"]
-    smallest = [row.lowest.value for row in rows if row.quantity == "contact_force_min"]
-    platform, top = largest("acceleration", 1), largest("acceleration", bodies)
-    rests = [row.highest for row in rows if row.quantity == "residual"]
-    isolator = largest("displacement", factor=MILLI), _with_error(rests)
-    return [*isolator, largest("base_shear"), platform, top, _text(drifts, MILLI), _text(smallest, pick=min)]
+def _extremes(rows: Sequence[DemandStatistics], quantity: str, body: int = 0) -> list[PhaseExtreme]:
+    """Of one body, or without one of all."""
+    shown = [row for row in rows if row.quantity == quantity and body in (0, row.body)]
+    return [row.lowest if quantity == "contact_force_min" else row.highest for row in shown]
 
 
-def _over_motions(motions: Sequence[MotionDemands]) -> list[str]:
-    def largest(numbers: Sequence[UncertainNumber], factor: float = 1.0) -> str:
-        return _text([number.value for number in numbers], factor)
+def _of_motions(motions: Sequence[MotionDemands], quantity: str, body: int = 0) -> list[UncertainNumber]:
+    """Of one body, or without one of all."""
+    found = [getattr(motion, quantity) for motion in motions]
+    listed = [[each] if isinstance(each, UncertainNumber) else each for each in found]
+    return [number for each in listed for number in (each[body - 1 : body] if body else each)]
 
+
+def _cells(numbers: Callable[..., Sequence[PhaseExtreme | UncertainNumber]], bodies: int) -> list[str]:
     return [
-        largest([motion.displacement for motion in motions], MILLI),
-        _with_error([motion.residual for motion in motions]),
-        largest([motion.base_shear for motion in motions]),
-        largest([motion.acceleration[0] for motion in motions if motion.acceleration]),
-        largest([motion.acceleration[-1] for motion in motions if motion.acceleration]),
-        largest([drift for motion in motions for drift in motion.drift], MILLI),
-        _text([motion.contact_force_min.value for motion in motions], pick=min),
+        _text(numbers("displacement"), MILLI),
+        _with_error(numbers("residual")),
+        _text(numbers("base_shear")),
+        _text(numbers("acceleration", 1)),
+        _text(numbers("acceleration", bodies)),
+        _text(numbers("drift"), MILLI),
+        _text(numbers("contact_force_min"), pick=min),
     ]
 
 
@@ -83,7 +81,11 @@ def _with_error(numbers: Sequence[PhaseExtreme | UncertainNumber]) -> str:
     return f"{MILLI * largest.value:.4g}" + (f" ± {MILLI * largest.error:.1g}" if largest.error >= 0.0 else "")
 
 
-def _text(values: Sequence[float], factor: float = 1.0, pick: Callable[[Sequence[float]], float] = max) -> str:
+def _text(
+    numbers: Sequence[PhaseExtreme | UncertainNumber],
+    factor: float = 1.0,
+    pick: Callable[[Sequence[float]], float] = max,
+) -> str:
     """The largest of the known values, or the one to pick."""
-    known = [value for value in values if math.isfinite(value)]
+    known = [number.value for number in numbers if math.isfinite(number.value)]
     return f"{factor * pick(known):.4g}" if known else ""

@@ -131,32 +131,23 @@ def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:
         "contact": float(motion.contact_force[0]),
         "mass": float(motion.contact_force[0] / (GRAVITY + ground[0, 2])),
         "acceleration": float(np.linalg.norm(motion.absolute_acceleration[0, 0])),
-        "damping": _damping(scene, motion),
-        "stiffness": _stiffness(scene, motion),
+        **_top_link(scene, motion),
     }
 
 
-def _damping(scene: Scene, motion: Trajectory) -> float:
-    """The force on the top body as a spring and a damper of the link below it, by least squares."""
-    if not scene.damping.any() or "turns" in motion.extra:
-        return float("nan")
-    stretch, rate = (part[:, -1, 0] - part[:, -2, 0] for part in (motion.position, motion.velocity))
-    force = -scene.masses[-1] * motion.absolute_acceleration[:, -1, 0]
-    fitted = np.linalg.lstsq(np.column_stack([stretch, rate]), force)
-    return float(fitted[0][1]) if fitted[2] == 2 else float("nan")
-
-
-def _stiffness(scene: Scene, motion: Trajectory) -> float:
+def _top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
     """
-    The force on the top body as a spring and a damper of the bars below it, by least squares.
+    The force on the top body as a spring and a damper of the link below it, by least squares.
 
     Where bodies turn, the force acts half-way up and leans with the bars, by which the weight has a part along x.
     """
-    if scene.bodies[-1].bars is None or scene.offsets.any() or scene.yaws.any():
-        return float("nan")
+    turning, damped = "turns" in motion.extra, bool(scene.damping.any())
+    barred = scene.bodies[-1].bars is not None and not (scene.offsets.any() or scene.yaws.any())
+    if not barred and (turning or not damped):
+        return {}
     stretch, rate = (part[:, -1, 0] - part[:, -2, 0] for part in (motion.position, motion.velocity))
     force = -scene.masses[-1] * motion.absolute_acceleration[:, -1, 0]
-    if "turns" in motion.extra:
+    if turning:
         lower, upper = scene.bodies[-2].height, scene.bodies[-1].height
         assert lower is not None
         assert upper is not None
@@ -164,9 +155,12 @@ def _stiffness(scene: Scene, motion: Trajectory) -> float:
         stretch = stretch - (upper - lower) * lean
         force = force + scene.masses[-1] * (GRAVITY + motion.absolute_acceleration[:, -1, 2]) * lean
         rate = np.gradient(stretch, motion.time)
-    columns = [stretch, rate] if scene.damping.any() else [stretch]
-    fitted = np.linalg.lstsq(np.column_stack(columns), force)
-    return float(fitted[0][0]) if fitted[2] == len(columns) else float("nan")
+    columns = [stretch, rate] if damped else [stretch]
+    factors, _, rank, _ = np.linalg.lstsq(np.column_stack(columns), force)
+    if rank < len(columns):
+        return {}
+    read = {"stiffness": float(factors[0])} if barred else {}
+    return read | ({"damping": float(factors[1])} if damped and not turning else {})
 
 
 def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:

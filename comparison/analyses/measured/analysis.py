@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import xarray as xr
@@ -27,16 +26,9 @@ from reference.problem.measured import OF_BODIES, Measured
 
 LACKING = Estimate(math.nan, math.nan, "the model has no such value")
 
-Arguments = tuple[Scene, Model, float, tuple[float, float], list[tuple[str, int]]]
-
-
-@dataclass(frozen=True)
-class Peaks:
-    """What one model computes at one phase pair: value and error, NaN without an answer, and why, or how it ended."""
-
-    values: list[float]
-    errors: list[float]
-    statuses: list[str]
+Asked = tuple[str, int]  # quantity and body, 0 for the isolator
+Arguments = tuple[Scene, Model, float, tuple[float, float], list[Asked]]
+Peak = tuple[float, float, str]  # value and error, NaN without an answer; why there is none, or how the motion ended
 
 
 @result
@@ -90,17 +82,13 @@ class MeasuredPeaks(Analysis[list[MeasuredPeak]]):
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredPeak] | None:
         """In the order of the scene files; None where no scene has measured peaks."""
-        known: dict[tuple[str, tuple[float, float], str], Mapping[tuple[str, int], tuple[float, float, str]]] = {}
+        known: dict[tuple[str, tuple[float, float]], list[tuple[str, Mapping[Asked, Peak]]]] = {}
         for scene, phases, model in _points(study):
-            peaks: Peaks = results.value(self._task(study, scene, phases, model), _failed)
-            numbers = zip(peaks.values, peaks.errors, peaks.statuses, strict=True)
-            known[scene.name, phases, model.key] = dict(zip(_asked(scene, phases, model), numbers, strict=True))
+            peaks = results.value(self._task(study, scene, phases, model), _failed)
+            found = dict(zip(_asked(scene, phases, model), peaks, strict=True))
+            known.setdefault((scene.name, phases), []).append((model.key, found))
         listed = [
-            _beside(
-                scene,
-                peak,
-                [(model.key, known[scene.name, phases_of(peak), model.key]) for model in _models(study, scene)],
-            )
+            _beside(scene, peak, known[scene.name, phases_of(peak)])
             for scene in study.scenes
             for peak in scene.measured or ()
         ]
@@ -116,20 +104,16 @@ def phases_of(peak: Measured) -> tuple[float, float]:
     return (0.0, 0.0) if peak.phases is None else (peak.phases[0], peak.phases[1])
 
 
-def _models(study: Study, scene: Scene) -> list[Model]:
-    return steps_of(scene, study.hierarchy)
-
-
 def _points(study: Study) -> Iterator[tuple[Scene, tuple[float, float], Model]]:
     """Scene, phases and model of every task that has something to compute."""
     for scene in study.scenes:
         for phases in dict.fromkeys(map(phases_of, scene.measured or ())):
-            for model in _models(study, scene):
+            for model in steps_of(scene, study.hierarchy):
                 yield scene, phases, model
 
 
-def _asked(scene: Scene, phases: tuple[float, float], model: Model) -> list[tuple[str, int]]:
-    """Quantities and bodies, 0 for the isolator; of a model that reads the same motion otherwise mu alone."""
+def _asked(scene: Scene, phases: tuple[float, float], model: Model) -> list[Asked]:
+    """What the test measured; of a model that reads the same motion otherwise mu alone."""
     return [
         (peak.quantity, peak.body or 0)
         for peak in scene.measured or ()
@@ -137,53 +121,41 @@ def _asked(scene: Scene, phases: tuple[float, float], model: Model) -> list[tupl
     ]
 
 
-def peaks_at(task: Arguments) -> Peaks:
+def peaks_at(task: Arguments) -> list[Peak]:
     """The peaks of one model at one phase pair. Runs inside a worker process."""
     scene, model, tolerance, phases, asked = task
     settings: dict[str, Any] = dict(model.settings)
     status = Outcome.OK.value
-    mu: Any = None
-    numbers: Any = None
+    known: dict[str, Any] = {}  # estimates by quantity: of the isolator, of every body, or None
     if any(quantity == "mu" for quantity, _ in asked):
-        mu = imported(model.amplification)(scene, [phases], tolerance=tolerance, **settings)
-        status = str(mu.status[0])
+        answer = imported(model.amplification)(scene, [phases], tolerance=tolerance, **settings)
+        known["mu"] = tuple(map(Estimate, answer.mu[0].tolist(), answer.error[0].tolist()))
+        status = str(answer.status[0])
     if any(quantity != "mu" for quantity, _ in asked):
         motion = imported(model.trajectory)(scene, phases, tolerance=tolerance, **settings)
-        numbers, status = demands(motion), str(motion.status)
+        known, status = vars(demands(motion)) | known, str(motion.status)
     found = []
     for quantity, body in asked:
-        if quantity == "mu":
-            found.append(Estimate(float(mu.mu[0, body - 1]), float(mu.error[0, body - 1])))
-        else:
-            found.append(_demand(getattr(numbers, quantity), quantity, body))
-    statuses = [each.reason or status for each in found]
-    return Peaks([each.value for each in found], [each.error for each in found], statuses)
+        each = known[quantity]
+        if isinstance(each, tuple):
+            each = each[body - OF_BODIES[quantity]]
+        number: Estimate = each or LACKING
+        found.append((number.value, number.error, number.reason or status))
+    return found
 
 
-def _demand(numbers: Estimate | tuple[Estimate, ...] | None, quantity: str, body: int) -> Estimate:
-    """The number of a body, or of the isolator."""
-    if numbers is None:
-        return LACKING
-    return numbers if isinstance(numbers, Estimate) else numbers[body - OF_BODIES[quantity]]
-
-
-def _beside(
-    scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[tuple[str, int], tuple[float, float, str]]]]
-) -> MeasuredPeak:
-    computed = []
+def _beside(scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[Asked, Peak]]]) -> MeasuredPeak:
+    computed, asked = [], (peak.quantity, peak.body or 0)
     for model, known in models:
-        if (peak.quantity, peak.body or 0) in known:
-            value, error, status = known[peak.quantity, peak.body or 0]
+        if asked in known:
+            value, error, status = known[asked]
             difference = value - peak.value
             decided = math.isfinite(difference) and math.isfinite(error)
             exceeds = abs(difference) > peak.uncertainty + error if decided else None
             computed.append(ComputedPeak(model, value, error, difference, exceeds, status))
     phases = (math.nan, math.nan) if peak.phases is None else phases_of(peak)
-    return MeasuredPeak(
-        scene.name, peak.quantity, peak.body or 0, phases, peak.value, peak.uncertainty, peak.source or "", computed
-    )
+    return MeasuredPeak(scene.name, *asked, phases, peak.value, peak.uncertainty, peak.source or "", computed)
 
 
-def _failed(task: Arguments, failed: TaskResult) -> Peaks:
-    nothing = [math.nan] * len(task[4])
-    return Peaks(nothing, nothing, [failed.outcome.value] * len(nothing))
+def _failed(task: Arguments, failed: TaskResult) -> list[Peak]:
+    return [(math.nan, math.nan, failed.outcome.value)] * len(task[4])

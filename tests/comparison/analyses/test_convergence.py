@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from known_analyses import collected
@@ -30,7 +28,7 @@ def test_a_lubricated_scene_has_only_the_limit_of_the_contact(
         sizes = np.array(PENETRATIONS)[None, :, None] * np.array([1.0, -2.0])[None, None, :]
         return sizes, 1e-3 * np.abs(sizes)
 
-    limits = [replace(limit, parameter=PENETRATIONS, expected=1.0, measure=planted) for limit in LIMITS]
+    limits = [limit._replace(parameter=PENETRATIONS, expected=1.0, measure=planted) for limit in LIMITS]
     monkeypatch.setattr(convergence, "LIMITS", limits)
     trends = collected(Convergence(), _study("fig3-I", "fig4-viscous"))
     assert [(trend.scene, trend.body) for trend in trends] == [("fig3-I", 1), ("fig3-I", 2)] * 5 + [
@@ -67,7 +65,7 @@ def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(scene: Scene) -> None:
         raise RuntimeError("no engine")
 
-    monkeypatch.setattr(convergence, "LIMITS", [replace(LIMITS[4], measure=broken)])
+    monkeypatch.setattr(convergence, "LIMITS", [LIMITS[4]._replace(measure=broken)])
     trends = collected(Convergence(), _study("fig3-I"))
     assert [trend.verdict for trend in trends] == ["solver failed: RuntimeError: no engine"] * 2
 
