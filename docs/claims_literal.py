@@ -147,7 +147,7 @@ def gathered(question: Question) -> Evidence:
     def factors(phases: Array) -> Array:
         return literal_peaks(scene, phases).mu
 
-    surfaces = Evidence(factors(phase_grid(grid)).reshape(grid, grid, -1), 0.0, (str(Outcome.OK),))
+    surfaces = Evidence(factors(phase_grid(grid)).reshape(grid, grid, -1), 0.0, (str(Outcome.OK),), case=question.case)
     if not surfaces.complete:
         return replace(surfaces, statuses=(*surfaces.statuses, str(Outcome.RIM_REACHED)))
     if len(scene.bodies) == 1:

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import xarray as xr
 from claims_literal import LiteralClaims
 
+from comparison.analyses.claims.checks import views
 from comparison.analyses.claims.evidence import Evidence, Question
-from comparison.analyses.claims.peak_checks import views
 from comparison.analyses.claims.peaks_and_valleys import Counts
 from comparison.analyses.claims.readings import READINGS, Reading
 from comparison.analyses.claims.table import paper_complete

@@ -378,7 +378,7 @@ MISTAKES = (
             "The columns of the extremes have each other's titles.", (READ + "growth_and_extremes_are_drawn_as_they_are",)),
     Mistake(ANALYSES + "claims/checks.py", "max(gaps) <= EPSILON", "min(gaps) <= EPSILON",
             "One harmonic near a resonance is enough.", (OF + "claims.py::test_a_claim_fails_on_what_violates_it",)),
-    Mistake(ANALYSES + "claims/peak_checks.py", "holds[\"drawn\"] or holds[\"profile\"]", "holds[\"profile\"]",
+    Mistake(ANALYSES + "claims/checks.py", "holds[\"drawn\"] or holds[\"profile\"]", "holds[\"profile\"]",
             "What is drawn is not counted.", (OF + "claims.py::test_peaks_that_only_the_cut_square_has_are_as_drawn",)),
     Mistake(ANALYSES + "claims/smoothness.py", "FOLD, JUMP = 1.5, 0.5", "FOLD, JUMP = 0.5, 0.5",
             "A fold is called smooth.", (OF + "smoothness.py::test_the_exponent_is_that_of_the_shape",)),

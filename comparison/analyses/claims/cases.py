@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
+
+import numpy as np
 
 from comparison.analyses.claims.readings import Reading, loading_around
 from reference.problem import Scene, load_scene
@@ -18,21 +20,13 @@ def _read(name: str, reading: Reading) -> Scene:
     values: dict[str, Any] = {"name": name, "duration": reading.duration}
     values |= {key: value for key, value in reading.values if not (scene.lubricated and key == "isolator.friction")}
     for key, factor in reading.factors:
-        values[key] = _times(_value(scene, key), factor)
+        stated: Any = scene.model_dump(exclude_none=True)
+        for part in key.split("."):
+            stated = stated[int(part) if part.isdecimal() else part]
+        values[key] = np.multiply(factor, stated).tolist()
     if scene.lubricated:
         values["isolator.lubrication"] = reading.lubrication
     return scene.with_values(values)
-
-
-def _value(scene: Scene, key: str) -> Any:
-    place: Any = scene.model_dump(exclude_none=True)
-    for part in key.split("."):
-        place = place[int(part) if part.isdecimal() else part]
-    return place
-
-
-def _times(value: Any, factor: float) -> Any:
-    return factor * value if isinstance(value, int | float) else [factor * number for number in value]
 
 
 @lru_cache(KEPT)
@@ -61,11 +55,7 @@ def _oscillator(name: str, reading: Reading) -> Scene:
 
 
 CASES: Mapping[str, Callable[[Reading], Scene]] = {
-    "fig3-I": lambda reading: _read("fig3-I", reading),
-    "fig3-II": lambda reading: _read("fig3-II", reading),
-    "fig4-dry": lambda reading: _read("fig4-dry", reading),
-    "fig4-viscous": lambda reading: _read("fig4-viscous", reading),
-    "fig3-I alone": lambda reading: _alone("fig3-I", reading),
-    "fig3-II alone": lambda reading: _alone("fig3-II", reading),
-    "fig3-II oscillator": lambda reading: _oscillator("fig3-II", reading),
+    **{name: partial(_read, name) for name in ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")},
+    **{f"{name} alone": partial(_alone, name) for name in ("fig3-I", "fig3-II")},
+    "fig3-II oscillator": partial(_oscillator, "fig3-II"),
 }

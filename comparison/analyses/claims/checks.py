@@ -1,21 +1,34 @@
 """
-Checks of what the paper says about its surfaces: each sees the evidence of one reading and computes its answer.
+Checks of what the paper says about its surfaces: each sees the evidence of its cases and computes its answer.
 
-Those that count peaks and valleys are in `peak_checks`.
+Peaks that run as ridges along alpha_1 - alpha_2 = const are counted three ways: on the square that closes at 2 pi, on
+the square as it is drawn, and on the profile, the mean along these diagonals, as the drawn square shows it: over
+-2 pi <= alpha_1 - alpha_2 <= 2 pi, two periods of it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from comparison.analyses.claims.evidence import Evidence
+from comparison.analyses.claims.peaks_and_valleys import (
+    LEAST_SHARE,
+    MOST_SHARE,
+    SHARE,
+    Counts,
+    drawn,
+    periodic,
+    profiled,
+    relief,
+)
 from comparison.analyses.claims.readings import EPSILON
 from comparison.analyses.claims.smoothness import Bend
 from comparison.result_types import Text, result
+from comparison.surfaces.budget import torus_distance
 
 Array = NDArray[np.float64]
 
@@ -24,6 +37,10 @@ PLANE = 1e-6  # |x - y| relative to the largest displacement: the same to the so
 APART = 0.1  # the same, above which two motions differ for good
 SMALL = 0.1  # (x^2 + y^2) / rho^2 that is still much less than 1
 ROUNDING = 1e-9  # of epsilon: T_c (1 -+ epsilon) itself is close to T_c
+NEAR = np.pi / 4.0  # rad, from a corner, or from the center of a quadrant
+CORNERS = ((0.0, 0.0),)  # of the square that closes, where its four corners are one point
+CENTERS = tuple((a * np.pi, b * np.pi) for a in (0.5, 1.5) for b in (0.5, 1.5))  # as near as a peak and its twin can be
+VIEWS = {"periodic": periodic, "drawn": drawn, "profile": profiled}
 
 
 class Finding(StrEnum):
@@ -51,7 +68,7 @@ class Verdict:
     """numbers behind it"""
 
 
-Check = Callable[[Mapping[str, Evidence]], Verdict]
+Check = Callable[..., Verdict]  # of the evidence of each case of a claim
 
 
 def judged(holds: bool, words: str) -> Verdict:
@@ -59,67 +76,35 @@ def judged(holds: bool, words: str) -> Verdict:
     return Verdict(Finding.REPRODUCED if holds else Finding.NOT, words)
 
 
-def more_intense(case: str) -> Check:
+def more_intense(case: Evidence) -> Verdict:
     """The first mass above the second at more than half of the phases."""
-
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        first, second = evidence[case].mu[..., 0], evidence[case].mu[..., 1]
-        share = float((first > second).mean())
-        return judged(share > 0.5, f"mu_1 > mu_2 at {100.0 * share:.0f} % of the phases")
-
-    return check
+    share = float((case.mu[..., 0] > case.mu[..., 1]).mean())
+    return judged(share > 0.5, f"mu_1 > mu_2 at {100.0 * share:.0f} % of the phases")
 
 
-def similar(case: str, body: int, other: str, other_body: int) -> Check:
-    """Correlation over the phases that both surfaces have."""
-
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        surfaces = (evidence[case], body), (evidence[other], other_body)
-        if any(surface.flat(number) for surface, number in surfaces):
-            return judged(False, "one of them is flat")
-        points = min(len(surface.mu) for surface, _ in surfaces)
-        pair = [
-            surface.mu[:: len(surface.mu) // points, :: len(surface.mu) // points, number - 1].ravel()
-            for surface, number in surfaces
-        ]
-        correlation = float(np.corrcoef(pair[0], pair[1])[0, 1])
-        return judged(correlation >= SIMILAR, f"correlation {correlation:.2f}")
-
-    return check
+def similar(*cases: Evidence, bodies: tuple[int, int] = (1, 1)) -> Verdict:
+    """Correlation over the phases that the surfaces of a body of each case have."""
+    if any(case.flat(body) for case, body in zip(cases, bodies)):
+        return judged(False, "one of them is flat")
+    steps = [len(case.mu) // min(len(case.mu) for case in cases) for case in cases]
+    pair = [case.mu[::step, ::step, body - 1].ravel() for case, step, body in zip(cases, steps, bodies)]
+    correlation = float(np.corrcoef(pair[0], pair[1])[0, 1])
+    return judged(correlation >= SIMILAR, f"correlation {correlation:.2f}")
 
 
-def smooth(case: str, *others: str) -> Check:
-    """Neither a fold nor a jump where the surfaces bend most, in any of the cases."""
-    return _all_bodies((case, *others), True)
+def smooth(*cases: Evidence, wanted: bool = True) -> Verdict:
+    """Neither a fold nor a jump where the surfaces bend most, in any of the cases; not `wanted`: one in each."""
+    surfaces = [
+        (f"{case.case} mu_{body}", case.flat(body), bend) for case in cases for body, bend in enumerate(case.bends, 1)
+    ]
+    holds = all((flat or bend.smooth) == wanted for _, flat, bend in surfaces)
+    return judged(holds, "; ".join(f"{name} {'flat' if flat else describe(bend)}" for name, flat, bend in surfaces))
 
 
-def not_smooth(case: str, *others: str) -> Check:
-    """A fold or a jump in every surface of the cases."""
-    return _all_bodies((case, *others), False)
-
-
-def _all_bodies(cases: tuple[str, ...], wanted: bool) -> Check:
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        surfaces = [
-            (f"{case} mu_{body}", evidence[case].flat(body), bend)
-            for case in cases
-            for body, bend in enumerate(evidence[case].bends, start=1)
-        ]
-        holds = all((flat or bend.smooth) == wanted for _, flat, bend in surfaces)
-        return judged(holds, "; ".join(f"{name} {'flat' if flat else describe(bend)}" for name, flat, bend in surfaces))
-
-    return check
-
-
-def smooth_between_kinks(case: str) -> Check:
+def smooth_between_kinks(case: Evidence) -> Verdict:
     """What friction without a corner can do: each numerator of (5.1) smooth, and mu_i wherever its denominator is."""
-
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        numerators = evidence[case].numerators
-        words = [f"numerator of mu_{body} {describe(bend)}" for body, bend in enumerate(numerators, start=1)]
-        return judged(all(bend.smooth for bend in numerators), "; ".join(words))
-
-    return check
+    words = [f"numerator of mu_{body} {describe(bend)}" for body, bend in enumerate(case.numerators, 1)]
+    return judged(all(bend.smooth for bend in case.numerators), "; ".join(words))
 
 
 def describe(bend: Bend) -> str:
@@ -128,31 +113,11 @@ def describe(bend: Bend) -> str:
     return f"{bend.kind} ({place}: {bend.exponent:.1f})"
 
 
-def kinked_denominator(case: str) -> Callable[[Mapping[str, Evidence]], bool]:
-    """Whether the denominator of (5.1) has a fold, which no numerator that is smooth there can undo."""
-
-    def impossible(evidence: Mapping[str, Evidence]) -> bool:
-        ground = evidence[case].ground
-        return ground is not None and not ground.smooth
-
-    return impossible
-
-
-def twin_peaks(case: str) -> Callable[[Mapping[str, Evidence]], bool]:
-    """Whether the surface is the same half a period further in both phases."""
-    return lambda evidence: evidence[case].twins
-
-
-def smoother(case: str, other: str) -> Check:
-    """A weaker form of smooth: every surface bends less than that of another case, each in parts of its own range."""
-
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        surfaces = (np.moveaxis(evidence[name].mu, -1, 0) for name in (case, other))
-        bends = [(_bend(mu), _bend(dry)) for mu, dry in zip(*surfaces)]
-        words = [f"mu_{body} {bend:.2f}, dry {dry:.2f}" for body, (bend, dry) in enumerate(bends, start=1)]
-        return judged(all(bend < dry for bend, dry in bends), "; ".join(words))
-
-    return check
+def smoother(*cases: Evidence) -> Verdict:
+    """A weaker form of smooth: every surface bends less than that of the other case, each in parts of its own range."""
+    bends = [(_bend(mu), _bend(dry)) for mu, dry in zip(*(np.moveaxis(case.mu, -1, 0) for case in cases))]
+    words = [f"mu_{body} {bend:.2f}, dry {dry:.2f}" for body, (bend, dry) in enumerate(bends, 1)]
+    return judged(all(bend < dry for bend, dry in bends), "; ".join(words))
 
 
 def _bend(mu: Array) -> float:
@@ -161,46 +126,69 @@ def _bend(mu: Array) -> float:
     return size / float(np.ptp(mu)) if np.ptp(mu) > 0.0 else 0.0
 
 
-def unequal(case: str, body: int) -> Check:
-    """Check that a body moves differently along x and y."""
-
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        apart = evidence[case].apart[body - 1]
-        return judged(apart > APART, f"|x_{body} - y_{body}| up to {apart:.2g} of the largest")
-
-    return check
+def unequal(case: Evidence) -> Verdict:
+    """Check that the second body moves differently along x and y."""
+    return judged(case.apart[1] > APART, f"|x_2 - y_2| up to {case.apart[1]:.2g} of the largest")
 
 
-def plane(case: str) -> Check:
+def plane(case: Evidence) -> Verdict:
     """Check that every body moves alike along x and y."""
-
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        apart = max(evidence[case].apart)
-        return judged(apart < PLANE, f"|x_i - y_i| up to {apart:.1g} of the largest")
-
-    return check
+    return judged(max(case.apart) < PLANE, f"|x_i - y_i| up to {max(case.apart):.1g} of the largest")
 
 
-def small(*cases: str) -> Check:
+def small(*cases: Evidence) -> Verdict:
     """Check that displacements are small against rho."""
-
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        swing = max(evidence[case].swing for case in cases)
-        return judged(swing <= SMALL, f"up to {swing:.2g} rho^2")
-
-    return check
+    swing = max(case.swing for case in cases)
+    return judged(swing <= SMALL, f"up to {swing:.2g} rho^2")
 
 
-def near_resonance(case: str) -> Check:
+def near_resonance(case: Evidence) -> Verdict:
     """Both loading periods within epsilon of a natural period, |T_load / T_natural - 1| <= epsilon as the paper's."""
+    words = [
+        f"{period:.2f} s is {100.0 * (period / natural - 1.0):+.0f} % from {natural:.2f} s"
+        for period, natural in case.resonance
+    ]
+    gaps = [abs(period / natural - 1.0) for period, natural in case.resonance]
+    return judged(max(gaps) <= EPSILON * (1.0 + ROUNDING), "; ".join(words))
 
-    def check(evidence: Mapping[str, Evidence]) -> Verdict:
-        pairs = evidence[case].resonance
-        words = [
-            f"{period:.2f} s is {100.0 * (period / natural - 1.0):+.0f} % from {natural:.2f} s"
-            for period, natural in pairs
-        ]
-        gaps = [abs(period / natural - 1.0) for period, natural in pairs]
-        return judged(max(gaps) <= EPSILON * (1.0 + ROUNDING), "; ".join(words))
 
-    return check
+def views(case: Evidence, body: int, share: float = SHARE) -> dict[str, Counts]:
+    """Peaks and valleys of the surface of a body, from 1 on, by way of counting. share: least prominence over range."""
+    return {name: count(case.mu[..., body - 1], case.error, share) for name, count in VIEWS.items()}
+
+
+def counted(case: Evidence, wanted: Counts) -> Verdict:
+    """As many peaks and valleys of mu_1 as the paper counts, both in the same view."""
+    if case.flat(1):
+        return judged(False, "flat")
+    at_shares = [views(case, 1, share) for share in (SHARE, LEAST_SHARE, MOST_SHARE)]
+    holds = {name: counts == wanted for name, counts in at_shares[0].items()}
+    finding = Finding.AS_DRAWN if holds["drawn"] or holds["profile"] else Finding.NOT
+    if holds["periodic"]:
+        finding = Finding.REPRODUCED
+    spans = {name: map(_span, zip(*(each[name] for each in at_shares))) for name in VIEWS}
+    return Verdict(finding, "; ".join(f"{name} {' and '.join(span)}" for name, span in spans.items()))
+
+
+def _span(counts: Sequence[int]) -> str:
+    """The count at SHARE, and between which it lies at other shares."""
+    return f"{counts[0]}" if min(counts) == max(counts) else f"{counts[0]} ({min(counts)} to {max(counts)})"
+
+
+def more_complex(case: Evidence) -> Verdict:
+    """Check that mu_2 has several peaks and valleys, and more of them than mu_1."""
+    first, second = (periodic(case.mu[..., body], case.error, LEAST_SHARE) for body in (0, 1))
+    words = f"mu_2 {second.peaks} and {second.valleys}, mu_1 {first.peaks} and {first.valleys}"
+    return judged(min(second) > 1 and sum(second) > sum(first), words)
+
+
+def near(case: Evidence, places: Sequence[tuple[float, float]]) -> Verdict:
+    """The top of every peak of mu_2 near one of the places, rad."""
+    mu = case.mu[..., 1]
+    if case.flat(2):
+        return judged(False, "flat")
+    step = 2.0 * np.pi / len(mu)
+    tops = [(step * row, step * column) for row, column in relief(mu, case.error).tops]
+    words = ", ".join(f"({np.degrees(top[0]):.0f}°, {np.degrees(top[1]):.0f}°)" for top in tops)
+    holds = all(min(torus_distance(top, place) for place in places) <= NEAR for top in tops)
+    return judged(holds, f"peaks at {words}")

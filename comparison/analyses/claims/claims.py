@@ -4,33 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from comparison.analyses.claims.checks import (
-    APART,
-    PLANE,
-    SIMILAR,
-    SMALL,
-    Check,
-    Finding,
-    Verdict,
-    kinked_denominator,
-    more_intense,
-    near_resonance,
-    not_smooth,
-    plane,
-    similar,
-    small,
-    smooth,
-    smooth_between_kinks,
-    smoother,
-    twin_peaks,
-    unequal,
-)
+from comparison.analyses.claims import checks
+from comparison.analyses.claims.checks import APART, NEAR, PLANE, SIMILAR, SMALL, Check, Finding, Verdict
 from comparison.analyses.claims.evidence import Evidence
-from comparison.analyses.claims.peak_checks import CORNER, counted, more_complex, near_corners, near_quadrant_centers
-from comparison.analyses.claims.peaks_and_valleys import LEAST_SHARE, SHARE
+from comparison.analyses.claims.peaks_and_valleys import LEAST_SHARE, SHARE, Counts
 from comparison.analyses.claims.readings import EPSILON
 
 
@@ -45,16 +26,16 @@ class Claim:
     check: Check
     weaker: bool = False  # not what the paper says but what is left of it: it does not count for a reading
     proof: str = ""
-    impossible: Callable[[Mapping[str, Evidence]], bool] = lambda evidence: False
+    impossible: Callable[..., bool] = lambda *cases: False  # of the evidence of each case
 
     def verdict(self, evidence: Mapping[str, Evidence]) -> Verdict:
         """The check's answer; none where a case has points without a value."""
-        for case in self.cases:
-            if not evidence[case].complete:
-                why = evidence[case].error_message or ", ".join(evidence[case].statuses)
-                return Verdict(Finding.OPEN, f"{case}: {why}")
-        verdict = self.check(evidence)
-        return Verdict(Finding.CANNOT, verdict.found) if self.impossible(evidence) else verdict
+        cases = [evidence[case] for case in self.cases]
+        for name, case in zip(self.cases, cases):
+            if not case.complete:
+                return Verdict(Finding.OPEN, f"{name}: {case.error_message or ', '.join(case.statuses)}")
+        verdict = self.check(*cases)
+        return Verdict(Finding.CANNOT, verdict.found) if self.impossible(*cases) else verdict
 
 
 _PEAKS_AND_VALLEYS = (
@@ -71,62 +52,74 @@ CLAIMS: tuple[Claim, ...] = (
         "the vibrations are small, (4.2)",
         f"x_1^2 + y_1^2 at most {SMALL:g} rho^2 in both cases",
         (_I, _II),
-        small(_I, _II),
+        checks.small,
     ),
     Claim(
         "Fig. 3",
         "the harmonics are close to resonance",
         f"|T_load / T_natural - 1| at most {EPSILON:g}, the paper's ε, for a natural period of (4.8) and each",
         (_I,),
-        near_resonance(_I),
+        checks.near_resonance,
     ),
     Claim(
         "Fig. 3a, b",
         "the first mass vibrates more intensively than the second",
         "mu_1 > mu_2 at more than half of the phases",
         (_I,),
-        more_intense(_I),
+        checks.more_intense,
     ),
-    Claim("Fig. 3a", "mu_1 has four peaks separated by three valleys", _PEAKS_AND_VALLEYS, (_I,), counted(_I, 1, 4, 3)),
+    Claim(
+        "Fig. 3a",
+        "mu_1 has four peaks separated by three valleys",
+        _PEAKS_AND_VALLEYS,
+        (_I,),
+        partial(checks.counted, wanted=Counts(4, 3)),
+    ),
     Claim(
         "Fig. 3a",
         "mu_1 is similar to the surface of a one-mass system",
         f"the platform alone, loaded close to its own period T_c: {_SIMILAR}",
         (_I, f"{_I} alone"),
-        similar(_I, 1, f"{_I} alone", 1),
+        checks.similar,
     ),
     Claim(
         "Fig. 3b",
         "mu_2 has several peaks and valleys, more complex than those of mu_1",
         f"at least two of each and together more, at a prominence of {100 * LEAST_SHARE:.0f} % of the range",
         (_I,),
-        more_complex(_I),
+        checks.more_complex,
     ),
-    Claim("Fig. 3b", "x_2(t) differs from y_2(t)", f"by more than {APART:g} of the largest", (_I,), unequal(_I, 2)),
-    Claim("Fig. 3c", "mu_1 has two peaks separated by a valley", _PEAKS_AND_VALLEYS, (_II,), counted(_II, 1, 2, 1)),
+    Claim("Fig. 3b", "x_2(t) differs from y_2(t)", f"by more than {APART:g} of the largest", (_I,), checks.unequal),
+    Claim(
+        "Fig. 3c",
+        "mu_1 has two peaks separated by a valley",
+        _PEAKS_AND_VALLEYS,
+        (_II,),
+        partial(checks.counted, wanted=Counts(2, 1)),
+    ),
     Claim(
         "Fig. 3c",
         "mu_1 is typical of one degree of freedom",
         f"the platform alone, loaded close to T_c, which moves along one line: {_SIMILAR}",
         (_II, f"{_II} alone"),
-        similar(_II, 1, f"{_II} alone", 1),
+        checks.similar,
     ),
     Claim(
         "Fig. 3d",
         "mu_2 has peaks near the corners",
-        f"the top of every peak within {np.degrees(CORNER):.0f}° of a corner",
+        f"the top of every peak within {np.degrees(NEAR):.0f}° of a corner",
         (_II,),
-        near_corners(_II, 2),
+        partial(checks.near, places=checks.CORNERS),
         proof="From rest, mu at (α_1 + π, α_2 + π) is that at (α_1, α_2): every peak in a corner has"
         " a twin in the center of the square.",
-        impossible=twin_peaks(_II),
+        impossible=lambda case: case.twins,
     ),
     Claim(
         "Fig. 3d",
         "instead: mu_2 has its peaks near the centers of the quadrants",
-        f"the top of every peak within {np.degrees(CORNER):.0f}° of the center of a quadrant",
+        f"the top of every peak within {np.degrees(NEAR):.0f}° of the center of a quadrant",
         (_II,),
-        near_quadrant_centers(_II, 2),
+        partial(checks.near, places=checks.CENTERS),
         weaker=True,
     ),
     Claim(
@@ -134,34 +127,36 @@ CLAIMS: tuple[Claim, ...] = (
         "mu_2 is similar to one degree of freedom under nonresonant perturbation",
         f"an oscillator without friction, of period T_3x: {_SIMILAR}",
         (_II, f"{_II} oscillator"),
-        similar(_II, 2, f"{_II} oscillator", 1),
+        partial(checks.similar, bodies=(2, 1)),
     ),
-    Claim("Fig. 3", "all surfaces are not smooth", f"{_ZOOM} h or slower", (_I, _II), not_smooth(_I, _II)),
+    Claim(
+        "Fig. 3", "all surfaces are not smooth", f"{_ZOOM} h or slower", (_I, _II), partial(checks.smooth, wanted=False)
+    ),
     Claim(
         "Fig. 4a, b",
         "x_i = y_i: the solution (4.7) stays in its plane",
         f"to {PLANE:g} of the largest displacement, by the printed equations",
         (_DRY,),
-        plane(_DRY),
+        checks.plane,
     ),
-    Claim("Fig. 4a", "mu_1 is similar to case II", _SIMILAR, (_DRY, _II), similar(_DRY, 1, _II, 1)),
-    Claim("Fig. 4b", "mu_2 is similar to case II", _SIMILAR, (_DRY, _II), similar(_DRY, 2, _II, 2)),
+    Claim("Fig. 4a", "mu_1 is similar to case II", _SIMILAR, (_DRY, _II), checks.similar),
+    Claim("Fig. 4b", "mu_2 is similar to case II", _SIMILAR, (_DRY, _II), partial(checks.similar, bodies=(2, 2))),
     Claim(
         "Fig. 4c, d",
         "viscous friction makes the surfaces smooth",
         f"{_ZOOM} h^2",
         (_WET,),
-        smooth(_WET),
+        checks.smooth,
         proof="The denominator of (5.1), the largest ground acceleration, has a fold where two of its peaks are equal,"
         " which no friction law removes.",
-        impossible=kinked_denominator(_WET),
+        impossible=lambda case: case.ground is not None and not case.ground.smooth,
     ),
     Claim(
         "Fig. 4c, d",
         "instead: viscous friction makes the surfaces smooth between the kinks of the denominator",
         "where mu_i times the denominator of (5.1) bends most, the second difference falls like h^2",
         (_WET,),
-        smooth_between_kinks(_WET),
+        checks.smooth_between_kinks,
         weaker=True,
     ),
     Claim(
@@ -169,7 +164,7 @@ CLAIMS: tuple[Claim, ...] = (
         "weaker: viscous friction makes the surfaces smoother",
         "sharpest bend on the grid, in parts of the range, below that with dry friction",
         (_WET, _DRY),
-        smoother(_WET, _DRY),
+        checks.smoother,
         weaker=True,
     ),
 )

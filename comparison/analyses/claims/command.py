@@ -25,7 +25,7 @@ SURFACES = "reference:amplification"  # what the workers ask
 SETTLED = (
     "docs/claims.md records the counts on finer grids and a search of 96 readings; docs/claims_page.py repeats them."
 )
-MARKS = {Finding.REPRODUCED: "+", Finding.AS_DRAWN: "d", Finding.NOT: "-", Finding.CANNOT: "x", Finding.OPEN: "?"}
+MARKS = dict(zip(Finding, "+d-x?"))
 
 
 @command

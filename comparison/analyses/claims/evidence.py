@@ -40,6 +40,7 @@ class Evidence:
     ground: Bend | None = None  # sharpest bend of the denominator of (5.1)
     numerators: tuple[Bend, ...] = ()  # of each body's numerator, where the case is lubricated
     error_message: str = ""  # why there is nothing
+    case: str = ""  # its name
 
     def flat(self, body: int) -> bool:
         """Whether a surface varies by less than its errors, or so little that it shows no resonance."""
@@ -75,7 +76,7 @@ def gathered(question: Question) -> Evidence:
         return reference.amplification(scene, phases, equations="small", tolerance=tolerance, **law)
 
     mu, error, statuses = surface(scene, question.grid, solved)
-    surfaces = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses))
+    surfaces = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses), case=question.case)
     if not surfaces.complete or len(scene.bodies) == 1:
         return surfaces
     motions = _motion(scene, law.get("regularization"))
@@ -95,19 +96,19 @@ def with_facts(
     numerators = bends(surfaces.mu * peaks, lambda at: factors(at) * ground(at)) if scene.lubricated else ()
     return replace(
         surfaces,
-        bends=tuple(bends(surfaces.mu, factors)),
+        bends=bends(surfaces.mu, factors),
         apart=apart,
         swing=swing,
         resonance=_resonance(scene),
         twins=bool(half_turn(scene)),
         ground=bends(peaks, ground)[0],
-        numerators=tuple(numerators),
+        numerators=numerators,
     )
 
 
 def without_value(question: Question, failed: TaskResult) -> Evidence:
     """In place of what a task did not return."""
-    return Evidence(error_message=failed.reason)
+    return Evidence(error_message=failed.reason, case=question.case)
 
 
 def _motion(scene: Scene, v_reg: float | None) -> tuple[tuple[float, ...], float]:

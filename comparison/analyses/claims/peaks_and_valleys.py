@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,6 @@ Array = NDArray[np.float64]
 
 SHARE = 0.3  # of the range
 LEAST_SHARE, MOST_SHARE = 0.2, 0.4  # a count that changes between these depends on the definition
-STEPS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,7 @@ class Relief:
     regions: NDArray[np.int_]
 
 
-@dataclass(frozen=True)
-class Counts:
+class Counts(NamedTuple):
     """Peaks and valleys of one surface."""
 
     peaks: int
@@ -97,7 +96,7 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
         rank[node] = place
     parent = [-1] * len(height)  # of what stands above the falling water: every island's root is its highest node
     climbs = [-1] * len(height)  # the maximum that steepest ascent leads to
-    into: dict[int, int] = {}  # lesser maxima, to the one across their saddle
+    into = list(range(len(height)))  # of lesser maxima, the one across their saddle
     tops = []
     for node in order:
         islands: dict[int, int] = {}  # beside this node, with their highest node beside it
@@ -115,16 +114,10 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
             parent[lesser] = highest
             if height[lesser] - height[node] < least:
                 into[lesser] = climbs[islands[highest]]
-    peaks = [top for top in tops if top not in into]
-    number = {top: peaks.index(_settled(into, top)) for top in tops}
+    peaks = [top for top in tops if into[top] == top]
+    number = {top: peaks.index(_root(into, top)) for top in tops}
     regions = np.array([number[top] for top in climbs]).reshape(mu.shape)
     return Relief([divmod(top, mu.shape[1]) for top in peaks], regions)
-
-
-def _settled(into: dict[int, int], top: int) -> int:
-    while top in into:
-        top = into[top]
-    return top
 
 
 def _root(parent: list[int], node: int) -> int:
@@ -136,13 +129,8 @@ def _root(parent: list[int], node: int) -> int:
 
 @cache
 def _neighbors(rows: int, columns: int, closed: bool) -> list[list[int]]:
-    """The eight nodes around each: a ridge may run along the diagonal of the grid."""
-    return [
-        [
-            (i + di) % rows * columns + (j + dj) % columns
-            for di, dj in STEPS
-            if closed or (0 <= i + di < rows and 0 <= j + dj < columns)
-        ]
-        for i in range(rows)
-        for j in range(columns)
-    ]
+    """The nodes in the square around each: a ridge may run along the diagonal of the grid."""
+    numbers = np.arange(rows * columns).reshape(rows, columns)
+    padded = np.pad(numbers, 1, mode="wrap") if closed else np.pad(numbers, 1, constant_values=-1)
+    squares = np.lib.stride_tricks.sliding_window_view(padded, (3, 3)).reshape(-1, 9).tolist()
+    return [[node for node in square if node >= 0] for square in squares]

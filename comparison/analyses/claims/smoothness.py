@@ -46,7 +46,7 @@ class Bend:
         return "smooth" if self.smooth else "fold" if self.exponent > JUMP else "jump"
 
 
-def bends(mu: Array, solve: Callable[[Array], Array]) -> list[Bend]:
+def bends(mu: Array, solve: Callable[[Array], Array]) -> tuple[Bend, ...]:
     """The sharpest bend of every body's surface mu (n, n, N); solve: mu (M, N) at phases (M, 2), rad, to 1e-4."""
     n, _, bodies = mu.shape
     step = 2.0 * np.pi / n
@@ -69,14 +69,10 @@ def bends(mu: Array, solve: Callable[[Array], Array]) -> list[Bend]:
         sizes.append(np.abs(_second(values)))
     tiny = np.finfo(float).tiny
     exponents = np.log2(np.maximum(sizes[-1 - JUDGED], tiny) / np.maximum(sizes[-1], tiny)) / JUDGED
-    sharpest = []
-    for number in range(bodies):
-        of_body = np.flatnonzero(body == number)
-        without_exponent = of_body[~np.isfinite(exponents[of_body])]
-        at = without_exponent[0] if len(without_exponent) else of_body[np.argmin(exponents[of_body])]
-        alpha1, alpha2 = np.mod(center[at], 2.0 * np.pi)
-        sharpest.append(Bend(float(exponents[at]), (float(alpha1), float(alpha2))))
-    return sharpest
+    of_bodies = (np.flatnonzero(body == number) for number in range(bodies))
+    sharpest = [of_body[np.argmin(exponents[of_body])] for of_body in of_bodies]  # NaN is the least
+    phases = np.mod(center, 2.0 * np.pi)
+    return tuple(Bend(float(exponents[at]), (float(phases[at, 0]), float(phases[at, 1]))) for at in sharpest)
 
 
 def _second(values: Array) -> Array:

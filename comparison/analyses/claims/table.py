@@ -8,18 +8,18 @@ table says which, names the reading that reproduces most, and lists what none re
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import xarray as xr
 
 from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.checks import Finding, Verdict
 from comparison.analyses.claims.claims import CLAIMS, Claim
-from comparison.analyses.claims.evidence import Evidence, Question, gathered, without_value
+from comparison.analyses.claims.evidence import Question, gathered, without_value
 from comparison.analyses.claims.readings import LITERAL, READINGS, Reading, without_effect
 from comparison.analyses.claims.result import CheckedClaim, ClaimTable
 from comparison.runner.analysis import Analysis
@@ -30,6 +30,7 @@ from reference.problem import builtin_scenes
 
 GRID = 16  # phases per axis: 24 change a count here and there, and none of the claims that no reading reproduces
 RECORD = "literal.json"  # verdicts by amplitude, m/s^2, and claim
+SIGNS = dict(zip(Finding, ("yes", "drawn", "no", "cannot", "?")))
 COARSE = 2  # every second phase for surfaces that are only correlated with another
 
 
@@ -45,22 +46,26 @@ class Claims(Analysis[ClaimTable]):
     recorded: ClassVar[bool] = True  # whether the verdicts of the literal readings are those of RECORD
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """One task for each case under each reading; none unless the study has every scene of the paper."""
+        """Each case under each reading once, the longest first; none unless the study has every scene of the paper."""
         if not paper_complete(study):
             return []
-        return [self.asking(question) for question in self.questions()]
+        computed = [reading for reading in self.readings if not self._is_recorded(reading)]
+        every = [_question(case, reading, self.grid) for case in _cases(self.claims) for reading in computed]
+        longest = sorted(dict.fromkeys(every), key=lambda question: -question.reading.amplitude)
+        return [self.asking(question) for question in longest]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ClaimTable | None:
         """The table; None unless the study has every scene of the paper."""
         if not paper_complete(study):
             return None
-        columns = [
-            None
-            if self._is_recorded(reading)
-            else {case: results.value(self.task(case, reading), without_value) for case in _cases(self.claims)}
-            for reading in self.readings
-        ]
-        return tabulated(self.claims, self.readings, self.grid, columns)
+
+        def verdicts(reading: Reading) -> list[Verdict]:
+            if self._is_recorded(reading):
+                return [recorded_verdict(reading, claim) for claim in self.claims]
+            evidence = {case: results.value(self.task(case, reading), without_value) for case in _cases(self.claims)}
+            return [claim.verdict(evidence) for claim in self.claims]
+
+        return table_of(self.claims, self.readings, self.grid, list(zip(*map(verdicts, self.readings))))
 
     def task(self, case: str, reading: Reading) -> Task:
         """What computes a case under a reading."""
@@ -70,12 +75,6 @@ class Claims(Analysis[ClaimTable]):
         """What gathers the evidence of a question."""
         return Task(gathered, question, self.stage)
 
-    def questions(self) -> list[Question]:
-        """What has to be computed, each only once, the longest first."""
-        computed = [reading for reading in self.readings if not self._is_recorded(reading)]
-        every = [_question(case, reading, self.grid) for case in _cases(self.claims) for reading in computed]
-        return sorted(dict.fromkeys(every), key=lambda question: -question.reading.amplitude)
-
     def _is_recorded(self, reading: Reading) -> bool:
         return self.recorded and reading.peak == LITERAL.peak
 
@@ -83,23 +82,6 @@ class Claims(Analysis[ClaimTable]):
 def paper_complete(study: Study) -> bool:
     """Whether a study has every scene of the paper: the claims speak about all of them."""
     return {scene.name for scene in study.scenes} >= set(builtin_scenes())
-
-
-def tabulated(
-    claims: Sequence[Claim],
-    readings: Sequence[Reading],
-    grid: int,
-    columns: Sequence[Mapping[str, Evidence] | None],
-) -> ClaimTable:
-    """The table from the evidence by case, one mapping for each reading, None for one whose verdicts are recorded."""
-    rows = [
-        tuple(
-            recorded_verdict(reading, claim) if column is None else claim.verdict(column)
-            for reading, column in zip(readings, columns)
-        )
-        for claim in claims
-    ]
-    return table_of(claims, readings, grid, rows)
 
 
 def table_of(
@@ -123,11 +105,8 @@ def table_of(
 
 
 @cache
-def _record() -> dict[str, dict[str, tuple[str, str]]]:
-    record: dict[str, dict[str, tuple[str, str]]] = json.loads(
-        (resources.files("comparison.analyses.claims") / RECORD).read_bytes()
-    )
-    return record
+def _record() -> Any:
+    return json.loads((resources.files("comparison.analyses.claims") / RECORD).read_bytes())
 
 
 def recorded_verdict(reading: Reading, claim: Claim) -> Verdict:
@@ -142,16 +121,6 @@ def _cases(claims: Sequence[Claim]) -> list[str]:
 
 
 def _question(case: str, reading: Reading, grid: int) -> Question:
-    compared = len(CASES[case](reading).bodies) == 1
-    return Question(
-        case, without_effect(reading, CASES[case](reading)), grid // COARSE if compared and grid % COARSE == 0 else grid
-    )
-
-
-SIGNS = {
-    Finding.REPRODUCED: "yes",
-    Finding.AS_DRAWN: "drawn",
-    Finding.NOT: "no",
-    Finding.CANNOT: "cannot",
-    Finding.OPEN: "?",
-}
+    scene = CASES[case](reading)
+    compared = len(scene.bodies) == 1 and grid % COARSE == 0
+    return Question(case, without_effect(reading, scene), grid // COARSE if compared else grid)

@@ -1,4 +1,4 @@
-"""Readings change what they say; the literal (4.6), forced ratios, grids and proofs do what they say."""
+"""Readings change what they say; the literal (4.6), forced ratios and proofs do what they say."""
 
 from __future__ import annotations
 
@@ -7,15 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from claims_literal import STEPS, literal_peaks, spike_over_the_step
-from claims_literal import gathered as gathered_literally
 
 from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.evidence import Question, gathered
-from comparison.analyses.claims.peaks_and_valleys import Counts, profiled
 from comparison.analyses.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, Reading
 from comparison.analyses.effective_values.forced_ratio import forced_ratios
 from reference import amplification, load_scene, modes
-from reference.problem import ground_peak, phase_grid
+from reference.problem import ground_peak
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7)])
 
@@ -88,14 +86,6 @@ def test_forced_ratios_are_those_of_oscillator_and_chain() -> None:
     assert forced_ratios(scene.with_values({"bodies": [scene.bodies[0].model_dump(exclude_none=True)]})) == []
 
 
-def test_ridges_are_counted_along_their_own_diagonal() -> None:
-    first, second = np.meshgrid(*[2.0 * np.pi * np.arange(16) / 16] * 2, indexing="ij")
-    rough = 0.3 * np.cos(3.0 * first + 3.0 * second)
-    assert profiled(rough - np.cos(2.0 * (first - second))) == Counts(4, 3)
-    assert profiled(rough - np.cos(first - second)) == Counts(2, 1)
-    assert profiled(np.cos(first + second)) == Counts(0, 0)
-
-
 def test_a_peak_in_a_corner_has_its_twin_in_the_center() -> None:
     """The proof that peaks cannot stand in corners alone, computed without any use of symmetry."""
     scene = CASES["fig3-II"](LIGHT_BODY).with_values({"duration": 6.0})
@@ -120,9 +110,3 @@ def test_the_fold_of_the_denominator_is_in_viscous_surfaces() -> None:
         sizes.append([np.abs(np.diff(f, 2, axis=0)).max() for f in (ground, mu[:, :1], mu[:, 1:])])
     exponents = np.log2(np.array(sizes[:-1]) / np.array(sizes[1:]))
     assert (exponents[-1] < 1.5).all()
-
-
-def test_grids_of_phases_are_those_of_the_surfaces() -> None:
-    evidence = gathered_literally(Question("fig3-I", LITERAL, 4))
-    expected = literal_peaks(CASES["fig3-I"](LITERAL), phase_grid(4)).mu.reshape(4, 4, 2)
-    assert np.array_equal(evidence.mu, expected)

@@ -8,25 +8,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from comparison.analyses.claims.peaks_and_valleys import Counts, drawn, periodic, relief
+from comparison.analyses.claims.peaks_and_valleys import Counts, drawn, periodic, profiled, relief
+from reference.problem import phase_grid
 
 Array = NDArray[np.float64]
 N = 16
 
 
-def _phases(points: int = N) -> tuple[Array, Array]:
-    axis = 2.0 * np.pi * np.arange(points) / points
-    alpha1, alpha2 = np.meshgrid(axis, axis, indexing="ij")
-    return alpha1, alpha2
-
-
-A1, A2 = _phases()
+A1, A2 = phase_grid(N).T.reshape(2, N, N)
 
 
 @pytest.mark.parametrize("across", [1, 2, 3])
 @pytest.mark.parametrize("along", [1, 2])
 def test_waves_have_as_many_peaks_and_valleys_as_periods(across: int, along: int) -> None:
-    a1, a2 = _phases(36)
+    a1, a2 = phase_grid(36).T.reshape(2, 36, 36)
     assert periodic(np.cos(across * a1) + np.cos(along * a2)) == Counts(across * along, across * along)
 
 
@@ -34,6 +29,13 @@ def test_a_diagonal_ridge_is_one_peak_and_two_where_cut() -> None:
     assert periodic(np.cos(A1 - A2)) == Counts(1, 1)
     assert drawn(np.cos(A1 - A2 - np.pi)) == Counts(2, 1), "two parallel ridges and the valley between them"
     assert drawn(np.cos(2.0 * (A1 - A2) - np.pi)) == Counts(4, 3), "four, and what separates them"
+
+
+def test_ridges_are_counted_along_their_own_diagonal() -> None:
+    rough = 0.3 * np.cos(3.0 * A1 + 3.0 * A2)
+    assert profiled(rough - np.cos(2.0 * (A1 - A2))) == Counts(4, 3)
+    assert profiled(rough - np.cos(A1 - A2)) == Counts(2, 1)
+    assert profiled(np.cos(A1 + A2)) == Counts(0, 0)
 
 
 def test_a_peak_across_the_edge_counts_once() -> None:
