@@ -387,7 +387,7 @@ MISTAKES = (
             (NUMBERS + "a_largest_value_names_its_grid_and_the_search",)),
     Mistake(ANALYSES + "assumptions/variations.py", "np.abs([row[body - 1] for row in self.change]).max()",
             "np.abs([row[body - 1] for row in self.change]).min()", "The smallest change is called the largest.",
-            (OF + "assumptions.py::test_a_ring_holds_only_if_every_wider_one_tried_does",)),
+            (OF + "assumptions.py::test_a_range_ends_at_the_first_value_that_fails",)),
     Mistake(ANALYSES + "assumptions/command.py", 'f"{100.0 * cell.error_estimate(body):.3f}"', 'f"{cell.error_estimate(body):.3f}"',
             "A share is printed as percent.", (OF + "assumptions.py::test_the_command_prints_the_change_of_every_body",)),
     Mistake(ANALYSES + "tradeoff/growth_command.py", "last = place == len(each.values) - 1", "last = place == 0",

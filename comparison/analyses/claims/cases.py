@@ -32,26 +32,23 @@ def _read(name: str, reading: Reading) -> Scene:
 @lru_cache(KEPT)
 def _alone(name: str, reading: Reading) -> Scene:
     """The platform without what stands on it, under the loading as printed: close to its own resonance T_c."""
-    scene = _read(name, reading)
-    natural = scene.isolator.period
+    natural = _read(name, reading).isolator.period
     assert natural is not None
-    platform = [scene.bodies[0].model_dump(exclude_none=True)]
-    return scene.with_values({"name": f"{name} alone", "bodies": platform, **dict(loading_around(natural))})
+    return _platform(name, reading, "alone", **dict(loading_around(natural)))
 
 
 @lru_cache(KEPT)
 def _oscillator(name: str, reading: Reading) -> Scene:
     """One body without friction, of the period T_3x of the second body on its springs: far from both harmonics."""
-    scene = _read(name, reading)
-    second = scene.bodies[1].period
+    second = _read(name, reading).bodies[1].period
     assert second is not None
-    return scene.with_values(
-        {
-            "name": f"{name} oscillator",
-            "bodies": [scene.bodies[0].model_dump(exclude_none=True)],
-            "isolator": {"period": second[0], "friction": 0.0},
-        }
-    )
+    return _platform(name, reading, "oscillator", isolator={"period": second[0], "friction": 0.0})
+
+
+def _platform(name: str, reading: Reading, kind: str, **values: Any) -> Scene:
+    scene = _read(name, reading)
+    platform = scene.bodies[0].model_dump(exclude_none=True)
+    return scene.with_values({"name": f"{name} {kind}", "bodies": [platform], **values})
 
 
 CASES: Mapping[str, Callable[[Reading], Scene]] = {

@@ -51,12 +51,9 @@ def bends(mu: Array, solve: Callable[[Array], Array]) -> tuple[Bend, ...]:
     n, _, bodies = mu.shape
     step = 2.0 * np.pi / n
     starts = [(body, *start) for body in range(bodies) for start in _sharpest(mu[..., body])]
-    body = np.array([start[0] for start in starts])
-    center = step * np.array([start[1] for start in starts], float)
-    way = step * np.array([start[2] for start in starts], float)
-    values = np.array(
-        [[mu[*(np.add(at, side * direction) % n), i] for side in (-1, 0, 1)] for i, at, direction in starts]
-    )
+    body, places, ways = (np.array(part) for part in zip(*starts))
+    center, way = step * places, step * ways
+    values = np.array([[mu[*((at + side * go) % n), i] for side in (-1, 0, 1)] for i, at, go in starts])
     every = np.arange(len(starts))
     sizes = [np.abs(_second(values))]
     for _ in range(HALVINGS):

@@ -46,11 +46,6 @@ def _cell(variation: Variation, first: float, second: float, uncertainty: float 
     return AssumptionCell("fig3-I", variation, ((first, 0.0), (second, 0.0)), estimate, ("ok", "ok"))
 
 
-def _said(cells: Sequence[AssumptionCell], key: str, share: float = 0.01) -> tuple[float | None, float | None]:
-    validity = next(line for line in ranges(STATED, cells) if (line.body, line.key, line.share) == (1, key, share))
-    return validity.holds, validity.fails
-
-
 def test_a_variation_changes_ring_heights_and_supports_alone() -> None:
     changed = Variation(ring=2.0, height=0.5, supports=3).of(STATED)
     assert (changed.isolator.ring, changed.isolator.supports) == (2.0, 3)
@@ -60,26 +55,29 @@ def test_a_variation_changes_ring_heights_and_supports_alone() -> None:
     assert Variation().of(STATED) == STATED
 
 
-def test_a_ring_holds_only_if_every_wider_one_tried_does() -> None:
-    line = {4.0: 0.001, 2.0: 0.002, 1.0: 0.02, 0.5: 0.003}
-    cells = [_cell(Variation(ring=ring), size, -size / 2.0) for ring, size in line.items()]
-    assert _said(cells, "ring") == (2.0, 1.0), "0.5 m would hold, but 1 m does not"
-    assert _said(cells, "ring", 0.05) == (0.5, None)
+RINGS = [_cell(Variation(ring=ring), c, -c / 2.0) for ring, c in {4: 0.001, 2: 0.002, 1: 0.02, 0.5: 0.003}.items()]
+HEIGHTS = [_cell(Variation(height=h), 0.0, c) for h, c in {0: 0.0, 0.5: -0.004, 1: -0.03, 2: 0.002}.items()]
+WIDE = _cell(Variation(ring=2.0), 0.004, 0.0)
 
 
-def test_heights_hold_only_if_every_lower_one_tried_does() -> None:
-    line = {0.0: 0.0, 0.5: -0.004, 1.0: -0.03, 2.0: 0.002}
-    cells = [_cell(Variation(height=height), 0.0, size) for height, size in line.items()]
-    assert _said(cells, "height") == (0.5, 1.0)
-    assert _said(cells, "height", 0.05) == (2.0, None)
-
-
-def test_the_uncertainty_counts_against_the_range() -> None:
-    wide = _cell(Variation(ring=2.0), 0.004, 0.0)
-    assert _said([wide, _cell(Variation(), 0.008, 0.0, 0.003)], "ring") == (2.0, 1.0)
-    assert _said([wide, _cell(Variation(), 0.008, 0.0, 0.001)], "ring") == (1.0, None)
-    assert _said([wide, _cell(Variation(), float("nan"), 0.0)], "ring") == (2.0, 1.0)
-    assert _said([_cell(Variation(ring=2.0), 0.2, 0.0)], "ring") == (None, 2.0)
+@pytest.mark.parametrize(
+    ("cells", "key", "share", "expected"),
+    [
+        (RINGS, "ring", 0.01, (2.0, 1.0)),  # 0.5 m would hold, but 1 m does not
+        (RINGS, "ring", 0.05, (0.5, None)),
+        (HEIGHTS, "height", 0.01, (0.5, 1.0)),
+        (HEIGHTS, "height", 0.05, (2.0, None)),
+        ([WIDE, _cell(Variation(), 0.008, 0.0, 0.003)], "ring", 0.01, (2.0, 1.0)),  # its uncertainty counts against it
+        ([WIDE, _cell(Variation(), 0.008, 0.0, 0.001)], "ring", 0.01, (1.0, None)),
+        ([WIDE, _cell(Variation(), float("nan"), 0.0)], "ring", 0.01, (2.0, 1.0)),
+        ([_cell(Variation(ring=2.0), 0.2, 0.0)], "ring", 0.01, (None, 2.0)),
+    ],
+)
+def test_a_range_ends_at_the_first_value_that_fails(
+    cells: Sequence[AssumptionCell], key: str, share: float, expected: tuple[float | None, float | None]
+) -> None:
+    validity = next(line for line in ranges(STATED, cells) if (line.body, line.key, line.share) == (1, key, share))
+    assert (validity.holds, validity.fails) == expected
 
 
 def test_the_sentences_name_what_holds_and_what_was_tried_next() -> None:
