@@ -63,8 +63,7 @@ def family_curves(study: Study, surfaces: xr.Dataset, family: Family) -> list[Fa
     for model in keys.values():
         for body in range(1, family.bodies + 1):
             columns = zip(*(_numbers(surfaces, scene, model, body) for scene in family.scenes))
-            mean, lowest, highest, error = map(tuple, columns)
-            curves.append(FamilyCurve(model.key, body, mean, lowest, highest, error))
+            curves.append(FamilyCurve(model.key, body, *map(tuple, columns)))
     return curves
 
 
@@ -76,8 +75,8 @@ def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) 
         keys = list(dict.fromkeys(key for scene in bars for key in scene if key != TOTAL))
         for key in (*keys, TOTAL):
             column = [scene.get(key, WaterfallBar(key, NAN, NAN)) for scene in bars]
-            sizes, errors = tuple(bar.size for bar in column), tuple(bar.error for bar in column)
-            steps.append(FamilyStep(key, body, sizes, errors, tuple(bar.real for bar in column)))
+            columns = zip(*((bar.size, bar.error, bar.real) for bar in column))
+            steps.append(FamilyStep(key, body, *map(tuple, columns)))
     return steps
 
 
@@ -130,13 +129,15 @@ def family_demands_over_phases(
         for row in statistics.get(scene.name, ())
     }
     demands = []
-    for model, quantity, body in dict.fromkeys(key[1:] for key in found):
-        rows = [found.get((scene.name, model, quantity, body)) for scene in family.scenes]
-        median = tuple(row.fractile(0.5) if row else NAN for row in rows)
-        lowest = tuple(row.lowest.value if row else NAN for row in rows)
-        highest = tuple(row.highest.value if row else NAN for row in rows)
-        points = tuple(round(row.points * (1.0 - row.unknown)) if row else 0 for row in rows)
-        demands.append(FamilyDemand(model, quantity, body, median, lowest, highest, points))
+    for key in dict.fromkeys(key[1:] for key in found):
+        rows = [found.get((scene.name, *key)) for scene in family.scenes]
+        numbers = (
+            (row.fractile(0.5), row.lowest.value, row.highest.value, round(row.points * (1.0 - row.unknown)))
+            if row
+            else (NAN, NAN, NAN, 0)
+            for row in rows
+        )
+        demands.append(FamilyDemand(*key, *map(tuple, zip(*numbers))))
     return demands
 
 

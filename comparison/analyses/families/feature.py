@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ from comparison.analyses.families.result import FamilyResult, family_results
 from comparison.report.plots import DEMANDS, Panel, plain
 from comparison.report.results import Results
 from comparison.report.section import Feature, Report, Section
+from comparison.surfaces.budget import TOTAL
 from comparison.wording import MAX_NAMES
 
 DECADES = 30.0  # of its largest over its smallest value: beyond it the axis is logarithmic
@@ -22,16 +24,8 @@ def family_panels(results: Results) -> list[dict[str, Any]]:
         first = scenes[family.scenes[0]]
         bodies = range(1, first.bodies + 1)
         panels = [draw(results, family, body) for body in bodies for draw in (_family_mu, _family_steps)]
-        panels += [_family_demand(results, family, *shown) for shown in DEMANDS if _has(family, *shown[:2])]
-        listed.append(
-            {
-                "title": first.title,
-                "name": family.name,
-                "count": len(family.values),
-                "key": family.key,
-                "panels": panels,
-            }
-        )
+        panels += filter(None, (_family_demand(results, family, *shown) for shown in DEMANDS))
+        listed.append({"title": first.title, "family": family, "panels": panels})
     return listed
 
 
@@ -48,63 +42,58 @@ def _axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
     return values, {"title": family.key}
 
 
+def _line(
+    name: str, color: Any, places: list[float], middle: Sequence[float], band: Sequence[Sequence[float]] = ()
+) -> dict[str, Any]:
+    """A line of a panel, with a band from the smallest to the largest where they differ."""
+    line = {"name": name, "x": places, "y": plain(middle), "color": color, "marks": True}
+    if any(low < high for low, high in zip(*band)):
+        line |= {**dict(zip(("low", "high"), map(plain, band))), "band": True}
+    return line
+
+
+def _panel(title: str, label: str, axis: dict[str, Any], quantity: str, series: list[dict[str, Any]]) -> Panel:
+    return {"title": title, "plot": {"label": label, "x": axis, "y": {"title": quantity}, "series": series}}
+
+
 def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
     places, axis = _axis(family)
     titles = {model.key: model.title for model in results.models}
-    series = []
-    for number, curve in enumerate(curve for curve in family.curves if curve.body == body):
-        line: dict[str, Any] = {"name": titles[curve.model], "x": places, "color": number, "marks": True}
-        line["y"] = plain(curve.mean)
-        if any(low < high for low, high in zip(curve.lowest, curve.highest)):
-            line |= {"low": plain(curve.lowest), "high": plain(curve.highest), "band": True}
-        series.append(line)
-    label = f"mu_{body} of every model over {family.key}"
-    plot = {"label": label, "x": axis, "y": {"title": f"μ{body}"}, "series": series}
-    return {"title": f"mu_{body}", "plot": plot}
+    series = [
+        _line(titles[curve.model], number, places, curve.mean, (curve.lowest, curve.highest))
+        for number, curve in enumerate(curve for curve in family.curves if curve.body == body)
+    ]
+    return _panel(f"mu_{body}", f"mu_{body} of every model over {family.key}", axis, f"μ{body}", series)
 
 
 def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
     places, axis = _axis(family)
-    effects = {model.key: model.effect or model.title for model in results.models} | {"total": "total"}
+    effects = {model.key: model.effect or model.title for model in results.models} | {TOTAL: "total"}
     series = [
-        {
-            "name": effects[step.model],
-            "x": places,
-            "y": plain([100.0 * size for size in step.size]),
-            "color": "ink" if step.model == "total" else number,
-            "marks": True,
-        }
+        _line(
+            effects[step.model], "ink" if step.model == TOTAL else number, places, [100.0 * size for size in step.size]
+        )
         for number, step in enumerate((step for step in family.steps if step.body == body), start=1)
     ]
-    label = f"what each effect adds to mu_{body} over {family.key}"
-    plot = {"label": label, "x": axis, "y": {"title": "% of the first model"}, "series": series}
-    return {"title": f"what each effect adds to mu_{body}", "plot": plot}
-
-
-def _has(family: FamilyResult, quantity: str, body: int) -> bool:
-    return any((demand.quantity, demand.body) == (quantity, body) for demand in family.demands)
+    title = f"what each effect adds to mu_{body}"
+    return _panel(title, f"{title} over {family.key}", axis, "% of the first model", series)
 
 
 def _family_demand(
     results: Results, family: FamilyResult, quantity: str, body: int, title: str, unit: str, scale: float
-) -> Panel:
+) -> Panel | None:
     """One demand of every model over the value that runs: median of the motions, from smallest to largest."""
     places, axis = _axis(family)
-    titles = {model.key: model.title for model in results.models}
+    looks = {model.key: (model.title, number) for number, model in enumerate(results.models)}
     series = []
-    colors = {model.key: number for number, model in enumerate(results.models)}
-    shown = [demand for demand in family.demands if (demand.quantity, demand.body) == (quantity, body)]
-    for demand in shown:
-        line: dict[str, Any] = {"name": titles[demand.model], "x": places, "color": colors[demand.model], "marks": True}
-        line["y"] = plain([scale * value for value in demand.median])
-        if any(low < high for low, high in zip(demand.lowest, demand.highest)):
-            line["low"] = plain([scale * value for value in demand.lowest])
-            line["high"] = plain([scale * value for value in demand.highest])
-            line["band"] = True
-        series.append(line)
-    plot = {"label": f"{title} over {family.key}", "x": axis, "y": {"title": f"{title}, {unit}"}, "series": series}
+    for demand in family.demands:
+        if (demand.quantity, demand.body) == (quantity, body):
+            numbers = (demand.median, demand.lowest, demand.highest)
+            median, *band = ([scale * value for value in column] for column in numbers)
+            series.append(_line(*looks[demand.model], places, median, band))
     of_which = "over all phases" if family.demands_over_phases else "of the stored motions"
-    return {"title": f"{title} {of_which}", "plot": plot}
+    label = f"{title} over {family.key}"
+    return _panel(f"{title} {of_which}", label, axis, f"{title}, {unit}", series) if series else None
 
 
 def _draw(figures: Path, report: Report) -> None:

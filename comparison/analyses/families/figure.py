@@ -23,17 +23,12 @@ COLORS = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00")  # t
 MARKERS = "osD^v<>"  # and in print
 
 
-def family_figure_name(family: Family, body: int) -> str:
-    """File name of the figure of one family and body."""
-    return figure_file(family.name, f"body{body}", "family")
-
-
 def draw_families(folder: Path, report: Report) -> None:
     """Write the figure of every body of every family into `folder`, PNG."""
     entries = [entry for scene in report.results.scenes for entry in scene.budget]
     for family, found in zip(report.found["families"], report.results.of("families"), strict=True):
         for body in range(1, family.bodies + 1):
-            path = folder / family_figure_name(family, body)
+            path = folder / figure_file(family.name, f"body{body}", "family")
             draw_family(path, family, found.steps, entries, report.study.hierarchy, body)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,12 +41,7 @@ class Found(NamedTuple):
 
 def joined(parts: Sequence[Found]) -> Found:
     """What several experiments add."""
-    return Found(
-        [each for part in parts for each in part.quantities],
-        [each for part in parts for each in part.inputs],
-        [each for part in parts for each in part.facts],
-        [each for part in parts for each in part.curves],
-    )
+    return Found(*([each for part in column for each in part] for column in zip(*parts)))
 
 
 class Data(NamedTuple):
@@ -97,21 +92,20 @@ def given(name: str, value: float, uncertainty: float, unit: str, source: str) -
     return f"{name} {value:.5g} ± {uncertainty:.2g} {unit}".rstrip() + f" ({source})"
 
 
-def combined(changes: Sequence[Array]) -> Array:
-    """u_input: the root of the sum of the squared changes that the uncertainty of each input makes."""
-    total: Array = np.sqrt(np.sum(np.square(changes), axis=0))
-    return total
-
-
 def quantities(
     experiment: str,
     data: Data,
-    inputs: Array,
     answers: Mapping[str, Answer],
+    varied: Sequence[Array],
     explain: Callable[[int, float], tuple[str, str]],
 ) -> list[Quantity]:
-    """The table of one run; explain: verdict and cause of quantity k, whose E exceeds this u_val."""
-    rows = []
+    """
+    The table of one run.
+
+    varied: by the equations, with each input changed by its uncertainty; u_input is the root of the sum of the squared
+    changes. explain: verdict and cause of quantity k, whose E exceeds this u_val.
+    """
+    rows, inputs = [], np.sqrt(np.sum(np.square([each - answers[EQUATIONS].values for each in varied]), axis=0))
     for k, (name, unit, use) in enumerate(zip(data.names, data.units, data.use)):
         if math.isnan(data.values[k]):  # phases of starts and stops in a run at rest
             continue
@@ -129,3 +123,8 @@ def quantities(
         measured, spread, propagated = (float(row[k]) for row in (data.values, data.uncertainty, inputs))
         rows.append(Quantity(experiment, name, unit, use, measured, spread, propagated, cause, sides))
     return rows
+
+
+def curves(title: str, axes: tuple[str, str], lines: Mapping[str, tuple[NDArray[Any], Array]]) -> list[Curve]:
+    """The lines of one plot, by name."""
+    return [Curve(title, axes, name, x.tolist(), y.tolist()) for name, (x, y) in lines.items()]

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import io
 import re
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +30,7 @@ PENDULUM_SOURCE = (
 )
 
 
-@dataclass(frozen=True)
-class Shaken:
+class Shaken(NamedTuple):
     """One run of the frame: weight of the disc, kg; time, s; motions of top plate and base, mm, (T,)."""
 
     weight: float
@@ -46,16 +44,14 @@ class Shaken:
         return f"frame, {1e3 * self.weight:g} g"
 
 
-@dataclass(frozen=True)
-class Swing:
+class Swing(NamedTuple):
     """A free swing: time, s, and angle from hanging, rad, (T,)."""
 
     time: Array
     angle: Array
 
 
-@dataclass(frozen=True)
-class Measured:
+class Measured(NamedTuple):
     """What a folder holds."""
 
     runs: list[Shaken]
@@ -66,7 +62,7 @@ class Measured:
 def read_folder(folder: Path) -> Measured:
     """The measured files in a folder and in the folders directly in it. Raises SceneError, one line."""
     if not folder.is_dir():
-        raise SceneError("command line", "FOLDER", str(folder), "must be a folder with the measured files")
+        raise wrong_file(folder, "must be a folder with the measured files")
     files = {file.name: file for file in sorted([*folder.glob("*.mat"), *folder.glob("*/*.mat")])}
     named = [match for name in files if (match := FRAME.fullmatch(name))]
     plates, bases = ({match[1]: files[match[0]] for match in named if match[2] == axis} for axis in "xy")
@@ -80,7 +76,7 @@ def read_folder(folder: Path) -> Measured:
     large = _large(files[LARGE]) if LARGE in files else None
     if not (runs or decay or large):
         rule = f"holds none of the measured files: s_b_<weight>g_x.mat with s_b_<weight>g_y.mat, {DECAY}, {LARGE}"
-        raise SceneError("command line", "FOLDER", str(folder), rule)
+        raise wrong_file(folder, rule)
     return Measured(runs, decay, large)
 
 
@@ -96,7 +92,7 @@ def _decay(file: Path) -> Swing:
         instants = _series(file, "Theta1.time", content["time"])
         return Swing(instants, _series(file, "Theta1.values", content["signals"]["values"], len(instants)) - np.pi)
     except (KeyError, IndexError, TypeError) as error:
-        raise wrong_file(file, "Theta1", "must be a structure with time and signals.values") from error
+        raise wrong_file(file, "Theta1 must be a structure with time and signals.values") from error
 
 
 def _large(file: Path) -> Swing:
@@ -107,7 +103,7 @@ def _large(file: Path) -> Swing:
             for names in (("Time_id", "Time_vad"), ("Y_id", "Y_vad"))
         )
     except (IndexError, TypeError, ValueError) as error:
-        raise wrong_file(file, "Y_id", "must be cells of angles and rates, (2, T)") from error
+        raise wrong_file(file, "Y_id must be cells of angles and rates, (2, T)") from error
     instants = _series(file, "Time", time)
     return Swing(instants, _series(file, "Y", angle, len(instants)) - np.pi)
 
@@ -116,12 +112,12 @@ def _content(file: Path, *names: str) -> dict[str, Any]:
     try:
         content = loadmat(io.BytesIO(read_file(file, LARGEST)), variable_names=names, simplify_cells=True)
     except OSError as error:
-        raise SceneError("command line", "FOLDER", str(file), error.strerror or "cannot be read") from None
+        raise wrong_file(file, error.strerror or "cannot be read") from None
     except Exception as error:  # whatever scipy makes of bytes that are no such file
-        raise SceneError("command line", "FOLDER", str(file), "must be a MATLAB file of version 5 to 7.2") from error
+        raise wrong_file(file, "must be a MATLAB file of version 5 to 7.2") from error
     for name in names:
         if name not in content:
-            raise SceneError("command line", "FOLDER", str(file), f"must hold the variable {name}")
+            raise wrong_file(file, f"must hold the variable {name}")
     return dict(content)
 
 
@@ -129,18 +125,18 @@ def _series(file: Path, name: str, values: Any, count: int | None = None) -> Arr
     """A column of finite samples; rising at even steps where it is the time, `count` is None."""
     series = np.asarray(values)
     if series.dtype.kind not in "fiu" or series.ndim != 1 or not 500 <= len(series) <= MAX_SAMPLES:
-        raise wrong_file(file, name, f"must be one column of 500 to {MAX_SAMPLES} numbers")
+        raise wrong_file(file, f"{name} must be one column of 500 to {MAX_SAMPLES} numbers")
     series = series.astype(float)
     if count is not None and len(series) != count:
-        raise wrong_file(file, name, f"must have as many samples as the time, {count}, not {len(series)}")
+        raise wrong_file(file, f"{name} must have as many samples as the time, {count}, not {len(series)}")
     if not np.isfinite(series).all():
-        raise wrong_file(file, name, "must be finite numbers")
+        raise wrong_file(file, f"{name} must be finite numbers")
     steps = np.diff(series)
     if count is None and not (steps.min() > 0.0 and np.ptp(steps) < 1e-3 * steps.mean()):
-        raise wrong_file(file, name, "must rise in even steps")
+        raise wrong_file(file, f"{name} must rise in even steps")
     return series
 
 
-def wrong_file(file: Path | str, name: str, rule: str) -> SceneError:
-    """What is wrong with a variable of a file, in one line."""
-    return SceneError("command line", "FOLDER", str(file), f"{name} {rule}")
+def wrong_file(file: Path | str, rule: str) -> SceneError:
+    """What is wrong with a file, in one line."""
+    return SceneError("command line", "FOLDER", str(file), rule)

@@ -24,7 +24,7 @@ from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import assess
 from comparison.analyses.validation.assess import COVERAGE, SIDES, Answer, Array, Found
 from comparison.analyses.validation.files import Shaken, wrong_file
-from comparison.analyses.validation.table import INPUT, LAW, Curve
+from comparison.analyses.validation.table import INPUT, LAW
 from reference.problem import GRAVITY, Scene, Trajectory
 
 HEAVY, LOOSE = 10.0, 1e4  # mass of the second body over that of the platform; period of its link, s
@@ -104,8 +104,8 @@ def fold(run: Shaken) -> Cycles:
     phase = frequency * time + begin / (2.0 * np.pi)
     whole = range(math.ceil(phase[0]), math.floor(phase[-1]))
     if len(whole) < FEWEST:
-        rule = f"must have {FEWEST} whole cycles of the base, not {len(whole)}"
-        raise wrong_file(f"s_b_{1e3 * run.weight:g}g_y.mat", "y", rule)
+        rule = f"y must have {FEWEST} whole cycles of the base, not {len(whole)}"
+        raise wrong_file(f"s_b_{1e3 * run.weight:g}g_y.mat", rule)
     grid = np.arange(SAMPLES) / SAMPLES
     motions = np.array([np.interp(number + grid, phase, run.plate) for number in whole])
     return Cycles(run, motions, frequency, abs(harmonics[0]), complex(harmonics[1] * np.exp(-2j * begin)))
@@ -272,7 +272,6 @@ def _compare_run(
     data = assess.Data(NAMES, UNITS, [use] * 5, np.mean(found, axis=0), COVERAGE * np.std(found, axis=0, ddof=1))
     motions = {side: compute(side, cycles, setup) for side in SIDES}
     answers = {side: read(cycles, motion) for side, motion in motions.items()}
-    inputs = assess.combined([solve(cycles, each) - answers[EQUATIONS].values for each in varied])
     by_input, by_ratio = (np.abs(solve(cycles, each) - data.values) for each in (other, own))
 
     def explain(k: int, allowed: float) -> tuple[str, str]:
@@ -283,7 +282,7 @@ def _compare_run(
             return LAW, f"gone with the ratio of this run, {own.ratio:.3f}: the ratio depends on the load"
         return LAW, f"gone neither with the ratio of this run, {own.ratio:.3f}, nor with {shift}"
 
-    rows = assess.quantities(title, data, inputs, answers, explain)
+    rows = assess.quantities(title, data, answers, [solve(cycles, each) for each in varied], explain)
     best = last_cycle(compute(EQUATIONS, cycles, own), cycles.frequency)
     lines = {"measured": cycles.mean} | {
         side: last_cycle(motions[side], cycles.frequency) for side in (EQUATIONS, ENGINE)
@@ -293,5 +292,5 @@ def _compare_run(
         f"off by {np.std(best - cycles.mean):.3f} mm rms, and by {np.std(lines[EQUATIONS] - cycles.mean):.3f} mm with "
         f"{setup.ratio:.3f}"
     )
-    axes, turn = ("phase of the base, deg", "top plate, mm"), (np.arange(SAMPLES) * 360.0 / SAMPLES).tolist()
-    return Found(rows, [], [fact], [Curve(title, axes, name, turn, y.tolist()) for name, y in lines.items()])
+    axes, turn = ("phase of the base, deg", "top plate, mm"), np.arange(SAMPLES) * 360.0 / SAMPLES
+    return Found(rows, [], [fact], assess.curves(title, axes, {name: (turn, y) for name, y in lines.items()}))

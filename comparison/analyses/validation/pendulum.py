@@ -16,7 +16,7 @@ from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import assess
 from comparison.analyses.validation.assess import COVERAGE, SIDES, Answer, Array, Data, Found
 from comparison.analyses.validation.files import DECAY, LARGE, Swing, wrong_file
-from comparison.analyses.validation.table import INPUT, LAW, Curve
+from comparison.analyses.validation.table import INPUT, LAW
 from reference.problem import GRAVITY, Scene, Trajectory
 
 REGULARIZATION, TOLERANCE = 1e-5, 1e-4  # of the engine; v_reg in m/s
@@ -34,7 +34,7 @@ def compare_decay(swing: Swing) -> Found:
     instants, turns = _turns(swing, STEPS * step)
     numbers = np.arange(SHOWN[-1] + 1)
     if len(turns) < len(numbers):
-        raise wrong_file(DECAY, "Theta1", f"must have {len(numbers)} turning points, not {len(turns)}")
+        raise wrong_file(DECAY, f"Theta1 must have {len(numbers)} turning points, not {len(turns)}")
     sides = (-1.0) ** numbers
     terms = np.column_stack([np.ones(len(numbers)), -numbers, sides])  # first angle, loss, middle of the swings
     along, fitted = np.sign(turns[0]) * sides * turns[: len(numbers)], slice(0, COULOMB + 1)
@@ -65,9 +65,8 @@ def compare_decay(swing: Swing) -> Found:
     motions = {side: compute(side, nominal) for side in SIDES}
     answers = {side: assess.answer(motion, read, len(data.names)) for side, motion in motions.items()}
     varied = [read(compute(EQUATIONS, nominal + change)) for change in np.diag(uncertain)]
-    inputs = assess.combined([each - answers[EQUATIONS].values for each in varied])
     cause = "friction before sliding gives way like a spring, which Coulomb's law lacks"
-    rows = assess.quantities("pendulum, decay", data, inputs, answers, lambda k, allowed: (LAW, cause))
+    rows = assess.quantities("pendulum, decay", data, answers, varied, lambda k, allowed: (LAW, cause))
     named = zip(("half period", "loss of a half swing", "first angle"), nominal, uncertain, ("s", "rad", "rad"))
     source = f"fitted to the first {HALF} half periods and {COULOMB} half swings, and its scatter"
     fact = (
@@ -76,7 +75,7 @@ def compare_decay(swing: Swing) -> Found:
     )
     drawn = {"measured": sizes} | {side: 1e3 * _computed_turns(motions[side])[1] for side in (EQUATIONS, ENGINE)}
     axes = ("number of the turning point", "angle, mrad")
-    curves = [Curve("pendulum, decay", axes, name, numbers.tolist(), y.tolist()) for name, y in drawn.items()]
+    curves = assess.curves("pendulum, decay", axes, {name: (numbers, y) for name, y in drawn.items()})
     given = [assess.given(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named]
     return Found(rows, given, [fact], curves)
 
@@ -88,7 +87,7 @@ def compare_large(swing: Swing) -> Found:
     periods = np.diff(passages)
     for angle in (*ANGLES, FITTED, REFITTED):
         if np.sum(np.abs(sizes - angle) < WINDOW) < FEWEST:
-            raise wrong_file(LARGE, "Y", f"must have {FEWEST} half swings within {WINDOW} of {angle} rad")
+            raise wrong_file(LARGE, f"Y must have {FEWEST} half swings within {WINDOW} of {angle} rad")
     values, spreads = np.transpose([_near(sizes, periods, angle) for angle in (*ANGLES, FITTED, REFITTED)])
     at_rest = [0.5 * np.pi / float(ellipk(np.sin(0.5 * angle) ** 2)) for angle in (FITTED, REFITTED)]
     (half, other), scatter = values[-2:] * at_rest, float(spreads[-2] * at_rest[0])
@@ -108,8 +107,7 @@ def compare_large(swing: Swing) -> Found:
             return INPUT, f"gone with the half period fitted at {REFITTED} rad, where friction weighs less"
         return LAW, f"not gone with the half period fitted at {REFITTED} rad"
 
-    inputs = np.abs(varied - answers[EQUATIONS].values)
-    rows = assess.quantities("pendulum, large angles", data, inputs, answers, explain)
+    rows = assess.quantities("pendulum, large angles", data, answers, [varied], explain)
     off = zip(100.0 * (small / data.values - 1.0), ANGLES)
     fact = "pendulum, large angles: the half period of the small-vibration equations is off by "
     fact += ", ".join(f"{error:.1f} % at {angle:g} rad" for error, angle in off)
@@ -119,8 +117,7 @@ def compare_large(swing: Swing) -> Found:
         s: (np.array(ANGLES), answers[s].values) for s in (EQUATIONS, ENGINE)
     }
     axes = ("amplitude, rad", "half period, ms")
-    curves = [Curve("pendulum, large angles", axes, name, x.tolist(), y.tolist()) for name, (x, y) in drawn.items()]
-    return Found(rows, [given], [fact], curves)
+    return Found(rows, [given], [fact], assess.curves("pendulum, large angles", axes, drawn))
 
 
 def _motion(

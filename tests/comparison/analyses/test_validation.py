@@ -201,53 +201,33 @@ def test_the_page_on_validation_has_the_recorded_table():
         assert equations.verdict == engine.verdict
 
 
-def wrong_series(folder: Path) -> None:
-    save(folder, 250)
-    savemat(folder / "s_b_250g_x.mat", {"t": np.arange(700.0), "x": np.zeros((700, 3))})
-
-
-def no_partner(folder: Path) -> None:
-    save(folder, 250)
-    (folder / "s_b_250g_y.mat").unlink()
-
-
-def garbage(folder: Path) -> None:
-    save(folder, 250)
-    (folder / "s_b_250g_y.mat").write_bytes(b"MATLAB 5.0 MAT-file" + bytes(range(256)) * 4)
+X, Y, PARTS = "s_b_250g_x.mat", "s_b_250g_y.mat", ("Time_id", "Time_vad", "Y_id", "Y_vad")
 
 
 def pipe(folder: Path) -> None:
-    save(folder, 250)
-    (folder / "s_b_250g_y.mat").unlink()
-    os.mkfifo(folder / "s_b_250g_y.mat")
-
-
-def no_structure(folder: Path) -> None:
-    savemat(folder / DECAY, {"Theta1": np.zeros(800)})
-
-
-def no_cells(folder: Path) -> None:
-    savemat(folder / LARGE, dict.fromkeys(("Time_id", "Time_vad", "Y_id", "Y_vad"), 1.0))
+    (folder / Y).unlink()
+    os.mkfifo(folder / Y)
 
 
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
-        (lambda folder: None, "holds none of the measured files"),
-        (lambda folder: folder.rmdir(), "must be a folder"),
-        (no_partner, "s_b_250g_y.mat is missing"),
-        (wrong_series, "x must be one column"),
-        (garbage, "must be a MATLAB file"),
+        (lambda folder: (folder / Y).unlink(), "s_b_250g_y.mat is missing"),
+        (lambda folder: savemat(folder / X, {"t": np.arange(700.0), "x": np.zeros((700, 3))}), "x must be one column"),
+        (lambda folder: (folder / Y).write_bytes(b"MATLAB 5.0" + bytes(range(256)) * 4), "must be a MATLAB file"),
         (pipe, "not a regular file"),
-        (no_structure, "must be a structure"),
-        (no_cells, "must be"),
+        (lambda folder: savemat(folder / DECAY, {"Theta1": np.zeros(800)}), "Theta1 must be a structure"),
+        (lambda folder: savemat(folder / LARGE, dict.fromkeys(PARTS, 1.0)), "must be"),
+        (lambda folder: [file.unlink() for file in folder.iterdir()], "holds none of the measured files"),
+        (lambda folder: folder.rename(folder.with_name("other")), "must be a folder"),
     ],
-)
+)  # fmt: skip
 def test_wrong_files_end_in_one_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], spoil: Callable[[Path], None], said: str
 ):
     folder = tmp_path / "files"
     folder.mkdir()
+    save(folder, 250)
     spoil(folder)
     assert main([str(folder), "--out", str(tmp_path / "report")]) == 2
     error = capsys.readouterr().err
@@ -266,10 +246,11 @@ def test_without_files_what_is_recorded_is_printed(capsys: pytest.CaptureFixture
 
 def test_a_comparison_error_is_within_all_uncertainties():
     """0.03, 0.04 and 0.12 make 0.13: 0.125 is within, 0.135 is not; any two of them make less than 0.127."""
-    one, inputs = np.ones(2), np.array([0.04, 0.04])
+    one = np.ones(2)
     data = assess.Data(("a", "b"), ("mm", "mm"), ("predicted",) * 2, one, np.array([0.12, 0.12]))
-    answers = {EQUATIONS: assess.Answer(np.array([1.1285, 1.135]), np.array([0.03, 0.03]))}
-    first, second = assess.quantities("run", data, inputs, answers, lambda k, allowed: (LAW, "why"))
+    values = np.array([1.1285, 1.135])
+    answers, varied = {EQUATIONS: assess.Answer(values, np.array([0.03, 0.03]))}, [values + 0.024, values - 0.032]
+    first, second = assess.quantities("run", data, answers, varied, lambda k, allowed: (LAW, "why"))
     assert [each.sides[EQUATIONS].verdict for each in (first, second)] == [VALID, LAW]
     assert [each.sides[EQUATIONS].error for each in (first, second)] == pytest.approx([0.1285, 0.135])
     assert first.sides[EQUATIONS].validation == pytest.approx(0.13)
