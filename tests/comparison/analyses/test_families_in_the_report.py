@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -60,11 +61,8 @@ def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
     curves = {(curve.model, curve.body): curve for curve in results.families[0].curves}
     assert len(curves) == 2 * len(study.hierarchy)
     small, engine = curves["small", 1], curves["translational", 1]
-    assert (small.lowest, small.mean, small.highest) == (
-        pytest.approx([1.0] * 3),
-        pytest.approx([3.0] * 3),
-        pytest.approx([5.0] * 3),
-    )
+    for numbers, known in ((small.lowest, 1.0), (small.mean, 3.0), (small.highest, 5.0)):
+        assert numbers == pytest.approx([known] * 3)
     assert np.isnan([engine.mean[1], engine.lowest[1], engine.error[1]]).all()
     assert [engine.mean[0], engine.mean[2]] == pytest.approx([3.03, 3.03])
     steps = {(step.model, step.body): step for step in results.families[0].steps}
@@ -84,13 +82,8 @@ def test_demands_of_stored_motions_have_their_band(file: Path) -> None:
         return StoredMotion(place, "small", np.zeros(0), nothing, nothing, demands=numbers)
 
     first, second, third = (scene.name for scene in family.scenes)
-    stored = [
-        motion(first, 0.1),
-        motion(first, 0.4),
-        motion(first, 0.3),
-        motion(second, float("nan")),
-        motion(third, 5.0),
-    ]
+    measured = [(first, 0.1), (first, 0.4), (first, 0.3), (second, float("nan")), (third, 5.0)]
+    stored = [motion(*each) for each in measured]
     found = {(demand.quantity, demand.body): demand for demand in family_demands(family, stored)}
     band = found["displacement", 0]
     assert band.motions == (3, 0, 1)
@@ -120,14 +113,13 @@ def test_demands_of_all_phases_go_before_stored_motions(file: Path) -> None:
     assert np.isnan(band.median[1])
 
 
-def test_a_value_that_runs_over_decades_has_a_logarithmic_axis(file: Path) -> None:
+def test_an_axis_is_logarithmic_over_decades_and_names_a_few(file: Path) -> None:
     family = load_family(file)
     study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
-    surfaces = solved(study)
-    results = report_of(study, surfaces, {}, [], RUN, families=[family]).results
+    results = report_of(study, solved(study), {}, [], RUN, families=[family]).results
     assert results.families is not None
 
-    def axis(*values: float) -> dict[str, object]:
+    def axis(*values: float | str) -> dict[str, Any]:
         changed = results.families[0].model_copy(update={"values": list(values)})
         [listed] = family_panels(results.model_copy(update={"families": [changed]}))
         return dict(listed["panels"][0]["plot"]["x"])
@@ -135,24 +127,10 @@ def test_a_value_that_runs_over_decades_has_a_logarithmic_axis(file: Path) -> No
     assert axis(1e-3, 1e-2, 1e-1).get("log") is True
     assert "log" not in axis(0.1, 0.15, 0.2)
     assert "log" not in axis(0.0, 1.0, 100.0)
-
-
-def test_of_many_named_values_some_are_named_on_the_axis(file: Path) -> None:
-    family = load_family(file)
-    study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
-    surfaces = solved(study)
-    results = report_of(study, surfaces, {}, [], RUN, families=[family]).results
-    assert results.families is not None
-
-    def ticks(count: int) -> list[list[object]]:
-        changed = results.families[0].model_copy(update={"values": [f"{n}, 0.5" for n in range(count)]})
-        [listed] = family_panels(results.model_copy(update={"families": [changed]}))
-        named: list[list[object]] = listed["panels"][0]["plot"]["x"]["ticks"]
-        return named
-
-    assert len(ticks(12)) == 12
-    assert [tick[1] for tick in ticks(220)][:3] == ["0, 0.5", "19, 0.5", "38, 0.5"]
-    assert len(ticks(220)) <= 12
+    few, many = (axis(*(f"{n}, 0.5" for n in range(count)))["ticks"] for count in (12, 220))
+    assert len(few) == 12
+    assert [tick[1] for tick in many][:3] == ["0, 0.5", "19, 0.5", "38, 0.5"]
+    assert len(many) <= 12
 
 
 def test_panels_of_a_family_are_in_the_units_of_their_axes() -> None:

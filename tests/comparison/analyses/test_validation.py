@@ -93,10 +93,7 @@ def test_the_numbers_of_a_known_cycle_are_read():
     half_range, rms, rest, starts, stops = frame.read_cycle(motion, 1.0)
     assert half_range == 1.5
     assert rms == pytest.approx(math.sqrt((200.0 * 1.5**2 + 160.0 * 1.5**2 / 3.0) / 360.0), rel=1e-3)
-    width, top = (
-        360.0 * frame.WIDTH / frame.SAMPLES,
-        3.0 / (80.0 / 360.0),
-    )  # the velocity is a mean over twice the width
+    width, top = 360.0 * frame.WIDTH / frame.SAMPLES, 3.0 / (80.0 / 360.0)  # velocity: a mean over twice the width
     early = width * (1.0 - 2.0 * frame.SPEED / top)
     assert (starts, stops) == pytest.approx((70.0 - early, 150.0 + early), abs=0.2)
     assert rest == pytest.approx(100.0 * (200.0 - 4.0 * early) / 360.0, abs=0.2)
