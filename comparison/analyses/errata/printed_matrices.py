@@ -50,8 +50,6 @@ class _Fixed(NamedTuple):
     masses: Array  # (2 N,), each twice
     links: Array  # (2 N, 2 N), C but for Delta, the factor of its first two rows, and their diagonal
     dampers: Array  # (2 N, 2 N), of the links, as `links`; the paper has none
-    first: tuple[float, float]  # stiffness of the lowest link, N/m
-    first_damper: tuple[float, float]  # N s/m
     errata: Collection[str]
 
 
@@ -60,20 +58,8 @@ def _fixed(scene: Scene, errata: Collection[str]) -> _Fixed:
     links, dampers = _between(scene.stiffness), _between(scene.damping)
     if WRONG_SPRING in errata and len(scene.stiffness):
         links[1, 3] = links[0, 2]
-    first = tuple(map(float, scene.stiffness[0])) if len(scene.stiffness) else (0.0, 0.0)
-    first_damper = tuple(map(float, scene.damping[0])) if len(scene.damping) else (0.0, 0.0)
     law = scene.friction_coefficient, scene.lubricated, scene.dry_friction.varies, float(scene.total_mass)
-    return _Fixed(
-        scene,
-        scene.radius,
-        *law,
-        masses,
-        links,
-        dampers,
-        (first[0], first[-1]),
-        (first_damper[0], first_damper[-1]),
-        errata,
-    )
+    return _Fixed(scene, scene.radius, *law, masses, links, dampers, errata)
 
 
 def _between(links: Array) -> Array:
@@ -166,8 +152,8 @@ def _accelerations(fixed: _Fixed, q: Array, v: Array, ground: Array) -> Array:
         sprung[axis] = delta * sprung[axis] - total * (zeta + GRAVITY - w) * place
         load[axis] = -m * ground_axis * delta - damped[axis]
         if len(q) > 2:
-            pull = fixed.first[axis] * (q[axis + 2] - place) + fixed.first_damper[axis] * (v[axis + 2] - rate)
-            load[axis] -= s * (vx * p + vy * r) * pull
+            link, damper = fixed.links[axis + 2, axis], fixed.dampers[axis + 2, axis]  # minus those of the lowest link
+            load[axis] += s * (vx * p + vy * r) * (link * (q[axis + 2] - place) + damper * (v[axis + 2] - rate))
     load -= sprung
     acceleration: Array = load / fixed.masses
     along_x, along_y = load[:2].tolist()
