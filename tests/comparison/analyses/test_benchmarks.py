@@ -16,7 +16,7 @@ from known_analyses import collected
 from places import ROOT
 
 import reference
-from comparison.analyses.benchmarks import readings
+from comparison.analyses.benchmarks import analysis, readings
 from comparison.analyses.benchmarks.analysis import (
     ENGINE,
     EQUATIONS,
@@ -144,6 +144,12 @@ def test_a_reading_does_not_depend_on_where_the_instants_are():
     assert readings.path_length(coarse, 1.0, 7.0) == pytest.approx(readings.path_length(fine, 1.0, 7.0), rel=1e-5)
     assert readings.period(coarse) == pytest.approx(readings.period(fine), rel=1e-5)
     assert readings.positions_at(coarse, [1.01]) == pytest.approx(readings.positions_at(fine, [1.01]), rel=1e-5)
+
+
+def test_the_error_covers_that_of_few_instants(monkeypatch):
+    monkeypatch.setattr(analysis, "SAMPLES", 201)
+    solved, published = answer(BY_NAME["sdnd104-15"], EQUATIONS), BY_NAME["sdnd104-15"].published[0].value
+    assert 1e-4 < abs(solved.values[0] - published) <= solved.errors[0] < 0.01
 
 
 def test_turning_points_end_where_the_motion_ends():

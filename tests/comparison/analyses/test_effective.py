@@ -13,7 +13,7 @@ from report_texts import summary_of
 from runs import Run
 
 from comparison.analyses.effective_values.analysis import PHASES, EffectiveValues, read_back, stated
-from comparison.study.models import MODEL_HIERARCHY, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
+from comparison.study.models import EXACT, MODEL_HIERARCHY, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
 from comparison.study.study import Study
 from reference.problem import ground_acceleration, load_scene
 
@@ -41,40 +41,36 @@ def test_in_a_lubricated_scene_friction_is_read_per_speed() -> None:
 def test_of_friction_that_varies_the_fast_one_is_read(slow: float, fast: float) -> None:
     law = {"slow": slow, "fast": fast, "rate": 20.0}
     scene = load_scene("fig3-I").with_values({"isolator.friction": law, "duration": 3.0})
-    model = next(model for model in MODEL_HIERARCHY if model.key == "exact")
     assert stated(scene).friction == fast
-    assert read_back((scene, model)).friction == pytest.approx(fast, rel=1e-5)
+    assert read_back((scene, EXACT)).friction == pytest.approx(fast, rel=1e-5)
     slowly = scene.with_values({"isolator.friction.rate": 0.1})
-    assert np.isnan(read_back((slowly, model)).friction), "a motion that sees no fast friction does not tell it"
+    assert np.isnan(read_back((slowly, EXACT)).friction), "a motion that sees no fast friction does not tell it"
 
 
 def test_the_scene_states_what_the_motion_is_held_against() -> None:
-    scene = load_scene("fig3-II")
-    value = stated(scene)
-    assert value.radius == scene.radius
-    assert (value.friction, value.mass) == (0.1, 2.0)
+    upward = [[1.0, 0.0], [0.0, 1.0], [3.0, 0.0]]
+    scene = load_scene("fig3-II").with_values({"excitation.amplitudes": upward, "duration": 2.0})
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
-    assert value.acceleration == pytest.approx(np.linalg.norm(ground))
+    expected = [scene.radius, 0.1, 2.0, 2.0 * (9.81 + ground[2]), np.linalg.norm(ground)]
+    for values in (stated(scene), read_back((scene, EXACT))):
+        told = [values.radius, values.friction, values.mass, values.contact, values.acceleration]
+        assert told == pytest.approx(expected, rel=1e-6), values.model
 
 
 @pytest.mark.parametrize(
-    ("model", "says"),
+    ("model", "error_message", "mass"),
     [
-        (fake_hierarchy()[-1], "AssertionError: nothing should have been computed"),
-        (_model(**TRUE, status="rim reached"), "the motion ended: rim reached"),
+        (fake_hierarchy()[-1], "AssertionError: nothing should have been computed", np.nan),
+        (_model(**TRUE, status="rim reached"), "the motion ended: rim reached", np.nan),
+        (_model(**TRUE, swing=0.0), "", TRUE["mass"]),
     ],
+    ids=["fails", "ends early", "never moves"],
 )
-def test_a_motion_that_fails_or_ends_early_has_no_value(model: Model, says: str) -> None:
+def test_a_motion_that_tells_nothing_has_no_value(model: Model, error_message: str, mass: float) -> None:
     values = read_back((load_scene("fig3-I"), model))
-    assert values.error_message == says
-    assert np.isnan([values.radius, values.friction, values.contact, values.mass]).all()
-
-
-def test_a_platform_that_never_moves_has_no_radius() -> None:
-    values = read_back((load_scene("fig3-I"), _model(**TRUE, swing=0.0)))
-    assert np.isnan(values.radius)
-    assert np.isnan(values.friction)
-    assert values.mass == pytest.approx(TRUE["mass"], rel=1e-12)
+    assert values.error_message == error_message
+    assert np.isnan([values.radius, values.friction]).all()
+    assert [values.mass, values.contact] == pytest.approx([mass, 9.81 * mass], rel=1e-12, nan_ok=True)
 
 
 def test_every_scene_has_its_statement_and_its_models() -> None:

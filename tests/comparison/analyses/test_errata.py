@@ -114,16 +114,27 @@ def test_the_motion_along_x_equal_beta_y_stays_there() -> None:
     assert np.abs(place[..., 0] - place[..., 1]).max() < 1e-9 * np.abs(place[..., 0]).max()
 
 
-def test_the_change_is_that_of_the_printed_form(monkeypatch: pytest.MonkeyPatch) -> None:
-    """mu = 3 as printed, with friction as large as the normal force, and mu = 2 mended."""
+@pytest.mark.parametrize(
+    ("where", "change"), [("after (2.3)", (1.0, 1.0)), ("after (2.5)", (0.5, 0.5)), ("(5.1)", (1.5, 0.0))]
+)
+def test_the_change_is_that_of_the_printed_form(
+    monkeypatch: pytest.MonkeyPatch, where: str, change: tuple[float, float]
+) -> None:
+    """mu = 2 mended; on links 144 times softer 4, with friction as large as the normal force 3, of halves 5 and 9."""
+    whole = load_scene("fig3-I")
 
     def known(scene: Scene, phases: np.ndarray, **settings: object) -> Amplification:
-        mu = np.full((len(phases), 2), 3.0 if scene.friction_coefficient == 1.0 else 2.0)
+        softer = scene.stiffness[-1, 0] == pytest.approx(whole.stiffness[-1, 0] / 144.0)
+        mu = np.full((len(phases), len(scene.bodies)), 4.0 if softer else 2.0)
+        if scene.friction_coefficient == 1.0:
+            mu[:] = 3.0
+        if len(scene.bodies) == 3:
+            mu[:, :2] = 5.0, 9.0
         return Amplification(mu, 0.0 * mu, np.full(len(mu), "ok"), np.full(len(mu), np.nan), 0.0)
 
     monkeypatch.setattr(errata.reference, "amplification", known)
-    place = next(number for number, erratum in enumerate(ERRATA) if erratum.where == "after (2.5)")
-    assert measured((load_scene("fig3-I"), place)).change == ((0.5, 0.5),) * 2
+    place = next(number for number, erratum in enumerate(ERRATA) if erratum.where == where)
+    assert measured((whole, place)).change == (change,) * 2
 
 
 def test_the_wrong_spring_of_y_is_that_of_x() -> None:

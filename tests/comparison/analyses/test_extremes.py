@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from known_results import PLAIN, fake
+from known_results import FOUND, PLAIN, fake
 from matplotlib.image import imread
 from rich.console import Console
 from runs import no_executor
@@ -207,15 +207,10 @@ def test_a_wrong_option_is_one_line(words, rule, tmp_path, capsys):
 
 
 def test_the_matrix_is_read_back_as_it_was(tmp_path: Path):
-    matrix = Matrix(
-        {"fake": "a fake"},
-        [_extreme("converged", 1e-7), _extreme("FAILED", None)],
-        {"command": "a test", "seconds": 1.0, "cpu_seconds": 2.0},
-    )
     assert STORED.load(tmp_path) is None
-    (tmp_path / FILE).write_bytes(STORED.as_json(matrix))
-    assert STORED.load(tmp_path) == matrix
-    draw_extremes(tmp_path / "picture.png", matrix)
+    (tmp_path / FILE).write_bytes(STORED.as_json(FOUND))
+    assert STORED.load(tmp_path) == FOUND
+    draw_extremes(tmp_path / "picture.png", FOUND)
 
 
 @pytest.mark.parametrize(("models", "groups"), [(1, 1), (3, 2)])
@@ -253,10 +248,6 @@ def test_a_matrix_of_an_earlier_version_is_refused_in_one_line(content: str, rea
         STORED.load(tmp_path)
     assert reason in str(error.value)
     assert "\n" not in str(error.value)
-
-
-def _extreme(verdict: str, error: float | None) -> Extreme:
-    return Extreme("a group", verdict, {"fake": Entry(verdict, "a reason", "ok", error, 0.25, 0.5)})
 
 
 @pytest.mark.parametrize("choice", [{"contact_stiffness": 1e4}, {"contact_stiffness": 1e6}, {"step": 0.1}])

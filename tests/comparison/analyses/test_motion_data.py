@@ -84,6 +84,9 @@ def test_the_packed_columns_are_the_motion(scene, motions) -> None:
         blocks = read_back(packed, about)
         assert about["count"] == len(motion.time)
         assert set(blocks) == set(motion.blocks())
+        assert motion.demands is not None
+        largest = motion.demands.displacement
+        assert about["demands"]["displacement"] == pytest.approx([largest.value, largest.error], rel=1e-6)
         assert ("support_force" in blocks) == ("yaw" in blocks) == (motion.model == "spatial")
         for name, block in motion.blocks().items():
             if name == "time":
@@ -201,6 +204,7 @@ def test_the_summary_lists_the_demands_of_every_stored_motion(finished: Path) ->
             assert (entry["uplift"] is None) == (entry["model"] != "spatial") == (entry["energy_balance"] is not None)
             assert entry["spectra"]["period"] == [0.1, 1.0]
             assert entry["spectra"]["acceleration"] == known_spectra(scene).acceleration.tolist()
+            assert entry["spectra"]["error"] == known_spectra(scene).error.tolist()
 
 
 def test_known_demands_have_the_shape_of_real_ones(scene) -> None:

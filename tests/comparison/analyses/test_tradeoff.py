@@ -25,10 +25,7 @@ from comparison.analyses.tradeoff.measure import Measured, Measurement, joined, 
 from comparison.analyses.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
 from comparison.analyses.tradeoff.trade import (
     FILE,
-    SCHEMA,
-    STORED,
     Trade,
-    TradeFile,
     load,
     on_pareto_front,
     quantile,
@@ -173,16 +170,6 @@ def test_a_pipe_in_place_of_a_trade_is_refused_in_one_line(tmp_path: Path) -> No
     with pytest.raises(ValueError, match="not a regular file: must be a measured trade: run python -m") as refusal:
         load(tmp_path)
     assert "\n" not in str(refusal.value)
-
-
-def test_a_trade_of_an_earlier_version_names_the_key(tmp_path: Path) -> None:
-    text = STORED.as_json(TradeFile(SCHEMA, [known_trade("fig3-I")])).decode().replace('"pareto_front"', '"front"')
-    (tmp_path / FILE).write_text(text, encoding="utf-8")
-    with pytest.raises(
-        ValueError, match=r"trades\.0\.entries\.0\.front: .*: run python -m comparison.tradeoff$"
-    ) as error:
-        load(tmp_path)
-    assert "\n" not in str(error.value)
 
 
 def test_a_model_that_raises_leaves_points_without_a_value(monkeypatch: pytest.MonkeyPatch) -> None:

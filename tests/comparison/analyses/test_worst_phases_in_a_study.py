@@ -83,7 +83,7 @@ def test_the_engine_is_asked_where_its_ratio_says(
         def amplification(scene, phases, **settings):  # type: ignore[no-untyped-def]
             mu = np.repeat(numerator(phases)[:, None], 2, axis=1)
             none = np.full(len(phases), math.nan)
-            return Amplification(mu, 1e-9 * mu, np.full(len(phases), "ok"), none, 0.0)
+            return Amplification(mu, 1e-9 * phases[:, :1] * mu, np.full(len(phases), "ok"), none, 0.0)
 
         return amplification
 
@@ -93,6 +93,7 @@ def test_the_engine_is_asked_where_its_ratio_says(
     worst = Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
     beside = _engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
     assert beside.evaluations == ENGINE_POINTS
+    assert (beside.at_start, beside.start_error) == pytest.approx((2.0 - 2e-5, 2e-9), rel=1e-4)
     assert beside.phases == pytest.approx((1.005, 2.002), abs=1e-4)  # 1e-3 of slope over 2 of curvature
 
 
