@@ -46,7 +46,6 @@ from reference.problem import GRAVITY, Family, Scene, SceneError
 SCALE = "excitation.scale"
 RECORD = "excitation.record"
 FRACTILES = (0.16, 0.5, 0.84)
-ISOLATOR = ("displacement", EXACT.key)  # demand and model that the effective isolator is for
 SMALLEST = ("contact_force_min", "support_force_min")  # demands of which the smallest value is the worst
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # steps of which fill an interval evenly
 REST = (0.0, 0.0)  # a record has no phases
@@ -161,13 +160,14 @@ class Ensemble(Analysis[Points]):
         """The statistics of the points, the curves of the motions and the engine's bound."""
         both = points.equations, points.engine
         rows = [stripe for each in both for stripe in stripes(each)]
-        top = max(point.scale for point in points.equations)
-        means = {s.structure: s.mean.value for s in rows if (s.quantity, s.model, s.scale) == (*ISOLATOR, top)}
+        scales = sorted({point.scale for point in points.equations})
+        asked = "displacement", EXACT.key, scales[-1]
+        means = {row.structure: row.mean.value for row in rows if (row.quantity, row.model, row.scale) == asked}
         statuses = Counter(sorted(point.status for point in points.equations))
         return EnsembleResult(
             schema=SCHEMA,
             structures=structures_of(self.members, means),
-            scales=sorted({point.scale for point in points.equations}),
+            scales=scales,
             motions=len({point.curve for point in points.equations}),
             outcomes=dict(statuses.most_common()),
             stripes=rows,

@@ -183,7 +183,7 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
         ran = where if len(asked) <= NAMED else f"{len(asked)} motions"
         console.print(f"The {ENGINES[result.engine.model].title} ran {ran}.", soft_wrap=True, markup=False)
         table = new_table("engine: demand", "scene", "difference", "like for like", "errors")
-        for each in (each for each in result.engine.differences if each.points):
+        for each in filter(lambda each: each.points, result.engine.differences):
             sizes = (percent(math.nan if n is None else n) for n in (each.largest, each.like_for_like, each.errors))
             table.add_row(quantity_name((each.quantity, each.body)), each.structure, *sizes)
         console.print(table)

@@ -60,11 +60,11 @@ class MotionDemands(Part):
     support_force_max: UncertainNumber | None
     """largest normal force of a single support, N; null in a model without single supports"""
     torsion: list[UncertainNumber] | None
-    """largest rotation of every body about the vertical, rad; null where none turn"""
+    """largest rotation of every body about the vertical, rad; null where the bodies do not turn"""
     stops: UncertainNumber
     """number of intervals of rest, or of creep below v_reg, after the first slip"""
     support_displacement: UncertainNumber | None
-    """largest horizontal displacement of a support with the platform's rotation, m; null where none turn"""
+    """largest displacement of a support with the platform's rotation, m; null where the bodies do not turn"""
     uplift: UncertainNumber | None
     """largest gap of a support that has lifted off, m; null in a model without single supports"""
     friction_energy: UncertainNumber
