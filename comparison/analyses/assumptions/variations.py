@@ -253,7 +253,7 @@ def ranges(scene: Scene, cells: Sequence[AssumptionCell]) -> list[ValidityRange]
         stated = getattr(Variation(), key)
         varied_alone = [cell for cell in of_scene if replace(cell.variation, **{key: stated}) == Variation()]
         line = [(getattr(cell.variation, key) * unit, cell) for cell in varied_alone]
-        if line if key in ("ring", "height") else any(value for value, _ in line):
+        if any(value for value, _ in line):  # as stated, offset and yaw are 0
             lines[key] = sorted(line, key=lambda pair: pair[0], reverse=key == "ring")
     return [
         ValidityRange(scene.name, body, share, key, *_bracket(line, body, share))
