@@ -2,9 +2,9 @@
 Every finished result of a study on disk, so that a run that was ended goes on where it stopped.
 
 One directory per group of results, named by a hash of all that they depend on in common; in it one file per result. A
-file begins with MAGIC and a checksum of its name and of all that follows: what the result depends on in words, the
-result as JSON, and arrays. One that is torn, damaged or of another form is computed again, which also covers a power
-cut without waiting for the disk at every result. Nothing is unpickled. Only files that begin with MAGIC are ever
+file begins with MAGIC and a checksum of its name and of all that follows: what the result depends on in words and the
+result as JSON, then its arrays. One that is torn, damaged or of another form is computed again, which also covers a
+power cut without waiting for the disk at every result. Nothing is unpickled. Only files that begin with MAGIC are ever
 removed, and directories that are empty then.
 """
 
@@ -23,7 +23,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from comparison.runner.encoding import array_bytes, array_of, decoded, encoded
+from comparison.runner.encoding import packed, unpacked
 from reference.problem import SceneError
 from reference.problem.files import TEMPORARY, read_file, write_atomically
 
@@ -31,7 +31,6 @@ MAGIC = b"phase-resonance result 1\n"
 LIMIT = 2**30  # bytes: above this, groups that the present study does not need are dropped, least recently used first
 STALE = 3600.0  # s: a temporary file older than this was left by a killed run; a writing takes milliseconds
 GROUP = re.compile("[0-9a-f]{24}")
-LENGTH = 8  # bytes of the number that says how long the JSON is
 
 
 class StoreError(OSError):
@@ -89,7 +88,8 @@ class Cache:
         place = self.folder / key.name
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
-            write_atomically(place, _packed(key, value))
+            content = packed(json.loads(key.about), value)
+            write_atomically(place, MAGIC + _checksum(key, content) + content)
         except OSError as error:
             raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {error.strerror}") from None
         self.kept[key.kind] += 1
@@ -152,35 +152,13 @@ def _short_hash(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:24]
 
 
-def _packed(key: Key, value: Any) -> bytes:
-    arrays: list[Any] = []
-    body = encoded(value, arrays)
-    head = {
-        "about": json.loads(key.about),
-        "value": body,
-        "arrays": [[array.dtype.str, list(array.shape)] for array in arrays],
-    }
-    text = json.dumps(head).encode()
-    content = b"".join([len(text).to_bytes(LENGTH, "little"), text, *map(array_bytes, arrays)])
-    return MAGIC + _checksum(key, content) + content
-
-
 def _unpacked(file: bytes, key: Key, declared: Any) -> Any:
-    """The result in a file. Raises ValueError, TypeError or KeyError if that is not what it holds."""
+    """The result in a file. Raises an exception if that is not what it holds."""
     start = len(MAGIC) + 32
     digest, content = file[len(MAGIC) : start], file[start:]
     if not file.startswith(MAGIC) or _checksum(key, content) != digest:
         raise ValueError("damaged, or of another question")
-    length = int.from_bytes(content[:LENGTH], "little")
-    head, content = json.loads(content[LENGTH : LENGTH + length]), content[LENGTH + length :]
-    arrays = []
-    for kind, shape in head["arrays"]:
-        array, size = array_of(kind, shape, content)
-        arrays.append(array)
-        content = content[size:]
-    if content:
-        raise ValueError("longer than its arrays")
-    return decoded(head["value"], declared, arrays)
+    return unpacked(content, declared)
 
 
 def _checksum(key: Key, content: bytes) -> bytes:
