@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -63,6 +63,7 @@ class Member:
     motion: str
     scale: float  # of the ensemble; a factor of the motion itself comes on top
     scene: Scene
+    place: int = 0  # among the members
 
 
 @dataclass(frozen=True)
@@ -185,12 +186,9 @@ class Ensemble(Analysis[Points]):
         """Places of the engine's members: of every structure, the motions and the scales each spread evenly."""
         if self.subset is None:
             return list(range(len(self.members)))
-        names = dict.fromkeys(member.structure for member in self.members)
-        return sorted(
-            place
-            for name in names
-            for place in _spread([n for n, each in enumerate(self.members) if each.structure == name], self)
-        )
+        places = enumerate(self.members)
+        numbered = [replace(member, place=place) for place, member in places]
+        return sorted(place for own in _by(numbered, "structure").values() for place in _spread(own, self.subset))
 
     def _task(self, scene: Scene, model: Model) -> Task:
         seconds = SECONDS_PER_KNOT[model.side] * len(scene.record)
@@ -198,20 +196,18 @@ class Ensemble(Analysis[Points]):
         return Task(answered, arguments, self.stage, seconds, scene, model.side == "reference", timeout=LIMIT)
 
 
-def _spread(places: Sequence[int], ensemble: Ensemble) -> set[int]:
-    """At most `subset` of the members at these places."""
-    members = [ensemble.members[place] for place in places]
-    curves = list(dict.fromkeys(member.motion for member in members))
-    scales = sorted({member.scale for member in members})
-    at = {(member.motion, member.scale): n for n, member in enumerate(members)}
-    count = min(ensemble.subset or 0, len(at))
-    last, chosen = len(scales) + 1, []
+def _spread(members: Sequence[Member], subset: int) -> set[int]:
+    """Places of at most `subset` of the members."""
+    curves, scales = [*_by(members, "motion")], sorted(_by(members, "scale"))
+    at = {(member.motion, member.scale): member.place for member in members}
+    count = min(subset, len(at))
+    last, chosen = len(scales) + 1, set()
     stride = next(n for n in range(max(1, round(GOLDEN * len(scales))), last + 1) if math.gcd(n, len(scales)) == 1)
     for k in range(count):
         scale = scales[(len(scales) // 2 + k * stride) % len(scales)]
         wanted = curves[int((k + 0.5) / count * len(curves))], scale
-        chosen.append(at.get(wanted, k * len(at) // count))  # a zip does not have every combination
-    return {places[n] for n in chosen}
+        chosen.add(at.get(wanted, members[k * len(at) // count].place))  # a zip does not have every combination
+    return chosen
 
 
 def members_of(families: Sequence[Family]) -> tuple[Member, ...]:
@@ -249,22 +245,27 @@ def refuse_unfit(members: Sequence[Member], model: Model) -> None:
 
 def structures_of(members: Sequence[Member], means: Mapping[str, float | None]) -> list[Structure]:
     """The structures in their order. means: of their largest isolator displacements, m."""
-    scenes = {member.structure: member.scene for member in reversed(members)}
     found = []
-    for name in dict.fromkeys(member.structure for member in members):
-        scene, mean = scenes[name], means.get(name)
+    for name, own in _by(members, "structure").items():
+        scene = own[0].scene
         weight = scene.total_mass * GRAVITY
-        found.append(Structure(name, scene.title, len(scene.bodies), weight, _isolator(scene, mean)))
+        found.append(Structure(name, scene.title, len(scene.bodies), weight, _isolator(scene, means.get(name))))
     return found
+
+
+def _by(rows: Sequence[Any], name: str) -> dict[Any, list[Any]]:
+    """The rows by one of their attributes, in the order in which its values come."""
+    groups: dict[Hashable, list[Any]] = {}
+    for row in rows:
+        groups.setdefault(getattr(row, name), []).append(row)
+    return groups
 
 
 def _isolator(scene: Scene, displacement: float | None) -> Isolator | None:
     if not displacement or scene.flat or not scene.dry_friction.fast:
         return None
-    effective = effective_isolator(scene, displacement)
-    return Isolator(
-        displacement, *(float(value) for value in (effective.period, effective.damping, effective.restoring))
-    )
+    at = effective_isolator(scene, displacement)
+    return Isolator(displacement, float(at.period), float(at.damping), float(at.restoring))
 
 
 def answered(task: Arguments) -> Answer:
@@ -285,33 +286,21 @@ def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
 
     A motion without an answer counts as worse than all others: it reached the rim, or is not known to demand less.
     """
-    for name in dict.fromkeys(point.structure for point in points):
-        own = [point for point in points if point.structure == name]
+    for name, own in _by(points, "structure").items():
         for quantity in quantities(own):
-            for scale in sorted({point.scale for point in own}):
-                yield _stripe(name, quantity, scale, [point for point in own if point.scale == scale])
-
-
-def _stripe(name: str, quantity: Quantity, scale: float, points: Sequence[Point]) -> Stripe:
-    numbers = [point.estimate(quantity) for point in points]
-    worst = -np.inf if quantity[0] in SMALLEST else np.inf
-    mean, *shares, largest, smallest = statistics(numbers, (*FRACTILES, 1.0, 0.0), worst)
-    lacking = Counter(
-        number.reason or point.status for number, point in zip(numbers, points) if not math.isfinite(number.value)
-    )
-    return Stripe(
-        name,
-        points[0].model,
-        *_named(quantity),
-        unit_of(quantity[0]),
-        scale,
-        len(numbers) - lacking.total(),
-        mean,
-        [Fractile(share, each.value, each.error) for share, each in zip(FRACTILES, shares)],
-        largest,
-        smallest,
-        dict(lacking),
-    )
+            for scale, at_scale in sorted(_by(own, "scale").items()):
+                numbers = [point.estimate(quantity) for point in at_scale]
+                worst = -math.inf if quantity[0] in SMALLEST else math.inf
+                mean, *shares, largest, smallest = statistics(numbers, (*FRACTILES, 1.0, 0.0), worst)
+                fractiles = [Fractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)]
+                lacking = Counter(
+                    number.reason or point.status
+                    for number, point in zip(numbers, at_scale)
+                    if not math.isfinite(number.value)
+                )
+                about = name, own[0].model, *_named(quantity), unit_of(quantity[0]), scale
+                answered = len(numbers) - lacking.total()
+                yield Stripe(*about, answered, mean, fractiles, largest, smallest, dict(lacking))
 
 
 def _named(quantity: Quantity) -> tuple[str, int | None]:
@@ -325,53 +314,41 @@ def _statistic(number: Estimate) -> Statistic:
 def statistics(numbers: Sequence[Estimate], shares: Sequence[float], worst: float = math.inf) -> list[Statistic]:
     """Mean of numbers with errors, which has no value unless all are known, and their fractiles."""
     value, error = (float(np.mean([getattr(each, part) for each in numbers])) for part in ("value", "error"))
-    return [
-        *map(_statistic, (Estimate(value, error), *(uncertain_fractile(numbers, share, worst) for share in shares)))
-    ]
+    fractiles = [uncertain_fractile(numbers, share, worst) for share in shares]
+    return [_statistic(each) for each in (Estimate(value, error), *fractiles)]
 
 
 def spectrum_bands(points: Sequence[Point]) -> Iterator[Spectrum]:
-    """Floor spectra of every body of every structure at the largest scale, over all motions."""
+    """Floor spectra of every body of every structure at the largest scale, over all motions; the larger of x and y."""
     top = max((point.scale for point in points), default=math.nan)
-    for name in dict.fromkeys(point.structure for point in points):
-        own = [point for point in points if point.structure == name and point.scale == top]
+    for name, own in _by([point for point in points if point.scale == top], "structure").items():
         known = [point.spectra for point in own if point.spectra is not None]
-        for body in range(known[0].acceleration.shape[0] if known else 0):
-            columns = zip(*(_envelope(point.spectra, body, len(known[0].period)) for point in own))
-            mean, *shares, largest = zip(*(statistics(column, (*FRACTILES, 1.0)) for column in columns))
-            about = name, body + 1, top, known[0].damping, known[0].period.tolist()
-            yield Spectrum(*about, mean, shares, largest)
-
-
-def _envelope(spectra: FloorSpectra | None, body: int, periods: int) -> list[Estimate]:
-    """The larger of the spectra along x and y."""
-    if spectra is None:
-        return [Estimate(math.nan, math.nan)] * periods
-    (x, y), error = spectra.acceleration[body], spectra.error[body].max(axis=0)
-    return [Estimate(float(value), float(each)) for value, each in zip(np.maximum(x, y), error)]
+        if not known:
+            continue
+        bodies, _, periods = known[0].acceleration.shape
+        nothing = np.full((2, bodies, periods), np.nan)
+        values = [
+            (p.spectra.acceleration.max(axis=1), p.spectra.error.max(axis=1)) if p.spectra else nothing for p in own
+        ]
+        for body in range(bodies):
+            columns = np.array(values)[:, :, body].transpose(2, 0, 1).tolist()  # by period, motion, value and error
+            numbers = [[Estimate(*pair) for pair in column] for column in columns]
+            mean, *shares, largest = zip(*(statistics(column, (*FRACTILES, 1.0)) for column in numbers))
+            yield Spectrum(name, body + 1, top, known[0].damping, known[0].period.tolist(), mean, shares, largest)
 
 
 def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[Curve]:
     """Every demand of every motion over its scales, by structure, demand, model and motion."""
-    for name in dict.fromkeys(point.structure for point in equations):
+    for name in _by(equations, "structure"):
         both = [[point for point in points if point.structure == name] for points in (equations, engine)]
         for quantity in quantities([*equations, *engine]):
             for own in both:
-                for motion in dict.fromkeys(point.curve for point in own) if quantity in quantities(own) else ():
-                    yield _curve(quantity, sorted((p for p in own if p.curve == motion), key=lambda point: point.scale))
-
-
-def _curve(quantity: Quantity, points: Sequence[Point]) -> Curve:
-    numbers = [_statistic(point.estimate(quantity)) for point in points]
-    return Curve(
-        points[0].structure,
-        *_named(quantity),
-        points[0].model,
-        points[0].curve,
-        [point.scale for point in points],
-        [number.value for number in numbers],
-        [number.error for number in numbers],
-    )
+                for motion, points in _by(own, "curve").items() if quantity in quantities(own) else ():
+                    points = sorted(points, key=lambda point: point.scale)
+                    numbers = [_statistic(point.estimate(quantity)) for point in points]
+                    values, errors = [each.value for each in numbers], [each.error for each in numbers]
+                    scales = [point.scale for point in points]
+                    yield Curve(name, *_named(quantity), points[0].model, motion, scales, values, errors)
 
 
 def quantities(points: Sequence[Point]) -> list[Quantity]:
@@ -401,8 +378,8 @@ def uncertain_fractile(numbers: Sequence[Estimate], share: float, worst: float =
 def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Point]) -> Iterator[Difference]:
     """The largest difference of every demand that both sides have, and the largest with the same friction law."""
     equations = {(point.structure, point.scene): point for point in points}
-    for name in dict.fromkeys(point.structure for point in engine):
-        own, same_law = ([point for point in each if point.structure == name] for each in (engine, alike))
+    for name, own in _by(engine, "structure").items():
+        same_law = [point for point in alike if point.structure == name]
         matching = [equations[name, point.scene] for point in own]
         for quantity in quantities(own):
             apart, same = ([*_differences(quantity, first, own)] for first in (matching, same_law))
@@ -422,10 +399,11 @@ def _differences(quantity: Quantity, first: Sequence[Point], second: Sequence[Po
 
 def as_rows(points: Points) -> list[dict[str, object]]:
     """A row for every motion, scale and model, with all demands and their errors; None where there is no answer."""
-    names = quantities([*points.equations, *points.engine])
+    names = {quantity: quantity_name(quantity) for quantity in quantities([*points.equations, *points.engine])}
     rows = []
     alike = [point for point in points.alike if point.model != EXACT.key]  # else it is among the points
     for point in (*points.equations, *alike, *points.engine):
+        numbers = {name: point.estimate(quantity) for quantity, name in names.items()}
         row: dict[str, object] = {
             "structure": point.structure,
             "scene": point.scene,
@@ -434,22 +412,14 @@ def as_rows(points: Points) -> list[dict[str, object]]:
             "peak_ground_acceleration": point.peak,
             "model": point.model,
             "status": point.status,
-            "missing": "; ".join(
-                f"{quantity_name(quantity)}: {reason}"
-                for quantity in names
-                for reason in [point.estimate(quantity).reason]
-                if reason
-            ),
+            "missing": "; ".join(f"{name}: {number.reason}" for name, number in numbers.items() if number.reason),
         }
-        for quantity in names:
-            number = point.estimate(quantity)
-            name = quantity_name(quantity)
-            row[name], row[f"{name}_error"] = (finite_or_none(value) for value in (number.value, number.error))
+        for name, number in numbers.items():
+            row[name], row[f"{name}_error"] = finite_or_none(number.value), finite_or_none(number.error)
         rows.append(row)
     return rows
 
 
-def quantity_name(quantity: tuple[str, int | None]) -> str:
+def quantity_name(quantity: Quantity) -> str:
     """A demand as one word, "drift_2" of body 2."""
-    name, body = quantity
-    return f"{name}_{body}" if body else name
+    return "_".join(map(str, filter(None, quantity)))

@@ -21,18 +21,9 @@ from typing import Any
 
 from rich.console import Console
 
-from comparison.analyses.ensemble.analysis import (
-    FRACTILES,
-    SCALE,
-    Ensemble,
-    Points,
-    as_rows,
-    members_of,
-    quantity_name,
-    refuse_unfit,
-)
-from comparison.analyses.ensemble.result import PICTURE, STORED, EnsembleResult, Stripe
-from comparison.analyses.ensemble.units import figures_of, shown_stripes, unit_for_reading
+from comparison.analyses.ensemble.analysis import FRACTILES, SCALE, Ensemble, Points, as_rows, members_of, refuse_unfit
+from comparison.analyses.ensemble.feature import demand_rows, draw_ensemble, title_of
+from comparison.analyses.ensemble.result import PICTURE, STORED, EnsembleResult
 from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table, print_implausible_values
@@ -83,8 +74,6 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     begin = time.monotonic()
     results = computed("ensemble", options, argv, tasks, MODELS, console, executor)
     points = ensemble.collect(None, None, results)
-    from comparison.analyses.ensemble.figure import draw_ensemble  # matplotlib: not needed to refuse a command
-
     cost = results.parts[ensemble.stage].seconds
     run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
     result = ensemble.result(points, run)
@@ -151,28 +140,28 @@ def table_text(points: Points) -> str:
 def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> None:
     """The demands at the largest scale, outcomes, and how far the engine is."""
     top, motions = max(result.scales), result.motions
+    rows = [row for row in demand_rows(result) if row["scale"] == top]
     for structure in result.structures:
         title = f"{structure.title} ({structure.name}): {motions} {'motion' if motions == 1 else 'motions'}"
         console.print(f"{title}, at scale {top:g}:", soft_wrap=True, markup=False)
         shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
-        table = new_table("demand", "unit", "mean", "±", *shares, "largest", "motions")
-        for stripe in shown_stripes(result.stripes, structure.name, top):
-            unit, factor = unit_for_reading(stripe.quantity, structure.weight)
-            values = stripe.mean.value, *(each.value for each in stripe.fractiles), stripe.largest.value
-            mean, *cells = ["none" if value is None else figures_of(factor * value) for value in values]
-            error = "none" if stripe.mean.error is None else f"{factor * stripe.mean.error:.1g}"
-            table.add_row(row_name(stripe), unit, mean, error, *cells, str(stripe.answered))
+        table = new_table("quantity", "unit", "mean", *shares, "largest", "motions")
+        for row in rows:
+            if row["scene"] == structure.name:
+                mean, *others, _ = row["cells"]
+                values = [cell.partition(" ±")[0] for cell in others]
+                table.add_row(row["name"], row["unit"], mean, *values, str(row["stripe"].answered))
         console.print(table)
         if at := structure.isolator:
-            line = (
-                f"Effective isolator at the mean displacement, {figures_of(1e3 * at.displacement)} mm: period "
-                f"{at.period:.3g} s, damping {percent(at.damping)}, re-centering ratio {at.restoring:.3g}."
+            console.print(
+                f"Effective isolator at the mean displacement, {1e3 * at.displacement:.4g} mm: period {at.period:.3g} "
+                f"s, damping {percent(at.damping)}, re-centering ratio {at.restoring:.3g}.",
+                soft_wrap=True,
             )
-            console.print(line, soft_wrap=True)
     lacking: dict[str, list[str]] = {}
-    for stripe in result.stripes:
-        for reason, count in stripe.reasons.items() if stripe.scale == top else ():
-            lacking.setdefault(f"{count} {reason}", []).append(row_name(stripe))
+    for row in rows:
+        for reason, count in row["stripe"].reasons.items():
+            lacking.setdefault(f"{count} {reason}", []).append(row["name"])
     for what, names in lacking.items():
         console.print(f"Without a value: {', '.join(dict.fromkeys(names))}: {what}.", soft_wrap=True)
     ended = ", ".join(f"{count} {name}" for name, count in result.outcomes.items())
@@ -182,23 +171,17 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
         where = ", ".join(f"{point['scene']} ({point['status']})" for point in asked)
         ran = where if len(asked) <= NAMED else f"{len(asked)} motions"
         console.print(f"The {ENGINES[result.engine.model].title} ran {ran}.", soft_wrap=True, markup=False)
-        table = new_table("engine: demand", "scene", "difference", "like for like", "errors")
+        table = new_table("quantity", "scene", "difference", "like for like", "errors")
         for each in filter(lambda each: each.points, result.engine.differences):
             sizes = (percent(math.nan if n is None else n) for n in (each.largest, each.like_for_like, each.errors))
-            table.add_row(quantity_name((each.quantity, each.body)), each.structure, *sizes)
+            table.add_row(title_of(each.quantity, each.body), each.structure, *sizes)
         console.print(table)
-        line = (
+        console.print(
             "Largest difference from the equations of the ensemble, largest difference from the equations with the "
-            "engine's friction law, and the errors of both codes. The "
-            "error of its residual displacement includes the creep of regularized friction."
+            "engine's friction law, and the errors of both codes. The error of its residual displacement includes the "
+            "creep of regularized friction.",
+            soft_wrap=True,
         )
-        console.print(line, soft_wrap=True)
-
-
-def row_name(stripe: Stripe) -> str:
-    """A demand, and the model where that is the engine."""
-    name = quantity_name((stripe.quantity, stripe.body)).replace("_", " ")
-    return name if stripe.model == EXACT.key else f"{name} ({stripe.model})"
 
 
 def _parser() -> CommandParser:

@@ -1,131 +1,149 @@
-"""Demands under many motions: in the report."""
+"""Demands under many motions as engineers read them: in the report, on the terminal and as a picture."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.ensemble.result import STORED, Curve, EnsembleResult
-from comparison.analyses.ensemble.units import (
-    band,
-    figures_of,
-    fractiles_of,
-    scaled,
-    shown_stripes,
-    title_of,
-    unit_for_reading,
-)
+from comparison.analyses.ensemble.result import STORED, Curve, EnsembleResult, Statistic, Stripe
+from comparison.analyses.panels import draw_panels, panel
 from comparison.report.plots import Panel
-from comparison.report.section import Feature, Report, Section
+from comparison.report.section import Feature, Section
 from comparison.study.models import EXACT
+from reference.drawing import verbatim
+from reference.measures.peak_demands import QUANTITIES, unit_of
 from reference.problem import GRAVITY
 
 SHOWN = ("displacement", "residual", "base_shear", "uplift", "support_force_max")
 WIDTH = 0.3  # of a strip, in steps from one structure to the next
+READ = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "J": ("kJ", 1e-3), "rad": ("mrad", 1e3), "m/s^2": ("g", 1.0 / GRAVITY)}
+
+
+def title_of(quantity: str, body: int | None = None) -> str:
+    """A demand in words."""
+    return QUANTITIES[quantity][0] + (f" of body {body}" if body else "")
+
+
+def unit_for_reading(quantity: str, weight: float) -> tuple[str, float]:
+    """The unit in which a demand is read, and its factor; weight: of the structure, N."""
+    if quantity == "base_shear":
+        return "% of the weight", 100.0 / weight
+    unit = unit_of(quantity)
+    return ("%", 100.0) if quantity.endswith("_share") else READ.get(unit, (unit, 1.0))
 
 
 def ensemble_panels(ensemble: EnsembleResult) -> list[Panel]:
     """Isolator, base shear and supports over the scale or as strips; profiles over the height; floor spectra."""
-    if not ensemble.curves:
-        return []
-    panels = [_panel(ensemble, quantity) for quantity in SHOWN if any(c.quantity == quantity for c in ensemble.curves)]
-    return [*panels, *_profiles(ensemble), *_spectra(ensemble)]
+    shown = [quantity for quantity in SHOWN if any(curve.quantity == quantity for curve in ensemble.curves)]
+    panels = [_panel(ensemble, quantity) for quantity in shown]
+    return [*panels, *_profiles(ensemble), *_spectra(ensemble)] if ensemble.curves else []
+
+
+def draw_ensemble(path: Path, ensemble: EnsembleResult) -> None:
+    """Write the panels to `path`, PNG, and as PDF."""
+    names = ", ".join(f"{each.title} ({each.name})" for each in ensemble.structures)
+    draw_panels(path, verbatim(f"{names}, {_motions(ensemble)}"), ensemble_panels(ensemble))
+
+
+def _motions(ensemble: EnsembleResult) -> str:
+    return f"{ensemble.motions} motion{'' if ensemble.motions == 1 else 's'}"
 
 
 def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     one, series = len(ensemble.scales) == 1, []
     for place, structure in enumerate(ensemble.structures):
-        unit, factor = unit_for_reading(quantity, structure.weight)
-        motions, asked = ensemble.curves_of(structure.name, quantity)
-        look = {"color": place, "name": f"{structure.name}: one motion", "legend": False}
-        if one:
-            series += _strips(motions, factor, place, {**look, "legend": True})
-        else:
-            series += [{**_over_scales(curve, factor), **look, "width": 0.7} for curve in motions]
-        stripes = ensemble.stripes_of(structure.name, quantity)
-        low, median, high = fractiles_of(stripes, factor)
-        values = {"name": f"{structure.name}: median, 16 % to 84 %", "y": median, "low": low, "high": high}
-        x = [place + WIDTH if one else stripe.scale for stripe in stripes]
-        series.append({**values, "x": x, "color": place, "band": not one, "marks": True, "line": not one, "width": 2.4})
-        name = f"{structure.name}: engine"
-        if one:
-            series += _strips(asked, factor, place - WIDTH, {"color": "ink", "name": name})
-        else:
-            looks = {"name": name, "color": "ink", "marks": True, "line": False}
-            series += [{**_over_scales(curve, factor), **looks, "legend": curve is asked[0]} for curve in asked]
-    title = title_of((quantity, None))
-    names = [[n, structure.name] for n, structure in enumerate(ensemble.structures)]
-    x_axis = {"title": "", "ticks": names, "range": [-0.6, len(names) - 0.4]} if one else {
-        "title": "scale factor of the motion", "range": [0.0, 1.04 * max(ensemble.scales)]
-    }  # fmt: skip
-    y_axis = {"title": f"{title}, {unit}", "range": [0.0, _top(series)]}
-    over = "by scene" if one else "over the scale factor"
-    label = f"{title} {over}, {ensemble.motions} motions"
-    return {"title": title, "plot": {"label": label, "x": x_axis, "y": y_axis, "series": series}}
+        name, (unit, factor) = structure.name, unit_for_reading(quantity, structure.weight)
+        motions, engine = ensemble.curves_of(name, quantity)
+        look: dict[str, Any] = {"marks": True, "line": False} if one else {"width": 0.7}
+        series += _values(motions, factor, place if one else None, name=f"{name}: one motion", color=place, **look)
+        if stripes := ensemble.stripes_of(name, quantity):
+            x = [place + WIDTH if one else stripe.scale for stripe in stripes]
+            fractiles = zip(*(stripe.fractiles for stripe in stripes))
+            series.append(_median(ensemble, place, x, fractiles, factor, band=not one, line=not one))
+        look = {"name": f"{name}: engine", "color": "ink", "marks": True, "line": False}
+        series += _values(engine, factor, place - WIDTH if one else None, **look)
+    title = title_of(quantity)
+    names = [[number, structure.name] for number, structure in enumerate(ensemble.structures)]
+    strips = {"title": "", "ticks": names, "range": [-0.6, len(names) - 0.4]}
+    scales = {"title": "scale factor of the motion", "range": [0.0, 1.04 * max(ensemble.scales)]}
+    label = f"{title} {'by scene' if one else 'over the scale factor'}, {_motions(ensemble)}"
+    return panel(title, label, strips if one else scales, _from_zero(f"{title}, {unit}", series), series)
 
 
-def _strips(curves: Sequence[Curve], factor: float, place: float, look: dict[str, Any]) -> list[dict[str, Any]]:
-    """A dot for every motion, side by side."""
-    if not curves:
-        return []
-    spread = [place + WIDTH * ((n + 0.5) / len(curves) - 0.5) for n in range(len(curves))]
-    values = [scaled(curve.values[0], factor) for curve in curves]
-    titles = [curve.motion for curve in curves]
-    return [{"x": spread, "y": values, "titles": titles, "marks": True, "line": False, **look}]
+def _values(curves: Sequence[Curve], factor: float, place: float | None, **look: Any) -> list[dict[str, Any]]:
+    """The motions, each over its scales, or all side by side about a place; dots have their errors."""
+    series = []
+    for number, curve in enumerate(curves):
+        x = list(curve.scales) if place is None else [place + WIDTH * ((number + 0.5) / len(curves) - 0.5)]
+        line = {"x": x, "y": [_scaled(value, factor) for value in curve.values], "legend": number == 0, **look}
+        for key, side in (("low", -1.0), ("high", 1.0)) if "line" in look else ():
+            both = zip(curve.values, curve.errors)
+            line[key] = [None if None in pair else factor * (pair[0] + side * pair[1]) for pair in both]  # type: ignore[operator]
+        series.append({**line, "titles": [f"{curve.motion}, {scale:g}" for scale in curve.scales]})
+    return series
+
+
+def _median(
+    ensemble: EnsembleResult,
+    place: int,
+    x: list[Any],
+    fractiles: Iterable[Sequence[Statistic]],
+    factor: float,
+    **look: Any,
+) -> dict[str, Any]:
+    """Median of a structure with its band, from low, median and high at every x."""
+    columns = zip(("low", "y", "high"), fractiles)
+    numbers = {key: [_scaled(each.value, factor) for each in column] for key, column in columns}
+    about = {"name": f"{ensemble.structures[place].name}: median, 16 % to 84 %", "color": place, "x": x}
+    return {**about, **numbers, "band": True, "marks": True, "width": 2.4, **look}
 
 
 def _profiles(ensemble: EnsembleResult) -> list[Panel]:
     """Median and band of accelerations and drifts over the bodies, at the largest scale."""
-    top, panels = max(ensemble.scales), []
+    panels = []
     for quantity in ("acceleration", "drift"):
         series = []
         for place, structure in enumerate(ensemble.structures):
             unit, factor = unit_for_reading(quantity, structure.weight)
-            rows = ensemble.profile(structure.name, quantity)
-            low, median, high = fractiles_of(rows, factor)
-            values = {"x": [s.body for s in rows], "y": median, "low": low, "high": high, "band": True, "marks": True}
-            series.append({"name": f"{structure.name}: median, 16 % to 84 %", "color": place, **values})
-        if any(each["x"] for each in series):
+            if rows := ensemble.profile(structure.name, quantity):
+                fractiles = zip(*(row.fractiles for row in rows))
+                series.append(_median(ensemble, place, [row.body for row in rows], fractiles, factor))
+        if series:
             ticks = [[n, str(n)] for n in range(1, max(each.bodies for each in ensemble.structures) + 1)]
             x_axis = {"title": "body, from the platform up", "ticks": ticks}
-            title = {"acceleration": "acceleration over the height", "drift": "drift over the height"}[quantity]
-            y_axis = {"title": f"{quantity}, {unit}", "range": [0.0, _top(series)]}
-            label = f"{title}, {ensemble.motions} motions at scale {top:g}"
-            panels.append({"title": title, "plot": {"label": label, "x": x_axis, "y": y_axis, "series": series}})
+            label = f"{quantity} over the height, {_motions(ensemble)} at scale {max(ensemble.scales):g}"
+            y_axis = _from_zero(f"{quantity}, {unit}", series)
+            panels.append(panel(f"{quantity} over the height", label, x_axis, y_axis, series))
     return panels
 
 
 def _spectra(ensemble: EnsembleResult) -> list[Panel]:
     """Floor spectra of platform and uppermost body: median and band."""
     panels = []
-    tops = {structure.name: structure.bodies for structure in ensemble.structures}
-    for title, body_of in (("platform", lambda name: 1), ("top", tops.__getitem__)):
-        series = []
-        for place, structure in enumerate(ensemble.structures):
-            for spectrum in ensemble.spectra:
-                if (spectrum.structure, spectrum.body) == (structure.name, body_of(structure.name)):
-                    low, median, high = band(spectrum.fractiles, 1.0 / GRAVITY)
-                    values = {"x": list(spectrum.period), "y": median, "low": low, "high": high, "band": True}
-                    series.append({"name": f"{structure.name}: median, 16 % to 84 %", "color": place, **values})
-        if series and (title == "platform" or max(tops.values()) > 1):
-            damping = f"{100.0 * ensemble.spectra[0].damping:g} % damping"
-            y_axis = {"title": f"pseudo-acceleration, {damping}, g", "range": [0.0, _top(series)]}
-            axes = {"x": {"title": "period, s", "log": True}, "y": y_axis}
-            label = f"floor spectrum of the {title}, {ensemble.motions} motions"
-            panels.append({"title": f"floor spectrum: {title}", "plot": {"label": label, **axes, "series": series}})
+    for title in ("platform", "top"):
+        series = [
+            _median(ensemble, place, list(spectrum.period), spectrum.fractiles, 1.0 / GRAVITY, marks=False)
+            for place, structure in enumerate(ensemble.structures)
+            for spectrum in ensemble.spectra
+            if (spectrum.structure, spectrum.body) == (structure.name, 1 if title == "platform" else structure.bodies)
+        ]
+        if series and (title == "platform" or max(each.bodies for each in ensemble.structures) > 1):
+            quantity = f"pseudo-acceleration, {100.0 * ensemble.spectra[0].damping:g} % damping, g"
+            axes = {"title": "period, s", "log": True}, _from_zero(quantity, series)
+            label = f"floor spectrum of the {title}, {_motions(ensemble)}"
+            panels.append(panel(f"floor spectrum: {title}", label, *axes, series))
     return panels
 
 
-def _top(series: Sequence[dict[str, Any]]) -> float:
-    """Upper end of an axis that starts at zero."""
+def _from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """An axis that starts at zero."""
     values = [value for each in series for key in ("y", "high") for value in each.get(key, ()) if value is not None]
-    return 1.06 * max(values, default=0.0) or 1.0
+    return {"title": title, "range": [0.0, 1.06 * max(values, default=0.0) or 1.0]}
 
 
-def _over_scales(curve: Curve, factor: float) -> dict[str, Any]:
-    values = [scaled(value, factor) for value in curve.values]
-    return {"x": list(curve.scales), "y": values, "titles": [f"{curve.motion}, {scale:g}" for scale in curve.scales]}
+def _scaled(value: float | None, factor: float) -> float | None:
+    return None if value is None else factor * value
 
 
 def demand_rows(ensemble: EnsembleResult) -> list[dict[str, Any]]:
@@ -135,27 +153,32 @@ def demand_rows(ensemble: EnsembleResult) -> list[dict[str, Any]]:
         for structure in ensemble.structures:
             for stripe in shown_stripes(ensemble.stripes, structure.name, scale):
                 unit, factor = unit_for_reading(stripe.quantity, structure.weight)
-                name = title_of((stripe.quantity, stripe.body))
+                name = title_of(stripe.quantity, stripe.body)
                 model = "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
-                cells = [
-                    _text(each, factor) for each in (stripe.mean, *stripe.fractiles, stripe.largest, stripe.smallest)
-                ]
+                cells = [text_of(each, factor) for each in stripe.statistics]
                 about = {"scene": structure.name, "name": f"{name}{model}", "unit": unit, "scale": scale}
                 rows.append({**about, "cells": cells, "stripe": stripe})
     return rows
 
 
-def _text(number: Any, factor: float) -> str:
-    """A value with its error, which may be unknown."""
+def shown_stripes(stripes: Sequence[Stripe], structure: str, scale: float) -> list[Stripe]:
+    """Those of one structure at one scale, in the order of QUANTITIES: by the engine what the equations do not have."""
+
+    def place(stripe: Stripe) -> tuple[int, int]:
+        return [*QUANTITIES].index(stripe.quantity), stripe.body or 0
+
+    own = [stripe for stripe in stripes if (stripe.structure, stripe.scale) == (structure, scale)]
+    known = {place(stripe) for stripe in own if stripe.model == EXACT.key}
+    return sorted((each for each in own if each.model == EXACT.key or place(each) not in known), key=place)
+
+
+def text_of(number: Statistic, factor: float) -> str:
+    """A value to four digits without power of ten, with its error, which may be unknown."""
     if number.value is None:
         return "none"
-    error = "" if number.error is None else f" ± {factor * number.error:.1g}"
-    return f"{figures_of(factor * number.value)}{error}"
-
-
-def _context(report: Report, figures: Path) -> Mapping[str, Any]:
-    ensemble = report.results.of("ensemble")
-    return {"ensemble_panels": ensemble_panels(ensemble), "ensemble_rows": demand_rows(ensemble)}
+    value = factor * number.value
+    digits = f"{value:.4g}" if abs(value) < 1e4 else f"{float(f'{value:.4g}'):.0f}"
+    return digits if number.error is None else f"{digits} ± {factor * number.error:.1g}"
 
 
 FEATURE = Feature(
@@ -166,6 +189,9 @@ FEATURE = Feature(
     section=Section(
         "Demands under many motions",
         "python -m comparison.ensemble SCENE makes it, beside the report; the next run of the study shows it",
-        _context,
+        lambda report, figures: {
+            "ensemble_panels": ensemble_panels(report.results.of("ensemble")),
+            "ensemble_rows": demand_rows(report.results.of("ensemble")),
+        },
     ),
 )

@@ -25,15 +25,11 @@ class Statistic:
 
 
 @result
-class Fractile:
+class Fractile(Statistic):
     """A fractile of a demand over the motions."""
 
-    share: float
+    share: float = 0.5
     """part of the motions below it"""
-    value: float | None
-    """in the unit of the demand; null where it falls on a motion without an answer"""
-    error: float | None
-    """largest change within the errors of the motions"""
 
 
 @result
@@ -117,6 +113,11 @@ class Stripe:
     reasons: Mapping[str, int] = field(default_factory=dict)
     """why the other motions do not have it, and how many each"""
 
+    @property
+    def statistics(self) -> tuple[Statistic, ...]:
+        """Mean, fractiles, largest and smallest."""
+        return self.mean, *self.fractiles, self.largest, self.smallest
+
 
 @result
 class Curve:
@@ -197,10 +198,9 @@ class EnsembleResult:
     run: Mapping[str, Any]
     """command, times, provenance"""
 
-    def stripes_of(self, structure: str, quantity: str, body: int | None = None) -> list[Stripe]:
-        """Of one demand over the scales, by the equations, or by the engine what the equations do not have."""
-        asked = structure, quantity, body
-        own = [each for each in self.stripes if (each.structure, each.quantity, each.body) == asked]
+    def stripes_of(self, structure: str, quantity: str) -> list[Stripe]:
+        """Of one demand of the isolator over the scales, by the equations, or else by the engine."""
+        own = [each for each in self.stripes if (each.structure, each.quantity) == (structure, quantity)]
         return [each for each in own if each.model == EXACT.key] or own
 
     def profile(self, structure: str, quantity: str) -> list[Stripe]:
@@ -208,10 +208,9 @@ class EnsembleResult:
         asked = structure, quantity, EXACT.key, max(self.scales)
         return [each for each in self.stripes if (each.structure, each.quantity, each.model, each.scale) == asked]
 
-    def curves_of(self, structure: str, quantity: str, body: int | None = None) -> tuple[list[Curve], list[Curve]]:
-        """Of one demand, by the equations and by the engine."""
-        asked = structure, quantity, body
-        own = [each for each in self.curves if (each.structure, each.quantity, each.body) == asked]
+    def curves_of(self, structure: str, quantity: str) -> tuple[list[Curve], list[Curve]]:
+        """Of one demand of the isolator, by the equations and by the engine."""
+        own = [each for each in self.curves if (each.structure, each.quantity) == (structure, quantity)]
         return [each for each in own if each.model == EXACT.key], [each for each in own if each.model != EXACT.key]
 
 

@@ -26,7 +26,7 @@ from comparison.analyses.ensemble.analysis import (
     uncertain_fractile,
 )
 from comparison.analyses.ensemble.command import FILES, main, table_text
-from comparison.analyses.ensemble.figure import draw_ensemble
+from comparison.analyses.ensemble.feature import draw_ensemble
 from reference.measures import Demands, Estimate, phase_distribution
 from reference.measures.distribution import FRACTILES
 from reference.problem import load_family, load_scene
@@ -65,7 +65,7 @@ def run(*words: str) -> int:
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is drawn, which takes most of the time."""
-    monkeypatch.setattr("comparison.analyses.ensemble.figure.draw_ensemble", lambda path, result: None)
+    monkeypatch.setattr("comparison.analyses.ensemble.command.draw_ensemble", lambda path, result: None)
 
 
 def content() -> dict:  # type: ignore[type-arg]
@@ -172,24 +172,23 @@ def test_the_columns_of_the_table_are_the_shares_that_they_name() -> None:
 def test_the_picture_has_the_numbers_in_the_units_of_its_axes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Displacements in m of eleven motions, and the engine with its error bar."""
     figures = []
-    monkeypatch.setattr("comparison.analyses.ensemble.figure.save", lambda figure, path: figures.append(figure))
+    monkeypatch.setattr("comparison.surfaces.figures.pairs.save", lambda figure, path: figures.append(figure))
     points = [demanding(float(n), 0.0, Estimate(1.0, 0.0), motion=f"motion {n}") for n in range(11)]
     engine = [demanding(5.5, 0.25, Estimate(1.0, 0.0), "translational")]
     one_body = load_scene("fig3-I").with_values({"bodies": [{"mass": 1.0}]})
     ensemble = Ensemble((Member("mine", "motion 1", 1.0, one_body),))
     draw_ensemble(tmp_path / "ensemble.png", ensemble.result(Points(points, engine, engine), {}))
     axes = figures[0].axes[0]
-    assert axes.get_ylabel() == "isolator displacement, mm"
+    assert axes.get_ylabel() == "largest displacement of the isolator, mm"
     assert axes.get_ylim()[0] == 0.0
     lines = {line.get_label(): line for line in axes.get_lines()}
-    assert lines["median"].get_ydata() == pytest.approx([5e3])
-    assert lines["16 % to 84 %"].get_ydata() == pytest.approx([1.26e3, 8.74e3])
+    assert lines["mine: median, 16 % to 84 %"].get_ydata() == pytest.approx([5e3])
     assert lines["mine: one motion"].get_linestyle() == "None", "motions are not joined by a line"
-    assert lines["mine: one motion"].get_ydata() == pytest.approx(1e3 * np.arange(11.0))
-    (bars,) = axes.containers
-    assert bars.get_label() == "engine with its error"
-    assert bars.lines[0].get_ydata() == pytest.approx([5.5e3])
-    assert bars.lines[2][0].get_segments()[0][:, 1] == pytest.approx([5.25e3, 5.75e3])
+    assert [line.get_ydata()[0] for line in axes.get_lines()[:11]] == pytest.approx(1e3 * np.arange(11.0))
+    assert lines["mine: engine"].get_ydata() == pytest.approx([5.5e3])
+    *_, band, engine_error = (bars.get_segments()[0][:, 1] for bars in axes.collections)
+    assert band == pytest.approx([1.26e3, 8.74e3])
+    assert engine_error == pytest.approx([5.25e3, 5.75e3])
 
 
 def test_the_engine_is_asked_at_different_motions_and_scales(folder: Path) -> None:

@@ -1,0 +1,72 @@
+"""Panels: plots described once, drawn by plot.js on the page and by `draw_panels` as a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import zip_longest
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from comparison.report.plots import Panel
+from comparison.wording import mathtext
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COLORS = ("#1f4e8c", "#b3541e", "#2a7f4f", "#7b3f98", "#8a6d00", "#37808c", "#b3124b", "#5b9bd5")
+GRAYS = {"ink": "#222222", "gray": "0.5"}
+MARKERS = "os^Dv<>PX*"  # told apart without colors, too
+
+
+def panel(title: str, label: str, x: dict[str, Any], y: dict[str, Any], series: Any, **more: Any) -> Panel:
+    """A panel with its plot, as plot.js has it; label: the plot in words."""
+    return {"title": title, "plot": {"label": label, "x": x, "y": y, "series": series, **more}}
+
+
+def draw_panels(path: Path, title: str, panels: Sequence[Panel], columns: int = 3) -> None:
+    """Write the panels below a title to `path`, PNG, and as PDF."""
+    from matplotlib.figure import Figure  # matplotlib: only what draws needs it
+
+    from comparison.surfaces.figures.pairs import save
+
+    columns = min(columns, max(len(panels), 1))
+    rows = -(-len(panels) // columns) or 1
+    figure = Figure(figsize=(5.0 * columns, 4.0 * rows + 0.6), dpi=110, layout="constrained")
+    figure.suptitle(title, fontsize=12)
+    for axes, each in zip_longest(figure.subplots(rows, columns, squeeze=False).flat, panels):
+        if each is None:
+            axes.set_axis_off()
+        else:
+            _draw(axes, each)
+    save(figure, path)
+
+
+def _draw(axes: Axes, each: Panel) -> None:
+    plot = each["plot"]
+    axes.set_title(mathtext(each["title"]), fontsize=10)
+    axes.grid(color="0.92")
+    for band in plot.get("bands", ()):
+        axes.axhspan(band["from"], band["to"], color="0.93", lw=0.0)
+    for line in plot["series"]:
+        number = line.get("color", 0)
+        look: dict[str, Any] = {"color": GRAYS.get(number) or COLORS[number % len(COLORS)]}
+        x, y, low, high = (np.array(line.get(key, ()), dtype=float) for key in ("x", "y", "low", "high"))
+        if line.get("band"):
+            axes.fill_between(x, low, high, alpha=0.18, lw=0.0, **look)
+        elif low.size:
+            axes.vlines(x, low, high, lw=3.0, alpha=0.4, **look)
+        marker = MARKERS[0 if number in GRAYS else number % len(MARKERS)] if line.get("marks") else ""
+        style = "none" if line.get("line") is False else "--" if "dash" in line else "-"
+        label = mathtext(line["name"]) if line.get("legend", True) else "_"
+        axes.plot(x, y, ls=style, marker=marker, ms=4.5, lw=line.get("width", 1.4), label=label, **look)
+    for name in "xy":
+        axis = plot[name]
+        axes.set(**{f"{name}label": mathtext(axis["title"]), f"{name}scale": "log" if axis.get("log") else "linear"})
+        if "ticks" in axis:
+            places, names = zip(*axis["ticks"])
+            axes.set(**{f"{name}ticks": places, f"{name}ticklabels": [mathtext(text) for text in names]})
+        if "range" in axis:
+            axes.set(**{f"{name}lim": axis["range"]})
+    axes.legend(fontsize=7.5, frameon=False)
