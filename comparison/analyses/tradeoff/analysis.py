@@ -4,8 +4,8 @@ The trade-off as an analysis: a task for every few seconds of a function's phase
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 import xarray as xr
@@ -13,7 +13,16 @@ from numpy.typing import NDArray
 
 from comparison.analyses.tradeoff.measure import Function, Measured, Measurement, joined, measure, sample, without_value
 from comparison.analyses.tradeoff.settings import Question, Setting, asked, settings, user_settings
-from comparison.analyses.tradeoff.trade import Answered, Entry, Trade, labeled, quantile, with_pareto_fronts
+from comparison.analyses.tradeoff.trade import (
+    Answered,
+    Entry,
+    MeasuredTrade,
+    Stated,
+    Trade,
+    labeled,
+    quantile,
+    with_pareto_fronts,
+)
 from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
@@ -26,17 +35,8 @@ from reference.problem import Scene
 Array = NDArray[np.float64]
 
 CHUNK = 3.0  # s of work in one task, about
-STATED = ("question", "method", "parameter", "unit", "value", "controlled", "model_error")  # of a setting
 CHEAP = 0.01  # s per point of a reference solution of its own, about
 OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
-
-
-@dataclass(frozen=True)
-class MeasuredTrade:
-    """One scene: the diagram, and every value behind it by setting, point and body."""
-
-    trade: Trade
-    values: xr.Dataset
 
 
 @dataclass(frozen=True)
@@ -49,97 +49,84 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """Every function of every scene, its sample in parts of about CHUNK seconds."""
-        return [task for scene in study.phased for tasks in self._by_function(scene).values() for task in tasks]
+        tasks = [task for scene in study.phased for parts in self._measurements(scene) for task in parts]
+        return list({task.key: task for task in tasks}.values())  # one function may serve two settings
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredTrade]:
         """One diagram for each scene, without what the command knows of the run."""
         return [self._trade(scene, results) for scene in study.phased]
 
-    def _by_function(self, scene: Scene) -> dict[str, list[Task]]:
-        """The tasks of a scene by the key of their function."""
-        tasks: dict[str, list[Task]] = {}
+    def _settings(self, scene: Scene) -> list[Setting]:
+        return [*settings(scene, self.quick), *user_settings(self.supplied)]
+
+    def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
+        """The tasks of the reference solution of every question; then of every setting, and of what it is against."""
+        questions = {question.key: question for question in asked(scene)}
+        for question in questions.values():
+            yield self._tasks(scene, question.reference_solution, question, question.seconds)
+        for each in self._settings(scene):
+            question = questions[each.question]
+            yield self._tasks(scene, (each.function, each.settings), question, each.seconds)
+            against, seconds = (
+                (each.against, CHEAP) if each.against else (question.reference_solution, question.seconds)
+            )
+            yield self._tasks(scene, against, question, seconds)
+
+    def _tasks(self, scene: Scene, function: Function, question: Question, seconds: float) -> list[Task]:
+        """Those of one function on the sample of a question; seconds: per point of a motion of 20 s, about."""
+        count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
+        size, phases = int(np.clip(CHUNK / each, 1, count)), sample(count)
+        engine = engine_of(function[1]).get("function", "")
         limits = {engine_of(model.settings)["function"]: model.timeout for model in self.supplied}
-        for name, (function, count, seconds) in functions(scene, self.quick, user_settings(self.supplied)).items():
-            each = seconds * scene.duration / 20.0
-            size = int(np.clip(CHUNK / each, 1, count))
-            phases = sample(count)
-            engine = engine_of(function[1]).get("function", "")
-            limit = limits.get(engine)
-            tasks[name] = [
-                Task(
-                    measure,
-                    Measurement(scene, function, first, phases[first : first + size]),
-                    self.stage,
-                    each * min(size, count - first),
-                    scene,
-                    timeout=limit and limit * size,
-                    group=engine,
-                )
-                for first in range(0, count, size)
-            ]
-        return tasks
+        limit = limits.get(engine)
+        return [
+            Task(
+                measure,
+                Measurement(scene, function, first, phases[first : first + size]),
+                self.stage,
+                each * min(size, count - first),
+                scene,
+                timeout=limit and limit * size,
+                group=engine,
+            )
+            for first in range(0, count, size)
+        ]
 
     def _trade(self, scene: Scene, results: TaskResults) -> MeasuredTrade:
-        measured = {
-            name: joined([results.value(task, without_value) for task in tasks])
-            for name, tasks in self._by_function(scene).items()
-        }
-        questions = {question.key: question for question in asked(scene)}
-        entries, answers, reference_solutions = [], [], []
-        for setting in [*settings(scene, self.quick), *user_settings(self.supplied)]:
-            question = questions[setting.question]
-            count = question.quick if self.quick else question.points
-            reference_solution = measured[key(setting.against or question.reference_solution)].upto(count)
-            answer = measured[key((setting.function, setting.settings))].upto(count)
-            entries.append(entry(setting, answer, reference_solution.mu))
-            answers.append(answer)
-            reference_solutions.append(reference_solution.mu)
-        entries = with_pareto_fronts(entries, len(scene.bodies))
-        answered = [
-            _answered(question, measured[key(question.reference_solution)], entries) for question in questions.values()
-        ]
-        trade = Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
-        phases = sample(max(question.points for question in answered))
-        estimates = [answer.error_estimate for answer in answers]
-        return MeasuredTrade(
-            trade, labeled(entries, [answer.mu for answer in answers], reference_solutions, estimates, phases)
+        measured = (
+            joined([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
         )
-
-
-def key(function: Function) -> str:
-    """What tells two functions apart."""
-    return f"{function[0]} {sorted(function[1].items())}"
-
-
-def functions(scene: Scene, quick: bool, others: Sequence[Setting] = ()) -> dict[str, tuple[Function, int, float]]:
-    """
-    Every function called for a scene, by its key, with its number of phase pairs and about how long each takes, s.
-    """
-    points = {question.key: question.quick if quick else question.points for question in asked(scene)}
-    measured = [*settings(scene, quick), *others]
-    calls = [(question.reference_solution, points[question.key], question.seconds) for question in asked(scene)]
-    calls += [(setting.against, points[setting.question], CHEAP) for setting in measured if setting.against]
-    calls += [((setting.function, setting.settings), points[setting.question], setting.seconds) for setting in measured]
-    by_key: dict[str, tuple[Function, int, float]] = {}
-    for function, count, seconds in calls:  # one may serve two questions
-        before = by_key.get(key(function), (function, 0, 0.0))[1]
-        by_key[key(function)] = function, max(count, before), seconds
-    return by_key
+        solutions = [(question, next(measured)) for question in asked(scene)]
+        rows = [(setting, next(measured), next(measured)) for setting in self._settings(scene)]
+        entries = [entry(setting, answer, against.mu) for setting, answer, against in rows]
+        entries = with_pareto_fronts(entries, len(scene.bodies))
+        answered = [_answered(*solution, entries) for solution in solutions]
+        values = {
+            "mu": [answer.mu for _, answer, _ in rows],
+            "reference_solution": [against.mu for *_, against in rows],
+            "error_estimate": [answer.error_estimate for _, answer, _ in rows],
+        }
+        trade = Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
+        return MeasuredTrade(trade, labeled(entries, values, sample(max(question.points for question in answered))))
 
 
 def entry(setting: Setting, measured: Measured, reference_solution: Array) -> Entry:
     """What one setting gave at M phase pairs, against mu (M, N) of the reference solution there."""
     error = np.abs(measured.mu / reference_solution - 1.0)
     error_estimate = measured.error_estimate / np.abs(measured.mu)
-    points, bodies = measured.mu.shape
+    points = len(measured.mu)
+    median, most, estimate = (
+        [quantile(column, share) for column in errors.T]
+        for errors, share in ((error, 0.5), (error, 0.95), (error_estimate, 0.95))
+    )
     return Entry(
-        **{name: getattr(setting, name) for name in STATED},
+        **{field.name: getattr(setting, field.name) for field in fields(Stated)},
         points=points,
         answered=int(np.isfinite(error).all(axis=1).sum()),
         seconds=measured.seconds / points,
-        median=[quantile(error[:, body], 0.5) for body in range(bodies)],
-        most=[quantile(error[:, body], 0.95) for body in range(bodies)],
-        error_estimate=[quantile(error_estimate[:, body], 0.95) for body in range(bodies)],
+        median=median,
+        most=most,
+        error_estimate=estimate,
         step=finite_or_none(measured.step),
         error_message=measured.error_message,
     )

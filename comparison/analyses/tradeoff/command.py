@@ -15,17 +15,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
 
-from comparison.analyses.tradeoff.analysis import MeasuredTrade, TradeOff
-from comparison.analyses.tradeoff.growth import FILE as GROWTH
-from comparison.analyses.tradeoff.growth_command import FILES, growth_files, measured_growth, print_growth
+from comparison.analyses.tradeoff import growth
+from comparison.analyses.tradeoff.analysis import TradeOff
+from comparison.analyses.tradeoff.feature import draw_growth, draw_tradeoff
+from comparison.analyses.tradeoff.growth import Growth, MeasuredGrowth, Series, by_workers
 from comparison.analyses.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
-from comparison.analyses.tradeoff.trade import FILE, SCHEMA, STORED, Trade, TradeFile, load
+from comparison.analyses.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, Trade, TradeFile, load
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed, run_facts
+from comparison.cli.terminal import new_table
 from comparison.cli.user_models import add_models, user_models
 from comparison.runner.executors import Pool
 from comparison.runner.output import destination, made_by, netcdf, publish, refuse_foreign_files
@@ -40,6 +40,7 @@ DEFAULT = "fig3-I"
 COMMAND = "comparison.tradeoff"
 ENDINGS = "png", "pdf", "nc"  # of the files of a scene
 STARTING = 8.0  # s of a worker before its first task: imports, compiled code loaded
+GROWTH_FILES = (growth.FILE, growth.PICTURE, "growth.pdf")
 MODELS = {REFERENCE, ENGINE, RUN, LEVEL, CONSTANT, SCIPY}  # what the workers ask
 TOLERANCE = 1e-3  # of a study; every setting has one of its own
 
@@ -54,7 +55,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     out = destination(options.out)
     _stored(out)  # a file that is no trade is refused before anything is measured
     pictures = [figure_file(scene.name, "tradeoff", ending=f".{end}") for scene in scenes for end in ENDINGS]
-    refuse_foreign_files(out, [FILE, *pictures, *(FILES if options.growth else ())])
+    refuse_foreign_files(out, [FILE, *pictures, *(GROWTH_FILES if options.growth else ())])
     console = wide_console()
     if options.growth:
         return _grown(scenes[0], options, argv, out, console, executor)
@@ -76,12 +77,37 @@ def _grown(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
 ) -> int:
     """Measure how the cost grows; the exit code."""
-    growth = measured_growth(scene, options, words, console, executor)
+    begin, study = time.monotonic(), Study((scene,), 1, TOLERANCE)
+    tasks = Growth().tasks(study)
+    models = {task.argument.function[0] for task in tasks}
+    results = computed("tradeoff", options, words, tasks, models, console, executor)
+    series = [*Growth().collect(study, None, results), by_workers(scene, process_pool)]
+    facts = run_facts("tradeoff", options, words, begin)
+    measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
+    files = growth_files(measured)
     with writing(out):
-        publish(out, growth_files(growth), COMMAND)
-    print_growth(console, growth.series)
-    console.print(f"Growth: {out / GROWTH}, and growth.png beside it.", soft_wrap=True)
+        publish(out, files, COMMAND)
+    print_growth(console, series)
+    console.print(f"Growth: {out / growth.FILE}, and growth.png beside it.", soft_wrap=True)
     return 0
+
+
+def growth_files(measured: MeasuredGrowth) -> dict[str, bytes]:
+    """Table and figure."""
+    picture = made_by(lambda folder: draw_growth(folder / growth.PICTURE, measured))
+    return {growth.FILE: growth.STORED.as_json(measured), **picture}
+
+
+def print_growth(console: Console, series: Sequence[Series]) -> None:
+    """A row for every value, with the slope of its series in the last one."""
+    table = new_table("quantity", "model", "value", "s", "slope")
+    for each in series:
+        slope = "" if each.slope is None else f"{each.slope:.2f} ± {each.uncertainty:.2f}"
+        for value, seconds in zip(each.values, each.seconds):
+            known = "no answer" if seconds is None else f"{seconds:.3g}"
+            last = value == each.values[-1]
+            table.add_row(each.quantity, each.model, f"{value:g}", known, slope if last else "")
+    console.print(table)
 
 
 def _phased(name: str) -> Scene:
@@ -130,8 +156,6 @@ def measured_trades(
 
 def _files(measured: MeasuredTrade) -> dict[str, bytes]:
     """Values and pictures of one scene."""
-    from comparison.analyses.tradeoff.figure import draw_tradeoff  # plotting: not needed to refuse
-
     picture = figure_file(measured.trade.scene, "tradeoff")
     return made_by(
         lambda folder: with_ending(folder / picture, ".nc").write_bytes(netcdf(measured.values)),
@@ -146,10 +170,7 @@ def print_trade(console: Console, trade: Trade) -> None:
         console.print(
             f"  reference solution: {question.reference_solution}; {'; '.join(question.checks)}", soft_wrap=True
         )
-        table = Table(box=SIMPLE_HEAD, pad_edge=False)
-        table.add_column("on the Pareto front of a mu", no_wrap=True)
-        for heading in ("value", "s per point", "median error", "95 %"):
-            table.add_column(heading, justify="right", no_wrap=True)
+        table = new_table("on the Pareto front of a mu", "value", "s per point", "median error", "95 %")
         for entry in sorted(trade.of(question.key), key=lambda setting: setting.seconds):
             if any(entry.pareto_front):
                 sizes = ("  ".join(f"{part:.0e}" for part in parts) for parts in (entry.median, entry.most))

@@ -2,26 +2,41 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from comparison.analyses.panels import draw_panels, panel
 from comparison.analyses.tradeoff import growth, trade
-from comparison.analyses.tradeoff.growth import MeasuredGrowth
+from comparison.analyses.tradeoff.growth import MeasuredGrowth, Series
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
 from comparison.report.plots import MAX_CURVES, Panel
 from comparison.report.section import Feature, Report, Section
 from comparison.surfaces.figures.file_names import figure_file
 from comparison.wording import scientific
+from reference.drawing import verbatim
 
 TARGETS = 1e-2, 1e-3, 1e-4, 1e-6  # relative errors for which the trade is put into words
 
 
-def tradeoff_panels(trade: Trade) -> list[Panel]:
-    """One panel for each question, of the platform and of the last body."""
-    bodies = [0] if trade.bodies == 1 else [0, trade.bodies - 1]
-    return [_tradeoff_panel(trade, question, body) for question in trade.questions for body in bodies]
+def tradeoff_panels(trade: Trade, most: int | None = MAX_CURVES) -> list[Panel]:
+    """One panel for each question, of the platform and of the last body; at most so many curves, None for all."""
+    bodies = sorted({0, trade.bodies - 1})
+    return [_tradeoff_panel(trade, question, body, most) for question in trade.questions for body in bodies]
+
+
+def draw_tradeoff(path: Path, trade: Trade) -> None:
+    """Write the panels with every curve to `path`, PNG, and as PDF."""
+    title = verbatim(f"{trade.title} ({trade.scene}): speed for accuracy")
+    what = "error that 95 % of the points meet; dashed: model error; shaded: below that of the reference solution"
+    draw_panels(path, f"{title}\n{what}", tradeoff_panels(trade, None), 4)
+
+
+def draw_growth(path: Path, measured: MeasuredGrowth) -> None:
+    """Write how the cost grows to `path`, PNG, and as PDF."""
+    draw_panels(path, verbatim(f"{measured.title} ({measured.scene}): cost"), growth_panels(measured.series), 4)
 
 
 def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
@@ -36,20 +51,17 @@ def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
                 parts.append(f"for {target:.0e} none")
                 continue
             best = min(estimated or able, key=lambda entry: entry.seconds)
-            setting = f"{best.parameter} {best.value:.3g} {best.unit}".strip()
             time = f"{1e3 * best.seconds:.3g} ms{'' if estimated else ', no error estimate'}"
-            parts.append(f"for {target:.0e} ask {best.method}, {setting} ({time})")
+            parts.append(f"for {target:.0e} ask {best.method}, {best.setting} ({time})")
         answers.append({"title": question.title, "text": "; ".join(parts) + "."})
     return answers
 
 
-def growth_panels(measured: MeasuredGrowth | None) -> list[Panel]:
-    """One log-log panel for each quantity that grows: seconds over it, the slopes in the legend."""
+def growth_panels(listed: Sequence[Series]) -> list[Panel]:
+    """One panel for each quantity that grows: seconds over it, the slopes in the legend."""
     panels: list[Panel] = []
-    if measured is None:
-        return panels
-    titles = list(dict.fromkeys(each.model for each in measured.series))
-    for quantity, group in groupby(measured.series, key=lambda each: each.quantity):
+    titles = list(dict.fromkeys(each.model for each in listed))
+    for quantity, group in groupby(listed, key=lambda each: each.quantity):
         curves = list(group)
         series: list[dict[str, Any]] = []
         for each in curves:
@@ -59,77 +71,67 @@ def growth_panels(measured: MeasuredGrowth | None) -> list[Panel]:
         wall = quantity == "workers"
         time = "wall time, s" if wall else "processor time, s"
         longest = max((value for each in curves for value in each.seconds if value is not None), default=1.0)
-        plot = {
-            "label": f"{time} over {quantity}; " + "; ".join(str(line["name"]) for line in series),
-            "x": {"title": f"{quantity}, {curves[0].unit}".rstrip(", "), "log": True},
-            "y": {"title": time, "range": [0.0, 1.1 * longest]} if wall else {"title": time, "log": True},
-            "series": series,
-        }
-        panels.append({"title": quantity, "plot": plot})
+        label = f"{time} over {quantity}; " + "; ".join(str(line["name"]) for line in series)
+        x = {"title": f"{quantity}, {curves[0].unit}".rstrip(", "), "log": True}
+        y = {"title": time, "range": [0.0, 1.1 * longest]} if wall else {"title": time, "log": True}
+        panels.append(panel(quantity, label, x, y, series))
     return panels
 
 
-def _tradeoff_panel(trade: Trade, question: Answered, body: int) -> Panel:
+def _tradeoff_panel(trade: Trade, question: Answered, body: int, most: int | None) -> Panel:
     curves = {
         method: known
         for method, entries in trade.methods(question.key).items()
-        if (known := [e for e in entries if e.most[body] is not None and e.answered == e.points])
+        if (known := [entry for entry in entries if entry.most[body] is not None and entry.complete])
     }
-    order = sorted(curves, key=lambda method: (curves[method][0].model_error, -_fronts(curves[method], body)))
-    series = [_curve(method, curves[method], body, number) for number, method in enumerate(order[:MAX_CURVES])]
+
+    def rank(method: str) -> tuple[bool, int]:
+        return curves[method][0].model_error, -sum(any(entry.pareto_front[body:][:1]) for entry in curves[method])
+
+    shown = sorted(curves, key=rank)[:most]
     title = f"{question.title}, mu_{body + 1}"
-    plot = {
-        "label": f"{trade.scene}, {title}: relative error over processor time; " + ", ".join(order[:MAX_CURVES]),
-        "x": {"title": "processor time per point, s", "log": True},
-        "y": {"title": "relative error, 95 %", "log": True},
-        "series": series,
-        "bands": [{"from": 1e-30, "to": question.error}] if question.error > 0.0 else [],
-        "height": 260,
-    }
-    return {"title": title, "plot": plot}
-
-
-def _fronts(entries: Sequence[Entry], body: int) -> int:
-    return sum(entry.pareto_front[body] for entry in entries if entry.pareto_front)
+    return panel(
+        title,
+        f"{trade.scene}, {title}: relative error over processor time; " + ", ".join(shown),
+        {"title": "processor time per point, s", "log": True},
+        {"title": "relative error, 95 %", "log": True},
+        [_curve(method, curves[method], body, number) for number, method in enumerate(shown)],
+        bands=[{"from": 1e-30, "to": question.error}] if question.error > 0.0 else [],
+        height=260,
+    )
 
 
 def _curve(method: str, entries: Sequence[Entry], body: int, number: int) -> dict[str, Any]:
-    titles = [
-        f"{method}, {entry.parameter} {entry.value:.3g} {entry.unit}: {scientific(entry.most[body] or 0.0)} in "
-        f"{1e3 * entry.seconds:.3g} ms"
-        for entry in entries
-    ]
+    times = [f"{scientific(entry.most[body] or 0.0)} in {1e3 * entry.seconds:.3g} ms" for entry in entries]
     line: dict[str, Any] = {
         "name": method,
         "x": [entry.seconds for entry in entries],
         "y": [max(entry.most[body] or 0.0, 1e-16) for entry in entries],
         "marks": True,
-        "titles": titles,
+        "titles": [f"{method}, {entry.setting}: {time}" for entry, time in zip(entries, times)],
         "color": number,
     }
     return {**line, "dash": "5 3"} if entries[0].model_error else line
 
 
 def _meets(entry: Entry, target: float) -> bool:
-    errors = [size for size in entry.most if size is not None]
-    complete = len(errors) == len(entry.most) and entry.answered == entry.points
-    return complete and not entry.model_error and max(errors) <= target
+    errors = [math.inf if size is None else size for size in entry.most]
+    return entry.complete and not entry.model_error and max(errors) <= target
 
 
 def _draw(figures: Path, report: Report) -> None:
-    from comparison.analyses.tradeoff.figure import draw_growth, draw_tradeoff  # matplotlib: only to draw
-
     for each in report.results.of("tradeoff") or ():
         draw_tradeoff(figures / figure_file(each.scene, "tradeoff"), each)
-    if report.results.of("growth"):
-        draw_growth(figures / growth.PICTURE, report.results.of("growth").series)
+    if measured := report.results.of("growth"):
+        draw_growth(figures / growth.PICTURE, measured)
 
 
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:
+    measured = report.results.of("growth")
     return {
         "tradeoff_panels": tradeoff_panels,
         "tradeoff_answers": tradeoff_answers,
-        "growth_panels": growth_panels(report.results.of("growth")),
+        "growth_panels": growth_panels(measured.series if measured else ()),
         "digests": {scene.digest for scene in report.results.scenes},
     }
 

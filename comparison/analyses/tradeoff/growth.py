@@ -7,7 +7,9 @@ logarithms of the larger half of the values, where fixed costs count least.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -18,6 +20,7 @@ from comparison.analyses.tradeoff.measure import Measurement, measure, sample, w
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import result
 from comparison.runner.analysis import Analysis
+from comparison.runner.executors import cores
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
@@ -25,6 +28,7 @@ from comparison.study.study import Study
 from reference.problem import Scene
 
 TOLERANCE = 1e-3  # asked of the engine; the equations are asked for their own
+CALLS, PAIRS = 16, 64  # of the equations, shared by the workers
 
 FILE, PICTURE = "growth.json", "growth.png"
 SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"
@@ -65,20 +69,15 @@ class Quantity:
     models: tuple[Model, ...]
 
 
-def _usual_points(model: Model, value: float) -> int:
-    return POINTS[model.side]
-
-
-def _lasting(scene: Scene, duration: float) -> Scene:
-    return scene.with_values({"duration": duration})
-
-
 _EACH = EXACT, TRANSLATIONAL, SPATIAL
 QUANTITIES = (
-    Quantity("bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), _usual_points, _EACH),
-    Quantity("duration", "s", DURATIONS, _lasting, _usual_points, _EACH),
+    Quantity("bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), lambda model, n: POINTS[model.side], _EACH),
+    Quantity(
+        "duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}),
+        lambda model, n: POINTS[model.side], _EACH,
+    ),
     Quantity("phase pairs", "", PHASES, lambda scene, n: scene, lambda model, n: int(n), (EXACT,)),
-)
+)  # fmt: skip
 
 
 @result
@@ -184,3 +183,19 @@ class Growth(Analysis[list[Series]]):
         phases = sample(quantity.points(model, value))
         measurement = Measurement(quantity.scene(scene, value), (model.amplification, settings), 0, phases)
         return Task(measure, measurement, self.stage, about=scene, timeout=LIMIT)
+
+
+def by_workers(scene: Scene, pool: Callable[[int], Executor], most: int | None = None) -> Series:
+    """Wall time of the same calls of the equations with 1, 2, 4 ... workers of this machine."""
+    most = most or cores()
+    counts = sorted({*(2**n for n in range(most.bit_length()) if 2**n <= most), most})
+    settings = {**EXACT.settings, "tolerance": 1e-6}
+    call = Measurement(scene, (EXACT.amplification, settings), 0, sample(PAIRS))
+    seconds = []
+    for workers in counts:
+        with pool(workers) as executor:
+            list(executor.map(measure, [call] * 2 * workers))  # every worker is warm
+            begin = time.monotonic()
+            list(executor.map(measure, [call] * CALLS))
+            seconds.append(time.monotonic() - begin)
+    return with_slope("workers", "", EXACT.title, list(map(float, counts)), seconds)

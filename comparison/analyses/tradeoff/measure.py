@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,13 +51,6 @@ class Measured:
     def __post_init__(self) -> None:
         if self.mu.ndim != 2 or self.error_estimate.shape != self.mu.shape:
             raise ValueError(f"mu {self.mu.shape}, error_estimate {self.error_estimate.shape}")
-
-    def upto(self, count: int) -> Measured:
-        """The first `count` phase pairs, with their share of the time."""
-        share = min(1.0, count / len(self.mu))
-        return replace(
-            self, mu=self.mu[:count], error_estimate=self.error_estimate[:count], seconds=self.seconds * share
-        )
 
 
 def sample(points: int) -> Array:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from comparison.analyses.tradeoff.trade import Stated
 from comparison.study.models import V_REG, Model, dry, has_spatial_data
 from comparison.study.user_models import engine_of
 from reference.problem import Scene
@@ -52,24 +53,15 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Setting:
+class Setting(Stated):
     """
-    One point of a diagram. function: answers (scene, phases, **settings). method: the curve it belongs to; parameter:
-    what varies along that, value: here. controlled: comes with an error estimate. model_error: `question` is not what
-    the equations solved here ask. against: reference solution of its own in place of the question's. seconds: per
-    point, about.
+    One point of a diagram. function: answers (scene, phases, **settings). against: reference solution of its own in
+    place of the question's. seconds: per point, about.
     """
 
-    question: str
-    method: str
-    parameter: str
-    unit: str
-    value: float
     function: str
     settings: Settings
     seconds: float
-    controlled: bool = False
-    model_error: bool = False
     against: tuple[str, Settings] | None = None
 
 
@@ -102,12 +94,14 @@ def settings(scene: Scene, quick: bool = False) -> list[Setting]:
 
 def _curve(
     question: str, method: str, parameter: str, call: tuple[str, str, Settings], values: Sequence[float],
-    seconds: float | Sequence[float], unit: str = "", **marks: Any,
+    seconds: float | Sequence[float], unit: str = "", controlled: bool = False, model_error: bool = False,
+    against: tuple[str, Settings] | None = None,
 ) -> list[Setting]:  # fmt: skip
     """The settings of a curve. call: function, the key of it that has each of the values, its other settings."""
     function, key, others = call
+    stated = question, method, parameter, unit
     return [
-        Setting(question, method, parameter, unit, value, function, {**others, key: value}, time, **marks)
+        Setting(*stated, value, controlled, model_error, function, {**others, key: value}, time, against)
         for value, time in zip(values, np.broadcast_to(seconds, len(values)).tolist())
     ]
 
@@ -124,8 +118,8 @@ def _reference(scene: Scene) -> list[Setting]:
     for speed in DRY_SPEEDS if dry(scene) and scene.friction_coefficient > 0.0 else ():
         faster = REFERENCE, {"cutoff": speed, "tolerance": TIGHT}
         for what, against in (("supremum", None), ("peak faster than v_reg", faster)):
-            method, marks = f"v_reg, model error against the {what}", {"model_error": True, "against": against}
-            measured += _curve("exact", method, "v_reg", call, [speed], 0.004, "m/s", **marks)
+            method = f"v_reg, model error against the {what}"
+            measured += _curve("exact", method, "v_reg", call, [speed], 0.004, "m/s", False, True, against)
     return measured
 
 
@@ -174,16 +168,15 @@ def _constant(quick: bool) -> list[Setting]:
 
 def user_settings(models: Sequence[Model]) -> list[Setting]:
     """Engines of the user at the tolerances that they take, or as they are."""
-    keys = {question.key for question in QUESTIONS}
     measured = []
     for model in models:
         law = {key: value for key, value in model.settings.items() if key != "engine"}
-        question, against = (
-            (model.like, None) if model.like in keys else ("exact", (REFERENCE, {**law, "tolerance": TIGHT}))
-        )
+        question, against = str(model.like), None
+        if question not in {each.key for each in QUESTIONS}:
+            question, against = "exact", (REFERENCE, {**law, "tolerance": TIGHT})
         parameter, values = "as it is, beside a tolerance of", [1e-3]
         if "tolerance" in engine_of(model.settings).get("names", ""):
             parameter, values = "tolerance of mu", [1e-2, 1e-3, 1e-4, 1e-5]
         call = model.amplification, "tolerance", model.settings
-        measured += _curve(str(question), f"user model: {model.title}", parameter, call, values, 1.0, against=against)
+        measured += _curve(question, f"user model: {model.title}", parameter, call, values, 1.0, against=against)
     return measured

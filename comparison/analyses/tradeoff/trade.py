@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -18,11 +19,16 @@ Array = NDArray[np.float64]
 
 FILE = "tradeoff.json"
 SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"
+MEANINGS = {
+    "mu": "amplification factor (5.1)",
+    "reference_solution": "the same by the reference solution of the question",
+    "error_estimate": "estimated absolute error of mu",
+}
 
 
 @result
-class Entry:
-    """One setting of a method, measured."""
+class Stated:
+    """What is known of a setting before it is measured."""
 
     question: str
     """key of the question that it answers"""
@@ -38,6 +44,17 @@ class Entry:
     """whether an error estimate comes with it"""
     model_error: bool
     """whether its error is that of another model, not of numerics"""
+
+    @property
+    def setting(self) -> str:
+        """Parameter, value and unit."""
+        return f"{self.parameter} {self.value:.3g} {self.unit}".strip()
+
+
+@result
+class Entry(Stated):
+    """One setting of a method, measured."""
+
     points: int
     """phase pairs asked for"""
     answered: int
@@ -56,6 +73,11 @@ class Entry:
     """for each mu, whether no other method is as accurate (95 %) in less time"""
     error_message: str = ""
     """what went wrong, or empty"""
+
+    @property
+    def complete(self) -> bool:
+        """Whether it has a value at every point."""
+        return self.answered == self.points
 
 
 @result
@@ -118,36 +140,31 @@ def quantile(errors: Array, share: float) -> float | None:
     return float(np.quantile(known, share, method="higher")) if len(known) else None
 
 
-def on_pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[bool]:
+def unbeaten(mine: tuple[float, float], others: Sequence[tuple[float, float]]) -> bool:
     """
-    Which pairs are not beaten: no other is at least as good in both and better in one.
+    Whether nothing else is at least as good in cost and error and better in one.
 
-    >>> on_pareto_front([1.0, 2.0, 3.0], [1e-2, 1e-3, 1e-2])
+    >>> pairs = [(1.0, 1e-2), (2.0, 1e-3), (3.0, 1e-2)]
+    >>> [unbeaten(pair, pairs) for pair in pairs]
     [True, True, False]
     """
-    pairs = list(zip(cost, error))
-    return [
-        math.isfinite(mine[0] + mine[1])
-        and not any(all(a <= b for a, b in zip(other, mine)) and other != mine for other in pairs)
-        for mine in pairs
-    ]
+    beaten = any(other != mine and other[0] <= mine[0] and other[1] <= mine[1] for other in others)
+    return math.isfinite(sum(mine)) and not beaten
 
 
 def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
     """The entries with `pareto_front` filled in, compared with those that answer their question at every point."""
-    marks: dict[int, list[bool]] = {place: [False] * bodies for place in range(len(entries))}
-    for question in {entry.question for entry in entries}:
-        complete = [
-            place
-            for place, entry in enumerate(entries)
-            if entry.question == question and not entry.model_error and entry.answered == entry.points
-        ]
-        for body in range(bodies):
-            errors = [entries[place].most[body] for place in complete]
-            known = [math.inf if error is None else error for error in errors]
-            for place, mark in zip(complete, on_pareto_front([entries[place].seconds for place in complete], known)):
-                marks[place][body] = mark
-    return [Entry(**{**vars(entry), "pareto_front": tuple(marks[place])}) for place, entry in enumerate(entries)]
+    complete = [entry for entry in entries if entry.complete and not entry.model_error]
+
+    def pair(entry: Entry, body: int) -> tuple[float, float]:
+        error = entry.most[body]
+        return entry.seconds, math.inf if error is None else error
+
+    def front(entry: Entry, body: int) -> bool:
+        rivals = [pair(other, body) for other in complete if other.question == entry.question]
+        return entry in complete and unbeaten(pair(entry, body), rivals)
+
+    return [replace(entry, pareto_front=tuple(front(entry, body) for body in range(bodies))) for entry in entries]
 
 
 @result
@@ -169,40 +186,25 @@ def load(folder: Path) -> list[Trade] | None:
     return None if content is None else content.trades
 
 
-def labeled(
-    entries: Sequence[Entry], mu: Sequence[Array], reference_solution: Sequence[Array], error_estimate: Sequence[Array],
-    phases: Array,
-) -> xr.Dataset:  # fmt: skip
+@dataclass(frozen=True)
+class MeasuredTrade:
+    """One scene: the diagram, and every value behind it by setting, point and body."""
+
+    trade: Trade
+    values: xr.Dataset
+
+
+def labeled(entries: Sequence[Entry], values: Mapping[str, Sequence[Array]], phases: Array) -> xr.Dataset:
     """Every value (P, N) by setting, point and body; a question with fewer points leaves the rest NaN."""
-    count, bodies = len(phases), mu[0].shape[1]
-
-    def padded(values: Sequence[Array]) -> Array:
-        filled = np.full((len(values), count, bodies), np.nan)
-        for row, value in zip(filled, values):
-            row[: len(value)] = value
-        return filled
-
     axes = ("setting", "point", "body")
-    return xr.Dataset(
-        {
-            **{
-                name: (axes, padded(values), {"long_name": meaning, "units": "1"})
-                for name, values, meaning in (
-                    ("mu", mu, "amplification factor (5.1)"),
-                    ("reference_solution", reference_solution, "the same by the reference solution of the question"),
-                    ("error_estimate", error_estimate, "estimated absolute error of mu"),
-                )
-            },
-            "seconds": ("setting", [entry.seconds for entry in entries], {"units": "s", "long_name": "per point"}),
-            "value": ("setting", [entry.value for entry in entries]),
-            **{
-                name: ("setting", [getattr(entry, name) for entry in entries])
-                for name in ("question", "method", "parameter", "unit")
-            },
-        },
-        {
-            "body": np.arange(1, bodies + 1),
-            "alpha1": ("point", phases[:, 0], {"units": "rad"}),
-            "alpha2": ("point", phases[:, 1], {"units": "rad"}),
-        },
-    )  # fmt: skip
+    variables: dict[str, Any] = {}
+    for name, rows in values.items():
+        filled = np.full((len(rows), len(phases), rows[0].shape[1]), np.nan)
+        for row, value in zip(filled, rows):
+            row[: len(value)] = value
+        variables[name] = axes, filled, {"long_name": MEANINGS[name], "units": "1"}
+    variables["seconds"] = "setting", [entry.seconds for entry in entries], {"units": "s", "long_name": "per point"}
+    for name in ("value", "question", "method", "parameter", "unit"):
+        variables[name] = "setting", [getattr(entry, name) for entry in entries]
+    alpha1, alpha2 = (("point", phases[:, axis], {"units": "rad"}) for axis in (0, 1))
+    return xr.Dataset(variables, {"body": np.arange(1, filled.shape[2] + 1), "alpha1": alpha1, "alpha2": alpha2})

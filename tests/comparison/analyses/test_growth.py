@@ -11,8 +11,7 @@ import pytest
 from known_analyses import collected
 from scipy.stats import linregress
 
-from comparison.analyses.tradeoff import command as tradeoff
-from comparison.analyses.tradeoff import growth_command as command
+from comparison.analyses.tradeoff import command, growth
 from comparison.analyses.tradeoff.growth import (
     QUANTITIES,
     SCHEMA,
@@ -63,16 +62,16 @@ def test_the_cost_grows_with_bodies_and_phase_pairs() -> None:
 
 
 def test_growth_without_an_answer_is_read_back(tmp_path: Path) -> None:
-    growth = growth_of(
+    measured = growth_of(
         with_slope("bodies", "", "exact", (2.0, 4.0), (0.1, float("nan"))),
         with_slope("workers", "", "exact", (1.0,), (2.0,)),
     )
-    files = command.growth_files(growth)
-    assert set(files) == set(command.FILES)
+    files = command.growth_files(measured)
+    assert set(files) == set(command.GROWTH_FILES)
     assert STORED.load(tmp_path) is None
     (tmp_path / "growth.json").write_bytes(files["growth.json"])
-    assert STORED.load(tmp_path) == growth
-    assert (growth.series[0].seconds, growth.series[0].slope) == ([0.1, None], None)
+    assert STORED.load(tmp_path) == measured
+    assert (measured.series[0].seconds, measured.series[0].slope) == ([0.1, None], None)
 
 
 def growth_of(*series: Series) -> MeasuredGrowth:
@@ -87,7 +86,7 @@ def test_the_command_writes_and_prints_the_growth(
     monkeypatch.setattr(command, "computed", lambda *rest: None)
     monkeypatch.setattr(Growth, "collect", lambda *rest: [bodies])
     monkeypatch.setattr(command, "by_workers", lambda *rest: workers)
-    assert tradeoff.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0
+    assert command.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0
     found = STORED.load(tmp_path)
     assert found is not None
     assert found.series == [bodies, workers]
@@ -99,7 +98,7 @@ def test_the_command_writes_and_prints_the_growth(
 
 def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[object] = []
-    monkeypatch.setattr(command, "measure", calls.append)
-    series = command.by_workers(SCENE, ThreadPoolExecutor, 3)
+    monkeypatch.setattr(growth, "measure", calls.append)
+    series = growth.by_workers(SCENE, ThreadPoolExecutor, 3)
     assert list(series.values) == [1.0, 2.0, 3.0]
-    assert len(calls) == 3 * command.CALLS + 2 * (1 + 2 + 3), "the same work for all, and two calls to warm each up"
+    assert len(calls) == 3 * growth.CALLS + 2 * (1 + 2 + 3), "the same work for all, and two calls to warm each up"

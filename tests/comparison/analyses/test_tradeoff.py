@@ -19,16 +19,16 @@ from known_analyses import collected
 from known_results import known_trade
 
 from comparison.analyses.tradeoff import analysis, command, measure
-from comparison.analyses.tradeoff.analysis import MeasuredTrade, TradeOff, entry
-from comparison.analyses.tradeoff.figure import MAX_TICKS, round_ticks
+from comparison.analyses.tradeoff.analysis import TradeOff, entry
 from comparison.analyses.tradeoff.measure import Measured, Measurement, joined, sample
 from comparison.analyses.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
 from comparison.analyses.tradeoff.trade import (
     FILE,
+    MeasuredTrade,
     Trade,
     load,
-    on_pareto_front,
     quantile,
+    unbeaten,
     with_pareto_fronts,
 )
 from comparison.study.study import Study
@@ -60,9 +60,9 @@ def trade(scene: Scene) -> Trade:
 
 
 def test_nothing_on_the_front_is_beaten_and_all_else_is() -> None:
-    cost, error = [1.0, 2.0, 3.0, 2.5, 1.0, 4.0], [1e-2, 1e-3, 1e-4, 2e-3, 1e-1, float("inf")]
-    assert on_pareto_front(cost, error) == [True, True, True, False, False, False]
-    assert on_pareto_front([1.0, 1.0], [1e-3, 1e-3]) == [True, True], "two that are alike"
+    pairs = [(1.0, 1e-2), (2.0, 1e-3), (3.0, 1e-4), (2.5, 2e-3), (1.0, 1e-1), (4.0, float("inf"))]
+    assert [unbeaten(pair, pairs) for pair in pairs] == [True, True, True, False, False, False]
+    assert unbeaten(pairs[0], [pairs[0]] * 2), "two that are alike"
 
 
 def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
@@ -71,7 +71,7 @@ def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
 
 
 def test_a_setting_with_gaps_is_not_on_the_front() -> None:
-    setting = Setting("exact", "one", "step", "", 1.0, RUN, {}, 1.0)
+    setting = Setting("exact", "one", "step", "", 1.0, False, False, RUN, {}, 1.0)
     ones = np.ones((3, 1))
     good, lost, other = (
         entry(setting, Measured(ones * mu, 0.1 * ones * mu, seconds, np.nan), ones)
@@ -83,9 +83,8 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     assert (good.seconds, good.error_estimate) == (1.0, [pytest.approx(0.1)]), "per point, and relative"
 
 
-def test_times_add_up_and_a_part_has_its_share() -> None:
-    both = joined([Measured(np.ones((2, 1)), np.ones((2, 1)), seconds, np.nan) for seconds in (2.0, 4.0)])
-    assert (both.seconds, both.upto(3).seconds) == (6.0, 4.5)
+def test_the_times_of_all_parts_add_up() -> None:
+    assert joined([Measured(np.ones((2, 1)), np.ones((2, 1)), part, np.nan) for part in (2.0, 4.0)]).seconds == 6.0
 
 
 @pytest.mark.long
@@ -134,6 +133,13 @@ def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
         held = [setting.value for setting in of_question if setting.controlled and side in setting.function]
         assert any(setting.parameter == "tolerance of mu" for setting in of_question)
         assert question.reference_solution[1]["tolerance"] <= 1.0001e-2 * min(held)
+
+
+def test_the_loosest_tolerances_are_those_that_are_taken() -> None:
+    """mu to within 1e-2 at worst; a single step also to within 1e-1."""
+    loosest = {each.method: each.value for each in reversed(settings(load_scene("fig3-I"))) if each.question == "exact"}
+    assert loosest["reference, two runs and an estimate"] == 1e-2
+    assert loosest["reference, one run"] == 1e-1
 
 
 def test_the_command_writes_what_the_report_reads(
@@ -194,7 +200,7 @@ def test_the_command_measures_nothing_twice(
 ) -> None:
     path = f"{__name__}:_known"
     question = Question("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
-    known = [Setting("exact", "one", "gap", "", gap, path, {"gap": gap}, 100.0) for gap in (1e-3, 1e-2)]
+    known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in (1e-3, 1e-2)]
     monkeypatch.setattr(analysis, "settings", lambda scene, quick: known)
     monkeypatch.setattr(analysis, "asked", lambda scene: [question])
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
@@ -214,11 +220,3 @@ def test_the_command_measures_nothing_twice(
     assert again[0].run["stored_before"] == 9
     again_values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
     xr.testing.assert_equal(again_values, values)  # to the last bit, processor time included
-
-
-@pytest.mark.parametrize("low", [4.2e-4, 6.8e-4, 9.5e-4, 0.23, 7.0])
-@pytest.mark.parametrize("ratio", [1.2, 1.7, 3.0, 10.0, 4e3, 1e9])
-def test_the_axis_of_times_has_three_to_six_round_ticks(low: float, ratio: float) -> None:
-    ticks = round_ticks(low, low * ratio)
-    assert 3 <= len(ticks) <= MAX_TICKS
-    assert all(low <= tick <= low * ratio and float(f"{tick:.2g}") == tick for tick in ticks)

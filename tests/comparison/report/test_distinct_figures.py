@@ -42,8 +42,8 @@ from comparison.analyses.assumptions.variations import AssumptionCell, Variation
 from comparison.analyses.extremes.figure import draw_extremes
 from comparison.analyses.families.analysis import family_steps
 from comparison.analyses.families.figure import draw_family
-from comparison.analyses.tradeoff.figure import draw_growth, draw_tradeoff
-from comparison.analyses.tradeoff.growth import with_slope
+from comparison.analyses.tradeoff.feature import draw_growth, draw_tradeoff
+from comparison.analyses.tradeoff.growth import SCHEMA, MeasuredGrowth, with_slope
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
 from comparison.run import main
 from comparison.study.study import Study
@@ -311,17 +311,13 @@ def test_the_trade_off_has_every_curve_in_its_panel(monkeypatch: pytest.MonkeyPa
     entries = [setting(question.key, number) for question in questions for number in (1, 2)]
     figure = drawn(monkeypatch, draw_tradeoff, UNUSED, Trade("fig3-I", "Case I", "0", 2, questions, entries, {}))
     for place, axes in enumerate(figure.axes):
-        body, question = place // 2, questions[place % 2]
+        body, question = place % 2, questions[place // 2]
         shown = [entry for entry in entries if entry.question == question.key]
-        most, median, *front = axes.lines
-        for line, values in ((most, [e.most[body] for e in shown]), (median, [e.median[body] for e in shown])):
-            assert line.get_xdata() == pytest.approx([entry.seconds for entry in shown])
-            assert line.get_ydata() == pytest.approx(values)
-        assert (most.get_linestyle(), median.get_linestyle()) == ("-", ":")
-        assert [line.get_ydata().tolist() for line in front] == ([[shown[0].most[0]]] if body == 0 else [])
-        assert axes.get_title() == (question.title if body == 0 else "")
-        assert axes.get_ylabel() == (rf"relative error of $\mu_{{{body + 1}}}$" if place % 2 == 0 else "")
-        assert axes.get_xlabel() == ("processor time per point, s" if body == 1 else "")
+        [line] = axes.lines
+        assert line.get_xdata() == pytest.approx([entry.seconds for entry in shown])
+        assert line.get_ydata() == pytest.approx([entry.most[body] for entry in shown])
+        assert axes.get_title() == rf"{question.title}, $mu_{{\mathrm{{{body + 1}}}}}$"
+        assert (axes.get_xlabel(), axes.get_ylabel()) == ("processor time per point, s", "relative error, 95 %")
 
 
 def test_growth_and_extremes_are_drawn_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -329,7 +325,7 @@ def test_growth_and_extremes_are_drawn_as_they_are(monkeypatch: pytest.MonkeyPat
         with_slope("bodies", "", "engine", (2.0, 4.0, 8.0), (1.0, 4.0, 16.0)),
         with_slope("workers", "", "equations", (1.0, 2.0), (2.0, 1.5)),
     ]
-    axes = drawn(monkeypatch, draw_growth, UNUSED, series).axes
+    axes = drawn(monkeypatch, draw_growth, UNUSED, MeasuredGrowth(SCHEMA, "fig3-I", "a scene", series, {})).axes
     assert [(each.get_xlabel(), each.get_ylabel()) for each in axes] == [
         ("bodies", "processor time, s"),
         ("workers", "wall time, s"),
@@ -337,7 +333,7 @@ def test_growth_and_extremes_are_drawn_as_they_are(monkeypatch: pytest.MonkeyPat
     assert [(*each.lines[0].get_xdata(), *each.lines[0].get_ydata()) for each in axes] == [
         (*one.values, *one.seconds) for one in series
     ]
-    assert axes[0].lines[0].get_label() == "engine, slope 2.00"
+    assert axes[0].lines[0].get_label() == "engine: slope 2.00 ± 0.00"
     figure = drawn(monkeypatch, draw_extremes, UNUSED, FOUND)
     fields = {text.get_text(): text.get_position() for panel in figure.axes for text in panel.texts}
     assert [fields[text][0] for text in ("2e-07", "step limit", "FAILED")] == [0.5, 1.5, 0.5], "columns of the models"

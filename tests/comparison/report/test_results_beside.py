@@ -24,8 +24,8 @@ from comparison.analyses.ensemble.feature import ensemble_panels
 from comparison.analyses.extremes import matrix as extremes
 from comparison.analyses.tradeoff import command as tradeoff
 from comparison.analyses.tradeoff import growth
-from comparison.analyses.tradeoff.analysis import MeasuredTrade
 from comparison.analyses.tradeoff.trade import FILE as TRADES
+from comparison.analyses.tradeoff.trade import MeasuredTrade
 from comparison.analyses.validation import table as validation
 from comparison.registry import StudyResults
 from comparison.run import main

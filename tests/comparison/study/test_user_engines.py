@@ -29,7 +29,7 @@ from comparison.analyses.extremes.rows import rows, user_column
 from comparison.analyses.extremes.verdicts import Reply, judged
 from comparison.analyses.tradeoff import analysis
 from comparison.analyses.tradeoff.analysis import TradeOff
-from comparison.analyses.tradeoff.figure import draw_tradeoff
+from comparison.analyses.tradeoff.feature import draw_tradeoff
 from comparison.analyses.tradeoff.settings import QUESTIONS, user_settings
 from comparison.cli.user_models import as_words, look_at, user_models
 from comparison.runner import environment
