@@ -1,9 +1,10 @@
 """
 MASTODON's friction pendulum as a planar oscillator, with the published law of friction and heating.
 
-mu = 0.06 k_v k_p k_T: k_v = 1 - 0.5 exp(-100 v), k_p = 0.7^(0.02 (p - 50)), p in MPa, k_T = 0.79 (0.7^(0.02 T) + 0.4),
+mu = 0.06 k_v k_p k_T: k_v = 1 - 0.5 exp(-100 v), k_p = 0.7^(0.02 (p - 50)), p in MPa, k_T = 0.789 (0.7^(0.02 T) + 0.4),
 T in degrees C. The temperature at the center of a half space with the heat flux q while the contact covers it is
-T = 20 + sqrt(D / pi) / k * integral of q(t - s) / sqrt(s). Below 1 mm their bearing is elastic.
+T = 20 + sqrt(D / pi) / k * integral of q(t - s) / sqrt(s), as MASTODON sums it. Below `elastic` the bearing is
+elastic with a constant stiffness. Heated, it has MASTODON's restoring force N y / sqrt(R^2 - y^2), otherwise N y / R.
 """
 
 from __future__ import annotations
@@ -36,17 +37,18 @@ def ranges(
             a = ground[i] + (ground[i + 1] - ground[i]) * (k / parts)
             normal = MASS * (GRAVITY + a[2])
             v = np.sqrt(speed[0] ** 2 + speed[1] ** 2)
-            mu = 0.06 * (1.0 - 0.5 * np.exp(-100.0 * v))
+            mu, arm = 0.06 * (1.0 - 0.5 * np.exp(-100.0 * v)), np.full(2, RADIUS)
             if heated:
-                mu *= 0.7 ** (0.02 * (normal / area / 1e6 - 50.0)) * 0.79 * (0.7 ** (0.02 * temperature) + 0.4)
-            heat += mu * normal / area * v / parts
-            stiffness = mu * normal / elastic
+                mu *= 0.7 ** (0.02 * (normal / area / 1e6 - 50.0)) * 0.789 * (0.7 ** (0.02 * temperature) + 0.4)
+                arm = np.sqrt(RADIUS**2 - place**2)
+            heat = mu * normal / area * v
+            stiffness = 0.06 * 50e6 * area / elastic - normal / RADIUS
             force = stiffness * (place - plastic)
             size = np.sqrt(force[0] ** 2 + force[1] ** 2)
             if size > mu * normal:
                 force *= mu * normal / size
                 plastic = place - force / stiffness
-            speed = speed - part * ((force + normal * place / RADIUS) / MASS + a[:2])
+            speed = speed - part * ((force + normal * place / arm) / MASS + a[:2])
             place = place + part * speed
             for axis in range(2):
                 found[2 * axis] = min(found[2 * axis], 1e3 * place[axis])
@@ -56,7 +58,7 @@ def ranges(
                 flux[i] = heat
             total = 0.0
             for j in range(i + 1):
-                total += flux[j] * 2.0 * (np.sqrt((i + 1 - j) * step) - np.sqrt((i - j) * step))
+                total += flux[j] * step / np.sqrt((i + 1 - j) * step)
             temperature = 20.0 + np.sqrt(DIFFUSIVITY / np.pi) / CONDUCTIVITY * total
             highest = max(highest, temperature)
     return found, highest
