@@ -14,6 +14,7 @@ factor_for_spectrum  factor of a ground motion for a target spectrum
 modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
 damped_modes    complex modes and damping ratios of the chain with the dampers of its links
 load_scene      a scene from a built-in name or a TOML file
+load_family     all scenes of a file in which values run
 builtin_scenes  names of the paper's own cases
 example_scenes  names of the examples with a recorded motion
 phase_grid      equally spaced phase pairs
@@ -23,6 +24,7 @@ phase_distribution  mean and fractiles of mu over uniform phases, from its surfa
 Classes
 -------
 Scene           the system, its loading and the duration
+Family          the scenes of one file, and their results as one data set
 State           displacement and velocity at the start of a trajectory
 Amplification   what `amplification` returns
 Trajectory      what `trajectory` returns
@@ -73,6 +75,7 @@ from reference.measures import (
 )
 from reference.problem import (
     Amplification,
+    Family,
     Outcome,
     Scene,
     SceneError,
@@ -80,6 +83,7 @@ from reference.problem import (
     Trajectory,
     builtin_scenes,
     example_scenes,
+    load_family,
     load_scene,
     phase_grid,
 )
@@ -110,6 +114,7 @@ __all__ = [
     "EffectiveIsolator",
     "Estimate",
     "Estimates",
+    "Family",
     "FloorSpectra",
     "Outcome",
     "PeakDemands",
@@ -126,6 +131,7 @@ __all__ = [
     "example_scenes",
     "factor_for_spectrum",
     "floor_spectra",
+    "load_family",
     "load_scene",
     "modes",
     "peak_demands",

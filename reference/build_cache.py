@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import gc
 import hashlib
+import multiprocessing
 import os
 import stat
+import sys
 import tempfile
 from collections.abc import Callable
 from functools import cache
@@ -54,15 +56,30 @@ def build_folder(sources: Path) -> Path | None:
     return parent / f"numba-{digest.hexdigest()[:12]}"
 
 
-def cached_on_disk(sources: str | Path, **options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Decorate a function that numba compiles and keeps on disk; sources: all that it calls, usually `__file__`."""
+class _Announced(_Uncollected):
+    """The same for what takes long: the user's own process says so; the command line shows the task of its worker."""
+
+    def compile_extra(self, func: Any) -> Any:
+        """Compile a Python function."""
+        if multiprocessing.parent_process() is None and sys.stderr is not None:
+            print("compiling the reference, once; about 20 s", file=sys.stderr, flush=True)
+        return super().compile_extra(func)
+
+
+def cached_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """
+    Decorate a function that numba compiles and keeps on disk.
+
+    sources: all that it calls, usually `__file__`; slow: whether a line on standard error says that it is compiled.
+    """
+    pipeline = _Announced if slow else _Uncollected
     folder = build_folder(Path(sources))
 
     def decorate(function: Callable[..., Any]) -> Any:
         before = config.CACHE_DIR
         config.CACHE_DIR = str(folder or "")
         try:
-            decorate = njit(cache=folder is not None, pipeline_class=_Uncollected, no_cfunc_wrapper=True, **options)
+            decorate = njit(cache=folder is not None, pipeline_class=pipeline, no_cfunc_wrapper=True, **options)
             return decorate(function)
         finally:
             config.CACHE_DIR = before

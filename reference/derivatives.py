@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from reference.measures import Estimate, Estimates
 from reference.problem import Amplification, Scene
+from reference.problem.ranges import brief
 from reference.problem.scene import takes_scene
 
 STEPS = (1e-3, 4e-3, 1.6e-2)  # of the value; each derivative also takes twice its step
@@ -45,6 +46,8 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
         For a key that is not there, and a value that a step makes invalid.
     ValueError
         For a key whose value is no number, or zero.
+    TypeError
+        For keys that are no list, and a quantity that returns something else, as an array without errors.
 
     Examples
     --------
@@ -55,6 +58,8 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
     >>> float(reference.sensitivity(scene, ["bodies.1.mass"], period)["bodies.1.mass"].value.round(5))
     0.06759
     """
+    if isinstance(keys, str):
+        raise TypeError(f"keys = {brief(keys)}: must be a list of keys, [{keys!r}]")
     found = {}
     for key in keys:
         value = _value(scene, key)
@@ -101,5 +106,8 @@ def _derivative(scene: Scene, key: str, value: float, quantity: Quantity) -> Est
 
 
 def _numbers(found: Amplification | Estimates | Estimate) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if not isinstance(found, Amplification | Estimates | Estimate):
+        kinds = "an Amplification, an Estimates or an Estimate, which have errors"
+        raise TypeError(f"quantity: returns {brief(found)}: must return {kinds}")
     value = found.mu if isinstance(found, Amplification) else found.value
     return np.asarray(value, dtype=float), np.asarray(found.error, dtype=float)

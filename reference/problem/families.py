@@ -14,11 +14,12 @@ from __future__ import annotations
 
 import copy
 import math
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice, product
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,14 +27,24 @@ from reference.problem.ranges import as_float, takes
 from reference.problem.record_suites import SuiteError, suite_motions
 from reference.problem.scene import Scene
 from reference.problem.scene_error import SceneError
-from reference.problem.scene_file import scene_tables, scene_text, validated_scene
+from reference.problem.scene_file import (
+    RANGE,
+    VALUES,
+    running_values,
+    scene_tables,
+    scene_text,
+    validated_scene,
+)
 
-RANGE, VALUES = {"range", "steps"}, {"values"}
+if TYPE_CHECKING:
+    import xarray as xr
+
 ALL_MOTIONS = "all"
 COMBINE = ("product", "zip")
 MAX_SCENES = 1000  # scenes of one family
 MAX_BODIES_IN_ALL = 50_000  # bodies of all scenes of a family together
 MAX_KEYS = 20  # that run
+
 
 Value = float | int | str
 Files = dict[str, str]  # of a record, by direction
@@ -71,6 +82,54 @@ class Family:
         """Bodies of a scene: no range changes their number."""
         return len(self.scenes[0].bodies)
 
+    def to_xarray(self, results: Sequence[Any]) -> xr.Dataset:
+        """
+        Results of the scenes as one data set, with the values that run as coordinates.
+
+        Parameters
+        ----------
+        results : sequence
+            One for each scene, in their order: what `amplification` or `peak_demands` of either side returns.
+
+        Returns
+        -------
+        xarray.Dataset
+            Those of the results, over a further dimension for each key that runs: "friction" of "isolator.friction",
+            the whole key of a body. Keys that run together are coordinates of one dimension "scene".
+
+        Raises
+        ------
+        ValueError
+            Unless there are as many results as scenes.
+
+        Examples
+        --------
+        >>> import reference
+        >>> family = reference.load_family("fig3-I")
+        >>> results = [reference.amplification(scene, (0.3, 1.1)) for scene in family.scenes]
+        >>> family.to_xarray(results)["mu"].dims
+        ('scene', 'body')
+        """
+        import xarray as xr  # loaded on first use
+
+        if len(results) != len(self.scenes):
+            raise ValueError(
+                f"results: {len(results)}: must be as many as the scenes of the family, {len(self.scenes)}"
+            )
+        data = xr.concat([result.to_xarray() for result in results], "scene", combine_attrs="drop_conflicts")
+        data.attrs = {}  # the cost of each
+        shorts = [key.rpartition(".")[2] for key in self.columns]
+        names = [
+            key if re.search(r"\.\d", key) or shorts.count(short) > 1 else short
+            for key, short in zip(self.columns, shorts)
+        ]
+        columns = dict(zip(names, self.columns.values()))
+        data = data.assign_coords({name: ("scene", list(values)) for name, values in columns.items()})
+        if len(columns) == 1:
+            return data.swap_dims(scene=names[0])
+        every = list(product(*(dict.fromkeys(values) for values in columns.values())))
+        return data.set_index(scene=names).unstack("scene") if len(every) == len(results) > 1 else data
+
 
 @takes(str | Path, "must be the name of a built-in scene or the path of a scene file")
 def load_family(source: str | Path, amplitude: float | None = None) -> Family:
@@ -107,7 +166,7 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
     name = Path(label).stem
     combine = data.get("combine")
     data = _all_motions({key: value for key, value in data.items() if key != "combine"}, label)
-    places = list(islice(_running((), data), MAX_KEYS + 1))
+    places = list(islice(running_values((), data), MAX_KEYS + 1))
     if len(places) > MAX_KEYS:
         path, table = places[-1]
         raise SceneError(label, ".".join(map(str, path)), table, f"at most {MAX_KEYS} keys may run")
@@ -189,15 +248,6 @@ def _all_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
     except SuiteError as error:
         raise SceneError(label, f"excitation.record.{error.key}", record["suite"], error.rule) from None
     return _with(data, ("excitation", "record", "motion"), {"values": motions})
-
-
-def _running(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:
-    """Where in the tables something runs, and the inline table that says how."""
-    if isinstance(value, dict) and path and value.keys() & (RANGE | VALUES):
-        yield path, value
-    elif isinstance(value, dict | list):
-        for key, part in value.items() if isinstance(value, dict) else enumerate(value):
-            yield from _running((*path, key), part)
 
 
 def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files | Numbers]:

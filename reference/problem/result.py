@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from reference.drawing import draw_motion, draw_surface
+from reference.problem.html_table import digits, html_table
 from reference.problem.phases import grid_axes, phase_coordinates
 from reference.problem.ranges import brief, checked_choice, takes
 from reference.problem.scene import Scene
@@ -92,6 +93,15 @@ class Amplification:
             ]
         return f"<Amplification of {points} phase pair{'s'[: points != 1]}: {_list([*factors, *_counts(self.status)])}>"
 
+    def _repr_html_(self) -> str:
+        bodies = self.mu.shape[-1]
+        rows = []
+        for body, (mu, error) in enumerate(zip(*(each.reshape(-1, bodies).T for each in (self.mu, self.error))), 1):
+            values = np.quantile(mu[np.isfinite(mu)], (0.0, 0.5, 1.0)) if np.isfinite(mu).any() else 3 * [np.nan]
+            known = error[np.isfinite(error)].max(initial=-np.inf)
+            rows.append((body, *(digits(value, 5) for value in values), digits(known, 1)))
+        return html_table(repr(self), ("body", "smallest μ", "median μ", "largest μ", "largest error"), rows)
+
     def reshaped(self, shape: tuple[int, ...]) -> Amplification:
         """
         The same points in another shape.
@@ -118,9 +128,9 @@ class Amplification:
         Returns
         -------
         xarray.Dataset
-            mu, error, status, instant and cap_share over body (from 1) and the phases: over alpha1 and alpha2 for a
-            grid (A, B, 2), over "phase" for a list (M, 2), over phase_1, phase_2 ... for another shape, with alpha1
-            and alpha2 as coordinates. Units are in the attributes.
+            mu, error, status, instant, cap_share and displacement over body (from 1) and the phases: over alpha1 and
+            alpha2 for a grid (A, B, 2), over "phase" for a list (M, 2), over phase_1, phase_2 ... for another shape,
+            with alpha1 and alpha2 as coordinates. Units are in the attributes.
 
         Examples
         --------
@@ -141,6 +151,7 @@ class Amplification:
                 "status": (dims, self.status),
                 "instant": (dims, self.instant, {**seconds, "long_name": "when the status arose"}),
                 "cap_share": (dims, self.cap_share, {**factor, "long_name": "largest displacement over rho"}),
+                "displacement": (dims, self.displacement, {"units": "m", "long_name": "largest displacement"}),
             },
             coords={**alpha, "body": np.arange(1, self.mu.shape[-1] + 1)},
             attrs={"cost": self.cost, "cost_units": "s"},
@@ -245,6 +256,14 @@ class Trajectory:
         moved = np.linalg.norm(self.position[:, 0, :2], axis=-1).max(initial=0.0)
         facts = [span, f"{len(self.stick)} rests", f"platform at most {1e3 * moved:.4g} mm off", self.status]
         return f"<Trajectory of {self.scene.name}: {_list(facts)}>"
+
+    def _repr_html_(self) -> str:
+        moved = np.linalg.norm(self.position[:, :, :2], axis=-1).max(axis=0, initial=0.0)
+        rows = [
+            (body, digits(1e3 * far, 4), digits(peak, 5)) for body, (far, peak) in enumerate(zip(moved, self.peak), 1)
+        ]
+        heads = "body", "largest displacement against the plate, mm", "largest absolute acceleration, m/s²"
+        return html_table(repr(self), heads, rows)
 
     @property
     def support_force(self) -> Array:

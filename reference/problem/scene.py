@@ -20,6 +20,7 @@ from reference.problem.beam_column import buckling_load
 from reference.problem.changed_values import put_value
 from reference.problem.constants import GRAVITY
 from reference.problem.friction import DryFriction
+from reference.problem.html_table import html_table
 from reference.problem.measured import Measured
 from reference.problem.ranges import MAX_CYCLES, SCENE, as_float, takes
 from reference.problem.record_loading import with_samples
@@ -238,6 +239,15 @@ class Scene(Table):
         return f"<Scene {self.name}: {bodies}, radius {self.radius:.4g} m, {kind}, {self.duration:g} s>"
 
     __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        links = [*zip(self.stiffness, self.damping)]
+        columns = [["", ""], *([", ".join(f"{value:.4g}" for value in pair) for pair in link] for link in links)]
+        rows = [(n, f"{mass:.4g}", *cells) for n, (mass, cells) in enumerate(zip(self.masses, columns), 1)]
+        heads = "body", "mass, kg", "stiffness of the link below, x, y, N/m", "its damping, x, y, N s/m"
+        largest = f"{self.friction_coefficient:g}"
+        law = f"lubrication {largest} s/m" if self.lubricated else f"friction coefficient at most {largest}"
+        return html_table(f"{self!r}: {self.title}; {law}", heads, rows)
 
     def with_values(self, values: Mapping[str, Any]) -> Scene:
         """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections.abc import Iterator
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from reference.problem.record_loading import EXAMPLES, with_samples
 from reference.problem.scene import KEYS, Scene
 from reference.problem.scene_error import SceneError, first_error
 
+RANGE, VALUES = {"range", "steps"}, {"values"}  # keys of an inline table whose value runs
 LARGEST = 2**22  # bytes of a scene file
 MAX_NESTING = 10  # tables and lists within one another in a scene file
 KEY = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
@@ -136,9 +138,12 @@ def parse_scene(text: bytes, label: str) -> Scene:
     'one-body'
     '''
     data = scene_tables(text, label)
+    rule = "makes a family of scenes, and one scene is asked for: {}, or read all with reference.load_family"
     if "combine" in data:
-        rule = "makes a family of scenes, and one scene is asked for: remove this key and give every key one value"
-        raise SceneError(label, "combine", data["combine"], rule)
+        remedy = rule.format("remove this key and give every key one value")
+        raise SceneError(label, "combine", data["combine"], remedy)
+    for path, table in running_values((), data):
+        raise SceneError(label, ".".join(map(str, path)), table, rule.format("give one value"))
     return validated_scene(data, label, Path(label).stem)
 
 
@@ -164,6 +169,15 @@ def validated_scene(data: dict[str, Any], label: str, name: str) -> Scene:
         return Scene.model_validate({**with_samples(data, label), "name": name})
     except ValidationError as error:
         raise first_error(label, error, KEYS) from None
+
+
+def running_values(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:
+    """Where in the tables something runs, and the inline table that says how."""
+    if isinstance(value, dict) and path and value.keys() & (RANGE | VALUES):
+        yield path, value
+    elif isinstance(value, dict | list):
+        for key, part in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from running_values((*path, key), part)
 
 
 def _deeper(data: Any, levels: int) -> bool:

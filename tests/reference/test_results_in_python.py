@@ -144,3 +144,21 @@ def test_importing_the_reference_loads_no_plotting_and_no_xarray():
     code = "import sys, reference; print(*({'matplotlib', 'xarray', 'pandas'} & set(sys.modules)))"
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert ended.stdout.strip() == ""
+
+
+def test_a_notebook_shows_scene_surface_and_motion_as_tables(surface):
+    table = surface._repr_html_()
+    assert f"<td>2</td><td>{surface.mu[:, 1].min():.5g}</td>" in table
+    assert "9 ok" in table
+    motion = reference.trajectory(SCENE, (2.0, 0.7))
+    assert f"<td>{motion.peak[0]:.5g}</td>" in motion._repr_html_()
+    named = SCENE.with_values({"title": "a < b"})._repr_html_()
+    assert "a &lt; b" in named
+    assert f"<td>{SCENE.masses[1]:.4g}</td>" in named
+
+
+def test_a_surface_without_values_is_a_table_without_numbers():
+    nothing = reference.Amplification(
+        np.full((2, 1), np.nan), np.full((2, 1), np.nan), np.array(["travel"] * 2), np.zeros(2), 0.0
+    )
+    assert "<td>none</td>" in nothing._repr_html_()

@@ -64,3 +64,10 @@ def test_a_run_without_an_answer_has_no_derivative() -> None:
 def test_a_key_without_a_number_is_refused(key: str, kind: type[Exception], said: str) -> None:
     with pytest.raises(kind, match=said):
         sensitivity(ONE_BODY, [key], lambda scene: Estimate(1.0, 0.0))
+
+
+def test_what_is_no_list_and_has_no_error_is_refused() -> None:
+    with pytest.raises(TypeError, match=r"keys = 'isolator\.friction': must be a list of keys"):
+        sensitivity(ONE_BODY, "isolator.friction", lambda scene: Estimate(1.0, 0.0))
+    with pytest.raises(TypeError, match=r"quantity: returns array\(.*must return an Amplification"):
+        sensitivity(ONE_BODY, ["isolator.friction"], lambda scene: scene.masses)  # type: ignore[arg-type, return-value]

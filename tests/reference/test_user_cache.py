@@ -118,3 +118,17 @@ def test_a_first_call_leaves_the_package_as_it_was(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-c", call], cwd=tmp_path, env=environment, check=True)
     assert sorted(package.rglob("*")) == before
     assert sys.platform != "linux" or list((tmp_path / "cache" / "phase-resonance").rglob("*.nbc"))
+
+
+def test_a_first_call_says_once_that_it_compiles(tmp_path: Path) -> None:
+    program = (
+        "from reference.build_cache import cached_on_disk\n"
+        "slow, fast = (cached_on_disk(__file__, slow=slow)(lambda x: x + 1) for slow in (True, False))\n"
+        "print(slow(1), slow(2), fast(1))\n"
+    )
+    (tmp_path / "program.py").write_text(program, encoding="utf-8")
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(ROOT)}
+    ran = subprocess.run(
+        [sys.executable, "program.py"], cwd=tmp_path, env=environment, capture_output=True, text=True, check=True
+    )
+    assert (ran.stdout, ran.stderr) == ("2 3 2\n", "compiling the reference, once; about 20 s\n")

@@ -25,4 +25,4 @@ def compiled(function: Callable[..., Any]) -> Any:
 
 def cached_entry_point(function: Callable[..., Any]) -> Any:
     """Compile `function` with everything it calls on first use, and keep the build on disk."""
-    return cached_on_disk(Path(__file__).parents[1], **OPTIONS)(function)
+    return cached_on_disk(Path(__file__).parents[1], slow=True, **OPTIONS)(function)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import reference
 from reference.problem import SceneError, load_family, load_scene
 
 SCENE = """{top}
@@ -44,6 +45,15 @@ def test_a_product_has_every_combination_last_key_fastest(written):
     assert family.scenes[3].name == "mine[motion=2, scale=1]"
     assert family.values[3] == "2, 1"
     assert len({scene.name for scene in family.scenes}) == 6
+
+
+@pytest.mark.parametrize(("top", "dims"), [("product", {"scale": 2, "friction": 2}), ("zip", {"scene": 2})])
+def test_keys_of_a_product_are_axes_of_its_results(written, top, dims):
+    family = load_family(written(f'combine = "{top}"', friction=TWO, scale="{values = [3.0, 1.0]}"))
+    data = family.to_xarray([reference.amplification(scene, (0.0, 0.0), tolerance=1e-3) for scene in family.scenes])
+    assert dict(data["mu"].isel(body=0).sizes) == dims
+    last = data["mu"].sel(friction=0.1, scale=1.0) if top == "product" else data["mu"].isel(scene=1)
+    np.testing.assert_array_equal(last, reference.amplification(family.scenes[-1], (0.0, 0.0), tolerance=1e-3).mu)
 
 
 def test_a_zip_takes_the_values_in_step(written):

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import reference
 from reference.problem import SceneError, builtin_scenes, load_family, load_scene
 from reference.problem.scene_file import scene_text
 
@@ -161,3 +163,19 @@ def test_keys_that_run_are_counted(tmp_path: Path) -> None:
     file.write_text(file.read_text(encoding="utf-8") + bodies, encoding="utf-8")
     with pytest.raises(SceneError, match=r"bodies\.22\.mass = .*: at most 20 keys may run"):
         load_family(file)
+
+
+def test_one_scene_of_a_file_with_a_range_is_refused(tmp_path: Path) -> None:
+    file = _file(tmp_path, "friction = 0.1", "friction = {values = [0.02, 0.2]}")
+    with pytest.raises(SceneError, match=r"isolator\.friction = .*: makes a family of scenes.*load_family"):
+        load_scene(file)
+
+
+def test_the_value_that_runs_is_a_coordinate_of_results(tmp_path: Path) -> None:
+    family = load_family(_file(tmp_path, "friction = 0.1", "friction = {values = [0.2, 0.02]}"))
+    results = [reference.amplification(scene, (0.3, 1.1), tolerance=1e-3) for scene in family.scenes]
+    data = family.to_xarray(results)
+    assert data["mu"].dims == ("friction", "body")
+    np.testing.assert_array_equal(data["mu"].sel(friction=0.02), results[1].mu)
+    with pytest.raises(ValueError, match="results: 1: must be as many as the scenes of the family, 2"):
+        family.to_xarray(results[:1])
