@@ -11,6 +11,7 @@ demands         that of one motion
 floor_spectra   response spectra of its floors, with errors
 effective_isolator  effective period, damping and re-centering ratio of the isolator
 factor_for_spectrum  factor of a ground motion for a target spectrum
+response_spectrum  pseudo-accelerations of a ground motion
 modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
 damped_modes    complex modes and damping ratios of the chain with the dampers of its links
 load_scene      a scene from a built-in name or a TOML file
@@ -72,6 +73,7 @@ from reference.measures import (
     factor_for_spectrum,
     floor_spectra,
     phase_distribution,
+    response_spectrum,
 )
 from reference.problem import (
     Amplification,
@@ -137,6 +139,7 @@ __all__ = [
     "peak_demands",
     "phase_distribution",
     "phase_grid",
+    "response_spectrum",
     "sensitivity",
     "trajectory",
     "worst_phases",

@@ -6,6 +6,7 @@ Functions
 demands                 what a motion demands of isolator and structure
 effective_isolator      effective period, damping and re-centering ratio of the isolator
 factor_for_spectrum     factor of a ground motion for a target spectrum
+response_spectrum       pseudo-accelerations of a ground motion
 floor_spectra           response spectra of the floors of a motion
 phase_distribution      mean and fractiles of mu over uniform phases
 
@@ -20,7 +21,7 @@ from reference.measures.demands import Demands, Estimate, demands
 from reference.measures.distribution import PhaseDistribution, phase_distribution
 from reference.measures.effective import EffectiveIsolator, effective_isolator
 from reference.measures.peak_demands import Estimates, PeakDemands
-from reference.measures.spectra import FloorSpectra, factor_for_spectrum, floor_spectra
+from reference.measures.spectra import FloorSpectra, factor_for_spectrum, floor_spectra, response_spectrum
 
 __all__ = [
     "Demands",
@@ -35,4 +36,5 @@ __all__ = [
     "factor_for_spectrum",
     "floor_spectra",
     "phase_distribution",
+    "response_spectrum",
 ]

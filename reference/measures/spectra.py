@@ -169,11 +169,52 @@ def factor_for_spectrum(
     >>> round(reference.factor_for_spectrum(time, motion, [0.01, 0.02], [0.5, 0.5]), 2)
     0.5
     """
-    damping = checked_number("damping", damping, DAMPING)
     rule = "must be positive numbers (P,), as many periods as accelerations of the target"
     period, wanted = checked_array("periods", periods, rule), checked_array("target", target, rule)
     if period.ndim != 1 or period.shape != wanted.shape or not len(period) or not min(period.min(), wanted.min()) > 0.0:
         raise ValueError(f"periods {period.shape}, target {wanted.shape}: {rule}")
+    return float(np.exp(np.mean(np.log(wanted) - np.log(response_spectrum(time, acceleration, period, damping)))))
+
+
+def response_spectrum(
+    time: ArrayLike, acceleration: ArrayLike, periods: ArrayLike, damping: float = 0.05
+) -> NDArray[np.float64]:
+    """
+    Response spectrum of a ground motion.
+
+    Parameters
+    ----------
+    time : array_like, (K,), s
+        Rising instants of the samples.
+    acceleration : array_like, (K,) or (K, 2), m/s^2
+        Along x, or x and y. The spectrum of two directions is their geometric mean.
+    periods : array_like, (P,), s
+        Natural periods.
+    damping : float
+        Damping ratio, from 0 to 1.
+
+    Returns
+    -------
+    ndarray, (P,), m/s^2
+        Pseudo-accelerations.
+
+    Raises
+    ------
+    ValueError
+        For arguments that do not fit together, in one line.
+
+    Examples
+    --------
+    >>> import numpy as np, reference
+    >>> time = np.arange(0.0, 10.0, 0.01)
+    >>> reference.response_spectrum(time, 2.0 * np.sin(6.0 * time), [0.01]).round(2)
+    array([2.])
+    """
+    damping = checked_number("damping", damping, DAMPING)
+    rule = "must be positive numbers (P,)"
+    period = checked_array("periods", periods, rule)
+    if period.ndim != 1 or not len(period) or not period.min() > 0.0:
+        raise ValueError(f"periods {period.shape}: {rule}")
     rule = "must be rising instants (K,), s, and as many accelerations (K,) or (K, 2), m/s^2"
     instants, ground = checked_array("time", time, rule), checked_array("acceleration", acceleration, rule)
     ground = ground[:, None] if ground.ndim == 1 else ground
@@ -184,7 +225,8 @@ def factor_for_spectrum(
         raise ValueError("acceleration: at rest along a direction: leave it out")
     ground = np.ascontiguousarray(ground)
     spectra = _largest_accelerations(instants, ground, period, damping, _power_series(damping))
-    return float(np.exp(np.mean(np.log(wanted) - np.log(spectra).mean(axis=0))))
+    mean: NDArray[np.float64] = np.exp(np.log(spectra).mean(axis=0))
+    return mean
 
 
 @cached_on_disk(__file__, nogil=True)

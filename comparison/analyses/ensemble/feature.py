@@ -6,7 +6,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.ensemble.result import STORED, Curve, EnsembleResult, Statistic, Stripe
+import numpy as np
+
+from comparison.analyses.ensemble.result import STORED, Curve, EnsembleResult, Statistic, Stripe, Target
 from comparison.analyses.panels import draw_panels, panel
 from comparison.report.plots import Panel
 from comparison.report.section import Feature, Section
@@ -37,7 +39,7 @@ def ensemble_panels(ensemble: EnsembleResult) -> list[Panel]:
     """Isolator, base shear and supports over the scale or as strips; profiles over the height; floor spectra."""
     shown = [quantity for quantity in SHOWN if any(curve.quantity == quantity for curve in ensemble.curves)]
     panels = [_panel(ensemble, quantity) for quantity in shown]
-    return [*panels, *_profiles(ensemble), *_spectra(ensemble)] if ensemble.curves else []
+    return [*panels, *_profiles(ensemble), *_spectra(ensemble), *_matched(ensemble)] if ensemble.curves else []
 
 
 def draw_ensemble(path: Path, ensemble: EnsembleResult) -> None:
@@ -136,6 +138,31 @@ def _spectra(ensemble: EnsembleResult) -> list[Panel]:
     return panels
 
 
+def target_sentence(target: Target) -> str:
+    """What the motions are scaled to."""
+    between = f"from {target.low:.3g} to {target.high:.3g} s, in the logarithm, at 5 % damping"
+    return f"Scale 1 is that of the target spectrum: least squares over periods {between}."
+
+
+def _matched(ensemble: EnsembleResult) -> list[Panel]:
+    """Response spectra of the motions with their factors, at scale 1, and the target."""
+    if (target := ensemble.target) is None:
+        return []
+    x = list(target.period)
+    motions = [
+        {"x": x, "y": [value / GRAVITY for value in each.acceleration], "name": "one motion", "color": 0, "width": 0.7}
+        for each in target.motions
+    ]
+    series = [{**line, "legend": number == 0} for number, line in enumerate(motions)]
+    mean = np.exp(np.log([each.acceleration for each in target.motions]).mean(axis=0)) / GRAVITY
+    series.append({"x": x, "y": mean.tolist(), "name": "geometric mean of the motions", "color": 0, "width": 2.4})
+    wanted = [value / GRAVITY for value in target.acceleration]
+    series.append({"x": x, "y": wanted, "name": "target", "color": "ink", "width": 2.4})
+    axes = {"title": "period, s", "log": True}, _from_zero("pseudo-acceleration, 5 % damping, g", series)
+    label = f"response spectra of the ground and their target, {_motions(ensemble)} at scale 1"
+    return [panel("response spectra of the ground", label, *axes, series)]
+
+
 def _from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """An axis that starts at zero."""
     values = [value for each in series for key in ("y", "high") for value in each.get(key, ()) if value is not None]
@@ -192,6 +219,7 @@ FEATURE = Feature(
         lambda report, figures: {
             "ensemble_panels": ensemble_panels(report.results.of("ensemble")),
             "ensemble_rows": demand_rows(report.results.of("ensemble")),
+            "target_sentence": target_sentence,
         },
     ),
 )

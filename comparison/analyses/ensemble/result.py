@@ -174,6 +174,34 @@ class Engine:
 
 
 @result
+class MatchedMotion:
+    """A motion with its factor to the target spectrum."""
+
+    motion: str
+    """what runs beside the scale"""
+    factor: float
+    """of the motion as it was recorded, at scale 1"""
+    acceleration: Sequence[float]
+    """pseudo-acceleration with that factor at every period of the target, m/s^2; geometric mean of x and y"""
+
+
+@result
+class Target:
+    """A target spectrum, 5 % damping."""
+
+    low: float
+    """shortest period of the least squares, s"""
+    high: float
+    """longest period of the least squares, s"""
+    period: Sequence[float]
+    """s"""
+    acceleration: Sequence[float]
+    """pseudo-acceleration at every period, m/s^2"""
+    motions: Sequence[MatchedMotion]
+    """in their order"""
+
+
+@result
 class EnsembleResult:
     """Content of the file."""
 
@@ -197,6 +225,8 @@ class EnsembleResult:
     """the engine's subset"""
     run: Mapping[str, Any]
     """command, times, provenance"""
+    target: Target | None = None
+    """spectrum to which the motions are scaled; null without --target"""
 
     def stripes_of(self, structure: str, quantity: str) -> list[Stripe]:
         """Of one demand of the isolator over the scales, by the equations, or else by the engine."""

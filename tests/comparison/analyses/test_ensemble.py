@@ -425,3 +425,49 @@ def test_a_formula_stands_behind_an_apostrophe(monkeypatch: pytest.MonkeyPatch, 
         "comparison.analyses.ensemble.command.as_rows", lambda result: [{"motion": text, "scale": -1.0}]
     )
     assert list(csv.reader(io.StringIO(table_text(None), newline="")))[1] == [f"'{text}", "-1.0"]  # type: ignore[arg-type]
+
+
+def test_motions_are_scaled_to_the_target_spectrum(folder: Path, undrawn: None) -> None:
+    """A target of twice the second motion's own spectrum: at scale 1 that motion is doubled, at 0.5 as recorded."""
+    motion = np.loadtxt("suite/m2.csv", delimiter=",", skiprows=1)
+    periods = np.geomspace(0.1, 2.0, 80)
+    spectrum = 2.0 * reference.response_spectrum(motion[:, 0], motion[:, 1:], periods)
+    rows = "\n".join(f"{period:.6f}, {value / 9.81:.8f}" for period, value in zip(periods, spectrum))
+    (folder / "code.csv").write_text(f"period [s], acceleration [g]\n0.0, 1.0\n{rows}\n")
+    options = ["--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "0"]
+    assert main(["mine.toml", *options, "--target", "code.csv", "--periods", "0.2", "1.5"], one_thread) == 0
+    stored = json.loads((folder / "report/ensemble.json").read_text())
+    target, table = stored["target"], list(csv.DictReader((folder / "report/ensemble.csv").read_text().splitlines()))
+    assert (target["low"], target["high"]) == (0.2, 1.5)
+    assert target["motions"][1]["factor"] == pytest.approx(2.0, rel=2e-3)
+    np.testing.assert_allclose(target["motions"][1]["acceleration"], target["acceleration"], rtol=2e-2)
+    second = [row for row in table if row["motion"] == "motion 2"]
+    assert [float(row["scale"]) for row in second] == [0.5, 1.0]
+    assert [float(row["factor"]) for row in second] == pytest.approx([2.0, 2.0], rel=2e-3)
+    peak = np.hypot(motion[:, 1], motion[:, 2]).max()
+    assert [float(row["peak_ground_acceleration"]) for row in second] == pytest.approx([peak, 2.0 * peak], rel=2e-3)
+
+
+TARGETS = {
+    "another unit": ("period [s], acceleration [ft/s^2]\n0.1, 1\n1, 1", (), "--target"),
+    "no seconds": ("period, acceleration [g]\n0.1, 1\n1, 1", (), "--target"),
+    "falling periods": ("period [s], acceleration [g]\n1, 1\n0.1, 1", (), "--target"),
+    "not positive": ("period [s], acceleration [g]\n0.1, 1\n1, 0", (), "--target"),
+    "beyond the file": ("period [s], acceleration [g]\n0.1, 1\n1, 1", ("0.05", "1"), "--periods"),
+    "in the wrong order": ("period [s], acceleration [g]\n0.1, 1\n1, 1", ("0.5", "0.2"), "--periods"),
+}
+
+
+@pytest.mark.parametrize(("text", "periods", "option"), TARGETS.values(), ids=TARGETS)
+def test_a_target_that_is_no_spectrum_is_one_line(
+    folder: Path, capsys: pytest.CaptureFixture[str], text: str, periods: tuple[str, ...], option: str
+) -> None:
+    (folder / "code.csv").write_text(text)
+    ends = ["--periods", *periods] if periods else []
+    assert main(["mine.toml", "--suite", "suite", "--target", "code.csv", *ends]) == 2
+    assert capsys.readouterr().err.startswith(f"command line: {option} = ")
+
+
+def test_periods_without_a_target_are_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["mine.toml", "--suite", "suite", "--periods", "0.2", "1"]) == 2
+    assert "needs --target" in capsys.readouterr().err

@@ -1,0 +1,73 @@
+"""A target spectrum, and the factor that brings each motion of an ensemble closest to it."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.analyses.ensemble.analysis import SCALE, Member
+from comparison.analyses.ensemble.result import MatchedMotion, Target
+from comparison.cli.arguments import number
+from reference.measures import factor_for_spectrum, response_spectrum
+from reference.problem import SceneError
+from reference.problem.files import read_file
+from reference.problem.record_files import UNITS
+
+COMPARED, DRAWN = 40, 60  # periods, evenly spaced in their logarithm, of the least squares and of the picture
+LARGEST = 2**20  # bytes of a file
+HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}
+RULE = "must be CSV with a header such as period [s], acceleration [g], and at least two rows of rising periods"
+
+Array = NDArray[np.float64]
+
+
+def read_target(file: str) -> tuple[Array, Array]:
+    """Periods, s, and pseudo-accelerations, m/s^2, of a file. A period of zero is left out. Raises SceneError."""
+    try:
+        rows = [row for row in csv.reader(read_file(file, LARGEST).decode("utf-8-sig").splitlines()) if row]
+        first, second = ("".join(cell.split()).lower() for cell in rows[0])
+        values = np.array(rows[1:], dtype=float)
+        period, acceleration = values[values[:, 0] != 0.0].T
+        factor = HEADS[second]
+    except OSError as error:
+        raise SceneError("command line", "--target", file, str(error.strerror or error)) from None
+    except (ValueError, LookupError, csv.Error):
+        raise SceneError("command line", "--target", file, RULE) from None
+    rising = len(period) > 1 and period[0] > 0.0 and (np.diff(period) > 0.0).all()
+    if first != "period[s]" or not (rising and acceleration.min() > 0.0 and np.isfinite(values).all()):
+        raise SceneError("command line", "--target", file, RULE)
+    return period, factor * acceleration
+
+
+def matched(members: Sequence[Member], file: str, ends: Sequence[str] | None) -> tuple[tuple[Member, ...], Target]:
+    """The members with the factors of their motions, and the spectrum. ends: of the periods, s. Raises SceneError."""
+    period, wanted = read_target(file)
+    unit = "s: a period of the target spectrum"
+    low, high = (number("--periods", end, period[0], period[-1], unit) for end in ends or period[[0, -1]])
+    if not low < high:
+        raise SceneError("command line", "--periods", f"{low:g} {high:g}", "must be two periods, s, the shorter first")
+
+    def target(at: Array) -> Array:
+        return np.exp(np.interp(np.log(at), np.log(period), np.log(wanted)))
+
+    compared, drawn = np.geomspace(low, high, COMPARED), np.geomspace(period[0], period[-1], DRAWN)
+    found: dict[tuple[str, bytes], MatchedMotion] = {}
+    scaled = []
+    for member in members:
+        record = member.scene.record / [1.0, *3 * [member.scale]]
+        time, ground = record[:, 0], record[:, 1:3][:, record[:, 1:3].any(axis=0)]
+        key = member.motion, record.tobytes()
+        if key not in found:
+            if not ground.shape[1]:
+                raise SceneError(member.scene.name, "--target", file, "the motion has no horizontal acceleration")
+            factor = factor_for_spectrum(time, ground, compared, target(compared))
+            spectrum = factor * response_spectrum(time, ground, drawn)
+            found[key] = MatchedMotion(member.motion, factor, spectrum.tolist())
+        factor = found[key].factor
+        scene = member.scene.with_values({SCALE: member.scale * factor})
+        scaled.append(replace(member, scene=scene, factor=factor))
+    return tuple(scaled), Target(low, high, drawn.tolist(), target(drawn).tolist(), list(found.values()))
