@@ -58,7 +58,7 @@ def smooth_run(
 
     def rhs(t: float, y: np.ndarray) -> np.ndarray:
         force, (ax, ay, _, _) = acceleration(t, y)
-        return np.concatenate([y[2 * n :], [ax, ay], _upper(law, t, force)])
+        return np.concatenate([y[2 * n :], [ax, ay], law.upper(t, force)])
 
     def observe(t: float, y: np.ndarray) -> Observation:
         force, (ax, ay, az, normal) = acceleration(t, y)
@@ -137,7 +137,7 @@ class _SetValued:
 
         def rhs(t: float, y: np.ndarray) -> np.ndarray:
             return np.concatenate(
-                [y[2 * n :], [0.0, 0.0], _upper(law, t, law.link_forces(y[: 2 * n].tolist(), y[2 * n :].tolist()))]
+                [y[2 * n :], [0.0, 0.0], law.upper(t, law.link_forces(y[: 2 * n].tolist(), y[2 * n :].tolist()))]
             )
 
         def observe(t: float, y: np.ndarray) -> Observation:
@@ -225,7 +225,7 @@ class _SetValued:
             t, speed, q, force, ex, ey = parts(z)
             ax, ay, _, _ = law.sliding(t, q, force, ex, ey, speed)
             across = ay * ex - ax * ey
-            upper = speed * np.concatenate([z[4 + 2 * n :], _upper(law, t, force)])
+            upper = speed * np.concatenate([z[4 + 2 * n :], law.upper(t, force)])
             head = [speed, ax * ex + ay * ey, -across * ey, across * ex, speed * speed * ex, speed * speed * ey]
             return np.concatenate([head, upper])
 
@@ -294,12 +294,6 @@ def _initial(law: Law, initial: State | None) -> np.ndarray:
     if initial is None:
         return np.zeros(4 * law.count)
     return np.concatenate([np.ravel(initial.position), np.ravel(initial.velocity)]).astype(float)
-
-
-def _upper(law: Law, t: float, force: list[float]) -> list[float]:
-    """Accelerations of bodies 2..N relative to the plate (4.4)."""
-    u, v, _ = law.ground(t)
-    return [force[k] / law.mass[k // 2] - (v if k % 2 else u) for k in range(2, 2 * law.count)]
 
 
 def _factors(scene: Scene, phase: tuple[float, float], peaks: Peaks) -> np.ndarray:

@@ -177,6 +177,19 @@ class Law:
             factor = self.coefficient(math.sqrt(square)) / (v_reg if inside else math.sqrt(square))
         return self.platform(t, x, y, force[0], force[1], (factor * vx, factor * vy), square)
 
+    def smooth_rate(self, t: float, state: np.ndarray, v_reg: float | None) -> tuple[np.ndarray, float]:
+        """Rate of positions and velocities, (4N) interleaved x, y, under such a law, and the normal force."""
+        q, v = np.reshape(state, (2, -1)).tolist()
+        force = self.link_forces(q, v)
+        inside = v_reg is not None and self.speed_square(*q[:2], *v[:2]) < v_reg**2
+        ax, ay, _, normal = self.smooth(t, q, force, v[0], v[1], v_reg, inside)
+        return np.array([*v, ax, ay, *self.upper(t, force)]), normal
+
+    def upper(self, t: float, force: list[float]) -> list[float]:
+        """Accelerations of bodies 2..N relative to the plate (4.4)."""
+        u, v, _ = self.ground(t)
+        return [force[k] / self.mass[k // 2] - (v if k % 2 else u) for k in range(2, 2 * self.count)]
+
     def excess(self, t: float, q: list[float], force: list[float]) -> float:
         """Rest: required over available friction, minus 1; negative inside the cone. Consistent condition."""
         x, y = q[0], q[1]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from chains import chain
 from scipy import optimize, signal
 from scipy.integrate import solve_ivp
 
@@ -18,18 +19,9 @@ DAMPING = 0.05
 
 def floor(time: np.ndarray, acceleration: np.ndarray) -> Trajectory:
     """A motion of one body whose absolute acceleration (T, 2) is known."""
-    scene = Scene.model_validate(
-        {
-            "title": "a floor",
-            "duration": float(time[-1]),
-            "isolator": {"radius": 1.0, "friction": 0.1},
-            "bodies": [{"mass": 1.0}],
-            "excitation": {"amplitudes": [[1.0, 0.0], [0.0, 1.0]], "periods": [1.0, 1.0], "decay": [0.0, 0.0]},
-        }
-    )
-    zero = np.zeros((len(time), 1, 3))
-    total = zero.copy()
+    total = np.zeros((len(time), 1, 3))
     total[:, 0, :2] = acceleration
+    zero, scene = np.zeros_like(total), chain(duration=float(time[-1]))
     return Trajectory(time, zero, zero.copy(), total, np.zeros(len(time)), [], "ok", np.nan, scene)
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from oracle_law import Law
 from scipy.integrate import solve_ivp
 
 import multibody
 import reference
 from reference.measures import Estimate, PeakDemands, demands
-from reference.problem import GRAVITY, Scene, ground_acceleration, phase_grid
+from reference.problem import Scene, phase_grid
 
 V_REG = 1e-3
 SHARED = ("displacement", "base_shear", "acceleration", "drift", "contact_force_min", "contact_force_max")
@@ -95,61 +96,23 @@ def test_both_sides_have_the_demands_under_a_record() -> None:
 
 @pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
 def test_base_shear_and_contact_force_are_those_of_scipy(name) -> None:
-    """Equations of two bodies on a sphere, written here, by SciPy: R = sum of m a, N from the curvature."""
+    """Plain equations of two bodies on a sphere by SciPy: R = sum of m a, N from the curvature."""
     scene, phase = reference.load_scene(name).with_values({"duration": 3.0}), (2.0, 0.7)
-    law = None if scene.lubricated else 1e-2
-    shear, contact = alone(scene, phase, law)
-    answer = reference.peak_demands(scene, [phase], regularization=law)
-    for name_of, expected in (
-        ("base_shear", shear.max()),
-        ("contact_force_max", contact.max()),
-        ("contact_force_min", contact.min()),
-    ):
-        assert answer[name_of].value[0] == pytest.approx(expected, rel=1e-4), name_of
-
-
-def alone(scene: Scene, phase: tuple[float, float], law: float | None) -> tuple[np.ndarray, np.ndarray]:
-    """Base shear and contact force (T,), N, of two bodies."""
-    lower, upper = scene.masses
-    weight, radius, link = lower + upper, scene.radius, scene.stiffness[0]
-
-    def forces(t: float, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """Accelerations of both bodies relative to the plate, and the contact force."""
-        place, above, velocity = y[:2], y[2:4], y[4:6]
-        shaking = ground_acceleration(scene, phase, [t])[0]
-        depth = np.sqrt(radius**2 - place @ place)
-        climb = place @ velocity / depth
-        speed = np.sqrt(velocity @ velocity + climb**2)
-        factor = scene.friction_coefficient * (1.0 if law is None else 1.0 / max(speed, law))
-        normal = np.array([*(-place), depth]) / radius
-        pull = link * (above - place)
-        # unknowns: horizontal acceleration of the platform and the contact force N
-        slip = factor * np.array([*velocity, climb])
-        matrix = np.zeros((3, 3))
-        matrix[:2, :2] = lower * np.eye(2)
-        matrix[:, 2] = -(normal - slip)
-        # vertical: weight * (a_z + g + ground) = N (n_z - slip_z), a_z from the sphere
-        matrix[2, :2] = weight * place / depth
-        bend = (velocity @ velocity + climb**2) / depth
-        right = np.array([*(pull - lower * shaking[:2]), -weight * (bend + GRAVITY + shaking[2])])
-        solution = np.linalg.solve(matrix, right)
-        return solution[:2], -pull / upper - shaking[:2], float(solution[2])
-
-    def slope(t: float, y: np.ndarray) -> np.ndarray:
-        platform, body, _ = forces(t, y)
-        return np.concatenate([y[4:], platform, body])
-
-    duration = scene.duration
+    v_reg = None if scene.lubricated else 1e-2
+    law = Law(scene, phase, "exact")
     solution = solve_ivp(
-        slope, (0.0, duration), np.zeros(8), "Radau", rtol=1e-8, atol=1e-10, max_step=0.02, t_eval=None
-    )
+        lambda t, y: law.smooth_rate(t, y, v_reg)[0],
+        (0.0, scene.duration), np.zeros(8), "Radau", rtol=1e-8, atol=1e-10, max_step=0.02,
+    )  # fmt: skip
     shear, contact = [], []
     for t, y in zip(solution.t, solution.y.T):
-        platform, body, force = forces(t, y)
-        shaking = ground_acceleration(scene, phase, [t])[0, :2]
-        shear.append(np.hypot(*(lower * (platform + shaking) + upper * (body + shaking))))
-        contact.append(force)
-    return np.array(shear), np.array(contact)
+        rate, normal = law.smooth_rate(t, y, v_reg)
+        shear.append(np.hypot(*(scene.masses @ (rate[4:].reshape(2, 2) + law.ground(t)[:2]))))
+        contact.append(normal)
+    answer = reference.peak_demands(scene, [phase], regularization=v_reg)
+    assert answer["base_shear"].value[0] == pytest.approx(max(shear), rel=1e-4)
+    assert answer["contact_force_max"].value[0] == pytest.approx(max(contact), rel=1e-4)
+    assert answer["contact_force_min"].value[0] == pytest.approx(min(contact), rel=1e-4)
 
 
 def test_a_pair_without_an_answer_is_nan_and_costs_no_other() -> None:

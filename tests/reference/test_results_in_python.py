@@ -77,13 +77,8 @@ def test_a_list_is_labeled_by_itself_and_a_grid_by_its_axes(surface):
     at = grid.sel(alpha1=PAIRS[5, 0], alpha2=PAIRS[5, 1])
     np.testing.assert_array_equal(at["mu"], surface.mu[5])
     assert str(at["status"].item()) == "ok"
-    assert [grid[name].attrs["units"] for name in ("mu", "error", "instant", "alpha1", "alpha2")] == [
-        "1",
-        "1",
-        "s",
-        "rad",
-        "rad",
-    ]
+    units = {"mu": "1", "error": "1", "instant": "s", "alpha1": "rad", "alpha2": "rad"}
+    assert {name: grid[name].attrs["units"] for name in units} == units
     assert grid["body"].values.tolist() == [1, 2]
 
 

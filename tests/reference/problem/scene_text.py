@@ -23,7 +23,10 @@ decay = [0.3, 0.2]
 """
 
 
-def edited(old: str, new: str) -> str:
-    """GOOD with one line changed; the line must be there exactly once."""
+def edited(change: str) -> str:
+    """GOOD with one line changed: "OLD -> NEW", or NEW in place of the line with the same key."""
+    old, arrow, new = (part.strip() for part in change.partition("->"))
+    if not arrow:
+        old, new = next(line for line in GOOD.splitlines() if line.startswith(old.partition("=")[0])), old
     assert GOOD.count(old) == 1, old
     return GOOD.replace(old, new)

@@ -93,55 +93,31 @@ def test_the_amplitude_scales_every_member(tmp_path: Path) -> None:
     assert family.scenes[0].name == "mine[friction=0.1]"
 
 
-WRONG = {
-    "no steps": (
-        "{range = [0.1, 0.2]}",
-        "isolator.friction = {'range': [0.1, 0.2]}: must be {range = [lowest, highest]",
-    ),
-    "no range": ("{steps = 3}", "isolator.friction = {'steps': 3}: must be {range = "),
-    "another key": ("{range = [0.1, 0.2], step = 3}", "isolator.friction = {'range': [0.1, 0.2], 'step': 3}: must be"),
-    "three ends": ("{range = [0.1, 0.2, 0.3], steps = 3}", "isolator.friction.range = [0.1, 0.2, 0.3]: must be two"),
-    "backwards": (
-        "{range = [0.2, 0.1], steps = 3}",
-        "isolator.friction.range = [0.2, 0.1]: must be two finite numbers",
-    ),
-    "infinite": ("{range = [0.2, inf], steps = 3}", "isolator.friction.range = [0.2, inf]: must be two finite numbers"),
-    "without a difference": (
-        "{range = [-1e308, 1e308], steps = 5}",
-        "isolator.friction.range = [-1e+308, 1e+308]: must be two finite numbers",
-    ),
-    "a flag": ("{range = [0.2, true], steps = 3}", "isolator.friction.range = [0.2, True]: must be two finite numbers"),
-    "one step": (
-        "{range = [0.1, 0.2], steps = 1}",
-        "isolator.friction.steps = 1: must be a whole number from 2 to 1000",
-    ),
-    "half steps": ("{range = [0.1, 0.2], steps = 2.5}", "isolator.friction.steps = 2.5: must be a whole number"),
-    "impossible member": ("{range = [-0.1, 0.2], steps = 4}", "isolator.friction = -0.1: Input should be greater than"),
-    "no values": ("{values = []}", "isolator.friction.values = []: must be a list of 1 to 1000 finite numbers"),
-    "mixed values": ("{values = [1, 'a']}", "isolator.friction.values = [1, 'a']: must be a list of 1 to 1000 finite"),
-    "twice": ("{values = [0.1, 0.1]}", "isolator.friction = 0.1: is there twice"),
-    "two ranges": (
-        "{range = [0.1, 0.2], steps = 2}\nring = {range = [1.0, 2.0], steps = 2}",
-        "isolator.ring = {'range': [1.0, 2.0], 'steps': 2}: isolator.friction runs, too: add combine = ",
-    ),
-}
+WRONG = [  # what runs, and the line behind isolator.friction
+    ("{range = [0.1, 0.2]}", " = {'range': [0.1, 0.2]}: must be {range = [lowest, highest]"),
+    ("{steps = 3}", " = {'steps': 3}: must be {range = "),
+    ("{range = [0.1, 0.2], step = 3}", " = {'range': [0.1, 0.2], 'step': 3}: must be"),
+    ("{range = [0.1, 0.2, 0.3], steps = 3}", ".range = [0.1, 0.2, 0.3]: must be two"),
+    ("{range = [0.2, 0.1], steps = 3}", ".range = [0.2, 0.1]: must be two finite numbers"),
+    ("{range = [0.2, inf], steps = 3}", ".range = [0.2, inf]: must be two finite numbers"),
+    ("{range = [-1e308, 1e308], steps = 5}", ".range = [-1e+308, 1e+308]: must be two finite numbers"),
+    ("{range = [0.2, true], steps = 3}", ".range = [0.2, True]: must be two finite numbers"),
+    ("{range = [0.1, 0.2], steps = 1}", ".steps = 1: must be a whole number from 2 to 1000"),
+    ("{range = [0.1, 0.2], steps = 2.5}", ".steps = 2.5: must be a whole number"),
+    ("{range = [-0.1, 0.2], steps = 4}", " = -0.1: Input should be greater than"),
+    ("{values = []}", ".values = []: must be a list of 1 to 1000 finite numbers"),
+    ("{values = [1, 'a']}", ".values = [1, 'a']: must be a list of 1 to 1000 finite"),
+    ("{values = [0.1, 0.1]}", " = 0.1: is there twice"),
+]
 
 
-@pytest.mark.parametrize(("table", "line"), WRONG.values(), ids=WRONG.keys())
+@pytest.mark.parametrize(("table", "line"), WRONG)
 def test_what_is_no_range_is_one_line(tmp_path: Path, table: str, line: str) -> None:
     file = _file(tmp_path, "friction = 0.1", f"friction = {table}")
-    if "ring" in table:
-        file.write_text(file.read_text(encoding="utf-8").replace("ring = 1.0 ", ""), encoding="utf-8")
     with pytest.raises(SceneError) as fault:
         load_family(file)
-    assert str(fault.value).startswith(f"{file}: {line}")
+    assert str(fault.value).startswith(f"{file}: isolator.friction{line}")
     assert "\n" not in str(fault.value)
-
-
-@pytest.mark.filterwarnings("error")
-def test_ends_whose_difference_overflows_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(SceneError, match="their difference finite"):
-        load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [-1e308, 1e308], steps = 5}"))
 
 
 def test_bodies_of_a_family_are_counted_before_a_scene_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

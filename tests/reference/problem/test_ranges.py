@@ -92,11 +92,17 @@ def test_a_duration_that_no_run_can_cover_is_refused_at_once(duration):
 @pytest.mark.parametrize(
     "asked",
     [
+        {"regularization": 0.0},
+        {"regularization": -1e-3},
+        {"regularization": math.inf},
         {"regularization": 1e-300},
         {"regularization": 1e300},
         {"regularization": 10**400},
         {"regularization": "1e-3"},
         {"regularization": {}},
+        {"tolerance": 0.0},
+        {"tolerance": math.nan},
+        {"tolerance": 1.0},
         {"tolerance": None},
         {"tolerance": "1e-3"},
         {"tolerance": {}},
@@ -122,13 +128,21 @@ def test_an_argument_outside_its_rules_is_one_line(function, asked):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("value", [None, {}, ["exact"], 3])
-def test_a_choice_that_is_no_text_is_a_value_error(value):
+@pytest.mark.parametrize("value", [None, {}, ["exact"], 3, "linear"])
+def test_a_choice_that_there_is_not_is_a_value_error(value):
     scene = load_scene("fig3-I")
     with pytest.raises(ValueError, match=r"^equations = .*must be one of exact, small"):
         reference.amplification(scene, PHASES, equations=value)
     with pytest.raises(ValueError, match=r"^model = .*must be one of spatial, translational"):
         multibody.amplification(scene, PHASES, model=value)
+    with pytest.raises(ValueError, match=r"^rest_condition = "):
+        reference.amplification(scene, PHASES, rest_condition=value)
+
+
+def test_a_cutoff_is_positive_and_without_regularization():
+    for cutoff, v_reg in ((0.0, None), (1e-3, 1e-3)):
+        with pytest.raises(ValueError, match=rf"^cutoff = {cutoff}"):
+            reference.amplification(load_scene("fig3-I"), PHASES, cutoff=cutoff, regularization=v_reg)
 
 
 @pytest.mark.parametrize("function", [reference.trajectory, multibody.trajectory])

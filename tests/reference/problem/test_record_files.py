@@ -68,35 +68,6 @@ def test_a_direction_that_ends_early_is_at_rest_then():
     assert samples[:, [1, 3]] == pytest.approx(GRAVITY * np.array([[1.0, 4.0], [2.0, 5.0], [3.0, 0.0]]))
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("", "empty"),
-        ("# only a comment\n", "empty"),
-        ("time [s],ax [g]\n", "0 samples"),
-        ("time [s],ax [g]\n0,1\n", "1 samples"),
-        (PLAIN.replace(" [g]", ""), "no unit"),
-        (PLAIN.replace(" [s]", ""), "no unit"),
-        (PLAIN.replace("[g]", "[ft/s^2]"), "unknown unit 'ft/s^2'"),
-        (PLAIN.replace("[s]", "[ms]"), "unknown unit 'ms'"),
-        (PLAIN.replace("ax", "vx"), "column 'vx [g]'"),
-        (PLAIN.replace("time [s]", "ay [g]"), "must have time"),
-        (PLAIN.replace("time [s],ax", "time [s],ax [g],ax"), "column ax is there twice"),
-        (PLAIN.replace("0.2", "nan"), "line 3: nan: must be finite"),
-        (PLAIN.replace("0.2", "inf"), "line 3: inf: must be finite"),
-        (PLAIN.replace("0.2", "x"), "line 3: 'x': must be a number"),
-        (PLAIN.replace("0.2", "0.2,3"), "line 3: 3 values"),
-        (PLAIN + "0.01,0.3\n", "line 4: time 0.01 s after 0.01 s: must rise"),
-        (PLAIN + "0.005,0.3\n", "line 4: time 0.005 s after 0.01 s: must rise"),
-    ],
-)
-def test_csv_that_is_none_is_refused_in_one_line(text, said):
-    with pytest.raises(RecordError) as refusal:
-        csv_samples(text)
-    assert said in str(refusal.value)
-    assert "\n" not in str(refusal.value)
-
-
 OF_THE_GROUND = "0.00630 0.00364 0.00099\n-0.00128 0.00368 0.00864\n"
 
 
@@ -135,43 +106,60 @@ def test_plain_numbers_are_read(cell):
     assert csv_samples(PLAIN.replace("0.2", cell))[1, 1] == GRAVITY * float(cell)
 
 
-@pytest.mark.parametrize(
-    ("read", "text"),
-    [
-        (csv_samples, PLAIN.replace("0.2", "9" * 140_000)),
-        (csv_samples, PLAIN.replace("0.2", '"' + "x" * 140_000 + '"')),
-        (csv_samples, PLAIN.replace("ax", "x" * 140_000)),
-        (csv_samples, PLAIN.replace("0.01", "1e-300").replace("0,0.1", "0,0.1")),
-        (lambda text: at2_samples({"x": text}), at2([1.0, 2.0], count=0).replace(" 0,", " " + "9" * 5000 + ",")),
-        (lambda text: at2_samples({"x": text}), at2([1e308, 2.0])),
-    ],
-)
-def test_what_no_double_holds_is_refused_in_one_short_line(read, text):
-    with pytest.raises(RecordError) as refusal:
-        read(text)
-    assert "\n" not in str(refusal.value)
-    assert len(str(refusal.value)) < 300
+NO_CSV = [
+    ("", "empty"),
+    ("# only a comment\n", "empty"),
+    ("time [s],ax [g]\n", "0 samples"),
+    ("time [s],ax [g]\n0,1\n", "1 samples"),
+    (PLAIN.replace(" [g]", ""), "no unit"),
+    (PLAIN.replace(" [s]", ""), "no unit"),
+    (PLAIN.replace("[g]", "[ft/s^2]"), "unknown unit 'ft/s^2'"),
+    (PLAIN.replace("[s]", "[ms]"), "unknown unit 'ms'"),
+    (PLAIN.replace("ax", "vx"), "column 'vx [g]'"),
+    (PLAIN.replace("time [s]", "ay [g]"), "must have time"),
+    (PLAIN.replace("time [s],ax", "time [s],ax [g],ax"), "column ax is there twice"),
+    (PLAIN.replace("0.2", "nan"), "line 3: nan: must be finite"),
+    (PLAIN.replace("0.2", "inf"), "line 3: inf: must be finite"),
+    (PLAIN.replace("0.2", "x"), "line 3: 'x': must be a number"),
+    (PLAIN.replace("0.2", "0.2,3"), "line 3: 3 values"),
+    (PLAIN + "0.01,0.3\n", "line 4: time 0.01 s after 0.01 s: must rise"),
+    (PLAIN + "0.005,0.3\n", "line 4: time 0.005 s after 0.01 s: must rise"),
+]
+NO_AT2 = [
+    ({"x": ""}, "must have a line 'NPTS"),
+    ({"x": at2([1.0, 2.0], unit="UNITS OF CM/SEC/SEC")}, "names no unit"),
+    ({"x": at2([1.0, 2.0], sizes="{} values, {} s")}, "must have a line 'NPTS"),
+    ({"x": at2([1.0, 2.0], count=3)}, "2 values: the header says NPTS = 3"),
+    ({"x": at2([1.0, 2.0], count=0)}, "NPTS = '0'"),
+    ({"x": at2([1.0, 2.0], step=-0.01)}, "DT = -0.01 s"),
+    ({"x": at2([1.0, float("nan")])}, "line 5: nan: must be finite"),
+    ({"x": at2([1.0, 2.0]), "y": at2([1.0, 2.0], step=0.02)}, "DT = 0.01 s along x and 0.02 s along y"),
+    ({"x": at2([1.0])}, "1 samples"),
+]
+NO_DOUBLE = [
+    (csv_samples, PLAIN.replace("0.2", "9" * 140_000)),
+    (csv_samples, PLAIN.replace("0.2", '"' + "x" * 140_000 + '"')),
+    (csv_samples, PLAIN.replace("ax", "x" * 140_000)),
+    (csv_samples, PLAIN.replace("0.01", "1e-300")),
+    (at2_samples, {"x": at2([1.0, 2.0], count=0).replace(" 0,", " " + "9" * 5000 + ",")}),
+    (at2_samples, {"x": at2([1e308, 2.0])}),
+]
 
 
 @pytest.mark.parametrize(
-    ("files", "said"),
+    ("read", "given", "said"),
     [
-        ({"x": ""}, "must have a line 'NPTS"),
-        ({"x": at2([1.0, 2.0], unit="UNITS OF CM/SEC/SEC")}, "names no unit"),
-        ({"x": at2([1.0, 2.0], sizes="{} values, {} s")}, "must have a line 'NPTS"),
-        ({"x": at2([1.0, 2.0], count=3)}, "2 values: the header says NPTS = 3"),
-        ({"x": at2([1.0, 2.0], count=0)}, "NPTS = '0'"),
-        ({"x": at2([1.0, 2.0], step=-0.01)}, "DT = -0.01 s"),
-        ({"x": at2([1.0, float("nan")])}, "line 5: nan: must be finite"),
-        ({"x": at2([1.0, 2.0]), "y": at2([1.0, 2.0], step=0.02)}, "DT = 0.01 s along x and 0.02 s along y"),
-        ({"x": at2([1.0])}, "1 samples"),
+        *((csv_samples, text, said) for text, said in NO_CSV),
+        *((at2_samples, files, said) for files, said in NO_AT2),
+        *((read, given, "") for read, given in NO_DOUBLE),
     ],
 )
-def test_at2_that_is_none_is_refused_in_one_line(files, said):
+def test_what_is_no_record_is_refused_in_one_short_line(read, given, said):
     with pytest.raises(RecordError) as refusal:
-        at2_samples(files)
+        read(given)
     assert said in str(refusal.value)
     assert "\n" not in str(refusal.value)
+    assert len(str(refusal.value)) < 300
 
 
 def of_x(text):

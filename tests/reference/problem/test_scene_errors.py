@@ -10,100 +10,79 @@ from scene_text import GOOD, edited
 
 from reference.problem import Scene, SceneError, builtin_scenes, load_scene, parse_scene
 
-# name: (line of the good file, what replaces it, key, value, words of the rule)
-BROKEN = {
-    "unknown key": ("duration = 2.0", "duration = 2.0\ncolour = 3", "colour", 3, "unknown key"),
-    "unknown table": ("[isolator]", "[solver]\nstep = 1\n[isolator]", "solver", {"step": 1}, "unknown key"),
-    "name": ("duration = 2.0", 'duration = 2.0\nname = "x"', "name", "x", "named after its file"),
-    "no duration": ("duration = 2.0", "", "duration", None, "required"),
-    "no mass": ("mass = 3.0", "", "bodies.0.mass", None, "required"),
-    "duration text": ("duration = 2.0", 'duration = "2"', "duration", "2", "number"),
-    "duration zero": ("duration = 2.0", "duration = 0.0", "duration", 0.0, "greater than 0"),
-    "duration nan": ("duration = 2.0", "duration = nan", "duration", None, "finite"),
-    "friction negative": ("friction = 0.1", "friction = -0.1", "isolator.friction", -0.1, "greater than or equal to 0"),
-    "friction of the velocity without its rate": (
-        "friction = 0.1",
-        "friction = {slow = 0.1, fast = 0.2}",
-        "isolator.friction",
-        None,
-        "give fast and rate together, or neither",
-    ),
-    "friction of the velocity without hold": (
-        "friction = 0.1",
-        "friction = {slow = 0.0, fast = 0.2, rate = 50.0}",
-        "isolator.friction.slow",
-        0.0,
-        "greater than 0",
-    ),
-    "friction of the velocity with an unknown key": (
-        "friction = 0.1",
-        "friction = {slow = 0.1, fast = 0.2, rat = 50.0}",
-        "isolator.friction.rat",
-        50.0,
-        "did you mean rate",
-    ),
-    "neither friction": ("friction = 0.1", "", "isolator", {"period": 1.0}, "exactly one of friction and lubrication"),
-    "both frictions": (
-        "friction = 0.1",
-        "friction = 0.1\nlubrication = 0.2",
-        "isolator",
-        None,
-        "exactly one of friction",
-    ),
-    "neither radius": ("period = 1.0", "", "isolator", {"friction": 0.1}, "exactly one of period and radius"),
-    "both radii": ("period = 1.0", "period = 1.0\nradius = 0.3", "isolator", None, "exactly one of period and radius"),
-    "two supports": ("[isolator]", "[isolator]\nsupports = 2", "isolator.supports", 2, "equal to 3"),
-    "two positions": ("[isolator]", "[isolator]\nsupports = [[0, 1], [1, 0]]", "isolator.supports", None, "3 items"),
-    "position far away": (
-        "[isolator]",
-        "[isolator]\nsupports = [[0, 1], [1, 0], [1, 1e7]]",
-        "isolator.supports.2.1",
-        1e7,
-        "to 1e+06 m",
-    ),
-    "positions with a ring": (
-        "[isolator]",
-        "[isolator]\nring = 1.0\nsupports = [[0, 1], [1, -1], [-1, -1]]",
-        "isolator.ring",
-        1.0,
-        "remove this key",
-    ),
-    "positions on one line": (
-        "[isolator]",
-        "[isolator]\nsupports = [[0.1, 0.1], [0.2, 0.2], [0.3, 0.3]]",
-        "isolator.supports",
-        None,
-        "on one line",
-    ),
-    "a position twice": (
-        "[isolator]",
-        "[isolator]\nsupports = [[0, 1], [1, -1], [-1, -1], [0, 1]]",
-        "isolator.supports",
-        None,
-        "at the same place",
-    ),
-    "positions beside the axis": (
-        "[isolator]",
-        "[isolator]\nsupports = [[1, 1], [2, 1], [1, 2]]",
+# what is changed in the good file, key, value if it is one, words of the rule
+BROKEN = [
+    ("duration = 2.0\ncolour = 3", "colour", 3, "unknown key"),
+    ("[isolator] -> [solver]\nstep = 1\n[isolator]", "solver", {"step": 1}, "unknown key"),
+    ('duration = 2.0\nname = "x"', "name", "x", "named after its file"),
+    ("duration = 2.0 ->", "duration", None, "required"),
+    ("mass = 3.0 ->", "bodies.0.mass", None, "required"),
+    ('duration = "2"', "duration", "2", "number"),
+    ("duration = 0.0", "duration", 0.0, "greater than 0"),
+    ("duration = nan", "duration", None, "finite"),
+    ("friction = -0.1", "isolator.friction", -0.1, "greater than or equal to 0"),
+    ("friction = {slow = 0.1, fast = 0.2}", "isolator.friction", None, "give fast and rate together, or neither"),
+    ("friction = {slow = 0.0, fast = 0.2, rate = 50.0}", "isolator.friction.slow", 0.0, "greater than 0"),
+    ("friction = {slow = 0.1, fast = 0.2, rat = 50.0}", "isolator.friction.rat", 50.0, "did you mean rate"),
+    ("friction = 0.1 ->", "isolator", {"period": 1.0}, "exactly one of friction and lubrication"),
+    ("friction = 0.1\nlubrication = 0.2", "isolator", None, "exactly one of friction"),
+    ("period = 1.0 ->", "isolator", {"friction": 0.1}, "exactly one of period and radius"),
+    ("friction = 0.1\nradius = 0.3", "isolator", None, "exactly one of period and radius"),
+    ("friction = 0.1\nsupports = 2", "isolator.supports", 2, "equal to 3"),
+    ("friction = 0.1\nsupports = [[0, 1], [1, 0]]", "isolator.supports", None, "3 items"),
+    ("friction = 0.1\nsupports = [[0, 1], [1, 0], [1, 1e7]]", "isolator.supports.2.1", 1e7, "to 1e+06 m"),
+    ("friction = 0.1\nring = 1.0\nsupports = [[0, 1], [1, -1], [-1, -1]]", "isolator.ring", 1.0, "remove this key"),
+    ("friction = 0.1\nsupports = [[0.1, 0.1], [0.2, 0.2], [0.3, 0.3]]", "isolator.supports", None, "on one line"),
+    ("friction = 0.1\nsupports = [[0, 1], [1, -1], [0, 1]]", "isolator.supports", None, "at the same place"),
+    (
+        "friction = 0.1\nsupports = [[1, 1], [2, 1], [1, 2]]",
         "bodies: center of mass of all [x, y] in m",
         [0.0, 0.0],
         "would carry nothing at rest",
     ),
-    "yaw in degrees": ("mass = 1.0", "mass = 1.0\nyaw = 45.0", "bodies.1.yaw", 45.0, "rad"),
-    "link period of one": ("period = [1.5, 1.2]", "period = [1.5]", "bodies.1.period", [1.5], "2 items"),
-    "one row": ("[[1.0, 0.0], [0.0, 1.0]]", "[[1.0, 0.0]]", "excitation.amplitudes", [[1.0, 0.0]], "2 items"),
-    "decay negative": ("decay = [0.3, 0.2]", "decay = [0.3, -0.2]", "excitation.decay.1", -0.2, "equal to 0"),
-    "limit negative": ("[isolator]", "[acceptance]\nmedian = -1.0\n[isolator]", "acceptance.median", -1.0, "greater"),
-    "broken TOML": ("[isolator]", "[isolator", "file", None, "valid TOML"),
-    "key twice": ("duration = 2.0", "duration = 2.0\nduration = 3.0", "file", None, "valid TOML"),
-}
+    ("mass = 1.0 -> mass = 1.0\nyaw = 45.0", "bodies.1.yaw", 45.0, "rad"),
+    ("period = [1.5, 1.2] -> period = [1.5]", "bodies.1.period", [1.5], "2 items"),
+    ("amplitudes = [[1.0, 0.0]]", "excitation.amplitudes", [[1.0, 0.0]], "2 items"),
+    ("decay = [0.3, -0.2]", "excitation.decay.1", -0.2, "equal to 0"),
+    ("[isolator] -> [acceptance]\nmedian = -1.0\n[isolator]", "acceptance.median", -1.0, "greater"),
+    ("[isolator] -> [isolator", "file", None, "valid TOML"),
+    ("duration = 2.0\nduration = 3.0", "file", None, "valid TOML"),
+    # links
+    ("mass = 3.0 -> mass = 3.0\nperiod = [1.0, 1.0]", "bodies.0.period", None, "platform"),
+    ("mass = 3.0 -> mass = 3.0\nstiffness = [1.0, 1.0]", "bodies.0.stiffness", None, "platform"),
+    (
+        "mass = 3.0 -> mass = 3.0\nbars = {count = 4, bending_stiffness = 1, length = 1}",
+        "bodies.0.bars",
+        None,
+        "platform",
+    ),
+    ("period = [1.5, 1.2] ->", "bodies.1", None, "exactly one of period, stiffness and bars"),
+    ("period = [1.5, 1.2] -> period = [1, 1]\nstiffness = [1, 1]", "bodies.1", None, "exactly one of period"),
+    ("period = [1.5, 1.2] -> bars = {count = 4, bending_stiffness = 1}", "bodies.1.bars.length", None, "required"),
+    (
+        "period = [1.5, 1.2] -> bars = {count = 4.5, bending_stiffness = 1, length = 1}",
+        "bodies.1.bars.count",
+        4.5,
+        "int",
+    ),
+    # values that overflow in SI units
+    ("period = 1.0 -> period = 1e200", "isolator.period", 1e200, "finite and positive"),
+    ("period = 1.0 -> period = 1e-200", "isolator.period", 1e-200, "finite and positive"),
+    ("period = [1.5, 1.2] -> period = [1e-200, 1.2]", "bodies.1.period.0", 1e-200, "finite and positive"),
+    ("period = [1.5, 1.2] -> period = [1e200, 1.2]", "bodies.1.period.0", 1e200, "finite and positive"),
+    (
+        "mass = 3.0\n\n[[bodies]]\nmass = 1.0 -> mass = 1e308\n[[bodies]]\nmass = 1e308",
+        "bodies.0.mass",
+        1e308,
+        "finite and positive",
+    ),
+]
 
 
-@pytest.mark.parametrize("case", BROKEN)
-def test_a_broken_rule_is_one_line_with_file_key_value_and_rule(case):
-    old, new, key, value, rule = BROKEN[case]
+@pytest.mark.parametrize(("change", "key", "value", "rule"), BROKEN)
+def test_a_broken_rule_is_one_line_with_file_key_value_and_rule(change, key, value, rule):
     with pytest.raises(SceneError) as caught:
-        parse_scene(edited(old, new).encode(), "folder/mine.toml")
+        parse_scene(edited(change).encode(), "folder/mine.toml")
     error = caught.value
     assert error.key == key
     assert value is None or error.value == value
@@ -111,41 +90,6 @@ def test_a_broken_rule_is_one_line_with_file_key_value_and_rule(case):
     assert str(error).startswith(f"folder/mine.toml: {key} = ")
     assert str(error).endswith(error.rule)
     assert "\n" not in str(error)
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "key", "rule"),
-    [
-        ("mass = 3.0", "mass = 3.0\nperiod = [1.0, 1.0]", "bodies.0", "platform"),
-        ("mass = 3.0", "mass = 3.0\nstiffness = [1.0, 1.0]", "bodies.0", "platform"),
-        ("period = [1.5, 1.2]", "", "bodies.1", "exactly one of period, stiffness and bars"),
-        ("period = [1.5, 1.2]", "period = [1.5, 1.2]\nstiffness = [1.0, 1.0]", "bodies.1", "exactly one of period"),
-        ("mass = 3.0", "mass = 3.0\nbars = {count = 4, bending_stiffness = 1.0, length = 1.0}", "bodies.0", "platform"),
-        ("period = [1.5, 1.2]", "bars = {count = 4, bending_stiffness = 1.0}", "bodies.1.bars.length", "required"),
-        ("period = [1.5, 1.2]", "bars = {count = 4.5, bending_stiffness = 1.0, length = 1.0}", "bodies.1.bars", "int"),
-    ],
-)
-def test_a_wrong_link_names_its_body(old, new, key, rule):
-    with pytest.raises(SceneError) as caught:
-        parse_scene(edited(old, new).encode(), "mine.toml")
-    assert caught.value.key.startswith(key)
-    assert rule in caught.value.rule
-    assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("period = 1.0\n", "period = 1e200\n"),
-        ("period = 1.0\n", "period = 1e-200\n"),
-        ("period = [1.5, 1.2]", "period = [1e-200, 1.2]"),
-        ("period = [1.5, 1.2]", "period = [1e200, 1.2]"),
-        ("mass = 3.0\n\n[[bodies]]\nmass = 1.0", "mass = 1e308\n\n[[bodies]]\nmass = 1e308"),
-    ],
-)
-def test_values_that_overflow_in_si_units_are_refused(old, new):
-    with pytest.raises(SceneError, match="finite and positive"):
-        parse_scene(edited(old, new).encode(), "mine.toml")
 
 
 def test_no_bodies_is_refused():
@@ -175,7 +119,7 @@ def test_an_impossible_amplitude_is_refused(amplitude):
 
 
 def test_an_amplitude_for_a_loading_of_zeros_is_refused():
-    text = edited("[[1.0, 0.0], [0.0, 1.0]]", "[[0.0, 0.0], [0.0, 0.0]]")
+    text = edited("amplitudes = [[0.0, 0.0], [0.0, 0.0]]")
     with pytest.raises(SceneError, match=r"excitation\.amplitudes = 0\.0: all entries are 0"):
         parse_scene(text.encode(), "mine").with_amplitude(1.0)
 
