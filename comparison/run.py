@@ -137,7 +137,7 @@ def _run(
     complete: Complete | None = None
     stopped: KeyboardInterrupt | None = None
     with progress(console, total, jobs) as display, Deadline(began.wall, options.budget) as deadline:
-        runner = Runner(results, console, jobs, pool, display, stages)
+        runner = Runner(results, jobs, pool, display, stages)
         try:
             planned = levels(study)
             for level in planned if results.missing(surfaces) else planned[-1:]:

@@ -21,7 +21,6 @@ from claims_search import RANGES, SEARCH_GRID, Selection, best_readings, searche
 from claims_settled import GRIDS, Settled, Settling
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
-from rich.console import Console
 
 from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.evidence import without_value
@@ -67,7 +66,7 @@ def main() -> None:
     results = TaskResults(Cache(store_beside(options.out)))
 
     def compute(tasks: Sequence[Task]) -> TaskResults:
-        Runner(results, Console(), options.jobs, process_pool).run(tasks, compiling_task)
+        Runner(results, options.jobs, process_pool).run(tasks, compiling_task)
         return results
 
     def tabled(grid: int, readings: Sequence[Reading]) -> ClaimTable:

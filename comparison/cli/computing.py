@@ -21,8 +21,9 @@ from comparison.cli.arguments import EndedEarlyError, jobs
 from comparison.runner.cache import Cache, StoreError, refuse_foreign_store, store_beside
 from comparison.runner.executors import ExecutorLostError, Pool
 from comparison.runner.output import destination
+from comparison.runner.progress import progress
 from comparison.runner.provenance import provenance
-from comparison.runner.resume import command_line, resume_hint, without_scheduler
+from comparison.runner.resume import changed, command_line, resume_hint
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -59,15 +60,16 @@ def computed(
     if options.fresh:
         cache.remove(task.key for task in tasks)
     results = TaskResults(cache)
-    stored = len(tasks) - len(results.missing(tasks))
-    if stored:
+    missing = results.missing(tasks)
+    if stored := len(tasks) - len(missing):
         line = f"{stored} of {len(tasks)} tasks are in {cache.folder}: only the others are computed."
         console.print(line, soft_wrap=True)  # a path is copied whole
     with (
         ending_early(lambda rest: resume_hint(cache, rest, command), words, options.scheduler),
         workers(width, options.scheduler, models, executor) as (count, pool),
+        progress(console, sum(task.seconds for task in missing), count) as display,
     ):
-        Runner(results, console, count, pool).run(tasks, compiling_task)
+        Runner(results, count, pool, display).run(missing, compiling_task)
     return results
 
 
@@ -80,6 +82,6 @@ def ending_early(hint: Callable[[Sequence[str]], str], words: Sequence[str], sch
         raise EndedEarlyError(128 + getattr(stop, "number", signal.SIGINT), f"interrupted: {hint(words)}") from None
     except ExecutorLostError as error:
         where = "" if scheduler is None else f"--scheduler {scheduler}: "
-        raise EndedEarlyError(4, f"{where}{error}: {hint(without_scheduler(words))}") from None
+        raise EndedEarlyError(4, f"{where}{error}: {hint(changed(words, options=['--scheduler']))}") from None
     except StoreError as error:
         raise EndedEarlyError(3, f"{error}; {hint(words)}") from None

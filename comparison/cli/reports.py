@@ -24,11 +24,12 @@ from comparison.runner.resume import command_line
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
+from comparison.runner.warm_up import compiling_task
 from comparison.study.levels import Level
 from comparison.study.study import Study
 from comparison.surfaces.alerts import Fault
 from comparison.surfaces.surfaces import labeled_surfaces
-from comparison.surfaces.tasks import batch_results, surface_tasks, warm_up
+from comparison.surfaces.tasks import batch_results, surface_tasks
 from comparison.surfaces.unanswered import compared_study
 
 WITH_THE_LAST = "it comes with the last level of a run"
@@ -49,7 +50,7 @@ def computed_level(level: Level, runner: Runner) -> Complete:
     """Compute what a level still lacks: its surfaces with the analyses beside them, then what the surfaces choose."""
     analyses = chosen_analyses(level.study)
     tasks = surface_tasks(level.study)
-    runner.run([*tasks, *first_tasks(level.study, analyses)], lambda: warm_up(tasks))
+    runner.run([*tasks, *first_tasks(level.study, analyses)], compiling_task)
     batches = [task.argument for task in tasks]
     surfaces = labeled_surfaces(level.study, batches, batch_results(tasks, runner.results))
     study = compared_study(level.study, surfaces)

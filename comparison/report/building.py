@@ -18,8 +18,7 @@ from comparison.surfaces.alerts import Fault, alerts
 from comparison.surfaces.budget import budget
 from comparison.surfaces.completion import completions, with_completed
 from comparison.surfaces.differences import Difference, differences
-from comparison.surfaces.distribution import distributions
-from comparison.surfaces.grid_maxima import grid_maxima
+from comparison.surfaces.distribution import distributions, grid_maxima
 from comparison.surfaces.headline import headline
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share, outcome_counts
 from comparison.surfaces.unanswered import advice, unanswered
@@ -100,7 +99,7 @@ def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, rows: Sequence[Diff
 
 
 def _model(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> ModelOutcome:
-    counts = outcome_counts(surfaces, scene.name, model.key)
+    counts = outcome_counts(surfaces, scene.name, model)
     return ModelOutcome(
         phases_per_axis=len(study.axis(model, scene)),
         points=study.points(model, scene),

@@ -16,7 +16,7 @@ from comparison.report.section import Report
 from comparison.study.models import Model, Pair, models_of
 from comparison.surfaces.completion import Completion
 from comparison.surfaces.differences import pair_step
-from comparison.surfaces.surfaces import common_phases
+from comparison.surfaces.surfaces import values_of
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
@@ -109,12 +109,12 @@ def _model(
     worst: per body, null or alpha1, alpha2 (rad), the largest mu over all phases, and the model that was searched: this
     one or one near it.
     """
-    data = common_phases(report.surfaces, scene.name, [model.key]).sel(model=model.key)
     bodies = range(1, len(scene.bodies) + 1)
     surface = not scene.recorded and _surface(report, scene, model)
 
     def listed(name: str, digits: int) -> list[Rows]:
-        return [_rows(np.asarray(data[name].sel(body=body), float), digits) for body in bodies]
+        values = values_of(report.surfaces, name, scene.name, model)
+        return [_rows(values[body - 1], digits) for body in bodies]
 
     return {
         "phases": len(report.study.axis(model, scene)),

@@ -9,8 +9,7 @@ from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.budget import BudgetEntry
 from comparison.surfaces.completion import Completion
 from comparison.surfaces.differences import Difference
-from comparison.surfaces.distribution import Distribution
-from comparison.surfaces.grid_maxima import GridMaximum
+from comparison.surfaces.distribution import Distribution, GridMaximum
 from comparison.surfaces.headline import Headline
 from comparison.surfaces.waterfall import Waterfall
 from reference.problem.acceptance import Acceptance

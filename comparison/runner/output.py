@@ -8,7 +8,6 @@ removed; where something else is in the way the new ones go beside under a new n
 
 from __future__ import annotations
 
-import errno
 import hashlib
 import json
 import os
@@ -201,10 +200,10 @@ def _either(old: Own | None, new: Own) -> Own:
 
 def _note(folder: Path, manifest: Mapping[str, Own], say: Callable[[str], None]) -> None:
     """Write the manifest, unless something else has its name."""
-    try:
-        write_manifest(folder, manifest)
-    except FileExistsError:
+    if os.path.lexists(folder / MANIFEST) and not read_manifest(folder):
         say(f"{str(folder / MANIFEST)!r} is not a file of this study and stays: the next run does not know these files")
+    else:
+        write_atomically(folder / MANIFEST, manifest_json(manifest))
 
 
 def netcdf(values: xr.Dataset) -> bytes:
@@ -247,14 +246,7 @@ def read_manifest(folder: Path) -> dict[str, Own]:
         return {}
 
 
-def write_manifest(folder: Path, manifest: Mapping[str, Own]) -> None:
-    """Say which files of a folder are the study's own. Raises OSError, also over a manifest that is not ours."""
-    if os.path.lexists(folder / MANIFEST) and not read_manifest(folder):
-        raise FileExistsError(errno.EEXIST, "not a manifest of this study", str(folder / MANIFEST))
-    write_atomically(folder / MANIFEST, _as_json(manifest))
-
-
-def _as_json(manifest: Mapping[str, Own]) -> bytes:
+def manifest_json(manifest: Mapping[str, Own]) -> bytes:
     files = {
         name: {"command": manifest[name].command, "sha256": list(manifest[name].hashes)} for name in sorted(manifest)
     }
@@ -272,18 +264,18 @@ def _put(new: Path, place: Path, say: Callable[[str], None]) -> Path:
     there = next(name for name in names_after(place) if not os.path.lexists(name)) if why else place
     there.mkdir(exist_ok=True)
     old = read_manifest(there)
-    (new / MANIFEST).write_bytes(_as_json(old | {name: _either(old.get(name), own) for name, own in mine.items()}))
-    for name in (MANIFEST, *mine):
-        (there / name).parent.mkdir(parents=True, exist_ok=True)
-        os.replace(new / name, there / name)
     kept = {name: own for name, own in old.items() if own.command != REPORT and name not in mine}
     for name in old.keys() - kept.keys() - mine.keys():
         if _is_own(there / name, old[name]):
             (there / name).unlink()
         with suppress(OSError):
             (there / name).parent.rmdir()
-    (new / MANIFEST).write_bytes(_as_json(kept | mine))
-    os.replace(new / MANIFEST, there / MANIFEST)
+    # before the files: whatever ends the moving, all of them are the study's own
+    replaced = {name: _either(old.get(name), own) for name, own in mine.items()}
+    (new / MANIFEST).write_bytes(manifest_json(kept | replaced))
+    for name in (MANIFEST, *mine):
+        (there / name).parent.mkdir(parents=True, exist_ok=True)
+        os.replace(new / name, there / name)
     if why:
         say(f"{str(place)!r} stays as it is ({why}): the report is in {str(there)!r}")
     return there

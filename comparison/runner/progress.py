@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
@@ -23,7 +23,7 @@ def wide_console() -> Console:
 
 class Display:
     """
-    How far a command is.
+    How far a command is, shown by `show` whenever work is done.
 
     The time left is what is left of the work, times what the work so far took, with a tenth of all work as if it had
     taken its rough cost. The first piece of work does not count: it starts the workers.
@@ -31,22 +31,28 @@ class Display:
     total: all work, rough s of processor time; jobs: workers.
     """
 
-    def __init__(self, total: float, jobs: int) -> None:
-        self.total, self._jobs, self.done = total, jobs, 0.0
-        self.what, self.count = "", ""
+    def __init__(self, total: float, jobs: int, show: Callable[[Display], None] = lambda display: None) -> None:
+        self.total, self._jobs, self._show, self.done = total, jobs, show, 0.0
+        self._what = ""
         self.begin = time.monotonic()
         self._first: tuple[float, float] | None = None  # when the first piece was done, and how much was done then
 
     def advance(self, what: str, count: str, seconds: float) -> None:
         """Work of rough `seconds` is done: what, and how many of how many, in words."""
-        self.what, self.count, self.done = what, count, self.done + seconds
+        self.done += seconds
         if self._first is None:
             self._first = time.monotonic(), self.done
-        self.show()
+        self._what = f"{what}: {count}"
+        self._show(self)
 
     def skip(self, seconds: float) -> None:
         """Work of rough `seconds` need not be done."""
         self.total -= seconds
+
+    @property
+    def text(self) -> str:
+        """What is done last, and the time left."""
+        return f"{self._what}, about {self.left:.0f} s left"
 
     @property
     def left(self) -> float:
@@ -56,44 +62,21 @@ class Display:
         rough = max(TRUSTED * self.total, 1.0)
         return work * (now - before + rough / self._jobs) / (self.done - earlier + rough)
 
-    def show(self) -> None:
-        """Show it."""
-
-
-class Bar(Display):
-    """On a terminal."""
-
-    def __init__(self, bars: Progress, total: float, jobs: int) -> None:
-        super().__init__(total, jobs)
-        self._bars, self._task = bars, bars.add_task("", total=total, count="starting")
-
-    def show(self) -> None:
-        """Move the bar."""
-        text = f"{self.what}: {self.count}, about {self.left:.0f} s left"
-        self._bars.update(self._task, total=self.total, completed=self.done, count=text)
-
-
-class Lines(Display):
-    """Elsewhere: a line every EVERY seconds."""
-
-    def __init__(self, console: Console, total: float, jobs: int) -> None:
-        super().__init__(total, jobs)
-        self._console, self._last = console, self.begin
-
-    def show(self) -> None:
-        """Print a line if the last one is old enough."""
-        now = time.monotonic()
-        if now - self._last >= EVERY:
-            self._last = now
-            line = f"{now - self.begin:6.0f} s  {self.what}: {self.count}, about {self.left:.0f} s left"
-            self._console.print(line, style=None)
-
 
 @contextmanager
 def progress(console: Console, total: float, jobs: int) -> Iterator[Display]:
     """A display for as long as the block lasts; total: all work, rough s of processor time; jobs: workers."""
-    if not console.is_terminal:
-        yield Lines(console, total, jobs)
+    if console.is_terminal:
+        with Progress(BarColumn(), TextColumn("{task.fields[text]}", markup=False), console=console) as bars:
+            bar = bars.add_task("", total=total, text="starting")
+            yield Display(total, jobs, lambda now: bars.update(bar, total=now.total, completed=now.done, text=now.text))
         return
-    with Progress(BarColumn(), TextColumn("{task.fields[count]}", markup=False), console=console) as bars:
-        yield Bar(bars, total, jobs)
+    last = time.monotonic()
+
+    def line(display: Display) -> None:
+        nonlocal last
+        if (now := time.monotonic()) - last >= EVERY:
+            last = now
+            console.print(f"{now - display.begin:6.0f} s  {display.text}", style=None)
+
+    yield Display(total, jobs, line)

@@ -54,8 +54,3 @@ def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batche
     else:
         kept = f"{cache.kept[BATCH]} of {batches} batches{f' and {tasks} analyses' if tasks else ''} are"
     return f"{kept} kept in {str(cache.folder)!r}; go on with: {command_line(rest, command)}"
-
-
-def without_scheduler(words: Sequence[str]) -> list[str]:
-    """The words of a command line without the cluster: the same numbers from the processes of this machine."""
-    return changed(words, options=["--scheduler"])

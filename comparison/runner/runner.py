@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from rich.console import Console
-
 from comparison.runner.executors import Pool, executing
-from comparison.runner.progress import Display, progress
+from comparison.runner.progress import Display
 from comparison.runner.sweep import Sweep
 from comparison.runner.task import GIVEN_UP, GIVEN_UP_AFTER, Task, TaskResult, unfinished
 from comparison.runner.task_results import TaskResults
@@ -22,15 +19,14 @@ class Runner:
     """
     Runs tasks on `executor`, or on what it makes for `jobs` workers, and stores every result as it arrives.
 
-    display: what is told of finished work; without it every call shows its own. stages: rough s of processor time of
-    the stages of tasks; a stage that is not listed takes what its tasks weigh.
+    display: what is told of finished work. stages: rough s of processor time of the stages of tasks; a stage that is
+    not listed takes what its tasks weigh.
     """
 
     results: TaskResults
-    console: Console
     jobs: int
     executor: Pool
-    display: Display | None = None
+    display: Display = field(default_factory=lambda: Display(0.0, 1))
     stages: Mapping[str, float] = field(default_factory=dict)
     lost: Counter[str] = field(default_factory=Counter)  # batches that hung or ended their process, by worker group
     compiled: bool = False  # whether a worker has compiled the reference
@@ -45,8 +41,7 @@ class Runner:
         weights = self._weights(tasks)
         new = [task for task in tasks if task not in self.results]
         missing = self.results.missing(new)
-        if self.display is not None:
-            self.display.skip(sum(weights[id(task)] for task in new) - sum(weights[id(task)] for task in missing))
+        self.display.skip(sum(weights[id(task)] for task in new) - sum(weights[id(task)] for task in missing))
         if not missing:
             return
         missing.sort(key=lambda task: (task.batch is None, 0.0 if task.batch else -task.seconds))
@@ -64,14 +59,6 @@ class Runner:
             id(task): task.seconds * self.stages.get(task.stage, sums[task.stage]) / sums[task.stage] for task in tasks
         }
 
-    @contextmanager
-    def _shown(self, weights: Mapping[int, float]) -> Iterator[Display]:
-        if self.display is not None:
-            yield self.display
-        else:
-            with progress(self.console, sum(weights.values()), self.jobs) as display:
-                yield display
-
     def _sweep(self, missing: Sequence[Task], weights: Mapping[int, float], first: Task | None) -> None:
         """Run the tasks; `first`, whose result is not kept, before those that need the compiled reference."""
         tasks = [*([first] if first else []), *missing]
@@ -80,7 +67,7 @@ class Runner:
         for task in tasks:
             total[task.stage] += task.points
         so_far: Counter[str] = Counter()
-        with self._shown(weights) as display, executing(self.executor, min(self.jobs, len(tasks))) as executor:
+        with executing(self.executor, min(self.jobs, len(tasks))) as executor:
 
             def done(task: Task, result: TaskResult) -> None:
                 nonlocal waiting
@@ -91,7 +78,7 @@ class Runner:
                 so_far[task.stage] += task.points
                 unit = "phase pairs" if task.batch else "tasks"
                 count = f"{so_far[task.stage]} of {total[task.stage]} {unit}"
-                display.advance(task.stage, count, weights.get(id(task), 0.0))
+                self.display.advance(task.stage, count, weights.get(id(task), 0.0))
 
             def ready(task: Task) -> bool:
                 return not (waiting and task.needs_compiled_reference)

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
 import xarray as xr
 
 from comparison.result_types import Part, Text
-from comparison.study.models import Model, models_of
+from comparison.study.models import models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share
 from comparison.surfaces.unanswered import Unanswered
-from reference.problem import Scene
 
 NEARLY_ALL = 0.9  # of the travel, that a reader must know of
 WIDE = 0.5  # of rho: a displacement of the platform from the middle that a reader must know of
@@ -37,11 +36,7 @@ class Alert(Part):
     @property
     def line(self) -> str:
         """All that in one line."""
-        return ". ".join(f"{part[0].upper()}{part[1:]}" if number else part for number, part in enumerate(self._parts))
-
-    @property
-    def _parts(self) -> list[str]:
-        return [f"{self.scene}: {self.text}", *([self.help] if self.help else [])]
+        return f"{self.scene}: {self.text}{f'. {self.help[0].upper()}{self.help[1:]}' if self.help else ''}"
 
 
 class Fault(NamedTuple):
@@ -64,9 +59,12 @@ def alerts(
     faults: Sequence[Fault],
 ) -> list[Alert]:
     """Every alert of a run: red, where a model has no value or a limit is broken, before amber."""
-    faulty = [Alert(level="amber", kind="fault", scene=fault.scene, text=fault.text, help="") for fault in faults]
-    moving = [*_swings(study, surfaces), *_travels(study, surfaces)]
-    listed = [*_gaps(unanswered), *_broken(limits), *faulty, *moving]
+    listed = [
+        *_gaps(unanswered),
+        *_broken(limits),
+        *(Alert(level="amber", kind="fault", scene=fault.scene, text=fault.text, help="") for fault in faults),
+        *_far_motions(study, surfaces),
+    ]
     return sorted(listed, key=lambda alert: alert.level != "red")
 
 
@@ -105,46 +103,16 @@ def _broken(limits: Sequence[Limit]) -> list[Alert]:
     ]
 
 
-def _swings(study: Study, surfaces: xr.Dataset) -> list[Alert]:
-    return _moving_far(
-        study,
-        "swing",
-        lambda scene, model: largest_cap_share(surfaces, scene.name, model.key),
-        WIDE,
-        "moves up to {:.1f} % of rho from the middle",
-        "the model assumes a cap that reaches so far: compare with the isolator that is to be built",
-    )
-
-
-def _travels(study: Study, surfaces: xr.Dataset) -> list[Alert]:
-    return _moving_far(
-        study,
-        "travel",
-        lambda scene, model: largest_travel_share(surfaces, scene, model.key),
-        NEARLY_ALL,
-        "uses up to {:.1f} % of the isolator's travel",
-        "a larger displacement ends the motion as travel reached",
-    )
-
-
-def _moving_far(
-    study: Study,
-    kind: Literal["swing", "travel"],
-    share_of: Callable[[Scene, Model], float],
-    limit: float,
-    text: str,
-    advice: str,
-) -> list[Alert]:
+def _far_motions(study: Study, surfaces: xr.Dataset) -> Iterator[Alert]:
     """Models whose platform moves by more than a share of what it may."""
-    return [
-        Alert(
-            level="amber",
-            kind=kind,
-            scene=scene.name,
-            text=f"{model.title}: the platform {text.format(100.0 * share)}",
-            help=advice,
-        )
-        for scene in study.scenes
-        for model in models_of(scene, study.hierarchy)
-        if (share := share_of(scene, model)) > limit
-    ]
+    swing = "the model assumes a cap that reaches so far: compare with the isolator that is to be built"
+    travel = "a larger displacement ends the motion as travel reached"
+    for scene in study.scenes:
+        for model in models_of(scene, study.hierarchy):
+            about = f"{model.title}: the platform"
+            if (share := largest_cap_share(surfaces, scene.name, model.key)) > WIDE:
+                text = f"{about} moves up to {100.0 * share:.1f} % of rho from the middle"
+                yield Alert(level="amber", kind="swing", scene=scene.name, text=text, help=swing)
+            if (share := largest_travel_share(surfaces, scene, model.key)) > NEARLY_ALL:
+                text = f"{about} uses up to {100.0 * share:.1f} % of the isolator's travel"
+                yield Alert(level="amber", kind="travel", scene=scene.name, text=text, help=travel)

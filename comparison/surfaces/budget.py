@@ -9,16 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
+from pydantic import Field
 
 from comparison.result_types import Number, Phases, Text, result
 from comparison.study.study import Study
 from comparison.surfaces.steps import Step, step
-from comparison.surfaces.surfaces import common_phases
+from comparison.surfaces.surfaces import values_of
 from reference.measures.distribution import fractile
 
 Array = NDArray[np.float64]
@@ -27,33 +28,33 @@ TOTAL = "total"
 
 
 @result
-class BudgetEntry:
+class Sizes:
+    """How large the difference of two models is in one body, over the phase pairs where both have a value."""
+
+    # the text below a field is not inherited
+    scene: Annotated[Text, Field(description="name of the scene")]
+    body: Annotated[int, Field(description="number of the body; 1 is the platform")]
+    first: Annotated[str, Field(description="key of the first model")]
+    second: Annotated[str, Field(description="key of the second model")]
+    median: Annotated[Number, Field(description="median of the absolute size")]
+    percentile95: Annotated[Number, Field(description="95 % of the absolute sizes are below this")]
+    maximum: Annotated[Number, Field(description="largest absolute size")]
+    phases: Annotated[Phases, Field(description="(alpha1, alpha2) of the largest, rad")]
+    asked: Annotated[int, Field(description="phase pairs that both models were asked for")]
+
+
+@result
+class BudgetEntry(Sizes):
     """
     One step of the model hierarchy, or the total, in one body; relative to mu of the first model.
 
     Its signed mean is the bar in `waterfalls`.
     """
 
-    scene: Text
-    """name of the scene"""
-    body: int
-    """number of the body; 1 is the platform"""
     step: str
     """key of the model that the step leads to, or total"""
-    first: str
-    """key of the model before the step"""
-    second: str
-    """key of the model after the step"""
-    median: Number
-    """median of the absolute size"""
     rms: Number
     """root mean square of the size"""
-    percentile95: Number
-    """95 % of the absolute sizes are below this"""
-    maximum: Number
-    """largest absolute size"""
-    phases: Phases
-    """(alpha1, alpha2) of the largest, rad"""
     real: Number
     """fraction of the points where |D| > 5 u_D"""
     unresolved: Number
@@ -66,8 +67,6 @@ class BudgetEntry:
     """Pearson's correlation of the two surfaces"""
     points: int
     """phase pairs where both models have a value"""
-    asked: int
-    """phase pairs that both models were asked for"""
 
 
 def steps(study: Study, surfaces: xr.Dataset, scene: str, body: int) -> list[Step]:
@@ -110,36 +109,38 @@ def torus_distance(first: Sequence[float], second: Sequence[float]) -> float:
     return float(np.hypot(*np.minimum(apart, 2.0 * np.pi - apart)))
 
 
-def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> BudgetEntry:
-    known = step.known
-    names: dict[str, Any] = {
+def sizes(scene: str, step: Step) -> dict[str, Any]:
+    """The fields of `Sizes`."""
+    size = np.abs(step.size[step.known])
+    median, percentile95, maximum = (fractile(size, p) if size.size else np.nan for p in (0.5, 0.95, 1.0))
+    return {
         "scene": scene,
         "body": step.body,
-        "step": step.key,
         "first": step.first.key,
         "second": step.second.key,
-        "points": int(known.sum()),
-        "asked": known.size,
+        "median": float(median),
+        "percentile95": float(percentile95),
+        "maximum": float(maximum),
         "phases": step.phases,
+        "asked": step.size.size,
     }
+
+
+def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> BudgetEntry:
+    known = step.known
+    about: dict[str, Any] = {**sizes(scene, step), "step": step.key, "points": int(known.sum())}
     if not known.any():
-        sizes = ("median", "rms", "percentile95", "maximum")
-        shares = ("real", "unresolved", "error_estimate", "peak_moves", "correlation")
-        nothing: dict[str, Any] = dict.fromkeys((*sizes, *shares), float("nan"))
-        return BudgetEntry(**names, **nothing)
-    data = common_phases(surfaces, scene, [step.first.key, step.second.key]).sel(body=step.body)
+        names = ("rms", "real", "unresolved", "error_estimate", "peak_moves", "correlation")
+        return BudgetEntry(**about | dict.fromkeys(names, float("nan")))
+    pairs = (step.first, step.second), (step.second, step.first)
     both, errors = (
-        [np.where(known, data[name].sel(model=model.key), np.nan) for model in (step.first, step.second)]
+        [np.where(known, values_of(surfaces, name, scene, *pair)[step.body - 1], np.nan) for pair in pairs]
         for name in ("mu", "error")
     )
     highest = [_phases_at(step, mu + error >= np.nanmax(mu - error)) for mu, error in zip(both, errors)]
-    size = np.abs(step.size[known])
     return BudgetEntry(
-        **names,
-        median=float(np.median(size)),
-        rms=float(np.sqrt((size**2).mean())),
-        percentile95=fractile(size, 0.95),
-        maximum=float(size.max()),
+        **about,
+        rms=float(np.sqrt((step.size[known] ** 2).mean())),
         real=float(step.real[known].mean()),
         unresolved=float(step.unresolved[known].mean()),
         error_estimate=float(np.median(step.uncertainty[known])),

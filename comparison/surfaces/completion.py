@@ -29,7 +29,6 @@ from comparison.study.batches import imported
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.steps import RESOLVED, known, known_mu
-from comparison.surfaces.surfaces import common_phases
 from reference.measures.distribution import fractile
 from reference.problem import Scene, phase_axis, phase_grid
 from reference.problem.symmetry import sources
@@ -142,18 +141,16 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
     def _listed(self, study: Study) -> Iterator[tuple[Scene, Model, list[Task]]]:
         """Scene, model and its tasks."""
         for scene in study.phased:
-            if not study.selection.has("surfaces", scene.name):
-                continue
-            for model in study.compared(scene):
-                if not _is_completed(study, model) or _finer(study, scene, model) is None:
-                    continue
-                phases = phase_grid(study.grid)[held_out_places(study, scene, model)]
-                settings = model.arguments(study.tolerance, study.full)
-                parts = [phases[first : first + POINTS] for first in range(0, len(phases), POINTS)]
-                tasks = [
-                    Task(held_out_values, (scene, model, settings, part), self.stage, about=scene) for part in parts
-                ]
-                yield scene, model, tasks
+            for model in study.compared(scene) if study.selection.has("surfaces", scene.name) else ():
+                if _is_completed(study, model) and _finer(study, scene, model):
+                    phases = phase_grid(study.grid)[held_out_places(study, scene, model)]
+                    about = scene, model, model.arguments(study.tolerance, study.full)
+                    parts = [phases[first : first + POINTS] for first in range(0, len(phases), POINTS)]
+                    yield (
+                        scene,
+                        model,
+                        [Task(held_out_values, (*about, part), self.stage, about=scene) for part in parts],
+                    )
 
 
 def held_out_values(task: Arguments) -> HeldOut:
@@ -198,15 +195,13 @@ def completions(
     """A completion for every body of every model that lacks phases, or is spatial on few, in their order."""
     if scene.recorded:
         return []
-    surfaces = surfaces[["mu", "error", "stride"]]
     models, listed = study.compared(scene), []
     for model in models:
         few = len(study.axis(model)) < MIN_SPATIAL_PER_AXIS
-        if study.stride(model) == 1 and not (few and model.is_spatial):
-            continue
-        finer, unused = _finer(study, scene, model), (held_out or {}).get((scene.name, model.key))
-        for body in range(1, len(scene.bodies) + 1):
-            listed.append(_completion(study, surfaces, scene, models[0], finer, model, body, unused))
+        if study.stride(model) > 1 or (few and model.is_spatial):
+            finer, unused = _finer(study, scene, model), (held_out or {}).get((scene.name, model.key))
+            for body in range(1, len(scene.bodies) + 1):
+                listed.append(_completion(study, surfaces, scene, models[0], finer, model, body, unused))
     return listed
 
 
@@ -261,13 +256,15 @@ def _completion(
 ) -> Completion:
     count, asked = len(study.axis(model)), model.tolerance(study.tolerance)
 
+    about = scene.name, model.key, finer.key if finer else "", body
+
     def refused(reason: str, computed: int) -> Completion:
         nothing, nan = np.full((study.grid, study.grid), np.nan), float("nan")
-        about = scene.name, model.key, finer.key if finer else "", body, computed
-        return Completion(*about, 0, nan, nan, 1.0, CONFIDENCE, asked, nan, reason, nothing)
+        return Completion(*about, computed, 0, nan, nan, 1.0, CONFIDENCE, asked, nan, reason, nothing)
 
-    def mu(model: Model, stride: Model) -> Array:
-        return known_mu(common_phases(surfaces, scene.name, [stride.key]).sel(body=body), model)
+    def mu(of: Model, on: Model) -> Array:
+        values: Array = known_mu(surfaces, scene.name, of, on)[body - 1]
+        return values
 
     values = mu(model, model)
     if finer is None:
@@ -284,13 +281,14 @@ def _completion(
     if unused is None:
         return refused("no phase pairs were held out to check an interpolation", computed)
     surface = fine + interpolated(gap, phase_axis(study.grid)[study.axis(model)], phase_axis(study.grid))
-    truth, truth_error = unused.mu[:, body - 1], unused.error[:, body - 1]
-    truth = known(truth, truth_error)
+    truth_error = unused.error[:, body - 1]
+    truth = known(unused.mu[:, body - 1], truth_error)
     missed = np.abs(surface.ravel()[held_out_places(study, scene, model)] - truth) / truth
     checked = np.isfinite(missed)
-    share = largest_share(int(checked.sum()))
+    held_out = int(checked.sum())
+    share = largest_share(held_out)
     if share > MAX_SHARE:
-        return refused(f"{checked.sum()} held-out phase pairs with a value are too few", computed)
+        return refused(f"{held_out} held-out phase pairs with a value are too few", computed)
     error, model_error = float(missed[checked].max()), float((truth_error / truth)[checked].max())
     base = mu(first, first)
     distance = np.abs(surface - base) / base
@@ -303,20 +301,7 @@ def _completion(
         )
         surface = np.full_like(surface, np.nan)
     return Completion(
-        scene=scene.name,
-        model=model.key,
-        through=finer.key,
-        body=body,
-        computed=computed,
-        held_out=int(checked.sum()),
-        error=error,
-        model_error=model_error,
-        share=share,
-        confidence=CONFIDENCE,
-        asked=asked,
-        difference=difference,
-        reason=reason,
-        mu=surface,
+        *about, computed, held_out, error, model_error, share, CONFIDENCE, asked, difference, reason, surface
     )
 
 

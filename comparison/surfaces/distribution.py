@@ -1,18 +1,23 @@
-"""mu of every model as a random variable over uniform phases, from the phase pairs that were computed."""
+"""mu of every model as a random variable over uniform phases, and its highest point, on the phases computed."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
-from comparison.result_types import Number, UncertainNumber, result
-from comparison.study.models import models_of
+from comparison.result_types import Number, Phases, UncertainNumber, result
+from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.steps import known_mu
-from comparison.surfaces.surfaces import asked_of
+from comparison.surfaces.surfaces import values_of
 from reference.measures import phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
 from reference.problem import Scene
+
+Array = NDArray[np.float64]
 
 CURVE = np.linspace(0.01, 0.99, 50)  # probabilities of the drawn curve
 
@@ -49,19 +54,53 @@ class Distribution:
     """mu at 50 probabilities from 0.01 to 0.99"""
 
 
+@result
+class GridMaximum:
+    """The largest value of one surface on the phases that were computed."""
+
+    model: str
+    """key of the model"""
+    body: int
+    """number of the body; 1 is the platform"""
+    mu: Number
+    """largest value; null without any"""
+    error: Number
+    """estimated absolute error of it"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
+
+
 def distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Distribution]:
     """One for each model and body with an answer, in this order."""
     listed = []
-    for model in models_of(scene, study.hierarchy):
-        for body in range(1, len(scene.bodies) + 1):
-            data = asked_of(surfaces, scene, model).sel(body=body)
-            mu, error = known_mu(data, model), data["error"].sel(model=model.key).values
-            known = mu[np.isfinite(mu)]
-            if not known.size:
-                continue
+    for model, body, mu, error in _each(study, surfaces, scene):
+        known = mu[np.isfinite(mu)]
+        if known.size:
             taken = phase_distribution(mu, error)
             fractiles = tuple(Fractile(p, each.value, each.error) for p, each in zip(FRACTILES, taken.fractiles))
             curve = tuple(fractile(known, p) for p in CURVE)
             mean = UncertainNumber.model_validate(taken.mean)
             listed.append(Distribution(model.key, body, taken.points, taken.unknown, mean, fractiles, curve))
     return listed
+
+
+def grid_maxima(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[GridMaximum]:
+    """One per model and body, in this order. Of phase pairs with the same value it is the first."""
+    maxima, nan = [], float("nan")
+    for model, body, mu, error in _each(study, surfaces, scene):
+        if not np.isfinite(mu).any():
+            maxima.append(GridMaximum(model.key, body, nan, nan, (nan, nan)))
+            continue
+        row, column = np.unravel_index(np.nanargmax(mu), mu.shape)
+        phase = surfaces["alpha1"].values[:: study.stride(model, scene)]
+        phases = (nan, nan) if scene.recorded else (float(phase[row]), float(phase[column]))
+        maxima.append(GridMaximum(model.key, body, float(mu[row, column]), float(error[row, column]), phases))
+    return maxima
+
+
+def _each(study: Study, surfaces: xr.Dataset, scene: Scene) -> Iterator[tuple[Model, int, Array, Array]]:
+    """Every model and body with its usable values and their errors, on the phases that the model was asked for."""
+    for model in models_of(scene, study.hierarchy):
+        of_bodies = zip(known_mu(surfaces, scene.name, model), values_of(surfaces, "error", scene.name, model))
+        for body, (mu, error) in zip(range(1, len(scene.bodies) + 1), of_bodies):
+            yield model, body, mu, error

@@ -96,10 +96,11 @@ def headline(study: Study, surfaces: xr.Dataset, scene: Scene, bars: Waterfall, 
     stride, common = known_to_all(hierarchy)
     real = hierarchy[-1].every(stride, hierarchy[-1].real)[common]
     alike = [row.maximum for row in rows if (row.scene, row.body, row.pair) == (scene.name, body, "like-for-like")]
+    name, engines = "platform" if body == 1 else f"body {body}", _of_engines(study, scene, body, rows)
     numbers = Headline(
         scene=scene.name,
         body=body,
-        name="platform" if body == 1 else f"body {body}",
+        name=name,
         first=pair.first.key,
         second=pair.second.key,
         mean=bars.total.size,
@@ -119,7 +120,9 @@ def headline(study: Study, surfaces: xr.Dataset, scene: Scene, bars: Waterfall, 
         like_for_like=alike[0] if alike else NAN,
         sentence="",
     )
-    return replace(numbers, sentence=_with_engines(study, scene, numbers, bars, rows))
+    rest = _sentence(study, scene, numbers, bars, of_codes=not engines)
+    sentences = [*engines, f"{rest[0].upper()}{rest[1:]}" if engines else rest]
+    return replace(numbers, sentence=f"{scene.name}, {name}: {' '.join(sentences)}")
 
 
 def cause_of(bars: Sequence[WaterfallBar], total: WaterfallBar) -> Cause:
@@ -139,18 +142,8 @@ def cause_of(bars: Sequence[WaterfallBar], total: WaterfallBar) -> Cause:
     )
 
 
-def _with_engines(study: Study, scene: Scene, numbers: Headline, bars: Waterfall, rows: Sequence[Difference]) -> str:
-    """The sentence; those of the user's engines come first and take the place of what it says of the two codes."""
-    engines = _of_engines(study, scene, numbers.body, rows)
-    if not engines:
-        return _sentence(study, scene, numbers, bars)
-    start = f"{scene.name}, {numbers.name}: "
-    rest = _sentence(study, scene, replace(numbers, like_for_like=NAN), bars).removeprefix(start)
-    return f"{start}{' '.join(engines)} {rest[0].upper()}{rest[1:]}"
-
-
 def _of_engines(study: Study, scene: Scene, body: int, rows: Sequence[Difference]) -> list[str]:
-    """How far each engine of the user is from the equations with its friction law."""
+    """How far each engine of the user is from the equations with its friction law, in a sentence each."""
     row_of = {row.pair: row for row in rows if (row.scene, row.body) == (scene.name, body)}
     sentences = []
     for pair in study.pairs(scene):
@@ -171,22 +164,22 @@ def _of_engines(study: Study, scene: Scene, body: int, rows: Sequence[Difference
     return sentences
 
 
-def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall) -> str:
+def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall, of_codes: bool) -> str:
+    """What is said of the models; of_codes: also how far the two codes agree, for which engines of the user stand."""
     models = {model.key: model for model in study.compared(scene)}
     asked = steps_of(scene, study.hierarchy)
     first, second = models[numbers.first], models[numbers.second]
     paper = "the paper's equations" if first is asked[0] else f"the {first.title}"
     engine = "the engine" if second is asked[-1] and second.side == "engine" else f"the {second.title}"
-    start = f"{scene.name}, {numbers.name}: "
     if first is second:
-        return f"{start}only {paper} were computed, there is nothing to compare."
+        return f"only {paper} were computed, there is nothing to compare."
     if not numbers.points:
         where = "" if scene.recorded else " at any phase pair"
-        return f"{start}the models from {paper} to {engine} have no value in common{where}."
+        return f"the models from {paper} to {engine} have no value in common{where}."
     real = bars.total.real or bars.largest.total.real
-    parts = [start + (_difference if real else _agreement)(numbers, models, paper, engine)]
+    parts = [(_difference if real else _agreement)(numbers, models, paper, engine)]
     parts += _causes(numbers, models, bars) if real else []
-    if math.isfinite(numbers.like_for_like):
+    if of_codes and math.isfinite(numbers.like_for_like):
         agree = numbers.like_for_like <= SMALL * abs(numbers.maximum) or not real
         parts.append(
             "Given the same equations and friction law, the two codes "

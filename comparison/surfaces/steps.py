@@ -10,6 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.study.models import Model
+from comparison.surfaces.surfaces import stride_of, values_of
 
 Array = NDArray[np.float64]
 
@@ -89,10 +90,9 @@ class Step:
         return values[:: stride // self.stride, :: stride // self.stride]
 
 
-def known_mu(data: xr.Dataset, model: Model) -> Array:
-    """mu of one model in the data of one scene and body; NaN where its error is above half of it."""
-    mu, error = (np.asarray(data[name].sel(model=model.key), float) for name in ("mu", "error"))
-    return known(mu, error)
+def known_mu(surfaces: xr.Dataset, scene: str, *models: Model) -> Array:
+    """mu of the first model by body, as `values_of`; NaN where its error is above half of it."""
+    return known(*(values_of(surfaces, name, scene, *models) for name in ("mu", "error")))
 
 
 def known(mu: Array, error: Array) -> Array:
@@ -104,16 +104,14 @@ def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model
     """
     The difference of two models in one body, as a share of mu of `per`; values with errors above half are missing.
     """
-    row, of_model = surfaces.get_index("scene").get_loc(scene), surfaces.get_index("model").get_loc
-    stride = int(max(surfaces["stride"].values[row, of_model(model.key)] for model in (first, second, per)))
-    every = slice(None, None, stride)
-
-    def values(name: str, model: Model) -> Array:
-        return np.asarray(surfaces[name].values[row, of_model(model.key), body - 1, every, every], float)
+    models = first, second, per
+    stride = stride_of(surfaces, scene, *models)
 
     def mu(model: Model) -> Array:
-        return known(values("mu", model), values("error", model))
+        every: Array = known_mu(surfaces, scene, model, *models)[body - 1]
+        return every
 
+    errors = (values_of(surfaces, "error", scene, model, *models)[body - 1] for model in (first, second))
     unit = mu(per)
     scale = np.where(unit > 0.0, unit, np.nan)
     return Step(
@@ -121,10 +119,10 @@ def step(surfaces: xr.Dataset, scene: str, key: str, first: Model, second: Model
         first=first,
         second=second,
         body=body,
-        alpha1=surfaces["alpha1"].values[every],
-        alpha2=surfaces["alpha2"].values[every],
+        alpha1=surfaces["alpha1"].values[::stride],
+        alpha2=surfaces["alpha2"].values[::stride],
         size=(mu(second) - mu(first)) / scale,
-        uncertainty=np.hypot(values("error", first), values("error", second)) / scale,
+        uncertainty=np.hypot(*errors) / scale,
         stride=stride,
-        recorded=bool(surfaces["recorded"].values[row]),
+        recorded=bool(surfaces["recorded"].sel(scene=scene)),
     )

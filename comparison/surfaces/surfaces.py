@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from comparison.study.batches import Batch, BatchResult
 from comparison.study.models import Model, models_of
@@ -106,20 +107,24 @@ def largest_travel_share(surfaces: xr.Dataset, scene: Scene, model: str) -> floa
     return math.nan if travel is None else float(displacement.max()) / travel
 
 
-def common_phases(surfaces: xr.Dataset, scene: str, models: Sequence[str]) -> xr.Dataset:
-    """The part of one scene's surfaces at the phases that each of these models was asked for."""
-    row, keys = surfaces["scene"].values.tolist().index(scene), surfaces["model"].values.tolist()
-    strides = surfaces["stride"].values[row]
-    every = slice(None, None, int(max(strides[keys.index(model)] for model in models)))
-    return surfaces.isel(scene=row, alpha1=every, alpha2=every)
+def stride_of(surfaces: xr.Dataset, scene: str, *models: Model) -> int:
+    """Every which of the study's phases all these models were asked for."""
+    keys = [model.key for model in models]
+    return int(surfaces["stride"].values[_row(surfaces, scene), surfaces.get_index("model").get_indexer(keys)].max())
 
 
-def asked_of(surfaces: xr.Dataset, scene: Scene, model: Model) -> xr.Dataset:
-    """The part of one scene's surfaces that a model was asked for: its phases, and the bodies that the scene has."""
-    return common_phases(surfaces, scene.name, [model.key]).isel(body=slice(len(scene.bodies)))
+def values_of(surfaces: xr.Dataset, name: str, scene: str, *models: Model) -> NDArray[Any]:
+    """A variable of the first model, by body where it has some, at the phases that all these models were asked for."""
+    every = slice(None, None, stride_of(surfaces, scene, *models))
+    column = surfaces.get_index("model").get_loc(models[0].key)
+    values: NDArray[Any] = surfaces[name].values[_row(surfaces, scene), column, ..., every, every]
+    return values
 
 
-def outcome_counts(surfaces: xr.Dataset, scene: str, model: str) -> dict[str, int]:
+def outcome_counts(surfaces: xr.Dataset, scene: str, model: Model) -> dict[str, int]:
     """How many of the phase pairs asked of the model ended in each outcome, most frequent first."""
-    status = common_phases(surfaces, scene, [model])["status"].sel(model=model)
-    return dict(Counter(np.asarray(status).ravel().tolist()).most_common())
+    return dict(Counter(values_of(surfaces, "status", scene, model).ravel().tolist()).most_common())
+
+
+def _row(surfaces: xr.Dataset, scene: str) -> Any:
+    return surfaces.get_index("scene").get_loc(scene)

@@ -15,7 +15,7 @@ from comparison.study.batches import refusal_of
 from comparison.study.models import Model, models_of, steps_of
 from comparison.study.study import Study
 from comparison.surfaces.steps import known_mu
-from comparison.surfaces.surfaces import asked_of, outcome_counts
+from comparison.surfaces.surfaces import outcome_counts, values_of
 from reference.problem import ADVICE, Outcome, Scene
 
 
@@ -136,7 +136,7 @@ def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
 
 
 def _notes(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> tuple[OutcomeNote, ...]:
-    counts = outcome_counts(surfaces, scene.name, model.key)
+    counts = outcome_counts(surfaces, scene.name, model)
     return tuple(
         OutcomeNote(outcome, count, advice(study, scene, model, outcome))
         for outcome, count in counts.items()
@@ -146,10 +146,9 @@ def _notes(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> tu
 
 def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
     """At which phase pairs asked of a model every body has a value."""
-    mu = np.asarray(asked_of(surfaces, scene, model)["mu"].sel(model=model.key), float)
-    return np.asarray(np.isfinite(mu).all(axis=0))
+    return np.asarray(np.isfinite(values_of(surfaces, "mu", scene.name, model)[: len(scene.bodies)]).all(axis=0))
 
 
 def _usable(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
     """At which of them every value is known to half of itself."""
-    return np.asarray(np.isfinite(known_mu(asked_of(surfaces, scene, model), model)).all(axis=0))
+    return np.asarray(np.isfinite(known_mu(surfaces, scene.name, model)[: len(scene.bodies)]).all(axis=0))

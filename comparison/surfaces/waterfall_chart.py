@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from math import isfinite
 
 from comparison.surfaces.waterfall import Waterfall, WaterfallBar
 from comparison.wording import difference
@@ -40,26 +41,14 @@ class Bar:
 
 
 def bars_of(bars: Sequence[WaterfallBar], total: WaterfallBar, scale: Scale) -> list[Bar]:
-    """The bars of a waterfall, each beginning where the one before it ends, and the total from zero."""
-    drawn, start = [], 0.0
-    for bar in bars:
-        drawn.append(_bar(bar, bar.model, start, scale))
-        start += bar.size if math.isfinite(bar.size) else 0.0
-    return [*drawn, _bar(total, "total", 0.0, scale)]
+    """The bars of a waterfall."""
+    return [_bar(bar, "total" if bar is total else bar.model, start, scale) for bar, start in _starts(bars, total)]
 
 
 def scale_of(waterfalls: Iterable[tuple[Sequence[WaterfallBar], WaterfallBar]]) -> Scale:
     """The one axis on which all these waterfalls have room, error bars included."""
-    sizes = [0.0]
-    for bars, total in waterfalls:
-        start = 0.0
-        for bar, begin in [*((bar, True) for bar in bars), (total, False)]:
-            if not math.isfinite(bar.size):
-                continue
-            end = (start if begin else 0.0) + bar.size
-            error = bar.error if math.isfinite(bar.error) else 0.0
-            sizes += [end - error, end + error]
-            start = end
+    drawn = [(bar, start) for bars, total in waterfalls for bar, start in _starts(bars, total) if isfinite(bar.size)]
+    sizes = [0.0, *(start + bar.size + side * _error(bar) for bar, start in drawn for side in (-1.0, 1.0))]
     low, high = min(sizes), max(sizes)
     if low == high:
         low, high = -0.01, 0.01
@@ -107,20 +96,32 @@ class LogScale:
 
 def log_scale(sizes: Iterable[float]) -> LogScale:
     """Powers of ten around all sizes above zero."""
-    powers = [math.log10(size) for size in sizes if math.isfinite(size) and size > 0.0]
+    powers = [math.log10(size) for size in sizes if isfinite(size) and size > 0.0]
     low, high = (math.floor(min(powers)), math.ceil(max(powers))) if powers else (-4, 0)
     return LogScale(10.0**low, 10.0 ** max(high, low + 1))
 
 
+def _starts(bars: Sequence[WaterfallBar], total: WaterfallBar) -> Iterator[tuple[WaterfallBar, float]]:
+    """Every bar with where it begins: where the one before it ends, and the total at zero."""
+    start = 0.0
+    for bar in bars:
+        yield bar, start
+        start += bar.size if isfinite(bar.size) else 0.0
+    yield total, 0.0
+
+
+def _error(bar: WaterfallBar) -> float:
+    return bar.error if isfinite(bar.error) else 0.0
+
+
 def _bar(bar: WaterfallBar, model: str, start: float, scale: Scale) -> Bar:
     begin = scale.at(start)
-    if not math.isfinite(bar.size):
+    if not isfinite(bar.size):
         return Bar(model, "none", begin, 0.0, (begin, begin), begin, "no value")
     end = scale.at(start + bar.size)
-    error = bar.error if math.isfinite(bar.error) else 0.0
-    ends = scale.at(start + bar.size - error), scale.at(start + bar.size + error)
+    ends = scale.at(start + bar.size - _error(bar)), scale.at(start + bar.size + _error(bar))
     kind = "unreal" if not bar.real else "total" if model == "total" else "up" if bar.size >= 0.0 else "down"
-    return Bar(model, kind, min(begin, end), round(abs(end - begin), 3), ends, end, difference(bar.size, error))
+    return Bar(model, kind, min(begin, end), round(abs(end - begin), 3), ends, end, difference(bar.size, _error(bar)))
 
 
 def _ticks(low: float, high: float) -> list[float]:

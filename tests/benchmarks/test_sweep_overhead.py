@@ -17,7 +17,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from rich.console import Console
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "comparison"))
 
@@ -66,7 +65,7 @@ def measured(folder: Path, executor: Pool) -> Measured:
     study = Study((load_scene("fig3-I"),), 4, 1e-3, [model])
     begin = time.process_time()
     results, tasks = TaskResults(Cache(folder)), surface_tasks(study)
-    Runner(results, Console(quiet=True), WORKERS, executor).run(tasks)
+    Runner(results, WORKERS, executor).run(tasks)
     spent = time.process_time() - begin
     answers = batch_results(tasks, results)
     assert len(list(folder.glob("*/*.batch"))) == len(answers) == BATCHES

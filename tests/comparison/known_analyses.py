@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from rich.console import Console
 
 import comparison.registry
 from comparison.analyses.claims.checks import Finding, Verdict
@@ -79,7 +78,7 @@ def collected(
 ) -> Any:
     """What an analysis says of a study, its tasks executed on two workers and stored nowhere."""
     results = TaskResults()
-    Runner(results, Console(quiet=True), 2, executor).run(analysis.tasks(study, surfaces))
+    Runner(results, 2, executor).run(analysis.tasks(study, surfaces))
     return analysis.collect(study, surfaces, results)
 
 

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 from fake_models import fake_hierarchy
-from rich.console import Console
 
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.runner.cache import Cache
@@ -39,10 +38,10 @@ def motion(number: int) -> StoredMotion:
     return StoredMotion(place, "small", draw.random(7), draw.random((7, 2, 2)), draw.random((7, 2, 2)), ((0.1, 0.2),))
 
 
-def whole_run(folder: Path, console: Console) -> tuple[list[BatchResult], list[object], int, int]:
+def whole_run(folder: Path) -> tuple[list[BatchResult], list[object], int, int]:
     """Batches with 24 tasks beside them and 24 after them; what was found, and how much of either was there before."""
     results = TaskResults(Cache(folder))
-    runner = Runner(results, console, 2, ThreadPoolExecutor)
+    runner = Runner(results, 2, ThreadPoolExecutor)
     batches = surface_tasks(study())
     runner.run([*batches, *_tasks(0, 24)])
     runner.run(_tasks(24, 24))

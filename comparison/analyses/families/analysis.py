@@ -16,7 +16,7 @@ from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.steps import known_mu
-from comparison.surfaces.surfaces import common_phases
+from comparison.surfaces.surfaces import values_of
 from comparison.surfaces.waterfall import NAN, Waterfall, WaterfallBar
 from reference.measures import Demands, Estimate
 from reference.problem import Family, Scene
@@ -160,10 +160,9 @@ def _bars(waterfall: Waterfall) -> dict[str, WaterfallBar]:
 
 
 def _numbers(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[float, float, float, float]:
-    data = common_phases(surfaces, scene.name, [model.key]).sel(body=body)
-    mu = known_mu(data, model)
+    mu = known_mu(surfaces, scene.name, model)[body - 1]
     known = np.isfinite(mu)
     if not known.any():
         return NAN, NAN, NAN, NAN
-    error = np.asarray(data["error"].sel(model=model.key), float)[known]
+    error = values_of(surfaces, "error", scene.name, model)[body - 1][known]
     return float(mu[known].mean()), float(mu[known].min()), float(mu[known].max()), float(error.mean())

@@ -27,7 +27,7 @@ from comparison.study.batches import imported
 from comparison.study.models import Model, models_of, pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.steps import known_mu
-from comparison.surfaces.surfaces import asked_of
+from comparison.surfaces.surfaces import values_of
 from reference.measures.local_maxima import GRID, local_maxima
 from reference.measures.local_search import LocalSearch, Points, Surface, predicted, square_of
 from reference.problem import Scene
@@ -140,9 +140,9 @@ def _starts(
     """The hills of the surface, if it is as fine as the grid of the search."""
     if surfaces is None or len(study.axis(model, scene)) < GRID:
         return None
-    asked = asked_of(surfaces, scene, model)
-    displacement = np.asarray(asked["displacement"].sel(model=model.key), float)
-    starts = local_maxima(displacement if quantity == "displacement" else known_mu(asked.sel(body=body), model), scene)
+    of_platform = quantity == "displacement"
+    values = values_of(surfaces, quantity, scene.name, model) if of_platform else known_mu(surfaces, scene.name, model)
+    starts = local_maxima(values if of_platform else values[body - 1], scene)
     return starts if len(starts) else None
 
 

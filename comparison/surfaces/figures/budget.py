@@ -13,19 +13,13 @@ from matplotlib.figure import Figure
 
 from comparison.study.study import Study
 from comparison.surfaces.budget import TOTAL, steps
-from comparison.surfaces.figures.file_names import figure_file
-from comparison.surfaces.figures.pairs import QUARTER_NAMES, QUARTERS, SIGN_COLORS, TURN, closed
+from comparison.surfaces.figures.pairs import SIGN_COLORS, draw_map
 from comparison.surfaces.steps import Step
 from comparison.wording import mathtext
 from reference.drawing import verbatim
 from reference.problem import Scene
 
 LINEAR = 1e-6  # relative: below it the colors are linear, above it logarithmic in both directions
-
-
-def budget_figure_name(scene: Scene, body: int) -> str:
-    """File name of the figure of one scene and body."""
-    return figure_file(scene.name, f"body{body}", "budget")
 
 
 def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> None:
@@ -50,14 +44,12 @@ def draw_budget(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene, bo
 
 
 def _map(axes: Axes, step: Step, norm: SymLogNorm) -> QuadMesh:
-    phase, size = closed(step.alpha1, 100.0 * step.size)
-    axes.set_facecolor("0.75")
-    image = axes.pcolormesh(phase, phase, size.T, cmap=SIGN_COLORS, norm=norm, shading="nearest")
+    image = draw_map(axes, step.alpha1, 100.0 * step.size, cmap=SIGN_COLORS, norm=norm)
+    axes.tick_params(labelsize=8)
+    phase = step.alpha1
     row, column = np.nonzero(step.known & ~step.real)
-    axes.plot(phase[row], phase[column], ".", color="0.35", markersize=160.0 / len(phase) / 4.0, markeredgewidth=0.0)
-    axes.set(xlim=TURN, ylim=TURN, aspect="equal")
-    axes.set_xticks(QUARTERS, QUARTER_NAMES, fontsize=8)
-    axes.set_yticks(QUARTERS, QUARTER_NAMES, fontsize=8)
+    size = 40.0 / (len(phase) + 1)
+    axes.plot(phase[row], phase[column], ".", color="0.35", markersize=size, markeredgewidth=0.0)
     known = step.known
     share = f"real at {100.0 * step.real[known].mean():.0f} % of {known.sum()}" if known.any() else "no common point"
     axes.set_title(f"{'total' if step.key == TOTAL else mathtext(step.second.title)}\n{share}", fontsize=8)

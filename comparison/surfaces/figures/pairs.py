@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from comparison.study.models import Pair
+from comparison.study.models import Model, Pair
 from comparison.surfaces.differences import pair_step
-from comparison.surfaces.figures.file_names import figure_file, with_ending
+from comparison.surfaces.figures.file_names import with_ending
 from comparison.surfaces.steps import Step
-from comparison.surfaces.surfaces import common_phases
+from comparison.surfaces.surfaces import stride_of, values_of
 from comparison.wording import mathtext
 from reference.drawing import verbatim
 from reference.problem import Scene
@@ -25,31 +28,23 @@ Array = NDArray[np.float64]
 HEIGHT_COLORS = "cividis"  # read alike with and without color vision deficiency, and in print
 SIGN_COLORS = "RdBu_r"
 TURN = (0.0, 2.0 * np.pi)
-QUARTERS = np.arange(5) * np.pi / 2.0
-QUARTER_NAMES = ["0", "π/2", "π", "3π/2", "2π"]
+Ticks = tuple[Sequence[float], Sequence[str]]
+QUARTER_TICKS: Ticks = ([0.0, np.pi / 2.0, np.pi, 1.5 * np.pi, 2.0 * np.pi], ["0", "π/2", "π", "3π/2", "2π"])
 PNG = {"compress_level": 3}  # of the dense surfaces: smaller than with the usual 6, in 0.6 of the time
-
-
-def figure_name(scene: Scene, body: int, pair: Pair) -> str:
-    """File name of the figure of one scene, body and pair of models."""
-    return figure_file(scene.name, f"body{body}", pair.key)
 
 
 def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: Pair) -> None:
     """Write the two surfaces on one height scale and the map of their relative difference to `path`, PNG."""
-    both = [common_phases(surfaces, scene.name, [r.key]).sel(model=r.key, body=body) for r in (pair.first, pair.second)]
+    both = [closed_surface(surfaces, scene, model, body) for model in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
     figure.suptitle(
         verbatim(f"{scene.title} ({scene.name}), body {body}: {pair.title} difference"), fontsize=12, y=0.98
     )
-    finite = np.concatenate([data["mu"].values[np.isfinite(data["mu"].values)] for data in both])
-    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-    if low == high:
-        low, high = 0.9 * low - 0.1, 1.1 * high + 0.1
-    for place, data, model in zip(((0.0, 0.0, 0.31, 0.86), (0.315, 0.0, 0.31, 0.86)), both, (pair.first, pair.second)):
-        axes = figure.add_axes(place, projection="3d")
+    low, high = limits_of([height for _, height in both])
+    for left, surface, model in zip((0.0, 0.315), both, (pair.first, pair.second)):
+        axes = figure.add_axes((left, 0.0, 0.31, 0.86), projection="3d")
         assert isinstance(axes, Axes3D)
-        _surface(axes, *closed(data["alpha1"].values, data["mu"].values), low, high)
+        _surface(axes, *surface, low, high)
         axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(model.title)}", fontsize=11, pad=0)
     _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), pair_step(surfaces, scene.name, pair, body))
     figure.savefig(path, pil_kwargs=PNG)
@@ -66,6 +61,30 @@ def closed(phase: Array, mu: Array) -> tuple[Array, Array]:
     return np.append(phase, 2.0 * np.pi), np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
 
 
+def limits_of(heights: Sequence[Array]) -> tuple[float, float]:
+    """The lowest and the highest of all values; around a flat surface some room."""
+    finite = np.concatenate([height[np.isfinite(height)] for height in heights])
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    return (low, high) if low < high else (0.9 * low - 0.1, 1.1 * high + 0.1)
+
+
+def draw_map(axes: Axes, phase: Array, values: Array, ticks: Ticks = QUARTER_TICKS, **style: Any) -> QuadMesh:
+    """Values at the phases as colors, alpha1 to the right and alpha2 upward; gray where there is none."""
+    phase, height = closed(phase, values)
+    axes.set_facecolor("0.75")
+    image = axes.pcolormesh(phase, phase, height.T, shading="nearest", **style)
+    axes.set(xlim=TURN, ylim=TURN, aspect="equal")
+    axes.set_xticks(*ticks)
+    axes.set_yticks(*ticks)
+    return image
+
+
+def closed_surface(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[Array, Array]:
+    """The phases of a model up to 2 pi, and mu on them."""
+    phase = surfaces["alpha1"].values[:: stride_of(surfaces, scene.name, model)]
+    return closed(phase, values_of(surfaces, "mu", scene.name, model)[body - 1])
+
+
 def _surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float) -> None:
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
     colors = {"cmap": HEIGHT_COLORS, "vmin": low, "vmax": high, "linewidth": 0.2, "edgecolor": (0, 0, 0, 0.35)}
@@ -73,8 +92,8 @@ def _surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float)
     axes.set_zlim(low, high)
     axes.set_box_aspect((1.0, 1.0, 0.62), zoom=0.88)
     axes.view_init(elev=28.0, azim=-125.0)
-    axes.set_xticks(QUARTERS, QUARTER_NAMES)
-    axes.set_yticks(QUARTERS, QUARTER_NAMES)
+    axes.set_xticks(*QUARTER_TICKS)
+    axes.set_yticks(*QUARTER_TICKS)
     axes.tick_params(labelsize=8, pad=0)
     axes.set_xlabel(r"$\alpha_1$, rad", labelpad=2)
     axes.set_ylabel(r"$\alpha_2$, rad", labelpad=2)
@@ -82,16 +101,11 @@ def _surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float)
 
 def _map(figure: Figure, axes: Axes, step: Step) -> None:
     percent = 100.0 * step.size
-    phase, height = closed(step.alpha1, percent)
     size = np.abs(percent[np.isfinite(percent)])
     largest = float(size.max()) if size.size else 0.0
     limit = float(np.percentile(size, 98.0)) if largest > 0.0 else 1.0
     limit = limit if limit > 0.0 else largest
-    axes.set_facecolor("0.75")
-    image = axes.pcolormesh(phase, phase, height.T, cmap=SIGN_COLORS, vmin=-limit, vmax=limit, shading="nearest")
-    axes.set(xlim=TURN, ylim=TURN, aspect="equal")
-    axes.set_xticks(QUARTERS, QUARTER_NAMES)
-    axes.set_yticks(QUARTERS, QUARTER_NAMES)
+    image = draw_map(axes, step.alpha1, percent, cmap=SIGN_COLORS, vmin=-limit, vmax=limit)
     axes.set_xlabel(r"$\alpha_1$, rad")
     axes.set_ylabel(r"$\alpha_2$, rad")
     missing = int((~np.isfinite(percent)).sum())

@@ -13,9 +13,8 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.study.study import Study
-from comparison.surfaces.figures.file_names import figure_file, with_ending
-from comparison.surfaces.figures.pairs import PNG, QUARTER_NAMES, QUARTERS, closed
-from comparison.surfaces.surfaces import common_phases
+from comparison.surfaces.figures.file_names import with_ending
+from comparison.surfaces.figures.pairs import PNG, QUARTER_TICKS, closed_surface, limits_of
 from comparison.wording import mathtext
 from reference.problem import Scene
 
@@ -26,11 +25,6 @@ PRINT: dict[Any, Any] = {
 }  # as journals set figures
 WIDTH = 6.9  # inches, two columns of a page
 RESOLUTION = 300  # dots per inch
-
-
-def paper_figure_name(scene: Scene) -> str:
-    """File name of the manuscript figure of one scene."""
-    return figure_file(scene.name, "paper")
 
 
 def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Scene) -> None:
@@ -44,15 +38,13 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
     with mpl.rc_context(PRINT):
         figure = Figure(figsize=(WIDTH, 2.7 * bodies))
         for row in range(bodies):
-            data = [common_phases(surfaces, scene.name, [r.key]).sel(model=r.key, body=row + 1) for r in (first, last)]
-            heights = [closed(surface["alpha1"].values, surface["mu"].values) for surface in data]
-            finite = np.concatenate([height[np.isfinite(height)] for _, height in heights])
-            low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+            heights = [closed_surface(surfaces, scene, model, row + 1) for model in (first, last)]
+            limits = limits_of([height for _, height in heights])
             for column, ((phase, height), model) in enumerate(zip(heights, (first, last))):
                 place = (0.02 + 0.5 * column, 1.0 - (row + 0.98) / bodies, 0.46, 0.88 / bodies)
                 axes = figure.add_axes(place, projection="3d")
                 letter = chr(ord("a") + 2 * row + column)
-                draw_surface(axes, phase, height, (low, high), rf"$\mu_{{{row + 1}}}$")
+                draw_surface(axes, phase, height, limits, rf"$\mu_{{{row + 1}}}$")
                 axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {mathtext(model.title)}", y=1.0, fontsize=9.0)
         figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
         figure.savefig(path, dpi=RESOLUTION, pil_kwargs=PNG)
@@ -61,19 +53,18 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
 def draw_surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[float, float], name: str) -> None:
     """One gray surface in the manner of the paper; phase: rad, with both ends; name: of the height."""
     assert isinstance(axes, Axes3D)
-    low, high = limits if limits[0] < limits[1] else (0.9 * limits[0] - 0.1, 1.1 * limits[1] + 0.1)
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
     lines = {"color": "white", "edgecolor": "black", "linewidth": 0.4, "shade": False, "antialiased": True}
     axes.plot_surface(alpha1, alpha2, height, rcount=200, ccount=200, **lines)
-    axes.set_zlim(low, high)
+    axes.set_zlim(*limits)
     axes.set_box_aspect((1.0, 1.0, 0.66), zoom=1.02)
     axes.view_init(elev=28.0, azim=-125.0)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         axis.set_rotate_label(False)
         axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
         axis._axinfo["grid"].update(color="0.8", linewidth=0.3)
-    axes.set_xticks(QUARTERS, QUARTER_NAMES)
-    axes.set_yticks(QUARTERS, QUARTER_NAMES)
+    axes.set_xticks(*QUARTER_TICKS)
+    axes.set_yticks(*QUARTER_TICKS)
     axes.tick_params(pad=-2)
     axes.set_xlabel(r"$\alpha_1$", labelpad=-4)
     axes.set_ylabel(r"$\alpha_2$", labelpad=-4)

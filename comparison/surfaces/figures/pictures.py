@@ -17,6 +17,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.models import Pair
 from comparison.study.selection import EVERYTHING
 from comparison.study.study import Study
+from comparison.surfaces.figures.file_names import figure_file
 from reference.problem import Scene
 
 SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
@@ -68,13 +69,7 @@ class Pictures(Analysis[dict[str, bytes]]):
         assert surfaces is not None, "they are what is drawn"
         about = {scene.name: fingerprint(surfaces[SHOWN].sel(scene=[scene.name])) for scene in study.scenes}
         return [
-            Task(
-                drawn,
-                picture,
-                self.stage,
-                about=about[picture.scene.name],
-                needs_compiled_reference=False,
-            )
+            Task(drawn, picture, self.stage, about=about[picture.scene.name], needs_compiled_reference=False)
             for picture in pictures(study, surfaces)
         ]
 
@@ -90,22 +85,19 @@ class Pictures(Analysis[dict[str, bytes]]):
 
 def drawn(picture: Picture) -> Files:
     """The files of one picture. Runs inside a worker process."""
-    from comparison.surfaces.figures import (
-        budget,
-        pairs,
-        paper,  # plotting: not needed to list what is drawn
-    )
+    from comparison.surfaces.figures import budget, pairs, paper  # plotting: not needed to list what is drawn
 
     study, surfaces, scene, body = picture.study, picture.surfaces, picture.scene, picture.body
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if picture.kind == "paper":
-            paper.draw_paper_figure(folder / paper.paper_figure_name(scene), study, surfaces, scene)
+            paper.draw_paper_figure(folder / figure_file(scene.name, "paper"), study, surfaces, scene)
         elif picture.kind == "budget":
-            budget.draw_budget(folder / budget.budget_figure_name(scene, body), study, surfaces, scene, body)
+            budget.draw_budget(folder / figure_file(scene.name, f"body{body}", "budget"), study, surfaces, scene, body)
         else:
             assert picture.pair is not None
-            pairs.draw_pair(folder / pairs.figure_name(scene, body, picture.pair), surfaces, scene, body, picture.pair)
+            path = folder / figure_file(scene.name, f"body{body}", picture.pair.key)
+            pairs.draw_pair(path, surfaces, scene, body, picture.pair)
         return tuple((file.name, file.read_bytes()) for file in sorted(folder.iterdir()))
 
 

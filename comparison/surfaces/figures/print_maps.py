@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from comparison.study.models import Model
 from comparison.surfaces.completion import Completion
-from comparison.surfaces.figures.pairs import HEIGHT_COLORS, SIGN_COLORS, TURN, closed
+from comparison.surfaces.figures.pairs import HEIGHT_COLORS, SIGN_COLORS, draw_map, limits_of
 from comparison.surfaces.steps import known_mu
-from comparison.surfaces.surfaces import common_phases
 from comparison.wording import mathtext
 from reference.problem import Scene
 
@@ -62,16 +61,14 @@ def _row(
     body: int,
     done: Completion | None,
 ) -> None:
-    own = [_mu(surfaces, scene, model, model, body) for model in models]
+    own = [known_mu(surfaces, scene.name, model)[body - 1] for model in models]
     heights = [own[0], own[1] if done is None else done.mu]
     if done is not None and done.difference_accepted:
         first, second = own[0], done.mu
     else:
-        coarser = max(models, key=lambda model: int(surfaces["stride"].sel(scene=scene.name, model=model.key)))
-        first, second = (_mu(surfaces, scene, model, coarser, body) for model in models)
+        first, second = (known_mu(surfaces, scene.name, model, *models)[body - 1] for model in models)
     difference = 100.0 * (second - first) / first
-    finite = np.concatenate([height[np.isfinite(height)] for height in heights])
-    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    low, high = limits_of(heights)
     sizes = np.abs(difference[np.isfinite(difference)])
     limit = float(np.percentile(sizes, 98.0)) if sizes.size else 1.0
     limit = limit or 1.0
@@ -91,23 +88,12 @@ def _row(
             axes.plot(alpha1, alpha2, ".", color="white", markersize=0.7, markeredgewidth=0.0)
 
 
-def _mu(surfaces: xr.Dataset, scene: Scene, model: Model, on: Model, body: int) -> Array:
-    """mu of a model on the phases of another."""
-    return known_mu(common_phases(surfaces, scene.name, [model.key, on.key]).sel(body=body), model)
-
-
 def _map(axes: Axes, values: Array, scale: tuple[float, float, str], peak: bool) -> Any:
     low, high, colors = scale
-    phase, height = closed(np.arange(len(values)) * 2.0 * np.pi / len(values), values)
-    axes.set_facecolor("0.75")
-    image = axes.pcolormesh(
-        phase, phase, height.T, cmap=colors, vmin=low, vmax=high, shading="nearest", rasterized=True
-    )
+    phase = np.arange(len(values)) * 2.0 * np.pi / len(values)
+    image = draw_map(axes, phase, values, ENDS, cmap=colors, vmin=low, vmax=high, rasterized=True)
     if peak and np.isfinite(values).any():
         row, column = np.unravel_index(np.nanargmax(values), values.shape)
         axes.plot(phase[row], phase[column], "x", color="red", markersize=3.5, markeredgewidth=0.7)
-    axes.set(xlim=TURN, ylim=TURN, aspect="equal")
-    axes.set_xticks(*ENDS, fontsize=5.5)
-    axes.set_yticks(*ENDS, fontsize=5.5)
-    axes.tick_params(length=1.5, pad=1)
+    axes.tick_params(length=1.5, pad=1, labelsize=5.5)
     return image

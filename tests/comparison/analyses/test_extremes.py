@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 from known_results import FOUND, PLAIN, fake
 from matplotlib.image import imread
-from rich.console import Console
 from runs import no_executor
 
 import reference
@@ -63,7 +62,7 @@ class Ending(ThreadPoolExecutor):
 def computed(extremes: Extremes, results: TaskResults | None = None, executor: Pool = Ending) -> Matrix:
     """The matrix, by one worker."""
     results = results or TaskResults()
-    Runner(results, Console(quiet=True), 1, executor).run(extremes.tasks())
+    Runner(results, 1, executor).run(extremes.tasks())
     return extremes.collect(None, None, results)
 
 

@@ -24,7 +24,7 @@ from comparison.cli.start import Clock
 from comparison.cli.terminal import new_table
 from comparison.run import main
 from comparison.runner.processes import process_pool
-from comparison.runner.resume import changed, resume_hint, without_scheduler
+from comparison.runner.resume import changed, resume_hint
 from comparison.runner.task import RESULT
 
 
@@ -96,7 +96,8 @@ def test_a_changed_command_keeps_what_stands_behind_two_dashes() -> None:
     assert resume_hint(SimpleNamespace(kept={RESULT: 0}, folder="d"), words).endswith(  # type: ignore[arg-type]
         "comparison.run --grid=4 --grid 8 --out r -- --grid --fresh -a.toml"
     )
-    assert without_scheduler(["--scheduler", "tcp://a:1", "--", "--scheduler", "b"]) == ["--", "--scheduler", "b"]
+    words = ["--scheduler", "tcp://a:1", "--", "--scheduler", "b"]
+    assert changed(words, options=["--scheduler"]) == ["--", "--scheduler", "b"]
 
 
 def test_engines_given_in_python_are_used_in_spite_of_two_dashes(command: Callable[..., Run]) -> None:

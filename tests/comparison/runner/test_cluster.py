@@ -11,7 +11,6 @@ import pytest
 from fake_models import fake_hierarchy
 from light_tasks import doubled, hangs_in_compiled_code
 from local_cluster import LocalCluster
-from rich.console import Console
 from runs import Run
 
 from comparison.runner.cache import Cache, Key
@@ -34,12 +33,7 @@ def _results(
     study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(model, batch=batch))
     tasks = [task for task in surface_tasks(study) if task.argument.model == "translational"]
     results, count = TaskResults(), iter(range(1, len(tasks) + 1))
-
-    class Told(Display):
-        def show(self) -> None:
-            done(next(count))
-
-    Runner(results, Console(quiet=True), 2, executor, Told(1.0, 2)).run(tasks)
+    Runner(results, 2, executor, Display(1.0, 2, lambda display: done(next(count)))).run(tasks)
     return batch_results(tasks, results)
 
 
@@ -118,7 +112,7 @@ def test_a_hang_costs_no_worker_of_the_cluster(tmp_path: Path, nanny: bool) -> N
     results = TaskResults()
     try:
         with cluster(started.address, {"fake_models:uneven"}) as there:
-            Runner(results, Console(quiet=True), 1, there).run(tasks)
+            Runner(results, 1, there).run(tasks)
     finally:
         started.end()
     assert results[tasks[0]].outcome == Outcome.TIME_LIMIT

@@ -6,7 +6,6 @@ from concurrent.futures import ThreadPoolExecutor
 
 import xarray as xr
 from fake_models import fake_hierarchy
-from rich.console import Console
 
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
@@ -27,7 +26,7 @@ def test_results_are_the_same_bits_for_any_number_of_jobs() -> None:
         results = TaskResults()
         put = results.put
         results.put = lambda task, result, put=put: (order.append(task), put(task, result))  # type: ignore[method-assign]
-        Runner(results, Console(quiet=True), jobs, ThreadPoolExecutor).run(tasks)
+        Runner(results, jobs, ThreadPoolExecutor).run(tasks)
         surfaces.append(labeled_surfaces(study, study.batches(), batch_results(tasks, results)).drop_vars("cost"))
     assert sorted(order, key=tasks.index) == tasks != order, "the second time they finished in another order"
     xr.testing.assert_equal(*surfaces)  # values, not only close ones

@@ -16,7 +16,6 @@ import pytest
 from fake_models import fake_hierarchy
 from places import HELPERS, ROOT
 from report_texts import summary_of
-from rich.console import Console
 from runs import Run
 from whole_runs import whole_run
 
@@ -36,21 +35,18 @@ import os, random, shutil, signal, sys
 sys.path[:0] = [{here!r}, {root!r}]
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from rich.console import Console
 from ending import end_after
-
-def run(place):
-    whole_run(place, Console(file=open(os.devnull, "w")))
+from whole_runs import whole_run
 
 def killed(place, results, seconds):
     child = os.fork()
     if child == 0:
         end_after(results, seconds)
-        run(place)
+        whole_run(place)
         os._exit(0)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
 
-run(Path("whole"))
+whole_run(Path("whole"))
 draw, count = random.Random(7), 0
 while count < {instants}:
     place = Path(f"killed{{count}}")
@@ -71,14 +67,13 @@ def _bytes(answers: list[BatchResult]) -> list[object]:
 def test_a_run_killed_at_random_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
     script = SCRIPT.format(here=str(HELPERS), root=str(ROOT), instants=INSTANTS)
     subprocess.run([sys.executable, "-c", script], cwd=tmp_path, check=True)
-    quiet = Console(quiet=True)
-    whole, motions, *stored = whole_run(tmp_path / "whole", quiet)
+    whole, motions, *stored = whole_run(tmp_path / "whole")
     assert stored == [len(whole), len(motions)] == [72, 48], "the run that was not killed"
-    anew, same, *stored = whole_run(tmp_path / "new", quiet)
+    anew, same, *stored = whole_run(tmp_path / "new")
     assert (_bytes(anew), same, stored) == (_bytes(whole), motions, [0, 0])
     before = []
     for count in range(INSTANTS):
-        resumed, same, *stored = whole_run(tmp_path / f"killed{count}", quiet)
+        resumed, same, *stored = whole_run(tmp_path / f"killed{count}")
         assert (_bytes(resumed), same) == (_bytes(whole), motions)
         before.append(tuple(stored))
     assert len({batches for batches, _ in before}) > 8, "killed at different stages"

@@ -15,7 +15,6 @@ import pytest
 from fake_models import fake_hierarchy
 from known_analyses import collected
 from light_tasks import dies, doubled, raises
-from rich.console import Console
 from runs import no_executor
 
 from comparison.analyses.claims.table import paper_complete
@@ -32,7 +31,6 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from reference.problem import Outcome, builtin_scenes, load_scene
 
-QUIET = Console(quiet=True)
 calls: list[object] = []
 
 
@@ -57,7 +55,7 @@ def _task(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))
 
 def _run(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolExecutor) -> TaskResults:
     results = TaskResults(Cache(folder))
-    Runner(results, QUIET, 1, make).run([task])
+    Runner(results, 1, make).run([task])
     return results
 
 
@@ -134,7 +132,7 @@ def test_a_task_that_fails_has_its_reason_and_costs_no_other(
         Task(doubled, str(tmp_path / "3"), "errata", 0.1),
     ]
     results = TaskResults(Cache(tmp_path))
-    Runner(results, QUIET, 2, process_pool).run(tasks)
+    Runner(results, 2, process_pool).run(tasks)
     assert [results.value(task, on_failure) for task in tasks] == [
         ("1", Outcome.SOLVER_FAILED, "RuntimeError: singular"),
         ("2", Outcome.WORKER_DIED, "the worker process died 2 times (exit code -9)"),

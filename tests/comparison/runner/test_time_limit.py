@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 from light_tasks import doubled, hangs_in_compiled_code, is_kept_waiting, raises, waits_for_ever
-from rich.console import Console
 from runs import no_executor
 
 from comparison.runner.cache import Cache
@@ -34,7 +33,7 @@ def patient(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def _run(tasks: list[Task], folder: Path, make: object = process_pool, jobs: int = 2) -> list[TaskResult]:
     results = TaskResults(Cache(folder / "cache"))
-    Runner(results, Console(quiet=True), jobs, make).run(tasks)  # type: ignore[arg-type]
+    Runner(results, jobs, make).run(tasks)  # type: ignore[arg-type]
     return [results[task] for task in tasks]
 
 

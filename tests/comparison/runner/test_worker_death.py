@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 from light_tasks import counted
-from rich.console import Console
 
 from comparison.runner.cache import Cache
 from comparison.runner.executors import ExecutorLostError, Pool, executing
@@ -36,7 +35,7 @@ def _tasks(folder: Path, *names: str) -> list[Task]:
 
 def _run(tasks: list[Task], executor: Pool, jobs: int = 2) -> list[TaskResult]:
     results = TaskResults()
-    Runner(results, Console(quiet=True), jobs, executor).run(tasks)
+    Runner(results, jobs, executor).run(tasks)
     return [results[task] for task in tasks]
 
 
@@ -68,7 +67,7 @@ def test_a_worker_collects_garbage_as_seldom_as_its_parent() -> None:
 def test_splitting_finds_the_one_point_that_kills(tmp_path: Path, batch: int) -> None:
     hierarchy = [model for model in fake_hierarchy("killing", batch=batch) if model.key == "translational"]
     tasks, results = surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)), TaskResults(Cache(tmp_path))
-    Runner(results, Console(quiet=True), 2, process_pool).run(tasks)
+    Runner(results, 2, process_pool).run(tasks)
     found = batch_results(tasks, results)
     assert [outcome for result in found for outcome in result.status] == ["ok"] * 15 + ["worker died"]
     whole = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(gap=0.0)).batches()
@@ -111,7 +110,7 @@ def test_a_lent_executor_that_breaks_ends_the_run_in_one_line(tmp_path: Path, br
         if broken_before:
             assert lent.submit(counted, str(tmp_path / "kills always")).exception() is not None
         with pytest.raises(ExecutorLostError, match=r"^the executor is broken: ") as error_message:
-            Runner(results, Console(quiet=True), 1, lent).run(tasks)
+            Runner(results, 1, lent).run(tasks)
     assert "\n" not in str(error_message.value)
     assert results.missing(tasks) == tasks[0 if broken_before else 1 :], "what had arrived was kept"
 

@@ -20,7 +20,6 @@ import xarray as xr
 from fake_models import fake_hierarchy
 from places import HELPERS, ROOT
 from report_texts import page_of, summary_of
-from rich.console import Console
 from runs import Run
 
 from comparison import run as command_module
@@ -240,7 +239,7 @@ def test_one_slow_piece_at_the_start_says_little(monkeypatch: pytest.MonkeyPatch
 
 def test_work_of_an_earlier_level_is_not_skipped_twice() -> None:
     display, tasks = Display(100.0, 1), [Task(math.sqrt, number, "roots") for number in (1.0, 4.0)]
-    runner = Runner(TaskResults(), Console(quiet=True), 1, ThreadPoolExecutor, display, {"roots": 10.0})
+    runner = Runner(TaskResults(), 1, ThreadPoolExecutor, display, {"roots": 10.0})
     for _ in range(2):
         runner.run(tasks)
     assert (display.total, display.done) == (100.0, 10.0)

@@ -11,7 +11,6 @@ import pytest
 import xarray as xr
 from fake_models import fake_hierarchy
 from known_analyses import collected
-from rich.console import Console
 from runs import quick_figures
 from studies import solved
 
@@ -53,7 +52,7 @@ def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None
     def drawn_anew(study: Study, surfaces: xr.Dataset) -> int:
         results = TaskResults(Cache(tmp_path))
         tasks = Pictures().tasks(study, surfaces)
-        Runner(results, Console(quiet=True), 1, ThreadPoolExecutor).run(tasks)
+        Runner(results, 1, ThreadPoolExecutor).run(tasks)
         return len(tasks) - results.parts["pictures"].stored
 
     whole = drawn_anew(*_solved())
