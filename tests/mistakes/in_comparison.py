@@ -18,10 +18,9 @@ CLOSING = TESTS + "cli/test_closing.py::test_"
 GATE = TESTS + "study/test_assert_consistent.py::test_"
 ENGINES = TESTS + "study/test_user_engines.py::test_"
 LEVELS = TESTS + "study/test_levels.py::test_"
-TASKS = TESTS + "runner/test_task_cache.py::test_"
 FORGED = TESTS + "runner/test_tampered_cache.py::test_"
-DEATHS = TESTS + "runner/test_worker_death.py::test_"
-LIMITS = TESTS + "runner/test_time_limit.py::test_"
+DEATHS = TESTS + "runner/test_sweep.py::test_"
+CACHED = TESTS + "runner/test_cache.py::test_"
 FILES = TESTS + "runner/test_users_files.py::test_"
 BESIDE = TESTS + "report/test_results_beside.py::test_"
 OF = TESTS + "analyses/test_"
@@ -83,7 +82,7 @@ MISTAKES = (
             "Error bars are drawn on one side.", (NUMBERS + "an_error_bar_is_as_long_as_the_error_on_either_side",)),
     Mistake(SURFACES + "waterfall_chart.py", '"up" if bar.size >= 0.0 else "down"',
             '"down" if bar.size >= 0.0 else "up"', "Bars have the colors of the other sign.",
-            (TESTS + "surfaces/test_waterfall_chart.py::test_every_bar_begins_where_the_one_before_it_ends",)),
+            (TESTS + "surfaces/test_waterfall.py::test_every_bar_begins_where_the_one_before_it_ends",)),
     Mistake(SURFACES + "headline.py", "bar.size * total.size > 0.0", "bar.size * total.size < 0.0",
             "What offsets a difference is called its cause.",
             (HEADLINE + "a_cause_has_the_sign_of_the_difference",)),
@@ -112,14 +111,14 @@ MISTAKES = (
             "compared = [row for row in rows if row.pair == _same(study, scene, pair)][:1]",
             "Only the platform is held to a limit.", (CHECK + "the_worst_body_breaks_a_limit_whichever_it_is",)),
     Mistake(SURFACES + "alerts.py", "moves up to {100.0 * share:.1f}", "moves up to {share:.1f}",
-            "A share is written as percent.", (TESTS + "surfaces/test_cap_share.py",)),
+            "A share is written as percent.", (TESTS + "surfaces/test_alerts.py",)),
     Mistake(SURFACES + "alerts.py", 'alert.level != "red")', 'alert.level == "red")',
             "Serious alerts stand last.", (TESTS + "surfaces/test_alerts.py",)),
     # surfaces
     Mistake(SURFACES + "surfaces.py", "cost[where] += answer.cost", "cost[where] = answer.cost",
             "A surface costs what its last batch does.", (CHECK + "the_cost_of_a_model_is_that_of_all_its_batches",)),
     Mistake(SURFACES + "surfaces.py", '"displacement": ("m",', '"displacement": ("mm",',
-            "Values in m have the unit mm.", (TESTS + "surfaces/test_cap_share.py",)),
+            "Values in m have the unit mm.", (TESTS + "surfaces/test_alerts.py",)),
     Mistake(SURFACES + "surfaces.py", '("alpha1", axis, {"units": "rad"', '("alpha1", axis, {"units": "degree"',
             "Radians have the unit degree.",
             (TESTS + "report/test_report_files.py::test_surfaces_are_labeled_by_scene_model_body_and_phases",)),
@@ -207,23 +206,23 @@ MISTAKES = (
             "        raise", "An executor is not shut down after an exception.",
             (DEATHS + "an_executor_ends_with_the_block_that_it_was_made_for",)),
     Mistake(RUNNER + "task_results.py", " and result.error_message != GIVEN_UP", "",
-            "A batch that was given up is stored as an overrun.", (LIMITS + "a_batch_that_was_given_up_is_not_stored",)),
+            "A batch that was given up is stored as an overrun.", (DEATHS + "a_batch_that_was_given_up_is_not_stored",)),
     Mistake(RUNNER + "task_results.py", "task.timeout > stored.timeout", "task.timeout >= stored.timeout",
             "A repeated run waits for every hang again.",
-            (LIMITS + "a_repeated_run_waits_for_a_hang_only_if_it_allows_more",)),
+            (DEATHS + "a_repeated_run_waits_for_a_hang_only_if_it_allows_more",)),
     Mistake(RUNNER + "task_results.py", "elif not result.error_message:", "else:",
-            "A result that names an error is kept for good.", (TASKS + "a_task_that_fails_has_its_reason_and_costs_no_other",)),
+            "A result that names an error is kept for good.", (CACHED + "a_task_that_fails_has_its_reason_and_costs_no_other",)),
     Mistake(RUNNER + "sweep.py", "work.deaths < 2 and", "work.deaths < 3 and",
             "A task that kills its worker is tried three times.",
             (DEATHS + "a_death_costs_its_own_task_one_retry_and_no_other",)),
     Mistake(RUNNER + "sweep.py", "            if hasattr(self._executor, \"abandon\"):\n                self._executor.abandon()\n",
             "", "A run that is stopped waits for the tasks at work.", (DEATHS + "a_run_that_is_stopped_abandons_its_workers",)),
     Mistake(RUNNER + "runner.py", "self.lost[task.group] >= GIVEN_UP_AFTER", "self.lost[task.group] > GIVEN_UP_AFTER",
-            "An engine that hangs is asked a third time.", (LIMITS + "a_batch_that_was_given_up_is_not_stored",)),
+            "An engine that hangs is asked a third time.", (DEATHS + "a_batch_that_was_given_up_is_not_stored",)),
     Mistake(RUNNER + "cache.py", "        if faulty(value):\n            return\n", "",
-            "A fault is kept for good.", (TASKS + "what_names_a_fault_is_tried_again_by_the_next_run",)),
+            "A fault is kept for good.", (CACHED + "what_names_a_fault_is_tried_again_by_the_next_run",)),
     Mistake(RUNNER + "cache.py", " or _checksum(key, content) != digest", "",
-            "A damaged result is believed.", (TASKS + "what_is_damaged_in_one_bit_is_computed_again",)),
+            "A damaged result is believed.", (CACHED + "what_is_damaged_in_one_bit_is_computed_again",)),
     Mistake(RUNNER + "cache.py", 'hashlib.sha256(key.name.encode() + b"\\0" + content)', "hashlib.sha256(content)",
             "A result is taken for that of another question.", (FORGED + "no_file_of_another_result_is_taken",)),
     Mistake(RUNNER + "deadline.py", "begin + seconds - EARLY", "begin + seconds",
@@ -237,7 +236,7 @@ MISTAKES = (
             (TESTS + "runner/test_cache.py::test_results_of_the_fast_engine_module_are_its_own",)),
     Mistake(RUNNER + "task.py", "return TaskResult(value, time.process_time() - clock)", "return TaskResult(value, clock)",
             "The cost of a task is all that its process has computed.",
-            (TASKS + "the_cost_of_a_task_is_its_own_processor_time",)),
+            (CACHED + "the_cost_of_a_task_is_its_own_processor_time",)),
     # study
     Mistake(STUDY + "models.py", "return min(asked, REFERENCE_TOLERANCE) if", "return asked if",
             "The equations are as inaccurate as the engine.", (TESTS + "study/test_reduced_study.py::test_the_equations_are_asked_for_more",)),

@@ -1,18 +1,22 @@
-"""What a finished run leaves: labeled surfaces, a summary for programs, figures, and a page that needs no network."""
+"""The files of a report."""
 
 from __future__ import annotations
 
+import doctest
 import json
 import re
 from html import unescape
 from html.parser import HTMLParser
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from places import ROOT
 from report_texts import page_of, summary_of
 
+from comparison.report.verification import CHECKS, Check
 from comparison.study.models import MODEL_HIERARCHY
 from reference.problem import load_scene
 
@@ -161,3 +165,31 @@ def test_the_page_needs_no_other_file_and_no_network(finished: Path) -> None:
     assert "default-src 'none'" in policy, "the browser itself refuses whatever a library might ask for"
     style = page.split("<style>", 1)[1].split("</style>", 1)[0]
     assert re.findall(r"@import|url\(", style) == []
+
+
+MODULES = [
+    ".".join(file.relative_to(ROOT).with_suffix("").parts)
+    for file in sorted((ROOT / "comparison").rglob("*.py"))
+    if ">>> " in file.read_text(encoding="utf-8")
+]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_an_example_gives_what_it_shows(name: str) -> None:
+    result = doctest.testmod(import_module(name))
+    assert result.attempted > 0
+    assert result.failed == 0
+
+
+TESTS = ROOT / "tests"
+
+
+@pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.test)
+def test_every_check_the_report_lists_exists(check: Check) -> None:
+    assert f"def {check.test}(" in (TESTS / check.file).read_text(encoding="utf-8")
+
+
+def test_the_report_lists_them(finished: Path) -> None:
+    page = page_of(finished, "verification.html")
+    for check in CHECKS:
+        assert check.test in page

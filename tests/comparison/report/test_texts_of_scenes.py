@@ -1,4 +1,4 @@
-"""Names and titles of scenes are texts: no markup, no formula, no end of a file name, in whatever shows them."""
+"""Texts of scenes are printed as they are, and numbers as the house writes them."""
 
 from __future__ import annotations
 
@@ -25,6 +25,8 @@ from comparison.report.summary_text import summary_text
 from comparison.runner.progress import progress, wide_console
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import figure_file, with_ending
+from comparison.wording import degrees, mathtext, percent, scientific, signed, significant, symbols
+from reference.drawing import verbatim
 from reference.problem import Family, Scene, load_scene
 
 
@@ -122,3 +124,48 @@ def test_a_page_of_records_says_nothing_of_phases(command: Callable[..., Run]) -
     assert mixed.code == 0, mixed.err
     page = page_of(mixed.report)
     assert "over 2 × 2 initial phases of the two-frequency loading, or under a recorded motion" in page
+
+
+NAN = float("nan")
+
+
+@pytest.mark.parametrize(
+    ("text", "written"),
+    [
+        ("exact equations, v_reg", "exact equations, v<sub>reg</sub>"),
+        ("k^x_21 Delta", "k<sup>x</sup><sub>21</sub> Δ"),
+        ("12 n E J / l^3", "12 n E J / l<sup>3</sup>"),
+        ("F_F = -2 mu lambda_1 sign(lambda_1) rho tau", "F<sub>F</sub> = -2 μ λ<sub>1</sub> sign(λ<sub>1</sub>) ρ τ"),
+        ("dPhi_1/dz_i", "dΦ<sub>1</sub>/dz<sub>i</sub>"),
+        ("the maximum of x < y", "the maximum of x &lt; y"),
+    ],
+)
+def test_names_are_written_with_indices_and_greek_letters(text: str, written: str) -> None:
+    assert symbols(text) == written
+
+
+def test_shares_and_sizes_keep_the_digits_that_matter() -> None:
+    assert [percent(value) for value in (1.0, 0.123, 0.0123, 1.31e-4, 0.0)] == [
+        "100 %",
+        "12 %",
+        "1.2 %",
+        "0.013 %",
+        "0 %",
+    ]
+    assert scientific(1.234e-5) == "1.2e-05"
+    assert significant(0.24849020288) == "0.2484902"
+    assert degrees(3.14159265) == "180°"
+
+
+def test_a_share_below_rounding_has_no_digits() -> None:
+    assert (percent(5e-9), percent(-5e-9), percent(1e-6)) == ("< 0.0001 %", "< 0.0001 %", "0.0001 %")
+    assert [signed(value) for value in (0.123, -0.0123, 0.0, -5e-9)] == ["+12 %", "−1.2 %", "0 %", "< 0.0001 %"]
+
+
+def test_figures_write_indices_and_leave_dollars_alone() -> None:
+    assert mathtext("exact equations, v_reg") == r"exact equations, $v_{\mathrm{reg}}$"
+    assert (verbatim("5 $ a_b"), mathtext("a $")) == (r"5 \$ a_b", r"a \$")
+
+
+def test_what_is_not_known_is_said_in_words() -> None:
+    assert (percent(NAN), scientific(NAN), degrees(NAN), significant(NAN)) == ("none", "none", "none", "")

@@ -1,26 +1,43 @@
-"""A cached batch comes back to the last bit, for its own question and no other; the cache stays bounded."""
+"""A result comes back to the last bit, for its own question and no other; the cache stays bounded."""
 
 from __future__ import annotations
 
 import os
+import pickle
+import time
+from collections.abc import Callable
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from fake_models import fake_hierarchy
+from known_analyses import collected
+from light_tasks import dies, doubled, raises
+from runs import no_executor
 
 import multibody.models.engine
+from comparison.analyses.claims.table import paper_complete
+from comparison.analyses.effective_values.analysis import Effective
+from comparison.analyses.errata import analysis as errata
+from comparison.analyses.errata.analysis import Effect
+from comparison.analyses.motions.analysis import Place, StoredMotion
+from comparison.registry import ANALYSES, first_tasks
 from comparison.runner.cache import MAGIC, Cache, Key
 from comparison.runner.environment import source_digest
+from comparison.runner.processes import process_pool
 from comparison.runner.provenance import provenance
-from comparison.runner.task import Task, execute
+from comparison.runner.runner import Runner
+from comparison.runner.task import Task, TaskResult, execute, fingerprint
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from comparison.surfaces.tasks import surface_tasks
-from reference.problem import load_scene
+from reference.problem import Outcome, builtin_scenes, load_scene
 
 
-def _task(**changed: object) -> Task:
+def _batch_task(**changed: object) -> Task:
     study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(batch=1))
     (task, *_) = surface_tasks(replace(study, **changed))  # type: ignore[arg-type]
     return task
@@ -28,9 +45,9 @@ def _task(**changed: object) -> Task:
 
 def test_a_batch_belongs_to_scene_model_versions_and_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def is_stored(**changed: object) -> bool:
-        return not TaskResults(Cache(tmp_path)).missing([_task(**changed)])
+        return not TaskResults(Cache(tmp_path)).missing([_batch_task(**changed)])
 
-    task = _task()
+    task = _batch_task()
     scene, model = task.argument.scene, fake_hierarchy(batch=1)[0]
     TaskResults(Cache(tmp_path)).put(task, execute(task))
     assert is_stored()
@@ -51,9 +68,9 @@ def test_a_batch_belongs_to_scene_model_versions_and_source(tmp_path: Path, monk
 
 def test_results_of_the_fast_engine_module_are_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("EXUDYN_MODULE", raising=False)
-    usual = _task().key
+    usual = _batch_task().key
     monkeypatch.setenv("EXUDYN_MODULE", "fast")
-    assert _task().key != usual
+    assert _batch_task().key != usual
     assert provenance()["exudyn module"] == multibody.models.engine.MODULE
 
 
@@ -94,3 +111,152 @@ def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path) -> 
     assert {entry.name for entry in tmp_path.iterdir()} == {needed.group, new.group}
     store.trim([needed], limit=0)
     assert {entry.name for entry in tmp_path.iterdir()} == {needed.group}
+
+
+calls: list[object] = []
+
+
+def motion(task: tuple[object, ...]) -> StoredMotion:
+    calls.append(task)
+    numbers, two = np.array([0.1, np.nan, -0.0, 1e-300]), np.array([0.0, 1e300])
+    return StoredMotion(Place("s", 1, 2, ""), "small", two, numbers.reshape(2, 1, 2), numbers.reshape(2, 1, 2))
+
+
+def another_motion(task: tuple[object, ...]) -> StoredMotion:
+    return motion(task)
+
+
+def broken(task: object) -> tuple[Effect, ...]:
+    calls.append(task)
+    return Effect("s", 0), Effect("s", 1, error_message="it broke")
+
+
+def _task(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Task:
+    return Task(motion, task, "motions", 0.1, task[0])
+
+
+def _run(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolExecutor) -> TaskResults:
+    results = TaskResults(Cache(folder))
+    Runner(results, 1, make).run([task])
+    return results
+
+
+def test_an_answer_is_kept_to_the_last_bit(tmp_path: Path) -> None:
+    task = _task()
+    runs = [_run(task, tmp_path), _run(task, tmp_path, no_executor)]
+    assert [results.parts["motions"].stored for results in runs] == [0, 1]
+    first, second = (results[task].value for results in runs)
+    assert pickle.dumps(first) == pickle.dumps(second) == pickle.dumps(motion(task.argument))
+    assert TaskResults(Cache(tmp_path)).holds(task)
+    assert not TaskResults(Cache(tmp_path), fresh=True).holds(task)
+    assert TaskResults(Cache(tmp_path), fresh=True).missing([task]) == [task]
+
+
+def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    task = _task()
+    _run(task, tmp_path)
+    scene, *rest = task.argument
+    others = {
+        "function": replace(task, function=another_motion),
+        "scene": _task((scene.with_values({"duration": 3.0}), *rest)),
+        "name, which the answer may hold": _task((scene.with_values({"name": "other"}), *rest)),
+        "number": _task((scene, 2, *rest[1:])),
+        "last bit": _task((scene, 1, np.nextafter(0.5, 1.0), rest[2])),
+        "array": _task((scene, 1, 0.5, np.arange(3.0) + 1e-16 * np.array([1.0, 0.0, 0.0]))),
+        "shape": _task((scene, 1, 0.5, np.arange(3.0)[None])),
+    }
+    for name, other in others.items():
+        assert TaskResults(Cache(tmp_path)).missing([other]), name
+    for name in ("_version", "source_digest"):
+        with monkeypatch.context() as patch:
+            patch.setattr(f"comparison.runner.environment.{name}", lambda package: "changed")
+            assert TaskResults(Cache(tmp_path)).missing([_task()]), name
+    assert not TaskResults(Cache(tmp_path)).missing([task])
+
+
+def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = fake_hierarchy()[0]
+    before = fingerprint(model)
+    assert fingerprint(replace(model, settings={"gap": 2.0})) != before
+    assert fingerprint(replace(model, most=8)) == before, "a study with another grid asks it the same"
+    monkeypatch.setattr("comparison.runner.environment.source_digest", lambda name: "changed")
+    assert fingerprint(model) != before
+
+
+def test_what_names_a_fault_is_tried_again_by_the_next_run(tmp_path: Path) -> None:
+    task = Task(broken, 1, "errata", 0.1)
+    calls.clear()
+    results = _run(task, tmp_path)
+    assert results[task].value[1].error_message == "it broke"
+    _run(task, tmp_path)
+    assert calls == [1, 1]
+
+
+def test_what_is_damaged_in_one_bit_is_computed_again(tmp_path: Path) -> None:
+    task = _task()
+    _run(task, tmp_path)
+    (file,) = tmp_path.glob("*/*.result")
+    text = file.read_bytes()
+    file.write_bytes(text[:-1] + bytes([text[-1] ^ 1]))
+    assert _run(task, tmp_path).parts["motions"].stored == 0
+    assert _run(task, tmp_path, no_executor).parts["motions"].stored == 1, "and mended"
+
+
+def test_a_task_that_fails_has_its_reason_and_costs_no_other(
+    tmp_path: Path,
+) -> None:
+    def on_failure(argument: object, failed: TaskResult) -> object:
+        return argument, failed.outcome, failed.error_message
+
+    tasks = [
+        Task(raises, "1", "errata", 0.3),
+        Task(dies, "2", "errata", 0.2),
+        Task(doubled, str(tmp_path / "3"), "errata", 0.1),
+    ]
+    results = TaskResults(Cache(tmp_path))
+    Runner(results, 2, process_pool).run(tasks)
+    assert [results.value(task, on_failure) for task in tasks] == [
+        ("1", Outcome.SOLVER_FAILED, "RuntimeError: singular"),
+        ("2", Outcome.WORKER_DIED, "the worker process died 2 times (exit code -9)"),
+        2,
+    ]
+    assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[:2], "the next run tries them again"
+    assert len(list(tmp_path.glob("*/*.result"))) == 1, "no file is left of them"
+    assert results.parts["errata"].tasks == 3
+
+
+def test_collecting_computes_nothing_and_looks_every_result_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each function is called once, by the runner."""
+    calls.clear()
+
+    def counted(task: tuple[Any, int]) -> Effect:
+        calls.append(task)
+        return Effect(task[0].name, task[1])
+
+    monkeypatch.setattr(errata, "measured", counted)
+    study = Study((load_scene("fig3-I"),), 4, 1e-3)
+    found = [effect for each in collected(errata.Errata(), study) for effect in each.effects]
+    assert len(found) == len(calls) == len(errata.Errata().tasks(study))
+
+
+def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
+    study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3)
+    tasks = first_tasks(study, ANALYSES)
+    assert paper_complete(study)
+    assert len({task.key for task in tasks}) == len(tasks)
+    assert {task.stage for task in tasks} == {
+        "effective values", "errata", "scaling test", "convergence", "claims", "assumptions",
+    }  # fmt: skip
+    assert not paper_complete(Study(study.scenes[:1], 6, 1e-3))
+
+
+def test_effective_values_without_a_motion_are_not_kept_for_good(tmp_path: Path) -> None:
+    results = TaskResults(Cache(tmp_path))
+    results.put(
+        Task(broken, 1, "effective values", 0.1), TaskResult(Effective("s", "small", error_message="it ended"), 0.1)
+    )
+    assert not list(tmp_path.glob("*/*"))
+
+
+def test_the_cost_of_a_task_is_its_own_processor_time() -> None:
+    assert 0.0 <= execute(Task(len, "abc", "test")).cost < 0.1 < time.process_time()

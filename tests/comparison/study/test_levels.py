@@ -1,4 +1,4 @@
-"""A study goes from coarse to fine, with a whole report after each level; whatever ends it early keeps the last."""
+"""Every level of a study is part of the next and has a whole report; grids are nested."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -22,9 +24,9 @@ from places import HELPERS, ROOT
 from report_texts import page_of, summary_of
 from runs import Run
 
+from comparison import registry
 from comparison import run as command_module
 from comparison.cli import reports
-from comparison.registry import levels
 from comparison.runner.cache import Cache
 from comparison.runner.deadline import Deadline, TimeUpError
 from comparison.runner.progress import Display
@@ -32,11 +34,12 @@ from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.levels import levels_of
-from comparison.study.models import MODEL_HIERARCHY
+from comparison.study.models import MODEL_HIERARCHY, Model
+from comparison.study.nesting import levels, nested_grids
 from comparison.study.study import Study
 from comparison.surfaces.tasks import surface_tasks
 from reference.command import StoppedError
-from reference.problem import load_scene
+from reference.problem import load_scene, phase_axis, phase_grid
 
 SCENES = (load_scene("fig3-I"), load_scene("synthetic-pair"))
 WORDS = ("fig3-I", "--grid", "24", "--skip", "claims")
@@ -69,7 +72,7 @@ def test_every_level_begins_with_what_the_level_before_has(grid: int, hierarchy:
 
 
 def test_the_first_level_is_coarse_and_the_last_is_whole() -> None:
-    first, second, last = levels(Study((load_scene("fig3-I"),), 48, 1e-3))
+    first, second, last = registry.levels(Study((load_scene("fig3-I"),), 48, 1e-3))
 
     def grids(study: Study) -> list[int]:
         return [len(study.axis(model)) for model in study.hierarchy[3:]]
@@ -287,3 +290,39 @@ def test_a_run_killed_at_random_leaves_a_whole_report(command: Callable[..., Run
         found.append(level)
         xr.testing.assert_identical(_whole(command, place).drop_attrs(), undisturbed.drop_attrs())
     assert {0, 1} <= set(found), "killed before and after the first report"
+
+
+@pytest.mark.parametrize("grid", [1, 2, 3, 7, 12, 16, 20, 45, 48, 96, 512])
+def test_each_grid_is_part_of_the_next(grid: int) -> None:
+    chain = nested_grids(grid)
+    assert chain[-1] == grid
+    assert all(fine % coarse == 0 and fine > coarse for coarse, fine in pairwise(chain))
+    level = levels(grid)
+    for number, coarse in enumerate(chain):
+        assert (level <= number).sum() == coarse
+
+
+def test_phases_of_nested_grids_are_the_same_to_the_last_bit() -> None:
+    chain = nested_grids(96)
+    for coarse, fine in pairwise(chain):
+        np.testing.assert_array_equal(phase_axis(fine)[:: fine // coarse], phase_axis(coarse))
+    np.testing.assert_allclose(phase_axis(96), 2.0 * np.pi * np.arange(96) / 96, rtol=1e-15)
+    np.testing.assert_array_equal(phase_grid(4)[6], phase_axis(4)[[1, 2]])
+
+
+@pytest.mark.parametrize("hierarchy", [MODEL_HIERARCHY, fake_hierarchy(batch=3)], ids=["symmetric", "every phase"])
+@pytest.mark.parametrize("coarse", [2, 4, 8])
+def test_a_finer_study_asks_for_all_batches_of_a_coarser_one(hierarchy: tuple[Model, ...], coarse: int) -> None:
+    everywhere = [replace(model, most=None) for model in hierarchy]
+    first, finer = (
+        {task.key.name for task in surface_tasks(Study(SCENES, grid, 1e-3, everywhere))} for grid in (coarse, 24)
+    )
+    assert first < finer
+
+
+def test_every_phase_pair_is_in_one_batch() -> None:
+    study = Study(SCENES[:1], 12, 1e-3, fake_hierarchy(batch=5))
+    for model in study.hierarchy:
+        phases = np.concatenate([batch.phases for batch in study.batches() if batch.model == model.key])
+        expected = phase_grid(12)[study.places(model)]
+        np.testing.assert_array_equal(phases[np.lexsort(phases.T[::-1])], expected)

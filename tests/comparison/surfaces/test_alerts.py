@@ -6,14 +6,25 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from fake_models import errors_in, fake_hierarchy, silenced
 from report_texts import page_of, summary_of
 from runs import Run
 
+import multibody
+import reference
+from comparison.runner.cache import Cache
+from comparison.runner.task import TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY
+from comparison.study.study import Study
+from comparison.surfaces.alerts import alerts
+from comparison.surfaces.surfaces import labeled_surfaces, largest_cap_share
+from comparison.surfaces.tasks import surface_tasks
 from reference import amplification
-from reference.problem import load_scene, phase_grid
+from reference.problem import Outcome, Scene, load_scene, phase_grid
 from reference.problem.scene_file import scene_text
 
 GRID = ["fig3-I", "--grid", "4"]
@@ -60,3 +71,91 @@ def test_a_travel_that_is_nearly_used_up_is_said_with_its_share(command: Callabl
     summary = summary_of(run.report)
     assert summary["scenes"][0]["models"]["exact"]["travel_share"] == pytest.approx(0.95, rel=1e-3)
     assert "% of the travel" in page_of(run.report)
+
+
+PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])
+
+
+def strong() -> Scene:
+    return load_scene("fig3-I", amplitude=2.5).with_values({"isolator.friction": 0.05, "duration": 8.0})
+
+
+def sampled(scene: Scene, phase: np.ndarray, equations: str, regularization: float | None) -> float:
+    times = np.linspace(0.0, scene.duration, 40_001)
+    run = reference.trajectory(scene, phase, equations, regularization, 1e-9, times=times)
+    return float(np.hypot(*run.position[:, 0, :2].T).max() / scene.radius)
+
+
+@pytest.mark.parametrize(
+    ("scene", "equations", "regularization"),
+    [
+        (strong(), "exact", None),
+        (strong(), "small", 1e-3),
+        (load_scene("fig4-viscous"), "exact", None),
+        (load_scene("fig3-I").with_values({"isolator.friction": 0.0}), "small", None),
+        (load_scene("synthetic-pair"), "exact", None),
+    ],
+    ids=["set-valued", "v_reg", "lubricated", "a sum of harmonics", "record"],
+)
+def test_the_share_of_the_equations_is_that_of_a_dense_motion(scene, equations, regularization):
+    found = reference.amplification(scene, PHASES, equations, regularization)
+    expected = [sampled(scene, phase, equations, regularization) for phase in PHASES]
+    np.testing.assert_allclose(found.cap_share, expected, rtol=2e-4)
+
+
+@pytest.mark.parametrize("model", ["translational", pytest.param("spatial", marks=pytest.mark.long)])
+def test_the_share_of_the_engine_is_that_of_the_equations(model):
+    scene = strong().with_values({"duration": 3.0})
+    engine = multibody.amplification(scene, PHASES[:1], model)
+    equations = reference.amplification(scene, PHASES[:1], regularization=1e-3)
+    np.testing.assert_allclose(engine.cap_share, equations.cap_share, rtol=1e-3 if model == "translational" else 0.05)
+
+
+def test_a_motion_close_to_the_rim_is_seen():
+    scene = load_scene("fig3-I").with_values({"isolator.friction": 0.0, "duration": 3.0})
+    shares = [reference.amplification(scene.with_amplitude(a), PHASES[:1]).cap_share[0] for a in (4.0, 5.0)]
+    assert 0.5 < shares[0] < shares[1] < 1.0
+    lost = reference.amplification(scene.with_amplitude(100.0), PHASES[:1])
+    assert lost.status[0] != Outcome.OK
+    assert np.isnan(lost.cap_share).all()
+
+
+def test_the_share_is_stored_joined_labeled_and_said(tmp_path: Path) -> None:
+    scene = load_scene("fig3-I").with_values({"isolator.friction": 0.0, "duration": 2.0}).with_amplitude(5.0)
+    study = Study((scene,), 2, 1e-3, MODEL_HIERARCHY[:1])
+    batches = study.batches()
+    answers = [execute_batch(batch) for batch in batches]
+    for task, answer in zip(surface_tasks(study), answers):
+        TaskResults(Cache(tmp_path)).put(task, TaskResult(answer, 0.0))
+        kept = TaskResults(Cache(tmp_path))
+        assert kept.missing([task]) == []
+        np.testing.assert_array_equal(kept[task].value.displacement, answer.displacement)
+        halves = task.argument.halves()
+        if halves:
+            joined = task.argument.join([*map(execute_batch, halves)])
+            np.testing.assert_allclose(joined.displacement, answer.displacement, rtol=1e-9)
+    surfaces = labeled_surfaces(study, batches, answers)
+    largest = max(answer.displacement.max() for answer in answers) / scene.radius
+    units = {name: surfaces[name].attrs["units"] for name in ("displacement", "cap_share", "mu", "instant", "cost")}
+    assert units == {"displacement": "m", "cap_share": "1", "mu": "1", "instant": "s", "cost": "s"}
+    np.testing.assert_allclose(surfaces["displacement"], scene.radius * surfaces["cap_share"], rtol=1e-12)
+    assert largest_cap_share(surfaces, scene.name, MODEL_HIERARCHY[0].key) == largest > 0.5
+    swings = [alert for alert in alerts(study, surfaces, [], [], []) if alert.kind == "swing"]
+    assert [alert.level for alert in swings] == ["amber"]
+    assert f"{100.0 * largest:.1f} % of rho" in swings[0].text
+
+
+@pytest.mark.parametrize("scene", [load_scene("fig3-I"), load_scene("synthetic-pair")], ids=["phases", "record"])
+def test_a_trajectory_carries_the_peak_that_its_samples_miss(scene: Scene) -> None:
+    run = reference.trajectory(scene, PHASES[0], tolerance=1e-8)
+    found = reference.amplification(scene, PHASES[:1])
+    ground = reference.problem.ground_peak(scene, PHASES[:1])[0]
+    np.testing.assert_allclose(run.peak, found.mu[0] * ground, rtol=1e-5)
+    highest = np.sqrt((run.absolute_acceleration**2).sum(axis=-1)).max(axis=0)
+    assert (highest <= run.peak * (1.0 + 1e-9)).all()
+    short = scene.with_values({"duration": 2.0})
+    engine, asked = multibody.trajectory(short, PHASES[0]), multibody.amplification(short, PHASES[:1])
+    np.testing.assert_allclose(
+        engine.peak, asked.mu[0] * reference.problem.ground_peak(short, PHASES[:1])[0],
+        atol=float(2.0 * asked.error.max() * ground),
+    )  # fmt: skip

@@ -1,0 +1,314 @@
+"""Every task has its result: one that kills or hangs its worker costs its own points, in any order of the others."""
+
+from __future__ import annotations
+
+import gc
+import signal
+import threading
+import time
+from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from threading import Barrier
+
+import numpy as np
+import pytest
+import xarray as xr
+from fake_models import fake_hierarchy
+from light_tasks import counted, doubled, hangs_in_compiled_code, is_kept_waiting, raises, waits_for_ever
+from runs import no_executor
+
+from comparison.runner.cache import Cache
+from comparison.runner.executors import ExecutorLostError, Pool, TimeLimitError, executing
+from comparison.runner.processes import process_pool
+from comparison.runner.runner import Runner
+from comparison.runner.sweep import Sweep
+from comparison.runner.task import GIVEN_UP, Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import execute_batch
+from comparison.study.study import Study
+from comparison.study.user_models import user_model
+from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.tasks import batch_results, surface_tasks
+from reference.problem import Outcome, load_scene
+
+pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="SIGKILL")
+
+
+def _tasks(folder: Path, *names: str) -> list[Task]:
+    return [Task(counted, str(folder / name), "test", needs_compiled_reference=False) for name in names]
+
+
+def _run(tasks: list[Task], make: Pool = process_pool, jobs: int = 2, folder: Path | None = None) -> list[TaskResult]:
+    results = TaskResults(folder and Cache(folder / "cache"))
+    Runner(results, jobs, make).run(tasks)
+    return [results[task] for task in tasks]
+
+
+def _calls(folder: Path) -> dict[str, int]:
+    names = [mark.name.rsplit("-", 1)[0] for mark in folder.iterdir() if mark.is_file()]
+    return {name: names.count(name) for name in names}
+
+
+def test_a_death_costs_its_own_task_one_retry_and_no_other(tmp_path: Path) -> None:
+    names = "one", "kills", "two", "kills always", "three", "four"
+    results = _run(_tasks(tmp_path, *names))
+    assert [result.value for result in results] == ["one", "kills", "two", None, "three", "four"]
+    assert results[3].reason == "worker died: the worker process died 2 times (exit code -9)"
+    assert _calls(tmp_path) == {"one": 1, "kills": 2, "two": 1, "kills always": 2, "three": 1, "four": 1}
+
+
+def test_a_worker_collects_garbage_as_seldom_as_its_parent() -> None:
+    before = gc.get_threshold()
+    gc.set_threshold(1234, 20, 30)
+    try:
+        with process_pool(1) as pool:
+            assert pool.submit(gc.get_threshold).result() == (1234, 20, 30)
+    finally:
+        gc.set_threshold(*before)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("batch", [2, 16])
+def test_splitting_finds_the_one_point_that_kills(tmp_path: Path, batch: int) -> None:
+    hierarchy = [model for model in fake_hierarchy("killing", batch=batch) if model.key == "translational"]
+    tasks, results = surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)), TaskResults(Cache(tmp_path))
+    Runner(results, 2, process_pool).run(tasks)
+    found = batch_results(tasks, results)
+    assert [outcome for result in found for outcome in result.status] == ["ok"] * 15 + ["worker died"]
+    whole = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(gap=0.0)).batches()
+    expected = np.concatenate([execute_batch(batch).mu for batch in whole])
+    np.testing.assert_array_equal(np.concatenate([result.mu for result in found])[:15], expected[:15])
+    assert found[-1].error_message == "the worker process died 2 times (exit code -9)"
+    assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[-1:], "only the batch that lost a point is tried again"
+
+
+def test_halves_of_a_batch_are_its_points_in_order() -> None:
+    batch = Study((load_scene("fig3-I"),), 3, 1e-3, fake_hierarchy(batch=7)).batches()[1]
+    early, late = batch.halves()
+    np.testing.assert_array_equal(np.concatenate([early.phases, late.phases]), batch.phases)
+    assert (early.first, late.first) == (batch.first, batch.first + len(early.phases))
+    assert early.halves() == []
+    whole, halves = execute_batch(batch), [execute_batch(half) for half in (early, late)]
+    together = batch.join(halves)
+    np.testing.assert_array_equal(together.mu, whole.mu)
+    assert (together.status, together.error_message) == (whole.status, "")
+    assert together.cost == pytest.approx(whole.cost, rel=1e-12)  # a sum in another order
+
+
+def test_a_lent_executor_states_its_width_and_stays_open(tmp_path: Path) -> None:
+    class Three(ThreadPoolExecutor):
+        width = 3
+
+    together, places = Barrier(3), []
+    with Three(3) as lent:
+        tasks = [Task(together.wait, 60.0, "test")] * 3
+        Sweep(tasks, lent, 1, lambda task, result: places.append(result.value)).run()
+        assert sorted(places) == [0, 1, 2], "each waited for the other two"
+        assert [result.value for result in _run(_tasks(tmp_path, "one"), lent)] == ["one"]
+        assert lent.submit(str.upper, "c").result() == "C"
+
+
+@pytest.mark.parametrize("broken_before", [True, False])
+def test_a_lent_executor_that_breaks_ends_the_run_in_one_line(tmp_path: Path, broken_before: bool) -> None:
+    tasks, results = _tasks(tmp_path, "one", "kills always", "two"), TaskResults()
+    with ProcessPoolExecutor(1, get_context("spawn")) as lent:
+        if broken_before:
+            assert lent.submit(counted, str(tmp_path / "kills always")).exception() is not None
+        with pytest.raises(ExecutorLostError, match=r"^the executor is broken: ") as error_message:
+            Runner(results, 1, lent).run(tasks)
+    assert "\n" not in str(error_message.value)
+    assert results.missing(tasks) == tasks[0 if broken_before else 1 :], "what had arrived was kept"
+
+
+def test_an_executor_ends_with_the_block_that_it_was_made_for() -> None:
+    ended: list[tuple[bool, bool]] = []
+
+    class Told(ThreadPoolExecutor):
+        def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+            ended.append((wait, cancel_futures))
+            super().shutdown(wait, cancel_futures=cancel_futures)
+
+    with executing(Told, 1) as made:
+        assert made.submit(len, "abc").result() == 3
+    with pytest.raises(ZeroDivisionError), executing(Told, 1):
+        raise ZeroDivisionError
+    assert ended == [(True, False), (False, True)], "without waiting after an exception"
+
+
+def test_a_run_that_is_stopped_abandons_its_workers() -> None:
+    abandoned = []
+
+    class Told(ThreadPoolExecutor):
+        def abandon(self) -> None:
+            abandoned.append(True)
+
+    def stopped(task: Task, result: TaskResult) -> None:
+        raise KeyboardInterrupt
+
+    with Told(1) as workers, pytest.raises(KeyboardInterrupt):
+        Sweep([Task(len, "abc", "test")], workers, 1, stopped).run()
+    assert abandoned == [True]
+
+
+def test_results_are_the_same_bits_for_any_number_of_jobs() -> None:
+    study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy("uneven", batch=1))
+    tasks = surface_tasks(study)
+    order: list[Task] = []
+    surfaces = []
+    for jobs in (1, 3):
+        order.clear()
+        results = TaskResults()
+        put = results.put
+        results.put = lambda task, result, put=put: (order.append(task), put(task, result))  # type: ignore[method-assign]
+        Runner(results, jobs, ThreadPoolExecutor).run(tasks)
+        surfaces.append(labeled_surfaces(study, study.batches(), batch_results(tasks, results)).drop_vars("cost"))
+    assert sorted(order, key=tasks.index) == tasks != order, "the second time they finished in another order"
+    xr.testing.assert_equal(*surfaces)  # values, not only close ones
+
+
+pytest.importorskip("resource", reason="the system limits no processor time")
+
+
+@pytest.fixture
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only processor time counts, however long the machine keeps a worker waiting."""
+    for name in ("STALLED", "SPARE"):
+        monkeypatch.setattr(f"comparison.runner.processes.{name}", 1e9)
+
+
+@pytest.mark.usefixtures("patient")
+def test_a_hang_ends_at_its_limit_and_costs_no_other_task(tmp_path: Path) -> None:
+    others = [Task(doubled, str(tmp_path / f"other{number}"), "test", 0.1, timeout=60.0) for number in range(6)]
+    task = Task(hangs_in_compiled_code, str(tmp_path / "hanging"), "test", 1.0, timeout=1.0)
+    first, *rest = _run([task, *others])
+    assert (first.outcome, first.error_message) == (Outcome.TIME_LIMIT, "no answer within 1 s of processor time")
+    assert first.reason == "time limit: no answer within 1 s of processor time"
+    assert [result.value for result in rest] == [2] * 6
+    assert _calls(tmp_path) == {"hanging": 1} | {f"other{number}": 1 for number in range(6)}, "nothing is tried again"
+
+
+class Limited(ThreadPoolExecutor):
+    """Every call takes as long as it may."""
+
+    def start(self, call: object, seconds: float | None, group: str) -> Future[TaskResult]:
+        ended: Future[TaskResult] = Future()
+        ended.set_exception(TimeLimitError(f"no answer within {seconds:g} s"))
+        return ended
+
+
+def test_a_repeated_run_waits_for_a_hang_only_if_it_allows_more(tmp_path: Path) -> None:
+    def task(timeout: float | None) -> Task:
+        return Task(doubled, str(tmp_path / "hanging"), "test", 1.0, timeout=timeout)
+
+    (first,) = _run([task(1.0)], Limited, folder=tmp_path)
+    (again,) = _run([task(1.0)], no_executor, folder=tmp_path)
+    (shorter,) = _run([task(0.5)], no_executor, folder=tmp_path)
+    assert first == again == shorter
+    (longer,) = _run([task(2.0)], Limited, folder=tmp_path)
+    assert longer.error_message == "no answer within 2 s"
+    assert TaskResults(Cache(tmp_path / "cache")).missing([task(None)]), "without a limit it may take any time"
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("patient")
+def test_what_a_busy_machine_keeps_waiting_does_not_hang(tmp_path: Path) -> None:
+    """2.5 s of waiting, next to no computing, under a limit of 1 s."""
+    (result,) = _run([Task(is_kept_waiting, "", "test", 1.0, timeout=1.0)])
+    assert result.value == 1
+
+
+@pytest.mark.long
+def test_what_computes_nothing_any_more_is_ended_in_the_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("comparison.runner.processes.STALLED", 4.0)
+    (result,) = _run([Task(waits_for_ever, "", "test", 1.0, timeout=1.0)])
+    assert result.reason == "time limit: no answer within 4 s"
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("patient")
+def test_the_limit_of_a_task_does_not_reach_the_next_one(tmp_path: Path) -> None:
+    short = Task(doubled, str(tmp_path / "short"), "test", 2.0, timeout=1.0)
+    endless = Task(is_busy, 2.0, "test", 1.0)
+    results = _run([short, endless], jobs=1)
+    assert [result.value for result in results] == [2, 2.0]
+
+
+def is_busy(seconds: float) -> float:
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+    return seconds
+
+
+class NotFromText(Exception):  # noqa: N818
+    """An error that cannot be made again from its text."""
+
+    def __init__(self, what: str, where: int) -> None:
+        super().__init__(f"{what} at {where}")
+
+
+def raises_what_cannot_be_sent(place: str) -> int:
+    raise NotFromText("broken", 3)
+
+
+def returns_what_cannot_be_sent(place: str) -> object:
+    return lambda: None
+
+
+def test_what_cannot_be_sent_from_a_worker_is_named(tmp_path: Path) -> None:
+    tasks = [
+        Task(raises_what_cannot_be_sent, "", "test", 3.0),
+        Task(returns_what_cannot_be_sent, "", "test", 2.0),
+        Task(raises, "", "test", 1.5),
+        Task(doubled, str(tmp_path / "other"), "test", 1.0),
+    ]
+    error, value, usual, other = _run(tasks, jobs=1)
+    assert "NotFromText: broken at 3" in error.error_message
+    assert "lambda" in value.error_message
+    assert usual.error_message == "RuntimeError: singular"
+    assert other.value == 2
+
+
+def test_a_batch_that_was_given_up_is_not_stored(tmp_path: Path) -> None:
+    """Two calls of an engine that hangs, and the one at work by then, are stored; the last is asked again next time."""
+    model = user_model("mine", {"function": "user_engines:plain"})
+    tasks = surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, [model]))
+    results = _run(tasks, Limited, jobs=1, folder=tmp_path)
+    assert [result.outcome for result in results] == [Outcome.TIME_LIMIT] * 4
+    assert [result.error_message for result in results] == [*["no answer within 60 s"] * 3, GIVEN_UP]
+    assert TaskResults(Cache(tmp_path / "cache")).missing(tasks) == tasks[3:]
+
+
+COMPILED = threading.Event()
+BEGAN: list[str] = []
+
+
+def solved(task: str) -> str:
+    BEGAN.append(task)
+    if task == "compile":
+        assert COMPILED.wait(timeout=300.0), "the engine's tasks ran meanwhile"
+    if task == "engine 2":
+        COMPILED.set()
+    return task
+
+
+def _task(name: str, waits: bool = False) -> Task:
+    return Task(solved, name, "test", needs_compiled_reference=waits)
+
+
+def test_what_needs_the_reference_waits_for_it_while_others_pass() -> None:
+    tasks = [_task("reference 1", True), _task("reference 2", True), _task("engine 1"), _task("engine 2")]
+    results = TaskResults()
+    Runner(results, 2, ThreadPoolExecutor).run(tasks, lambda: _task("compile"))
+    assert BEGAN[:3] == ["compile", "engine 1", "engine 2"]
+    assert sorted(BEGAN[3:]) == ["reference 1", "reference 2"]
+    assert [results[task].value for task in tasks] == [task.argument for task in tasks]
+
+
+def test_what_is_never_ready_runs_when_nothing_else_is_left() -> None:
+    done: list[str] = []
+    with ThreadPoolExecutor(2) as threads:
+        tasks = [Task(str.upper, name, "test") for name in "ab"]
+        Sweep(tasks, threads, 2, lambda task, result: done.append(result.value), lambda task: task is tasks[0]).run()
+    assert done == ["A", "B"]
