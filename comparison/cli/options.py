@@ -13,9 +13,8 @@ from comparison.cli.user_models import add_models, user_models
 from comparison.registry import EARLIER
 from comparison.runner.cache import refuse_foreign_store
 from comparison.runner.output import destination, refuse_foreign_report
-from comparison.study.analyses import ANALYSES, ON_REQUEST, known_analyses
+from comparison.study.analyses import ANALYSES, EVERYTHING, ON_REQUEST, Selection, known_analyses
 from comparison.study.models import Model
-from comparison.study.selection import EVERYTHING, Selection
 from comparison.study.study import refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance

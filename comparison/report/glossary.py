@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 
 from markupsafe import Markup
 
@@ -53,24 +54,31 @@ def term(word: str, text: str = "") -> Markup:
 def explained(sentence: str, seen: set[str] | None = None) -> Markup:
     """The sentence with every word of the glossary explained where it stands first."""
     seen = set() if seen is None else seen
-    parts: list[Markup] = []
-    end = 0
-    for match in WORDS.finditer(sentence):
-        if match.group() in seen:
-            continue
-        seen.add(match.group())
-        parts += [symbols(sentence[end : match.start()]), term(match.group())]
-        end = match.end()
-    return Markup("").join([*parts, symbols(sentence[end:])])
+
+    def first(word: str) -> Markup:
+        known = word in seen
+        seen.add(word)
+        return symbols(word) if known else term(word)
+
+    return _by_parts(WORDS, sentence, first, symbols)
 
 
 def emphasized(sentence: str) -> Markup:
     """A headline with how much and why in bold, its words explained."""
     seen: set[str] = set()
-    parts: list[Markup] = []
-    end = 0
-    for match in LEAD.finditer(sentence):
-        strong = Markup("<strong>{}</strong>").format(explained(match.group(), seen))
-        parts += [explained(sentence[end : match.start()], seen), strong]
+
+    def strong(text: str) -> Markup:
+        return Markup("<strong>{}</strong>").format(explained(text, seen))
+
+    return _by_parts(LEAD, sentence, strong, lambda text: explained(text, seen))
+
+
+def _by_parts(
+    pattern: re.Pattern[str], text: str, inside: Callable[[str], Markup], outside: Callable[[str], Markup]
+) -> Markup:
+    """The text with what the pattern finds written by `inside`, and the rest by `outside`."""
+    parts, end = [], 0
+    for match in pattern.finditer(text):
+        parts += [outside(text[end : match.start()]), inside(match.group())]
         end = match.end()
-    return Markup("").join([*parts, explained(sentence[end:], seen)])
+    return Markup("").join([*parts, outside(text[end:])])

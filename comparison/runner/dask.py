@@ -14,8 +14,8 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Executor, Future
-from contextlib import contextmanager
-from functools import cache, partial
+from contextlib import contextmanager, suppress
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numba
@@ -86,12 +86,8 @@ class ClusterExecutor(Executor):
             raise ExecutorLostError(f"no worker on the cluster for {PATIENCE:.0f} s")
         return max(self._count, 1)
 
-    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        """Make a call on a worker of the cluster."""
-        return self.start(partial(function, *args, **kwargs))
-
     def start(self, call: Call, seconds: float | None = None, group: str = "") -> Future[Any]:
-        """As `submit`; with a limit in a process beside the worker, which lives on when the limit ends the call."""
+        """Make a call on a worker; with a limit in a process beside it, so that it lives on when that ends the call."""
         if self._client.status != "running":
             raise ExecutorLostError(GONE)
         answer: Future[Any] = Future()
@@ -141,13 +137,9 @@ def _arrived(remote: Future[Any], answer: Future[Any]) -> None:
 
 
 def _workers(client: Client) -> int:
-    try:
-        return len(client.nthreads()) if client.status == "running" else _gone()
-    except (OSError, TimeoutError, CancelledError):
-        return _gone()
-
-
-def _gone() -> int:
+    with suppress(OSError, TimeoutError, CancelledError):
+        if client.status == "running":
+            return len(client.nthreads())
     raise ExecutorLostError(GONE)
 
 

@@ -9,11 +9,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.study.analyses import ANALYSES
+from comparison.study.analyses import ANALYSES, EVERYTHING, Selection
 from comparison.study.batches import Batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, steps_of
 from comparison.study.nesting import levels
-from comparison.study.selection import EVERYTHING, Selection
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.symmetry import sources
 

@@ -254,7 +254,7 @@ MISTAKES = (
     Mistake(STUDY + "user_models.py", "lines.append(f\"{place.name}, line {line}\")", "lines.append(f\"{place.name}, line {frame.f_lineno}\")",
             "An exception names the line of the call that made it.", equivalent="The frame of a traceback that is "
             "unwound stands at the line that raised."),
-    Mistake(STUDY + "selection.py", "ANALYSES if name not in ON_REQUEST]", "ANALYSES]",
+    Mistake(STUDY + "analyses.py", "ANALYSES if name not in ON_REQUEST]", "ANALYSES]",
             "Demands of every phase are computed unasked.", (TESTS + "study/test_selection.py::test_demands_of_every_phase_are_computed_on_request",)),
     Mistake("comparison/testing.py", "np.where(size <= step.uncertainty, 0.0, size)", "size",
             "The gate fails on a difference within its errors.", (GATE + "a_difference_within_its_errors_never_fails",)),

@@ -14,8 +14,8 @@ import xarray as xr
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, fingerprint
 from comparison.runner.task_results import TaskResults
+from comparison.study.analyses import EVERYTHING
 from comparison.study.models import Pair
-from comparison.study.selection import EVERYTHING
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import figure_file
 from reference.problem import Scene

@@ -80,6 +80,7 @@ def planted(script: Path) -> Path:
     return place / "imported"
 
 
+@pytest.mark.long
 def test_workers_of_the_script_import_nothing_from_the_folder(script: Path) -> None:
     imported = planted(script)
     (imported.parent / "rk45.py").write_text(ENGINE, encoding="utf-8")
@@ -90,7 +91,6 @@ def test_workers_of_the_script_import_nothing_from_the_folder(script: Path) -> N
     assert "mine" in run.stdout
 
 
-@pytest.mark.long
 def test_workers_of_a_program_elsewhere_import_nothing_there(script: Path) -> None:
     imported = planted(script)
     script.write_text(

@@ -40,7 +40,7 @@ def counted(cache, *words):
         file.write("x")
 Cache.put = counted
 if __name__ == "__main__":
-    sys.exit(main(["fig3-I", "--grid", "8", "--jobs", "2", "--out", "report"], fake_hierarchy("endless", batch=1)))
+    sys.exit(main(["fig3-I", "--grid", "4", "--jobs", "2", "--out", "report"], fake_hierarchy("endless", batch=1)))
 """
 
 
@@ -60,9 +60,9 @@ def _runs(process: psutil.Process) -> bool:
 
 
 def _wait_for_the_equations(place: Path, process: subprocess.Popen[str]) -> None:
-    """Until the last of the equations' 256 results is stored; models under several names share 64 files."""
+    """Until the last of the equations' 64 results is stored; models under several names share 16 files."""
     log = place / "stored.txt"
-    while process.poll() is None and (not log.exists() or log.read_text("utf-8").count("x") < 256):
+    while process.poll() is None and (not log.exists() or log.read_text("utf-8").count("x") < 64):
         time.sleep(0.05)
 
 
@@ -92,12 +92,12 @@ def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: int, code:
     assert process.returncode == code
     stopped = re.fullmatch(
         r"interrupted: (\d+) of (\d+) batches are kept in 'report.tiles'; "
-        r"go on with: python -m comparison.run fig3-I --grid 8 --jobs 2 --out report\n",
+        r"go on with: python -m comparison.run fig3-I --grid 4 --jobs 2 --out report\n",
         err,
     )
     assert stopped, err
-    assert int(stopped[1]) == 64 * sum(model.side == "reference" for model in MODEL_HIERARCHY) < int(stopped[2])
-    assert len(list(tmp_path.glob("report.tiles/*/*.batch"))) == 64, "one model under several names is stored once"
+    assert int(stopped[1]) == 16 * sum(model.side == "reference" for model in MODEL_HIERARCHY) < int(stopped[2])
+    assert len(list(tmp_path.glob("report.tiles/*/*.batch"))) == 16, "one model under several names is stored once"
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report.tiles", "stored.txt"]
     assert sorted(entry.name for entry in old.iterdir()) == ["manifest.json", "summary.json"]
     _wait_for_the_end_of(workers)

@@ -46,7 +46,7 @@ def _run(tasks: list[Task], make: Pool = process_pool, jobs: int = 2, folder: Pa
 
 
 def _calls(folder: Path) -> dict[str, int]:
-    names = [mark.name.rsplit("-", 1)[0] for mark in folder.iterdir() if mark.is_file()]
+    names = [mark.name.split("-")[0] for mark in folder.iterdir() if mark.is_file()]
     return {name: names.count(name) for name in names}
 
 

@@ -16,8 +16,7 @@ from runs import Run
 
 from comparison.cli.options import parsed
 from comparison.registry import FEATURES, chosen_analyses, first_tasks
-from comparison.study.analyses import ANALYSES, selected
-from comparison.study.selection import Selection
+from comparison.study.analyses import ANALYSES, Selection, selected
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures, pictures
 from comparison.surfaces.surfaces import labeled_surfaces

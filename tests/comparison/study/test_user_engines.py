@@ -85,7 +85,7 @@ def test_the_engine_of_the_documentation_appears_in_the_report(
     command: Callable[..., Run], stranger: str, tmp_path: Path
 ) -> None:
     (tmp_path / "short.toml").write_text(scene_text("fig3-I", ("duration = 20.0", "duration = 1.5")))
-    run = command("short.toml", "--grid", "2", "--model", stranger)
+    run = command("short.toml", "--grid", "2", "--model", stranger, "--only", "surfaces,differences")
     assert (run.code, run.err) == (0, "")
     with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as surfaces:
         mine = surfaces.sel(model="mine", scene="short")
