@@ -23,7 +23,7 @@ from comparison.surfaces.acceptance import Limit, checked_limits
 from comparison.surfaces.differences import differences
 from comparison.surfaces.unanswered import unanswered
 
-SMALL = ["fig3-I", "--grid", "2"]
+SMALL = ["fig3-I", "--grid", "2", "--only", "differences"]
 
 
 def limits_of(study: Study, surfaces: xr.Dataset) -> list[Limit]:

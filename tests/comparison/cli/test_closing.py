@@ -66,25 +66,18 @@ def test_a_changed_loading_offers_no_film_of_another(command: Callable[..., Run]
     assert not any("multibody.animate" in line for line in after_report(run))
 
 
-def test_a_scene_of_a_file_is_filmed_from_its_file(command: Callable[..., Run], tmp_path: Path) -> None:
-    place = tmp_path / "my scene.toml"
-    place.write_text((SCENES / "fig3-I.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    run = command(str(place), "--grid", "2", hierarchy=errors_in({"spatial": 0.1}))
-    assert f"multibody.animate '{place}' --phases" in run.out
-
-
 def test_printed_options_stand_before_scenes_with_a_dash(
     command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("-mine.toml").write_text((SCENES / "fig3-I.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    Path("-my scene.toml").write_text((SCENES / "fig3-I.toml").read_text(encoding="utf-8"), encoding="utf-8")
     run = command(
-        "--grid", "2", "--out", str(tmp_path / "report"), "--", "-mine.toml", hierarchy=errors_in({"spatial": 0.1})
+        "--grid", "2", "--out", str(tmp_path / "report"), "--", "-my scene.toml", hierarchy=errors_in({"spatial": 0.1})
     )
     film, finer = after_report(run)[2:]
-    assert shlex.split(film)[shlex.split(film).index("multibody.animate") + 1] == "./-mine.toml"
+    assert shlex.split(film)[shlex.split(film).index("multibody.animate") + 1] == "./-my scene.toml"
     words = shlex.split(finer.split("costs: ")[1])[3:]
-    assert words[-5:] == ["--grid", "4", "--plan", "--", "-mine.toml"]
+    assert words[-5:] == ["--grid", "4", "--plan", "--", "-my scene.toml"]
     assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
 
 

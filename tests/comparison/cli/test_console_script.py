@@ -15,7 +15,7 @@ import pytest
 from places import ROOT
 
 import reference
-from comparison.cli.start import COMMANDS
+from comparison.cli.start import COMMANDS, main
 
 SHADOW = "raise SystemExit('a module of the user was imported')\n"
 PLANTED = ("multiprocessing", "threading", "socket", "pickle", "numpy", "numba", "typing_extensions")
@@ -106,21 +106,23 @@ def test_workers_of_a_program_elsewhere_import_nothing_there(script: Path) -> No
     assert (run.returncode, run.stdout) == (0, "None None\n"), "what a task starts is searched as ever"
 
 
-def test_an_unknown_command_is_one_line_with_the_nearest(script: Path) -> None:
-    run = called(script, "extrems")
-    assert (run.returncode, run.stdout) == (2, "")
-    assert run.stderr == "command line: COMMAND = 'extrems': did you mean extremes?\n"
-
-
-def test_without_a_command_the_script_lists_them(script: Path) -> None:
-    run = called(script)
-    assert run.returncode == 0
-    assert all(f"  {name} " in run.stdout for name in COMMANDS)
-
-
-def test_the_script_states_its_version(script: Path) -> None:
-    run = called(script, "--version")
-    assert (run.returncode, run.stdout, run.stderr) == (0, f"phase-resonance {reference.__version__}\n", "")
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (["extrems"], 2, ["command line: COMMAND = 'extrems': did you mean extremes?\n"]),
+        (["--version"], 0, [f"phase-resonance {reference.__version__}\n"]),
+        ([], 0, [f"  {name} " for name in COMMANDS]),
+    ],
+)
+def test_the_script_answers_where_no_command_is_named(
+    words: list[str], code: int, said: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["phase-resonance", *words])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == code
+    output = capsys.readouterr()[code // 2]  # on standard error where it is wrong
+    assert all(text in output for text in said)
 
 
 @pytest.mark.long

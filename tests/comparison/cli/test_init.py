@@ -104,13 +104,6 @@ def test_a_checkout_is_found_by_its_commit(
     assert "word" not in line
 
 
-def test_the_scene_loads_and_the_spatial_model_can_take_it(study: Path) -> None:
-    scene = reference.load_scene(study / "building.toml")
-    assert (scene.name, len(scene.bodies)) == ("building", 3)
-    assert scene.support_places is not None
-    assert all(body.height is not None and body.size is not None for body in scene.bodies)
-
-
 def test_the_script_runs(study: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(sys, "argv", ["study.py", "--grid", "2"])
     runpy.run_path(str(study / "study.py"), run_name="__main__")

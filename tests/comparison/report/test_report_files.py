@@ -18,7 +18,6 @@ from report_texts import page_of, summary_of
 
 from comparison.report.verification import CHECKS, Check
 from comparison.study.models import MODEL_HIERARCHY
-from reference.problem import load_scene
 
 GRID = 4
 PARTS = {
@@ -75,11 +74,6 @@ def test_a_model_that_does_not_apply_is_nan_and_says_so(surfaces: xr.Dataset) ->
     assert (regularized["status"] == "not applicable").all()
 
 
-def test_bodies_a_scene_does_not_have_are_nan_and_counted(surfaces: xr.Dataset) -> None:
-    assert list(surfaces["bodies"].values) == [2, 2]
-    assert list(surfaces["digest"].values) == [load_scene(name).digest() for name in ("fig3-I", "fig4-viscous")]
-
-
 def test_the_file_carries_its_own_provenance(surfaces: xr.Dataset) -> None:
     assert surfaces.attrs["command"].startswith("python -m comparison.run fig3-I fig4-viscous --grid 4")
     assert surfaces.attrs["exudyn"].startswith("1.")
@@ -99,23 +93,10 @@ def test_summary_has_its_schema_and_no_nan(finished: Path) -> None:
     assert summary["schema"] == "phase-resonance/summary"
     assert summary["version"] == 5
     assert (summary["grid"], summary["tolerance"]) == (GRID, 1e-3)
-    assert {"command", "began", "wall_seconds", "processor_seconds", "jobs", "provenance"} <= set(summary["run"])
-    assert [model["key"] for model in summary["models"]] == [model.key for model in MODEL_HIERARCHY]
     assert [scene["name"] for scene in summary["scenes"]] == ["fig3-I", "fig4-viscous"]
     dry, wet = summary["scenes"]
     assert dry["models"]["exact"]["outcomes"] == {"ok": GRID**2}
     assert "regularised" not in wet["models"]
-    assert {
-        "pair",
-        "body",
-        "median",
-        "percentile95",
-        "maximum",
-        "phases",
-        "beyond_error",
-        "not_ok",
-        "unanswered",
-    } <= set(dry["differences"][0])
 
 
 def test_differences_are_the_planted_one_percent(finished: Path) -> None:

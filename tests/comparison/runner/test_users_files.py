@@ -16,7 +16,6 @@ from report_texts import page_of
 from runs import Run
 
 from comparison.analyses.extremes import command as extremes
-from comparison.analyses.tradeoff import command as tradeoff
 from comparison.cli import reports
 from comparison.runner.cache import Cache, Key
 from comparison.runner.output import (
@@ -264,15 +263,6 @@ def test_the_extremes_replace_their_own_files(tmp_path: Path, monkeypatch: pytes
     for _ in range(2):
         extremes.main([*EXTREMES, "--out", str(tmp_path)])
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["extremes.json", "extremes.png", MANIFEST]
-
-
-def test_a_foreign_diagram_is_refused_before_measuring(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (tmp_path / "fig3-I-tradeoff.pdf").write_text("mine", encoding="utf-8")
-    monkeypatch.setattr(tradeoff, "measured_trades", lambda *rest: pytest.fail("it was measured"))
-    assert tradeoff.main(["fig3-I", "--out", str(tmp_path)]) == 2
-    assert "holds 'fig3-I-tradeoff.pdf', which this study did not write" in capsys.readouterr().err
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")

@@ -10,7 +10,6 @@ import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -34,7 +33,7 @@ from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.levels import levels_of
-from comparison.study.models import MODEL_HIERARCHY, Model
+from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.nesting import levels, nested_grids
 from comparison.study.study import Study
 from comparison.surfaces.tasks import surface_tasks
@@ -231,15 +230,6 @@ def test_the_time_left_follows_from_the_work_so_far(monkeypatch: pytest.MonkeyPa
     assert display.left == pytest.approx(50.0 * (20.0 + 4.0) / (30.0 + 8.0))  # 30 in 20 s, and a tenth in half its cost
 
 
-def test_one_slow_piece_at_the_start_says_little(monkeypatch: pytest.MonkeyPatch) -> None:
-    now = iter([0.0, 20.0, 40.0])
-    monkeypatch.setattr("comparison.runner.progress.time.monotonic", lambda: next(now))
-    display = Display(400.0, 2)
-    display.advance("engine", "1 of 9 tasks", 0.0)
-    display.advance("engine", "2 of 9 tasks", 1.0)
-    assert 200.0 <= display.left <= 500.0  # 399 of work; 20 s for 1 would be two hours
-
-
 def test_work_of_an_earlier_level_is_not_skipped_twice() -> None:
     display, tasks = Display(100.0, 1), [Task(math.sqrt, number, "roots") for number in (1.0, 4.0)]
     runner = Runner(TaskResults(), 1, ThreadPoolExecutor, display, {"roots": 10.0})
@@ -308,16 +298,6 @@ def test_phases_of_nested_grids_are_the_same_to_the_last_bit() -> None:
         np.testing.assert_array_equal(phase_axis(fine)[:: fine // coarse], phase_axis(coarse))
     np.testing.assert_allclose(phase_axis(96), 2.0 * np.pi * np.arange(96) / 96, rtol=1e-15)
     np.testing.assert_array_equal(phase_grid(4)[6], phase_axis(4)[[1, 2]])
-
-
-@pytest.mark.parametrize("hierarchy", [MODEL_HIERARCHY, fake_hierarchy(batch=3)], ids=["symmetric", "every phase"])
-@pytest.mark.parametrize("coarse", [2, 4, 8])
-def test_a_finer_study_asks_for_all_batches_of_a_coarser_one(hierarchy: tuple[Model, ...], coarse: int) -> None:
-    everywhere = [replace(model, most=None) for model in hierarchy]
-    first, finer = (
-        {task.key.name for task in surface_tasks(Study(SCENES, grid, 1e-3, everywhere))} for grid in (coarse, 24)
-    )
-    assert first < finer
 
 
 def test_every_phase_pair_is_in_one_batch() -> None:

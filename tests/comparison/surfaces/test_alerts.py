@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from fake_models import errors_in, fake_hierarchy, silenced
+from fake_models import errors_in, fake_hierarchy
 from report_texts import page_of, summary_of
 from runs import Run
 
@@ -27,7 +28,7 @@ from reference import amplification
 from reference.problem import Outcome, Scene, load_scene, phase_grid
 from reference.problem.scene_file import scene_text
 
-GRID = ["fig3-I", "--grid", "4"]
+GRID = ["fig3-I", "--grid", "4", "--only", "differences"]
 
 
 def listed(run: Run) -> list[dict[str, Any]]:
@@ -35,18 +36,12 @@ def listed(run: Run) -> list[dict[str, Any]]:
     return found
 
 
-def test_a_sound_run_has_no_alert(command: Callable[..., Run]) -> None:
-    assert listed(command(*GRID, hierarchy=errors_in({}))) == []
-
-
-def test_a_refused_model_is_red_and_says_what_helps(command: Callable[..., Run]) -> None:
-    run = command(*GRID, hierarchy=silenced("spatial"))
-    refused = next(alert for alert in listed(run) if alert["kind"] == "refused")
-    assert (refused["level"], refused["scene"]) == ("red", "fig3-I")
-    assert refused["text"].startswith("spatial engine: no value at any of 16 phase pairs")
-    assert "shorten the duration to 7 s" in refused["help"]
-    assert refused["text"] in run.out
-    assert "shorten the duration to 7 s" in run.out
+def test_a_sound_run_has_no_alert_and_its_limits_hold(command: Callable[..., Run]) -> None:
+    run = command(*GRID, hierarchy=errors_in({"small": 0.02}))
+    assert listed(run) == []
+    assert "**Every acceptance limit holds.**" in (run.report / "summary.md").read_text(encoding="utf-8")
+    suites = ElementTree.parse(run.report / "junit.xml").getroot()
+    assert (suites.get("tests"), suites.get("failures")) == ("5", "0")
 
 
 def test_a_missing_point_is_amber_behind_a_broken_limit(command: Callable[..., Run]) -> None:
@@ -55,6 +50,8 @@ def test_a_missing_point_is_amber_behind_a_broken_limit(command: Callable[..., R
     assert {(alert["kind"], alert["level"]) for alert in alerts} == {("limit", "red"), ("lacking", "amber")}
     assert [alert["level"] for alert in alerts] == sorted((alert["level"] for alert in alerts), reverse=True)
     assert any("1 of 16 phase pairs: 1 × rim reached" in alert["text"] for alert in alerts)
+    lost = "- fig3-I, translational engine: 1 × rim reached"
+    assert lost in (run.report / "summary.md").read_text(encoding="utf-8")
     assert "Limit broken: fig3-I: acceptance.failed: 2 points without an answer" in run.out
 
 

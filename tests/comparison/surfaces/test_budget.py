@@ -19,7 +19,7 @@ from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import checked_limits
-from comparison.surfaces.budget import TOTAL, BudgetEntry, budget, closure, steps, torus_distance
+from comparison.surfaces.budget import TOTAL, BudgetEntry, budget, closure, steps
 from comparison.surfaces.differences import differences
 from comparison.surfaces.steps import RESOLVED
 from comparison.surfaces.surfaces import labeled_surfaces
@@ -125,14 +125,6 @@ def test_a_step_known_to_less_than_a_fifth_is_not_real() -> None:
         assert (entry.real, entry.unresolved) == expected, "u_D is 1e-3, up to the 0.5 % that the step itself adds"
 
 
-def test_a_false_error_is_blamed_on_the_engine() -> None:
-    """The like-for-like step must vanish: one far above its u_D is an error error_estimates too small, not physics."""
-    study, surfaces = _solved(errors_in({"translational": 0.02}, error_estimates={"translational": 1e-6}))
-    table = _table(study, surfaces)
-    assert table["translational"].real == 1.0
-    assert table["translational"].median > 100.0 * table["translational"].error_estimate
-
-
 def test_uncertainties_of_the_two_models_add_in_quadrature() -> None:
     study, surfaces = _solved(errors_in({}, error_estimates={"exact": 3e-3, "small": 4e-3}))
     np.testing.assert_allclose(steps(study, surfaces, "fig3-I", 1)[0].uncertainty, 5e-3, rtol=1e-12)
@@ -210,11 +202,6 @@ def test_of_several_equal_peaks_the_nearest_counts() -> None:
     other = {"model": "exact", "body": 1, "alpha1": surfaces["alpha1"][5], "alpha2": surfaces["alpha2"][5]}
     surfaces["mu"].loc[other] = 2.0 * (1.0 + 1e-7)  # higher by less than the error error_estimates
     assert _table(study, surfaces)["exact"].peak_moves == 0.0
-
-
-def test_distances_on_the_square_are_those_of_a_torus() -> None:
-    assert torus_distance((0.1, 0.0), (2.0 * np.pi - 0.1, 0.0)) == pytest.approx(0.2)
-    assert torus_distance((0.0, 0.0), (np.pi, np.pi)) == pytest.approx(np.sqrt(2.0) * np.pi)
 
 
 def test_a_model_more_is_a_step_more_and_nothing_else() -> None:

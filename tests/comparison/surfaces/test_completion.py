@@ -124,11 +124,6 @@ def test_a_difference_that_is_not_smooth_is_refused(blank: tuple[Study, xr.Datas
     assert np.isnan(surface.mu).all(), "nothing that could be drawn by mistake"
 
 
-def test_a_jump_in_the_difference_is_refused(blank: tuple[Study, xr.Dataset]) -> None:
-    jump = np.where(ALPHA[0] + ALPHA[1] > 2.0 * np.pi, 0.1, 0.0)
-    assert not completed(blank, ridge(*ALPHA), jump).accepted
-
-
 def test_a_surface_may_be_drawn_where_its_difference_may_not(
     blank: tuple[Study, xr.Dataset],
 ) -> None:

@@ -176,20 +176,6 @@ def test_another_cause_at_the_largest_is_in_the_same_sentence() -> None:
     assert "Cause: turning of the bodies in the mean, geometry at the largest." in sentence
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_no_sentence_denies_geometry_and_blames_it(seed: int) -> None:
-    study, surfaces = planted_study({})
-    sizes = np.random.default_rng(seed).normal(size=(len(KEYS), 1, 1)) * [0.3, 3.0, 1.0, 1.0, 3.0][seed % 5] * 0.01
-    for key, shift in zip(KEYS, sizes.cumsum(axis=0)):
-        surfaces["mu"].loc[{"model": key}] *= 1.0 + float(shift[0, 0])
-    result = told(study, scattered(surfaces, seed) if seed % 2 else surfaces)
-    sentence = result.sentence
-    assert sentence.count("Cause") <= 1
-    if "not geometry" in sentence:
-        assert sentence.count("geometry") == 1
-        assert "exact" not in (*result.cause.models, *result.maximum_cause.models, *result.cause.offset)
-
-
 def test_geometry_is_not_denied_where_the_bars_show_it() -> None:
     study, surfaces = planted_study({"spatial": -0.1})
     assert "Cause: turning of the bodies, not geometry." in told(study, surfaces).sentence

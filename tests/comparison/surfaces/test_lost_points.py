@@ -22,7 +22,7 @@ from comparison.surfaces.unanswered import compared_study, unanswered
 from comparison.surfaces.waterfall import waterfall
 from reference.problem import load_scene
 
-GRID = ["--grid", "4"]
+GRID = ["--grid", "4", "--only", "differences"]
 
 
 CASES = {
@@ -139,7 +139,7 @@ def test_like_for_like_is_never_said_of_other_models() -> None:
 def test_page_summary_and_terminal_say_which_model_is_refused(
     command: Callable[..., Run],
 ) -> None:
-    run = command("fig3-I", *GRID, hierarchy=silenced("spatial"))
+    run = command("fig3-I", "--grid", "4", hierarchy=silenced("spatial"))
     line = "fig3-I: spatial engine: no value at any of 16 phase pairs: step limit; comparisons leave this model out"
     assert run.code == 0
     page = page_of(run.report)
@@ -149,6 +149,7 @@ def test_page_summary_and_terminal_say_which_model_is_refused(
     assert "3 times the work, shorten the duration to 7 s" in (run.report / "summary.md").read_text(encoding="utf-8")
     summary = summary_of(run.report)
     assert [(one["scene"], one["model"], one["points"]) for one in summary["unanswered"]] == [("fig3-I", "spatial", 16)]
+    assert [(alert["level"], alert["kind"]) for alert in summary["alerts"]][:1] == [("red", "refused")]
     assert all(row["median"] is not None for row in summary["scenes"][0]["differences"])
 
 
