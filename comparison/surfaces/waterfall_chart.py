@@ -42,13 +42,13 @@ class Bar:
 
 def bars_of(bars: Sequence[WaterfallBar], total: WaterfallBar, scale: Scale) -> list[Bar]:
     """The bars of a waterfall."""
-    return [_bar(bar, "total" if bar is total else bar.model, start, scale) for bar, start in _starts(bars, total)]
+    return [_bar(bar, model, start, scale) for bar, model, start in _starts(bars, total)]
 
 
 def scale_of(waterfalls: Iterable[tuple[Sequence[WaterfallBar], WaterfallBar]]) -> Scale:
     """The one axis on which all these waterfalls have room, error bars included."""
-    drawn = [(bar, start) for bars, total in waterfalls for bar, start in _starts(bars, total) if isfinite(bar.size)]
-    sizes = [0.0, *(start + bar.size + side * _error(bar) for bar, start in drawn for side in (-1.0, 1.0))]
+    drawn = [each for bars, total in waterfalls for each in _starts(bars, total) if isfinite(each[0].size)]
+    sizes = [0.0, *(start + bar.size + side * _error(bar) for bar, _, start in drawn for side in (-1.0, 1.0))]
     low, high = min(sizes), max(sizes)
     if low == high:
         low, high = -0.01, 0.01
@@ -101,13 +101,13 @@ def log_scale(sizes: Iterable[float]) -> LogScale:
     return LogScale(10.0**low, 10.0 ** max(high, low + 1))
 
 
-def _starts(bars: Sequence[WaterfallBar], total: WaterfallBar) -> Iterator[tuple[WaterfallBar, float]]:
-    """Every bar with where it begins: where the one before it ends, and the total at zero."""
+def _starts(bars: Sequence[WaterfallBar], total: WaterfallBar) -> Iterator[tuple[WaterfallBar, str, float]]:
+    """Every bar with its model and where it begins: where the one before it ends, and the total at zero."""
     start = 0.0
     for bar in bars:
-        yield bar, start
+        yield bar, bar.model, start
         start += bar.size if isfinite(bar.size) else 0.0
-    yield total, 0.0
+    yield total, "total", 0.0
 
 
 def _error(bar: WaterfallBar) -> float:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable
@@ -19,7 +17,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from fake_models import fake_hierarchy
-from places import HELPERS, ROOT
 from report_texts import page_of, summary_of
 from runs import Run
 
@@ -42,7 +39,7 @@ from reference.problem import load_scene, phase_axis, phase_grid
 
 SCENES = (load_scene("fig3-I"), load_scene("synthetic-pair"))
 WORDS = ("fig3-I", "--grid", "24", "--only", "differences,effective,motions")
-STOP, ALL = 60, 114  # results stored within the second level, and in all: the first level has 20
+STOP = 60  # results stored within the second level: the first has 20
 
 
 @pytest.fixture
@@ -236,50 +233,6 @@ def test_work_of_an_earlier_level_is_not_skipped_twice() -> None:
     for _ in range(2):
         runner.run(tasks)
     assert (display.total, display.done) == (100.0, 10.0)
-
-
-KILLED = """
-import sys
-sys.path[:0] = [{here!r}, {root!r}]
-from concurrent.futures import ThreadPoolExecutor
-from comparison.cli import reports
-from comparison.run import main
-from ending import end_after
-from fake_models import fake_hierarchy
-from known_analyses import analyses_are
-from runs import quick_figure, quick_figures
-from comparison.analyses.assumptions import figure as assumptions
-import pytest
-patch = pytest.MonkeyPatch()
-patch.setattr(assumptions, "draw_assumptions", quick_figure)
-quick_figures(patch)
-analyses_are(patch, motions=[])
-reports.PATIENCE = 0.0
-end_after({number}, {seconds})
-main({words!r}, fake_hierarchy(batch=36), ThreadPoolExecutor)
-"""
-
-
-@pytest.mark.long
-@pytest.mark.usefixtures("every_level")
-def test_a_run_killed_at_random_leaves_a_whole_report(command: Callable[..., Run], tmp_path: Path) -> None:
-    draw = np.random.default_rng(7)
-    undisturbed, found = _whole(command, tmp_path / "undisturbed"), []
-    for run in range(12):
-        place = tmp_path / str(run)
-        about = {"number": int(draw.integers(1, ALL)), "seconds": float(draw.uniform(0.0, 0.2))}
-        script = KILLED.format(here=str(HELPERS), root=str(ROOT), words=[*WORDS, "--out", str(place)], **about)
-        subprocess.run([sys.executable, "-c", script], capture_output=True, check=False)
-        if place.exists():
-            level = summary_of(place)["run"]["level"]
-            surfaces = xr.load_dataset(place / "surfaces.nc")
-            assert np.isfinite(surfaces["mu"].sel(model="small")).all()
-            assert surfaces.sizes["alpha1"] == (8, 24, 24)[level - 1]
-        else:
-            level = 0
-        found.append(level)
-        xr.testing.assert_identical(_whole(command, place).drop_attrs(), undisturbed.drop_attrs())
-    assert {0, 1} <= set(found), "killed before and after the first report"
 
 
 @pytest.mark.parametrize("grid", [1, 2, 3, 7, 12, 16, 20, 45, 48, 96, 512])

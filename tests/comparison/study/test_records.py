@@ -141,9 +141,6 @@ def test_the_page_shows_table_and_motions_of_a_record(tmp_path: Path) -> None:
         browser.close()
 
 
-pytestmark = pytest.mark.long
-
-
 @pytest.fixture(scope="module")
 def real(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("real") / "report"
@@ -151,6 +148,7 @@ def real(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+@pytest.mark.long
 def test_every_point_has_an_answer_with_an_error(real: Path) -> None:
     with xr.open_dataset(real / "surfaces.nc", engine="h5netcdf") as data:
         assert (data["status"] == "ok").all()
