@@ -9,8 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparison.report.plots import Panel
+from comparison.report.plots import Panel, plain
+from comparison.report.results import Results
+from comparison.surfaces.distribution import CURVE
 from comparison.wording import mathtext
+from reference.drawing import verbatim
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,6 +28,19 @@ def panel(title: str, label: str, x: dict[str, Any], y: dict[str, Any], series: 
     return {"title": title, "plot": {"label": label, "x": x, "y": y, "series": series, **more}}
 
 
+def distribution_panels(results: Results, scene: str, quantity: str, unit: str, curves: Any) -> list[Panel]:
+    """The share of all phases at which a quantity stays below a value, by (model, values); none without curves."""
+    models = {model.key: (model.title, number) for number, model in enumerate(results.models)}
+    series = [
+        {"name": models[key][0], "x": plain(values), "y": CURVE.tolist(), "color": models[key][1]}
+        for key, values in curves
+    ]
+    title = f"{scene}, {quantity}"
+    label = f"{title}: share of the phases at which it stays below a value, by model"
+    axes = {"title": f"{quantity}, {unit}".removesuffix(", ")}, {"title": "share of the phases"}
+    return [panel(title, label, *axes, series)] if series else []
+
+
 def draw_panels(path: Path, title: str, panels: Sequence[Panel], columns: int = 3) -> None:
     """Write the panels below a title to `path`, PNG, and as PDF."""
     from matplotlib.figure import Figure  # matplotlib: only what draws needs it
@@ -34,7 +50,7 @@ def draw_panels(path: Path, title: str, panels: Sequence[Panel], columns: int = 
     columns = min(columns, max(len(panels), 1))
     rows = -(-len(panels) // columns) or 1
     figure = Figure(figsize=(5.0 * columns, 4.0 * rows + 0.6), dpi=110, layout="constrained")
-    figure.suptitle(title, fontsize=12)
+    figure.suptitle(verbatim(title), fontsize=12)
     for axes, each in zip_longest(figure.subplots(rows, columns, squeeze=False).flat, panels):
         if each is None:
             axes.set_axis_off()
@@ -47,8 +63,6 @@ def _draw(axes: Axes, each: Panel) -> None:
     plot = each["plot"]
     axes.set_title(mathtext(each["title"]), fontsize=10)
     axes.grid(color="0.92")
-    for band in plot.get("bands", ()):
-        axes.axhspan(band["from"], band["to"], color="0.93", lw=0.0)
     for line in plot["series"]:
         number = line.get("color", 0)
         look: dict[str, Any] = {"color": GRAYS.get(number) or COLORS[number % len(COLORS)]}
@@ -69,4 +83,8 @@ def _draw(axes: Axes, each: Panel) -> None:
             axes.set(**{f"{name}ticks": places, f"{name}ticklabels": [mathtext(text) for text in names]})
         if "range" in axis:
             axes.set(**{f"{name}lim": axis["range"]})
+    bottom, top = axes.get_ylim()
+    for band in plot.get("bands", ()):
+        axes.axhspan(*np.clip([band["from"], band["to"]], bottom, top), color="0.93", lw=0.0, zorder=0)
+    axes.set_ylim(bottom, top)
     axes.legend(fontsize=7.5, frameon=False)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
+from comparison.analyses.panels import panel
 from comparison.analyses.trends import Trend
 from comparison.report.plots import MAX_CURVES, Panel, plain
 
@@ -23,13 +24,8 @@ def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
             points = {"x": list(values), "y": plain(trend.medians), "color": number, "marks": True}
             series.append({"name": f"μ_{trend.body}, {trend.what}: slope {slope}", **points})
         axis = parameter or ("penetration, ρ" if "contact" in rows[0].what else "v_reg, m/s")
-        plot = {
-            "label": f"{scene}: median relative difference over {axis}; "
-            + "; ".join(str(line["name"]) for line in series),
-            "x": {"title": axis, "log": True},
-            "y": {"title": "median relative difference", "log": True},
-            "series": series,
-        }
+        label = f"{scene}: median relative difference over {axis}; " + "; ".join(line["name"] for line in series)
+        axes = {"title": axis, "log": True}, {"title": "median relative difference", "log": True}
         cut = f", {MAX_CURVES} of {len(rows)} differences: the table has all" if len(rows) > MAX_CURVES else ""
-        panels.append({"title": f"{scene}{cut}", "plot": plot})
+        panels.append(panel(f"{scene}{cut}", label, *axes, series))
     return panels

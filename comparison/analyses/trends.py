@@ -10,13 +10,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from comparison.result_types import Number, Text, result
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
+from comparison.study.study import Study
 from comparison.surfaces.steps import RESOLVED
+from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
@@ -117,3 +123,28 @@ def _verdict(slope: Slope, expected: float | None) -> str:
         return "hardly falls: not converged at any value in use" if slope.exponent < SLOW else "falls"
     agrees = abs(slope.exponent - expected) <= max(AGREES, slope.uncertainty)
     return f"like the power {expected:g}" if agrees else f"not like the power {expected:g}"
+
+
+class TrendAnalysis(Analysis[list[Trend]]):
+    """Trends of the scenes with phases. measure: in a worker; without_value: in place of what a task did not return."""
+
+    measure: ClassVar[Any]
+    without_value: ClassVar[Any]
+
+    def arguments(self, scene: Scene) -> list[Any]:
+        """What `measure` is asked of a scene."""
+        raise NotImplementedError
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each scene and trend."""
+        return [
+            Task(self.measure, (scene, argument), self.stage, about=scene)
+            for scene in study.phased
+            for argument in self.arguments(scene)
+        ]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Trend] | None:
+        """The trends, in the order of the tasks; None for a study without phases."""
+        if not study.phased:
+            return None
+        return [trend for task in self.tasks(study) for trend in results.value(task, self.without_value)]

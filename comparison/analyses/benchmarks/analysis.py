@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from comparison.analyses.benchmarks.cases import Case, Published, Reading
+from comparison.analyses.benchmarks.cases import Case, Reading
 from comparison.analyses.benchmarks.table import Benchmark, Benchmarks, Number, Row, Verdict
 from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import finite_or_none
@@ -21,7 +21,7 @@ from comparison.study.batches import imported
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
 from comparison.study.study import Study
 from reference.measures.demands import ANSWERED
-from reference.problem import Scene, State, Trajectory
+from reference.problem import State, Trajectory
 
 MODELS = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
 TOLERANCES = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}
@@ -29,18 +29,6 @@ SAMPLES = 100_001  # instants at which the equations are read
 SECONDS = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # predicted cost
 LIMIT = 300.0  # s of processor time of one task
 ROUNDING = 1e-12  # relative
-
-
-@dataclass(frozen=True)
-class Question:
-    """One benchmark for one side."""
-
-    scene: Scene
-    phases: tuple[float, float]
-    start: Sequence[tuple[float, float]]
-    regularization: float
-    reading: Reading
-    side: str
 
 
 @dataclass(frozen=True)
@@ -66,37 +54,29 @@ class BenchmarkTable(Analysis[Benchmarks]):
 
     def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> Benchmarks:
         """The table, without what the command knows of the run."""
-        return Benchmarks(
-            [
-                _benchmark(case, {side: results.value(self._task(case, side), _failed) for side in MODELS})
-                for case in self.cases
-            ],
-            {},
-        )
+        answers = [{side: results.value(self._task(case, side), _failed) for side in MODELS} for case in self.cases]
+        return Benchmarks([_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
 
     def _task(self, case: Case, side: str) -> Task:
-        question = Question(case.scene, case.phases, case.start, case.regularization, case.reading, side)
         seconds = SECONDS[side] * max(1.0, case.scene.duration / 12.0)
-        return Task(solve, question, self.stage, seconds, case.scene, side != ENGINE, timeout=LIMIT)
+        return Task(solve, (case, side), self.stage, seconds, case.scene, side != ENGINE, timeout=LIMIT)
 
 
-def solve(question: Question) -> Answer:
+def solve(question: tuple[Case, str]) -> Answer:
     """The numbers of one side. Runs inside a worker process."""
-    scene, model = question.scene, MODELS[question.side]
-    settings = dict(model.settings)
-    if question.side != EQUATIONS:
-        settings["regularization"] = question.regularization
-    if question.side != ENGINE:
-        settings["times"] = np.linspace(0.0, scene.duration, SAMPLES)
-    if question.start:
-        place = np.array(question.start)
+    case, side = question
+    settings = dict(MODELS[side].settings)
+    if side != EQUATIONS:
+        settings["regularization"] = case.regularization
+    if side != ENGINE:
+        settings["times"] = np.linspace(0.0, case.scene.duration, SAMPLES)
+    if case.start:
+        place = np.array(case.start)
         settings["initial"] = State(place, np.zeros_like(place))
     clock = time.process_time()
-    motion: Trajectory = imported(model.trajectory)(
-        scene, question.phases, tolerance=TOLERANCES[question.side], **settings
-    )
-    values, errors = _read(question.reading, motion)
-    return Answer(values, errors, str(motion.status), time.process_time() - clock)
+    trajectory = imported(MODELS[side].trajectory)
+    motion: Trajectory = trajectory(case.scene, case.phases, tolerance=TOLERANCES[side], **settings)
+    return Answer(*_read(case.reading, motion), str(motion.status), time.process_time() - clock)
 
 
 def _read(reading: Reading, motion: Trajectory) -> tuple[list[float], list[float]]:
@@ -104,16 +84,11 @@ def _read(reading: Reading, motion: Trajectory) -> tuple[list[float], list[float
     if motion.status not in ANSWERED or len(motion.time) < 2:
         return [], []
     values, accuracy = reading.of(motion), motion.accuracy
-    if accuracy is None:
+    others = [] if accuracy is None else [reading.of(each) for each in (thinned(motion), *accuracy.coarser)]
+    if accuracy is None or any(len(other) != len(values) for other in others):  # another number of swings
         return values, [math.nan] * len(values)
-    coarser = [reading.of(other) for other in accuracy.coarser]
-    if any(len(other) != len(values) for other in coarser):  # another number of swings: nothing is known of the error
-        return values, [math.nan] * len(values)
-    halved = reading.of(thinned(motion))
-    if len(halved) != len(values):
-        return values, [math.nan] * len(values)
-    sampling = [abs(a - b) / 3.0 for a, b in zip(values, halved)]
-    return values, [accuracy.error_of(value, others) + part for value, part, *others in zip(values, sampling, *coarser)]
+    rows = zip(values, *others)
+    return values, [accuracy.error_of(value, rest) + abs(value - halved) / 3.0 for value, halved, *rest in rows]
 
 
 def thinned(motion: Trajectory) -> Trajectory:
@@ -131,42 +106,34 @@ def _benchmark(case: Case, answers: Mapping[str, Answer]) -> Benchmark:
         evidence=case.evidence,
         regularization=case.regularization,
         difference=case.difference,
-        rows=[_row(case, published, place, answers) for place, published in enumerate(case.published)],
+        rows=[_row(case, place, answers) for place in range(len(case.published))],
         endings={side: answer.ending for side, answer in answers.items()},
         seconds={side: round(answer.seconds, 3) for side, answer in answers.items()},
     )
 
 
-def _row(case: Case, published: Published, place: int, answers: Mapping[str, Answer]) -> Row:
-    numbers = {side: _number_at(answer, len(case.published), place) for side, answer in answers.items()}
-    smoothed = numbers[SMOOTHED]
+def _row(case: Case, place: int, answers: Mapping[str, Answer]) -> Row:
+    """A published number with that of every side, NaN where a side has not as many values as are published."""
+    row = case.published[place]
+    numbers = dict.fromkeys(answers, (math.nan, math.nan))
+    for side, answer in answers.items():
+        if len(answer.values) == len(case.published):
+            numbers[side] = answer.values[place], answer.errors[place]
 
-    def judged(side: str, value: float, error: float) -> Number:
-        verdict = _verdict(case, published, value, error, smoothed if side == ENGINE else None)
-        return Number(finite_or_none(value), finite_or_none(error), verdict)
+    def verdict(side: str) -> Verdict:
+        value, error = numbers[side]
+        if not math.isfinite(value + error):
+            return Verdict.NONE
+        if within(value - row.published, error + row.uncertainty, value):
+            return Verdict.MET
+        if case.difference:
+            return Verdict.MODEL
+        smoothed, its_error = numbers[SMOOTHED]  # the equations with the engine's friction law
+        alike = side == ENGINE and within(value - smoothed, error + its_error, value)
+        return Verdict.FRICTION if alike else Verdict.OFF
 
-    judged_numbers = {side: judged(side, *number) for side, number in numbers.items()}
-    return Row(published.quantity, published.unit, published.value, published.uncertainty, judged_numbers)
-
-
-def _number_at(answer: Answer, count: int, place: int) -> tuple[float, float]:
-    """Value and error; NaN where the side has not as many values as are published."""
-    return (answer.values[place], answer.errors[place]) if len(answer.values) == count else (math.nan, math.nan)
-
-
-def _verdict(
-    case: Case, published: Published, value: float, error: float, smoothed: tuple[float, float] | None
-) -> Verdict:
-    """smoothed: value and error of the equations with the engine's friction law, for the engine's own number."""
-    if not (math.isfinite(value) and math.isfinite(error)):
-        return Verdict.NONE
-    if within(value - published.value, error + published.uncertainty, value):
-        return Verdict.MET
-    if case.difference:
-        return Verdict.MODEL
-    if smoothed is not None and within(value - smoothed[0], error + smoothed[1], value):
-        return Verdict.FRICTION
-    return Verdict.OFF
+    found = {side: (finite_or_none(value), finite_or_none(error)) for side, (value, error) in numbers.items()}
+    return replace(row, numbers={side: Number(*pair, verdict(side)) for side, pair in found.items()})
 
 
 def within(difference: float, allowed: float, value: float) -> bool:
@@ -174,5 +141,5 @@ def within(difference: float, allowed: float, value: float) -> bool:
     return abs(difference) <= allowed + ROUNDING * abs(value)
 
 
-def _failed(question: Question, failed: TaskResult) -> Answer:
+def _failed(question: tuple[Case, str], failed: TaskResult) -> Answer:
     return Answer([], [], failed.reason, 0.0)

@@ -18,6 +18,7 @@ import numpy as np
 
 from comparison.analyses.benchmarks import readings
 from comparison.analyses.benchmarks.readings import Array
+from comparison.analyses.benchmarks.table import Row
 from reference.problem import GRAVITY, Scene, Trajectory, load_scene
 
 SCENES = resources.files("comparison.analyses.benchmarks") / "scenes"
@@ -40,14 +41,9 @@ class Reading:
         return [self.factor * float(value) for value in values]
 
 
-@dataclass(frozen=True)
-class Published:
-    """A published number."""
-
-    quantity: str
-    value: float
-    uncertainty: float  # absolute, as published or half of the last digit
-    unit: str = ""
+def published(quantity: str, value: float, uncertainty: float, unit: str = "") -> Row:
+    """A published number; uncertainty: absolute, as published or half of the last digit."""
+    return Row(quantity, unit, value, uncertainty)
 
 
 @dataclass(frozen=True)
@@ -64,7 +60,7 @@ class Case:
     title: str
     source: str
     evidence: str
-    published: Sequence[Published]
+    published: Sequence[Row]
     reading: Reading
     scene: Scene
     phases: tuple[float, float] = (0.0, 0.0)
@@ -91,7 +87,7 @@ def _wear_power() -> list[Case]:
             title=f"code_aster SDND104, A = {amplitude:g} m/s²: {kind}",
             source="code_aster, test SDND104 (V5.01.104): closed form; its integrators are within 5e-4, 5e-3 at 1.01",
             evidence="friction energy of stick and slip under harmonic shaking",
-            published=[Published("power of friction", power, digits, "W")],
+            published=[published("power of friction", power, digits, "W")],
             reading=Reading(readings.path_length, {"begin": 4.0, "end": 12.0}, WEIGHT / 8.0),
             scene=shipped("sdnd104", {"excitation.scale": amplitude, "name": f"sdnd104-{amplitude:g}"}),
             phases=(-0.5 * math.pi, 0.0),
@@ -106,7 +102,7 @@ def _release() -> Case:
         source="code_aster, test SDND100 (V5.01.100): closed form",
         evidence="turning points, and rest at the end",
         published=[
-            Published(f"turning point {number}", place, 0.0, "mm")
+            published(f"turning point {number}", place, 0.0, "mm")
             for number, place in enumerate((-0.65, 0.45, -0.25, 0.05), start=1)
         ],
         reading=Reading(readings.turning_points, factor=1e3),
@@ -124,7 +120,7 @@ def _coulomb_damping() -> Case:
         source="ANSYS Verification Manual, VM73, after Tse, Morse and Hinkle, Mechanical Vibrations: closed form",
         evidence="the motion between stops, at given instants",
         published=[
-            Published(f"place at {time:g} s", value, 5e-6, "in")
+            published(f"place at {time:g} s", value, 5e-6, "in")
             for time, value in zip(times, (0.87208, 0.83132, -0.74874))
         ],
         reading=Reading(readings.positions_at, {"times": [stretch * time for time in times]}, 1.0 / INCH),
@@ -141,7 +137,7 @@ def _den_hartog() -> Case:
         title="Den Hartog: forced oscillation with friction",
         source="J. P. Den Hartog, Forced vibrations with combined Coulomb and viscous friction, 1931: closed form",
         evidence="steady sliding oscillation beside resonance",
-        published=[Published("amplitude over static one", 1.535602, 5e-7)],
+        published=[published("amplitude over static one", 1.535602, 5e-7)],
         reading=Reading(readings.half_range, {"begin": scene.duration * 5.0 / 6.0}, 1.0 / unit),
         scene=scene,
         phases=(0.18581959993316782, 0.0),
@@ -152,12 +148,12 @@ def _den_hartog() -> Case:
 
 def _harmonic_block() -> Case:
     share = 1.0 / 2.5  # friction limit over the ground's acceleration
-    published = math.sqrt(1.0 - (0.5 * math.pi * share) ** 2)
+    amplitude = math.sqrt(1.0 - (0.5 * math.pi * share) ** 2)
     return Case(
         title="Rigid block on a harmonically shaken plane",
         source="B. Westermo and F. Udwadia, Earthquake Engineering and Structural Dynamics 11, 1983: closed form",
         evidence="steady sliding on a plane, reached from rest",
-        published=[Published("amplitude over ground's", round(published, 6), 5e-7)],
+        published=[published("amplitude over ground's", round(amplitude, 6), 5e-7)],
         reading=Reading(readings.half_range, {"begin": 11.0}, (2.0 * math.pi) ** 2 / 2.5),
         scene=shipped("harmonic"),
         phases=(-0.5 * math.pi, 0.0),
@@ -169,7 +165,7 @@ def _pulse() -> Case:
         title="Newmark's block under a rectangular pulse",
         source="N. M. Newmark, Géotechnique 15, 1965: V² / (2 N g) (1 - N / A)",
         evidence="residual displacement after a pulse; a recorded motion",
-        published=[Published("displacement", 0.75, RAMP, "m")],
+        published=[published("displacement", 0.75, RAMP, "m")],
         reading=Reading(readings.positions_at, {"times": [3.0]}),
         scene=shipped("newmark"),
     )
@@ -183,8 +179,8 @@ def _linear() -> list[Case]:
             source="A. K. Chopra, Dynamics of Structures, base-isolated one-story building: natural periods",
             evidence="stiffness of the isolator, mass and link",
             published=[
-                Published("isolation period", 2.0242, 5e-5, "s"),
-                Published("structural period", 0.2500, 5e-5, "s"),
+                published("isolation period", 2.0242, 5e-5, "s"),
+                published("structural period", 0.2500, 5e-5, "s"),
             ],
             reading=Reading(readings.natural_periods),
             scene=shipped("frame"),
@@ -195,7 +191,7 @@ def _linear() -> list[Case]:
             source="A. K. Chopra, Dynamics of Structures, uniform five-story shear building: natural periods",
             evidence="chain of links above a platform that friction holds",
             published=[
-                Published(f"natural period {number}", period, 5e-5, "s")
+                published(f"natural period {number}", period, 5e-5, "s")
                 for number, period in enumerate(stories, start=1)
             ],
             reading=Reading(readings.natural_periods),
@@ -207,7 +203,7 @@ def _linear() -> list[Case]:
             title="Pendulum released at 60°",
             source="M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, table 17.1: K(sin² 30°)",
             evidence="exact geometry of the sphere at large displacement",
-            published=[Published("period over small one's", 1.073182, 5e-7)],
+            published=[published("period over small one's", 1.073182, 5e-7)],
             reading=Reading(readings.period, factor=math.sqrt(GRAVITY) / (2.0 * math.pi)),
             scene=shipped("pendulum"),
             start=((math.sin(math.pi / 3.0), 0.0),),

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from comparison.analyses.benchmarks import readings
-from comparison.analyses.benchmarks.cases import Case, Published, Reading
+from comparison.analyses.benchmarks.cases import Case, Reading, published
 from reference.problem import GRAVITY, Scene, SceneError
 from reference.problem.files import read_file
 from reference.problem.record_files import LARGEST, RecordError, csv_samples
@@ -49,7 +49,7 @@ def mastodon(path: Path) -> Case:
         source="idaholab/mastodon, test fp_isolator_seismic_PTV and its manual: displacements read from the published "
         "loops of both programs",
         evidence="a recorded motion in three directions with friction that depends on the velocity",
-        published=[Published(name, value, READ_TO, "mm") for name, value in zip(names, LIMITS)],
+        published=[published(name, value, READ_TO, "mm") for name, value in zip(names, LIMITS)],
         reading=Reading(readings.ranges, factor=1e3),
         scene=scene,
         regularization=1e-3,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import field
 from enum import StrEnum
 from typing import Any
 
@@ -58,7 +59,7 @@ class Row:
     """the number"""
     uncertainty: float
     """absolute, as published or half of the last digit; 0 for an exact number"""
-    numbers: Mapping[str, Number]
+    numbers: Mapping[str, Number] = field(default_factory=dict)
     """by side: equations, smoothed (the equations with the engine's friction law), engine"""
 
 

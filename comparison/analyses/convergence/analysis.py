@@ -21,17 +21,13 @@ from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 import multibody
 import reference
-from comparison.analyses.trends import NONE, Trend, trend
-from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task, TaskResult
-from comparison.runner.task_results import TaskResults
-from comparison.study.models import has_spatial_data
-from comparison.study.study import Study
+from comparison.analyses.trends import NONE, Trend, TrendAnalysis, trend
+from comparison.runner.task import TaskResult
+from comparison.study.models import dry, has_spatial_data
 from reference.problem import Amplification, Outcome, Scene, exponents, ground_peak, loading_period
 
 Array = NDArray[np.float64]
@@ -134,46 +130,21 @@ class Limit(NamedTuple):
     applies: Callable[[Scene], bool]
 
 
-def _dry(scene: Scene) -> bool:
-    return not scene.lubricated and scene.friction_coefficient > 0.0
-
-
 _by_equations = partial(_against, reference, PHASES, PERIODS, REFERENCE_TOLERANCE, REGULARIZATIONS)
 _by_engine = partial(_against, multibody, FEW, FEW_PERIODS, ENGINE_TOLERANCE, ENGINE_REGULARIZATIONS, True)
 
 LIMITS = (
-    Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, partial(_by_equations, True), _dry),
-    Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, partial(_by_equations, False), _dry),
-    Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, _dry),
+    Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, partial(_by_equations, True), dry),
+    Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, partial(_by_equations, False), dry),
+    Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, dry),
     Limit(
         "bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARIZATIONS, 1.0, _with_turning,
-        lambda scene: _dry(scene) and has_spatial_data(scene),
+        lambda scene: dry(scene) and has_spatial_data(scene),
     ),
     Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, lambda scene: True),
 )  # fmt: skip
 
 Arguments = tuple[Scene, int]  # and the number of the limit
-
-
-class Convergence(Analysis[list[Trend]]):
-    """Every limit in every scene that has it, for each body, in the order of LIMITS."""
-
-    key, stage = "convergence", "convergence"
-
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """One task for each limit and scene."""
-        return [
-            Task(limit_trends, (scene, number), self.stage, about=scene)
-            for number, limit in enumerate(LIMITS)
-            for scene in study.phased
-            if limit.applies(scene)
-        ]
-
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Trend] | None:
-        """The trends, in the order of the tasks; None for a study without phases."""
-        if not study.phased:
-            return None
-        return [trend for task in self.tasks(study) for trend in results.value(task, _without_value)]
 
 
 def limit_trends(task: Arguments) -> list[Trend]:
@@ -195,3 +166,14 @@ def _trends(task: Arguments, sizes: Iterable[Array], errors: Iterable[Array], er
         trend(scene.name, body, what, parameter, *numbers, expected, error_message)
         for body, numbers in enumerate(zip(sizes, errors), start=1)
     ]
+
+
+class Convergence(TrendAnalysis):
+    """Every limit in every scene that has it, for each body."""
+
+    key, stage = "convergence", "convergence"
+    measure, without_value = staticmethod(limit_trends), staticmethod(_without_value)
+
+    def arguments(self, scene: Scene) -> list[int]:
+        """The numbers of its limits."""
+        return [number for number, limit in enumerate(LIMITS) if limit.applies(scene)]

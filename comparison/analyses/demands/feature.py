@@ -7,39 +7,24 @@ from pathlib import Path
 from typing import Any
 
 from comparison.analyses.demands.analysis import DemandStatistics, DemandSurfaces, demand_statistics
-from comparison.report.plots import DEMANDS, Panel, plain
+from comparison.analyses.panels import distribution_panels
+from comparison.report.plots import DEMANDS, Panel
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Feature, Report, SceneField, Section
-from comparison.surfaces.distribution import CURVE
 from reference.measures.peak_demands import QUANTITIES, unit_of
 
 
 def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
     """One panel for each demand: the share of all phases at which it stays below a value, by model."""
-    if scene.recorded:
-        return []
-    titles = {model.key: model.title for model in results.models}
-    colors = {model.key: number for number, model in enumerate(results.models)}
     panels = []
-    for quantity, body, title, unit, scale in DEMANDS:
-        rows = [row for row in scene.of("demand_statistics") if (row.quantity, row.body) == (quantity, body)]
-        series = [
-            {
-                "name": titles[row.model],
-                "x": plain([scale * value for value in row.curve]),
-                "y": CURVE.tolist(),
-                "color": colors[row.model],
-            }
-            for row in rows
+    for quantity, body, title, unit, scale in DEMANDS if not scene.recorded else ():
+        curves = [
+            (row.model, [scale * value for value in row.curve])
+            for row in scene.of("demand_statistics")
+            if (row.quantity, row.body) == (quantity, body)
         ]
-        plot = {
-            "label": f"{scene.name}, {title}: share of the phases at which it stays below a value, by model",
-            "x": {"title": f"{title}, {unit}"},
-            "y": {"title": "share of the phases"},
-            "series": series,
-        }
-        panels += [{"title": f"{scene.name}, {title}", "plot": plot}] if series else []
+        panels += distribution_panels(results, scene.name, title, unit, curves)
     return panels
 
 

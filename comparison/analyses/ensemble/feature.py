@@ -13,7 +13,6 @@ from comparison.analyses.panels import draw_panels, panel
 from comparison.report.plots import Panel
 from comparison.report.section import Feature, Section
 from comparison.study.models import EXACT
-from reference.drawing import verbatim
 from reference.measures.peak_demands import QUANTITIES, unit_of
 from reference.problem import GRAVITY
 
@@ -45,7 +44,7 @@ def ensemble_panels(ensemble: EnsembleResult) -> list[Panel]:
 def draw_ensemble(path: Path, ensemble: EnsembleResult) -> None:
     """Write the panels to `path`, PNG, and as PDF."""
     names = ", ".join(f"{each.title} ({each.name})" for each in ensemble.structures)
-    draw_panels(path, verbatim(f"{names}, {_motions(ensemble)}"), ensemble_panels(ensemble))
+    draw_panels(path, f"{names}, {_motions(ensemble)}", ensemble_panels(ensemble))
 
 
 def _motions(ensemble: EnsembleResult) -> str:

@@ -8,7 +8,7 @@ in which the loading is strongest: mu_i with the erratum over mu_i without it, m
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -105,99 +105,6 @@ def _change(printed: Array, mended: Array) -> Array:
     return printed / mended - 1.0
 
 
-@dataclass(frozen=True)
-class Erratum:
-    """One erratum. measure: the change of mu that it makes in a scene, if any; none: why there is no such measure."""
-
-    where: str
-    printed: str
-    corrected: str
-    why: str
-    measure: Measure | None = None
-    none: str = ""
-
-
-_NAME = "a name or an index; no number depends on it"
-ERRATA: tuple[Erratum, ...] = (
-    Erratum(
-        "after (2.3)",
-        "k = n E J / (12 l^3)",
-        "k = 12 n E J / l^3",
-        "a bar clamped at both ends yields F l^3 / (12 E J) to a lateral force F; printed, links are 144 times softer",
-        _softened,
-    ),
-    Erratum(
-        "after (2.5)",
-        "F_F = -2 lambda_1 sign(lambda_1) rho tau",
-        "F_F = -2 mu lambda_1 sign(lambda_1) rho tau",
-        "(2.5) makes the printed force the whole normal force; (3.2) has the factor mu",
-        _without_coefficient,
-    ),
-    Erratum(
-        "(3.1)", "dPhi_1/dz_i = -1", "dPhi_i/dz_1 = -1", "Phi_i = z_i - z_1, and Phi_1 does not know z_i", none=_NAME
-    ),
-    Erratum(
-        "(3.11)-(3.13)",
-        "w and zeta in the brackets",
-        "W of (3.5) and zeta''",
-        "(3.6)-(3.7) carry W - zeta'' - g; a displacement cannot be added to accelerations",
-        none="w is not defined, and zeta = zeta'' = 0 in the paper's scenes",
-    ),
-    Erratum(
-        "(3.12)",
-        "c_24 = -k^x_21 Delta",
-        "c_24 = -k^y_21 Delta",
-        "(3.7) has the spring of y; printed, the springs of y do work in every cycle unless T_3x = T_3y",
-        _wrong_spring,
-    ),
-    Erratum(
-        "(3.12)",
-        "c_1e = 0 for e = 4 ... N, c_2e = 0 for e = 5 ... N",
-        "up to 2 N",
-        "q has 2 N components (3.9)",
-        none=_NAME,
-    ),
-    Erratum(
-        "(3.15)",
-        "h_12, h_21 without rho; h_22 with xi'' Q; h_21 called h_11",
-        "factor rho; eta'' Q; its own name",
-        "mu = f_c v put into (3.11); the same mu = f_c v also enters M (3.10) and E (3.13)",
-        _wrong_damping,
-    ),
-    Erratum(
-        "(4.3)",
-        "friction terms xi'' x_1 / rho and eta'' y_1 / rho without x_1'' x_1 / rho and k (x_2 - x_1) x_1 / rho",
-        "all terms of this order, or none",
-        "the terms kept grow with m_1 alone: a platform cut in two by a rigid link is the same platform, and (4.3) "
-        "alone moves it differently; the exact equations with regularized friction do not",
-        _cut_small,
-    ),
-    Erratum(
-        "(4.6)",
-        "components of F_F are mu N each; F_3 has minus signs before g x_1 / rho and k (x_1 - x_2)",
-        "|F_F| = mu N in every direction; F_3 = -(xi'' + (m_sum / m_1)(zeta'' + g) x_1 / rho + (k / m_1)(x_1 - x_2))",
-        "printed, |F_F| is sqrt(2) mu N at the origin, and a displaced platform is pushed away; (4.3) at rest",
-        _printed_rest,
-    ),
-    Erratum(
-        "after (4.7)",
-        "motion along x + beta y = 0",
-        "along x - beta y = 0",
-        "v_i = x_i - beta y_i = 0 is the solution (4.7)",
-        none="a statement about the motion; the motion itself stays in the plane x = beta y",
-    ),
-    Erratum(
-        "(5.1)",
-        "the maximum of the platform's acceleration",
-        "its resolved peak, or the peak with regularized friction",
-        "under Coulomb friction the maximum is a one-sided limit at a stop, which depends on how mass is lumped: cut "
-        "in two by a rigid link, the same platform has another one",
-        _cut_supremum,
-    ),
-    Erratum("section 5", "solution (5.7)", "solution (4.7)", "there is no (5.7)", none=_NAME),
-)
-
-
 @result
 class Effect:
     """What the printed form of an erratum does to mu in one scene."""
@@ -224,10 +131,94 @@ class MeasuredErratum:
     """what it should be"""
     why: str
     """reason"""
-    none: str
+    none: str = ""
     """why it has no measurable effect, or empty"""
-    effects: tuple[Effect, ...]
+    effects: tuple[Effect, ...] = ()
     """one per scene with phases"""
+
+
+_NAME = "a name or an index; no number depends on it"
+ERRATA = (
+    MeasuredErratum(
+        "after (2.3)",
+        "k = n E J / (12 l^3)",
+        "k = 12 n E J / l^3",
+        "a bar clamped at both ends yields F l^3 / (12 E J) to a lateral force F; printed, links are 144 times softer",
+    ),
+    MeasuredErratum(
+        "after (2.5)",
+        "F_F = -2 lambda_1 sign(lambda_1) rho tau",
+        "F_F = -2 mu lambda_1 sign(lambda_1) rho tau",
+        "(2.5) makes the printed force the whole normal force; (3.2) has the factor mu",
+    ),
+    MeasuredErratum(
+        "(3.1)", "dPhi_1/dz_i = -1", "dPhi_i/dz_1 = -1", "Phi_i = z_i - z_1, and Phi_1 does not know z_i", _NAME
+    ),
+    MeasuredErratum(
+        "(3.11)-(3.13)",
+        "w and zeta in the brackets",
+        "W of (3.5) and zeta''",
+        "(3.6)-(3.7) carry W - zeta'' - g; a displacement cannot be added to accelerations",
+        "w is not defined, and zeta = zeta'' = 0 in the paper's scenes",
+    ),
+    MeasuredErratum(
+        "(3.12)",
+        "c_24 = -k^x_21 Delta",
+        "c_24 = -k^y_21 Delta",
+        "(3.7) has the spring of y; printed, the springs of y do work in every cycle unless T_3x = T_3y",
+    ),
+    MeasuredErratum(
+        "(3.12)",
+        "c_1e = 0 for e = 4 ... N, c_2e = 0 for e = 5 ... N",
+        "up to 2 N",
+        "q has 2 N components (3.9)",
+        _NAME,
+    ),
+    MeasuredErratum(
+        "(3.15)",
+        "h_12, h_21 without rho; h_22 with xi'' Q; h_21 called h_11",
+        "factor rho; eta'' Q; its own name",
+        "mu = f_c v put into (3.11); the same mu = f_c v also enters M (3.10) and E (3.13)",
+    ),
+    MeasuredErratum(
+        "(4.3)",
+        "friction terms xi'' x_1 / rho and eta'' y_1 / rho without x_1'' x_1 / rho and k (x_2 - x_1) x_1 / rho",
+        "all terms of this order, or none",
+        "the terms kept grow with m_1 alone: a platform cut in two by a rigid link is the same platform, and (4.3) "
+        "alone moves it differently; the exact equations with regularized friction do not",
+    ),
+    MeasuredErratum(
+        "(4.6)",
+        "components of F_F are mu N each; F_3 has minus signs before g x_1 / rho and k (x_1 - x_2)",
+        "|F_F| = mu N in every direction; F_3 = -(xi'' + (m_sum / m_1)(zeta'' + g) x_1 / rho + (k / m_1)(x_1 - x_2))",
+        "printed, |F_F| is sqrt(2) mu N at the origin, and a displaced platform is pushed away; (4.3) at rest",
+    ),
+    MeasuredErratum(
+        "after (4.7)",
+        "motion along x + beta y = 0",
+        "along x - beta y = 0",
+        "v_i = x_i - beta y_i = 0 is the solution (4.7)",
+        "a statement about the motion; the motion itself stays in the plane x = beta y",
+    ),
+    MeasuredErratum(
+        "(5.1)",
+        "the maximum of the platform's acceleration",
+        "its resolved peak, or the peak with regularized friction",
+        "under Coulomb friction the maximum is a one-sided limit at a stop, which depends on how mass is lumped: cut "
+        "in two by a rigid link, the same platform has another one",
+    ),
+    MeasuredErratum("section 5", "solution (5.7)", "solution (4.7)", "there is no (5.7)", _NAME),
+)
+# by the number of the erratum, from 0: (2.3), (2.5), c_24 of (3.12), (3.15), (4.3), (4.6), (5.1)
+MEASURES: dict[int, Measure] = {
+    0: _softened,
+    1: _without_coefficient,
+    4: _wrong_spring,
+    6: _wrong_damping,
+    7: _cut_small,
+    8: _printed_rest,
+    10: _cut_supremum,
+}
 
 
 class Errata(Analysis[list[MeasuredErratum]]):
@@ -238,10 +229,7 @@ class Errata(Analysis[list[MeasuredErratum]]):
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each effect."""
         return [
-            Task(measured, (scene, number), self.stage, about=scene)
-            for scene in study.phased
-            for number, erratum in enumerate(ERRATA)
-            if erratum.measure
+            Task(measured, (scene, number), self.stage, about=scene) for scene in study.phased for number in MEASURES
         ]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredErratum]:
@@ -251,17 +239,17 @@ class Errata(Analysis[list[MeasuredErratum]]):
 
 def with_effects(effects: Sequence[Effect]) -> list[MeasuredErratum]:
     """Every erratum with its effects."""
-    of = [tuple(effect for effect in effects if effect.erratum == number) for number in range(len(ERRATA))]
-    return [MeasuredErratum(e.where, e.printed, e.corrected, e.why, e.none, row) for e, row in zip(ERRATA, of)]
+    return [
+        replace(erratum, effects=tuple(effect for effect in effects if effect.erratum == number))
+        for number, erratum in enumerate(ERRATA)
+    ]
 
 
 def measured(task: tuple[Scene, int]) -> Effect:
     """The effect of one erratum in one scene."""
     scene, number = task
-    measure = ERRATA[number].measure
-    assert measure is not None
     try:
-        change = measure(scene.with_values({"duration": min(scene.duration, DURATION)}))
+        change = MEASURES[number](scene.with_values({"duration": min(scene.duration, DURATION)}))
     except Exception as error:
         return Effect(scene.name, number, error_message=f"{type(error).__name__}: {error}")
     return Effect(scene.name, number, () if change is None else tuple(tuple(map(float, row)) for row in change))

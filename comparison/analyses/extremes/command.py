@@ -15,11 +15,9 @@ from dataclasses import replace
 
 from rich.console import Console
 
-from comparison.analyses.extremes.analysis import LIMIT, Extremes, reduced
-from comparison.analyses.extremes.cells import cells
-from comparison.analyses.extremes.matrix import FILE, PICTURE, STORED, Matrix
+from comparison.analyses.extremes.analysis import LIMIT, Extremes, cells, reduced
+from comparison.analyses.extremes.matrix import FILE, PICTURE, STORED, Matrix, Verdict
 from comparison.analyses.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, rows, user_column
-from comparison.analyses.extremes.verdicts import Verdict
 from comparison.cli.arguments import CommandParser, command, jobs, number, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.user_models import add_models, user_models

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from comparison.analyses.extremes.matrix import PICTURE, STORED, Matrix, describe
-from comparison.analyses.extremes.verdicts import MEANING, Verdict
+from comparison.analyses.extremes.matrix import MEANING, PICTURE, STORED, Matrix, Verdict, describe
 from comparison.report.section import Feature, Report, Section
 
 

@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from comparison.analyses.extremes.matrix import Entry, Matrix, describe
-from comparison.analyses.extremes.verdicts import MEANING, Verdict
+from comparison.analyses.extremes.matrix import MEANING, Entry, Matrix, Verdict, describe
 
 Line = tuple[str, Mapping[str, Entry] | None]  # title and its entries; None for the heading of a group
 

@@ -4,14 +4,31 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from enum import StrEnum
 from itertools import groupby
 from typing import Any
 
-from comparison.analyses.extremes.verdicts import Verdict
 from comparison.json_file import StoredFile
 from comparison.result_types import result
 
 FILE, PICTURE = "extremes.json", "extremes.png"
+
+
+class Verdict(StrEnum):
+    """From best to worst; a cell of several phase pairs is as good as its worst one."""
+
+    CONVERGED = "converged"
+    REFUSED = "refused"
+    LIMIT = "limit"
+    FAILED = "FAILED"
+
+
+MEANING = {
+    Verdict.CONVERGED: "converged: error claimed, confirmed by a finer run",
+    Verdict.REFUSED: "refused: against a rule, or the motion leaves the model",
+    Verdict.LIMIT: "limit: the model says that it cannot",
+    Verdict.FAILED: "FAILED: no answer, or a wrong one",
+}
 
 
 @result
@@ -23,14 +40,14 @@ class Entry:
     that it cannot; FAILED: all else"""
     reason: str
     """in a few words"""
-    status: str
+    status: str = ""
     """outcome that decides the verdict, in the words of `reference.problem.Outcome`; empty for an input against a rule
     and for an error that was raised"""
-    error: float | None
+    error: float | None = None
     """largest relative error estimate; null without a value"""
-    seconds: float | None
+    seconds: float | None = None
     """processor time of the model's answer, s; null without an answer"""
-    total: float | None
+    total: float | None = None
     """processor time of the cell with its finer runs, s; null without an answer"""
 
 
@@ -83,6 +100,4 @@ def describe(entry: Entry) -> str:
     """What stands in the field: the error claimed, or the status in its own words."""
     if entry.verdict == Verdict.CONVERGED and entry.error is not None:
         return f"{entry.error:.0e}"
-    if entry.verdict == Verdict.FAILED:
-        return "FAILED"
-    return entry.status or "against a rule"
+    return "FAILED" if entry.verdict == Verdict.FAILED else entry.status or "against a rule"

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
+from comparison.analyses.extremes.matrix import Entry, Verdict
+from comparison.json_file import finite_or_none
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]
@@ -35,23 +36,6 @@ FINE = 0.1  # share of the tolerance within which a run must know the value to c
 ROUNDING = 1e-12  # relative: two runs this close are the same
 
 
-class Verdict(StrEnum):
-    """From best to worst; a cell of several phase pairs is as good as its worst one."""
-
-    CONVERGED = "converged"
-    REFUSED = "refused"
-    LIMIT = "limit"
-    FAILED = "FAILED"
-
-
-MEANING = {
-    Verdict.CONVERGED: "converged: error claimed, confirmed by a finer run",
-    Verdict.REFUSED: "refused: against a rule, or the motion leaves the model",
-    Verdict.LIMIT: "limit: the model says that it cannot",
-    Verdict.FAILED: "FAILED: no answer, or a wrong one",
-}
-
-
 @dataclass(frozen=True)
 class Reply:
     """What a model answered: as `reference.problem.Amplification`, or `invalid` (its rule) or `raised` (what)."""
@@ -63,75 +47,66 @@ class Reply:
     raised: str = ""
 
 
-@dataclass(frozen=True)
-class Judged:
-    """A verdict."""
-
-    verdict: Verdict
-    reason: str  # in a few words
-    status: str = ""  # the outcome that decided it; empty for an input against a rule and for an error that was raised
-    error: float = float("nan")  # largest relative error estimate; NaN without a value
-
-
-def judged(reply: Reply, finer: Sequence[Reply], tolerance: float, invalid: bool, right: Sequence[str]) -> Judged:
+def judged(reply: Reply, finer: Sequence[Reply], tolerance: float, invalid: bool, right: Sequence[str]) -> Entry:
     """The verdict on the worst phase pair of an answer; finer: answers to the same question, the most trusted first."""
     if reply.raised:
-        return Judged(Verdict.FAILED, f"raises {reply.raised}")
+        return Entry(Verdict.FAILED, f"raises {reply.raised}")
     if reply.invalid:
-        return Judged(Verdict.REFUSED if invalid else Verdict.FAILED, reply.invalid)
+        return Entry(Verdict.REFUSED if invalid else Verdict.FAILED, reply.invalid)
     if invalid:
-        return Judged(Verdict.FAILED, "accepts an input that is against the rules")
+        return Entry(Verdict.FAILED, "accepts an input that is against the rules")
     points = [_point(reply, m, finer, tolerance, right) for m in range(len(reply.status))]
     order = list(Verdict)
-    return max(points, key=lambda point: (order.index(point.verdict), point.error if point.error > 0.0 else 0.0))
+    return max(points, key=lambda point: (order.index(point.verdict), point.error or 0.0))
 
 
-def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right: Sequence[str]) -> Judged:
+def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right: Sequence[str]) -> Entry:
     status, mu, error = reply.status[m], reply.mu[m], reply.error[m]
     replies = [(other.status[m], other.mu[m], other.error[m]) for other in finer if len(other.status) > m]
     if status not in (PHYSICS | NUMERICS | {Outcome.OK}):
-        return Judged(Verdict.FAILED, f"status {status!r} is no answer of a model", status)
+        return Entry(Verdict.FAILED, f"status {status!r} is no answer of a model", status)
     if right and status != Outcome.OK and status not in right:
-        return Judged(Verdict.FAILED, f"refused as {status!r} instead of {' or '.join(right)}", status)
+        return Entry(Verdict.FAILED, f"refused as {status!r} instead of {' or '.join(right)}", status)
     if status in (Outcome.OK, Outcome.TOLERANCE_NOT_MET):
         return _value(status, mu, error, replies, tolerance)
     if not np.isnan(mu).all():
-        return Judged(Verdict.FAILED, f"{status}, and yet a value", status)
+        return Entry(Verdict.FAILED, f"{status}, and yet a value", status)
     if status in NUMERICS:
-        return Judged(Verdict.LIMIT, status, status)
+        return Entry(Verdict.LIMIT, status, status)
     answered = next((other for other, _, _ in replies if other not in NUMERICS), status)
     if answered != status and status not in right:
-        return Judged(Verdict.FAILED, f"{status}, but a finer run: {answered}", status)
-    return Judged(Verdict.REFUSED, status, status)
+        return Entry(Verdict.FAILED, f"{status}, but a finer run: {answered}", status)
+    return Entry(Verdict.REFUSED, status, status)
 
 
-def _value(status: str, mu: Array, error: Array, finer: Sequence[Finer], tolerance: float) -> Judged:
+def _value(status: str, mu: Array, error: Array, finer: Sequence[Finer], tolerance: float) -> Entry:
     """Judge a value with its error estimate; one that claims nothing, by whether it is as good as asked."""
     known = [(value, estimate) for _, value, estimate in finer if np.isfinite(value).all()]
     refused = next((other for other, _, _ in finer), "none")
-    unconfirmed = Judged(Verdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
+    unconfirmed = Entry(Verdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
     if np.isfinite(mu).all() and np.isnan(error).all():
         if not known:
             return unconfirmed
         with np.errstate(divide="ignore", invalid="ignore"):
             difference = float(np.nan_to_num(np.abs(mu - known[0][0]) / np.abs(known[0][0]), nan=0.0).max())
         verdict = Verdict.CONVERGED if difference <= tolerance else Verdict.LIMIT
-        return Judged(verdict, f"states no error, off by {difference:.1e}", status)
+        return Entry(verdict, f"states no error, off by {difference:.1e}", status)
     if not (np.isfinite(mu).all() and np.isfinite(error).all()):
-        return Judged(Verdict.FAILED, f"{status}, but no finite number", status)
-    claimed = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
-    if (error < 0.0).any() or (status == Outcome.OK and claimed > tolerance * (1.0 + ROUNDING)):
-        reason = f"{status} with an error estimate of {claimed:.1e}, asked: {tolerance:g}"
-        return Judged(Verdict.FAILED, reason, status, claimed)
+        return Entry(Verdict.FAILED, f"{status}, but no finite number", status)
+    share = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
+    claimed = finite_or_none(share)
+    if (error < 0.0).any() or (status == Outcome.OK and share > tolerance * (1.0 + ROUNDING)):
+        reason = f"{status} with an error estimate of {share:.1e}, asked: {tolerance:g}"
+        return Entry(Verdict.FAILED, reason, status, claimed)
     for value, estimate in known:
         off, allowed = np.abs(mu - value), error + estimate + ROUNDING * np.abs(mu)
         worst = int((off / allowed).argmax())
         if off[worst] > allowed[worst]:
-            share = off[worst] / allowed[worst]
-            reason = f"mu_{worst + 1} is off by {off[worst] / abs(mu[worst]):.1e}, {share:.2g} times what is claimed"
-            return Judged(Verdict.FAILED, reason, status, claimed)
+            times = off[worst] / allowed[worst]
+            reason = f"mu_{worst + 1} is off by {off[worst] / abs(mu[worst]):.1e}, {times:.2g} times what is claimed"
+            return Entry(Verdict.FAILED, reason, status, claimed)
         if status == Outcome.OK and (estimate <= np.maximum(error, FINE * tolerance * np.abs(mu))).all():
-            return Judged(Verdict.CONVERGED, f"error {claimed:.1e} confirmed", status, claimed)
+            return Entry(Verdict.CONVERGED, f"error {share:.1e} confirmed", status, claimed)
     if status == Outcome.TOLERANCE_NOT_MET:
-        return Judged(Verdict.LIMIT, f"{status}: {claimed:.1e}", status, claimed)
+        return Entry(Verdict.LIMIT, f"{status}: {share:.1e}", status, claimed)
     return replace(unconfirmed, error=claimed)

@@ -15,12 +15,14 @@ from comparison.analyses.families.analysis import (
     family_demands_over_phases,
     family_steps,
 )
+from comparison.analyses.panels import draw_panels, panel
 from comparison.report.plots import DEMANDS, Panel, plain
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Feature, Findings, Report, Section
 from comparison.result_types import Part, Text
 from comparison.surfaces.budget import TOTAL
+from comparison.surfaces.figures.file_names import figure_file
 from comparison.wording import MAX_NAMES
 from reference.problem import Family
 
@@ -107,10 +109,6 @@ def _line(
     return line
 
 
-def _panel(title: str, label: str, axis: dict[str, Any], quantity: str, series: list[dict[str, Any]]) -> Panel:
-    return {"title": title, "plot": {"label": label, "x": axis, "y": {"title": quantity}, "series": series}}
-
-
 def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
     places, axis = _axis(family)
     titles = {model.key: model.title for model in results.models}
@@ -118,20 +116,18 @@ def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
         _line(titles[curve.model], number, places, curve.mean, (curve.lowest, curve.highest))
         for number, curve in enumerate(curve for curve in family.curves if curve.body == body)
     ]
-    return _panel(f"mu_{body}", f"mu_{body} of every model over {family.key}", axis, f"μ{body}", series)
+    return panel(f"mu_{body}", f"mu_{body} of every model over {family.key}", axis, {"title": f"μ{body}"}, series)
 
 
 def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
     places, axis = _axis(family)
     effects = {model.key: model.effect or model.title for model in results.models} | {TOTAL: "total"}
-    series = [
-        _line(
-            effects[step.model], "ink" if step.model == TOTAL else number, places, [100.0 * size for size in step.size]
-        )
-        for number, step in enumerate((step for step in family.steps if step.body == body), start=1)
-    ]
+    series = []
+    for number, step in enumerate((step for step in family.steps if step.body == body), start=1):
+        color = "ink" if step.model == TOTAL else number
+        series.append(_line(effects[step.model], color, places, [100.0 * size for size in step.size]))
     title = f"what each effect adds to mu_{body}"
-    return _panel(title, f"{title} over {family.key}", axis, "% of the first model", series)
+    return panel(title, f"{title} over {family.key}", axis, {"title": "% of the first model"}, series)
 
 
 def _family_demand(
@@ -147,14 +143,19 @@ def _family_demand(
             median, *band = ([scale * value for value in column] for column in numbers)
             series.append(_line(*looks[demand.model], places, median, band))
     of_which = "over all phases" if family.demands_over_phases else "of the stored motions"
-    label = f"{title} over {family.key}"
-    return _panel(f"{title} {of_which}", label, axis, f"{title}, {unit}", series) if series else None
+    described = f"{title} {of_which}", f"{title} over {family.key}"
+    return panel(*described, axis, {"title": f"{title}, {unit}"}, series) if series else None
 
 
 def _draw(figures: Path, report: Report) -> None:
-    from comparison.analyses.families.figure import draw_families  # matplotlib: only a report that draws here needs it
-
-    draw_families(figures, report)
+    results = report.results
+    titles = {scene.name: (scene.title, scene.bodies) for scene in results.scenes}
+    for family in results.of("families"):
+        title, bodies = titles[family.scenes[0]]
+        for body in range(1, bodies + 1):
+            panels = [_family_mu(results, family, body), _family_steps(results, family, body)]
+            path = figures / figure_file(family.name, f"body{body}", "family")
+            draw_panels(path, f"{title} ({family.name})", panels)
 
 
 FEATURE = Feature(

@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
+from typing import Any
+
+from pydantic import Field, create_model
+
 from comparison.result_types import Number, Part, Phases, Text, UncertainNumber
+from reference.measures import Demands
+from reference.measures.peak_demands import PER_BODY, QUANTITIES
 
 
 class Residual(UncertainNumber):
@@ -25,7 +32,7 @@ class FloorSpectra(Part):
     """estimated absolute error"""
 
 
-class MotionDemands(Part):
+class _Motion(Part):
     """What one stored motion demands of isolator and structure; no value where the motion ended early."""
 
     model: str
@@ -36,42 +43,24 @@ class MotionDemands(Part):
     """why this phase pair was chosen; empty for one of an even spread"""
     status: str
     """how the motion ended"""
-    displacement: UncertainNumber
-    """largest horizontal displacement of the isolator, m"""
-    residual: Residual
-    """horizontal displacement at which the platform comes to rest, m; null where it moves at the end; its error has
-    the creep of regularized friction"""
-    cap_share: UncertainNumber
-    """largest horizontal displacement over rho"""
-    travel_share: UncertainNumber | None
-    """largest horizontal displacement over the isolator's travel; null without a travel"""
-    acceleration: list[UncertainNumber]
-    """largest absolute acceleration of every body, m/s^2"""
-    base_shear: UncertainNumber
-    """largest horizontal force through the isolator, N"""
-    drift: list[UncertainNumber]
-    """largest horizontal displacement of every body relative to the one below, from body 2 on, m"""
-    contact_force_min: UncertainNumber
-    """smallest normal force of the isolator, N"""
-    contact_force_max: UncertainNumber
-    """largest normal force of the isolator, N"""
-    support_force_min: UncertainNumber | None
-    """smallest normal force of a single support, N; null in a model without single supports"""
-    support_force_max: UncertainNumber | None
-    """largest normal force of a single support, N; null in a model without single supports"""
-    torsion: list[UncertainNumber] | None
-    """largest rotation of every body about the vertical, rad; null where the bodies do not turn"""
-    stops: UncertainNumber
-    """number of intervals of rest, or of creep below v_reg, after the first slip"""
-    support_displacement: UncertainNumber | None
-    """largest displacement of a support with the platform's rotation, m; null where the bodies do not turn"""
-    uplift: UncertainNumber | None
-    """largest gap of a support that has lifted off, m; null in a model without single supports"""
-    friction_energy: UncertainNumber
-    """energy that friction dissipates, J"""
-    damping_energy: UncertainNumber | None
-    """energy that dampers of the links dissipate, J; null without dampers, and where bodies turn"""
-    energy_balance: UncertainNumber | None
-    """work of the ground less the energy dissipated and stored, J: zero but for errors; null where bodies turn"""
-    spectra: FloorSpectra | None
-    """floor response spectra; null where the motion ended early"""
+
+
+def _kind(annotation: str) -> Any:
+    """Of a field of `Demands`: of the isolator, or of every body; null in a model that lacks it."""
+    kind: Any = list[UncertainNumber] if annotation.startswith("tuple") else UncertainNumber
+    return kind | None if annotation.endswith("None") else kind
+
+
+def _described(name: str) -> Any:
+    of = f"; by body, from body {PER_BODY[name] + 1} on" if name in PER_BODY else ""
+    meaning, unit = QUANTITIES[name]
+    return Field(description=f"{meaning}, {unit}{of}; null where the motion does not have it")
+
+
+_DEMANDS: dict[str, Any] = {
+    each.name: (Residual if each.name == "residual" else _kind(str(each.type)), _described(each.name))
+    for each in fields(Demands)
+    if each.name in QUANTITIES
+}
+_DEMANDS["spectra"] = FloorSpectra | None, Field(description="null where the motion ended early")
+MotionDemands: Any = create_model("MotionDemands", __base__=_Motion, __doc__=_Motion.__doc__, **_DEMANDS)

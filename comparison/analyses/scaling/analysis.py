@@ -13,15 +13,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 import reference
-from comparison.analyses.trends import NONE, Trend, trend
-from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task, TaskResult
-from comparison.runner.task_results import TaskResults
-from comparison.study.study import Study
+from comparison.analyses.trends import NONE, Trend, TrendAnalysis, trend
+from comparison.runner.task import TaskResult
+from comparison.study.models import dry
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
@@ -50,27 +47,6 @@ def scaled(scene: Scene, s: float) -> Scene:
     return scene.with_values(values)
 
 
-class Scaling(Analysis[list[Trend]]):
-    """The trends of every scene and body, for the supremum and, where that differs, the resolved peak."""
-
-    key, stage, level = "scaling", "scaling test", 2
-
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """One task for each scene and reading of the peak."""
-        return [
-            Task(scene_trends, (scene, supremum), self.stage, about=scene)
-            for scene in study.phased
-            for supremum in (True, False)
-            if supremum or _dry(scene)
-        ]
-
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Trend] | None:
-        """The trends, in the order of the tasks; None for a study without phases."""
-        if not study.phased:
-            return None
-        return [trend for task in self.tasks(study) for trend in results.value(task, _without_value)]
-
-
 def scene_trends(task: Arguments) -> list[Trend]:
     """Both trends of one scene for each body. Runs inside a worker process."""
     scene, supremum = task
@@ -82,17 +58,9 @@ def scene_trends(task: Arguments) -> list[Trend]:
     halving_error = np.hypot(small_error[:-1], small_error[1:]) / small[1:]
     name = _peak(scene, supremum)
     return [
-        trend(
-            scene.name,
-            body + 1,
-            f"{what}, {name}",
-            SCALES[: len(size)],
-            size[..., body].T,
-            error_estimate[..., body].T,
-            2.0,
-        )
+        trend(scene.name, body + 1, f"{what}, {name}", SCALES[: len(size)], size[..., body].T, error[..., body].T, 2.0)
         for body in range(len(scene.bodies))
-        for what, size, error_estimate in ((STEP, step, step_error), (PRINTED, halving, halving_error))
+        for what, size, error in ((STEP, step, step_error), (PRINTED, halving, halving_error))
     ]
 
 
@@ -114,8 +82,15 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
 
 
 def _peak(scene: Scene, supremum: bool) -> str:
-    return "peak" if not _dry(scene) else "supremum" if supremum else "resolved peak"
+    return "peak" if not dry(scene) else "supremum" if supremum else "resolved peak"
 
 
-def _dry(scene: Scene) -> bool:
-    return not scene.lubricated and scene.friction_coefficient > 0.0
+class Scaling(TrendAnalysis):
+    """The trends of every scene and body, for the supremum and, where that differs, the resolved peak."""
+
+    key, stage, level = "scaling", "scaling test", 2
+    measure, without_value = staticmethod(scene_trends), staticmethod(_without_value)
+
+    def arguments(self, scene: Scene) -> list[bool]:
+        """Readings of the peak: whether the supremum is taken."""
+        return [True, False] if dry(scene) else [True]

@@ -16,7 +16,6 @@ from comparison.report.plots import MAX_CURVES, Panel
 from comparison.report.section import Feature, Report, Section
 from comparison.surfaces.figures.file_names import figure_file
 from comparison.wording import scientific
-from reference.drawing import verbatim
 
 TARGETS = 1e-2, 1e-3, 1e-4, 1e-6  # relative errors for which the trade is put into words
 
@@ -29,14 +28,14 @@ def tradeoff_panels(trade: Trade, most: int | None = MAX_CURVES) -> list[Panel]:
 
 def draw_tradeoff(path: Path, trade: Trade) -> None:
     """Write the panels with every curve to `path`, PNG, and as PDF."""
-    title = verbatim(f"{trade.title} ({trade.scene}): speed for accuracy")
+    title = f"{trade.title} ({trade.scene}): speed for accuracy"
     what = "error that 95 % of the points meet; dashed: model error; shaded: below that of the reference solution"
     draw_panels(path, f"{title}\n{what}", tradeoff_panels(trade, None), 4)
 
 
 def draw_growth(path: Path, measured: MeasuredGrowth) -> None:
     """Write how the cost grows to `path`, PNG, and as PDF."""
-    draw_panels(path, verbatim(f"{measured.title} ({measured.scene}): cost"), growth_panels(measured.series), 4)
+    draw_panels(path, f"{measured.title} ({measured.scene}): cost", growth_panels(measured.series), 4)
 
 
 def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import groupby
 from typing import Any
 
+from comparison.analyses.panels import panel
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
 from comparison.analyses.validation.table import INPUT, LAW, MEANING, NONE, STORED, VALID, Validation
@@ -29,13 +30,8 @@ def panels(table: Validation) -> list[Panel]:
             {"name": curve.name, "x": list(curve.x), "y": list(curve.y), "marks": few, **LOOKS[curve.name]}
             for curve in curves
         ]
-        plot = {
-            "label": f"{title}: {curves[0].axes[1]} over {curves[0].axes[0]}; " + ", ".join(LOOKS),
-            "x": {"title": curves[0].axes[0]},
-            "y": {"title": curves[0].axes[1]},
-            "series": series,
-        }
-        drawn.append({"title": title, "plot": plot})
+        x, y = curves[0].axes
+        drawn.append(panel(title, f"{title}: {y} over {x}; " + ", ".join(LOOKS), {"title": x}, {"title": y}, series))
     return drawn
 
 

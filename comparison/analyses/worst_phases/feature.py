@@ -7,35 +7,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from comparison.analyses.panels import distribution_panels
 from comparison.analyses.worst_phases.analysis import Worst, WorstPhases
-from comparison.report.plots import Panel, fractile_heads, plain
+from comparison.report.plots import fractile_heads
 from comparison.report.results import Results
 from comparison.report.section import Feature, Report, Section
-from comparison.surfaces.distribution import CURVE
 from comparison.wording import significant
-
-
-def distribution_panels(results: Results) -> list[Panel]:
-    """One panel for each scene and body: the share of all phases at which mu stays below a value, by model."""
-    titles = {model.key: model.title for model in results.models}
-    colors = {model.key: number for number, model in enumerate(results.models)}
-    panels = []
-    for scene in results.scenes_with("worst_phases"):
-        for body in range(1, scene.bodies + 1):
-            curves = [each for each in scene.distributions if each.body == body]
-            series = [
-                {"name": titles[each.model], "x": plain(each.curve), "y": CURVE.tolist(), "color": colors[each.model]}
-                for each in curves
-            ]
-            name = f"{scene.name}, μ_{body}"
-            plot = {
-                "label": f"{name}: share of the phases at which it stays below a value, by model",
-                "x": {"title": f"μ_{body}"},
-                "y": {"title": "share of the phases"},
-                "series": series,
-            }
-            panels += [{"title": name, "plot": plot}] if series else []
-    return panels
 
 
 def worst_lines(results: Results) -> list[dict[str, Any]]:
@@ -49,9 +26,9 @@ def _kind(worst: Worst) -> str:
     if worst.reason:
         return worst.reason
     if worst.kind == "nearby":
-        if not math.isfinite(worst.at_start):
-            return "the engine's largest value beside the phases above, at which it has none"
-        return f"the engine's largest value beside the phases above, where it has {significant(worst.at_start)}"
+        there = f"where it has {significant(worst.at_start)}"
+        there = there if math.isfinite(worst.at_start) else "at which it has none"
+        return f"the engine's largest value beside the phases above, {there}"
     if worst.kind == "jump":
         first, second = (f"{side:+.2f}" for side in worst.side)
         return f"beside a jump, approached from ({first}, {second})"
@@ -61,7 +38,13 @@ def _kind(worst: Worst) -> str:
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:
     results = report.results
     return {
-        "distribution_panels": distribution_panels(results),
+        "distribution_panels": [
+            panel
+            for scene in results.scenes_with("worst_phases")
+            for body in range(1, scene.bodies + 1)
+            for curves in [[(each.model, each.curve) for each in scene.distributions if each.body == body]]
+            for panel in distribution_panels(results, scene.name, f"μ_{body}", "", curves)
+        ],
         "worst_lines": worst_lines(results),
         "fractiles": fractile_heads(),
     }

@@ -10,7 +10,7 @@ from known_analyses import collected
 from report_texts import page_of, summary_of
 
 from comparison.analyses.errata import analysis as errata
-from comparison.analyses.errata.analysis import ERRATA, PHASES, Errata, Erratum, cut_platform, measured
+from comparison.analyses.errata.analysis import ERRATA, PHASES, Errata, MeasuredErratum, cut_platform, measured
 from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING, _fixed, printed_amplification
 from comparison.study.models import V_REG
 from comparison.study.study import Study
@@ -29,12 +29,8 @@ def test_effects_come_in_order_and_a_measure_that_fails_is_named(monkeypatch: py
     def breaks(scene: Scene) -> np.ndarray | None:
         raise RuntimeError("singular")
 
-    planted = [
-        Erratum("a", "p", "c", "w", half),
-        Erratum("b", "p", "c", "w", none="n"),
-        Erratum("c", "p", "c", "w", breaks),
-    ]
-    monkeypatch.setattr(errata, "ERRATA", planted)
+    monkeypatch.setattr(errata, "ERRATA", [MeasuredErratum(where, "p", "c", "w") for where in "abc"])
+    monkeypatch.setattr(errata, "MEASURES", {0: half, 2: breaks})
     halved, harmless, broken = [row.effects for row in collected(Errata(), _study("fig3-I", "fig3-II"))]
     assert [(effect.scene, effect.erratum) for effect in halved] == [("fig3-I", 0), ("fig3-II", 0)]
     assert harmless == ()

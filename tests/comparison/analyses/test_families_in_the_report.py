@@ -140,8 +140,9 @@ def test_panels_of_a_family_are_in_the_units_of_their_axes() -> None:
         FamilyDemand("small", name, body, (0.2 + body, 0.5), (0.1, 0.4), (0.3, 0.6), (3, 3))
         for name, (body, *_) in known.items()
     ]
+    step = SimpleNamespace(model="small", body=1, size=(0.01, -0.02))
     family = SimpleNamespace(
-        name="mine", key="isolator.friction", values=[0.1, 0.2], scenes=["a"], curves=[], steps=[], demands=demands,
+        name="mine", key="isolator.friction", values=[0.1, 0.2], scenes=["a"], curves=[], steps=[step], demands=demands,
         demands_over_phases=False,
     )  # fmt: skip
     results = SimpleNamespace(
@@ -150,6 +151,8 @@ def test_panels_of_a_family_are_in_the_units_of_their_axes() -> None:
         of={"families": [family]}.get,
     )
     [listed] = family_panels(results)  # type: ignore[arg-type]
+    [steps] = [panel["plot"] for panel in listed["panels"] if panel["title"] == "what each effect adds to mu_1"]
+    assert (steps["y"]["title"], steps["series"][0]["y"]) == ("% of the first model", [1.0, -2.0])
     shown = {
         panel["plot"]["y"]["title"]: panel["plot"]["series"][0]
         for panel in listed["panels"]

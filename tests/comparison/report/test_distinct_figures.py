@@ -27,31 +27,25 @@ from distinct_models import (
     heights,
     in_percent,
     of_sizes,
-    step,
 )
 from known_analyses import analyses_are
 from known_results import FOUND
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
-from places import limited_scene, scene_text
+from places import limited_scene
 from report_texts import summary_of
 from runs import quick_figures
-from studies import solved
 
 from comparison.analyses.assumptions.figure import draw_assumptions
 from comparison.analyses.assumptions.variations import AssumptionCell, Variation
 from comparison.analyses.extremes.figure import draw_extremes
-from comparison.analyses.families.analysis import family_steps
-from comparison.analyses.families.figure import draw_family
 from comparison.analyses.tradeoff.feature import draw_growth, draw_tradeoff
 from comparison.analyses.tradeoff.growth import SCHEMA, MeasuredGrowth, with_slope
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
 from comparison.run import main
-from comparison.study.study import Study
-from comparison.surfaces.budget import TOTAL, budget
+from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.figures import budget as budget_figure
 from comparison.surfaces.figures import paper
-from comparison.surfaces.waterfall import waterfall
-from reference.problem import load_family, load_scene
+from reference.problem import load_scene
 
 UNUSED = Path("unused.png")
 FEWER = ("translational", "spatial")  # models on COARSE phases
@@ -234,36 +228,6 @@ def test_the_manuscript_has_both_models_on_one_scale(monkeypatch: pytest.MonkeyP
         assert (axes.get_xlabel(), axes.get_ylabel()) == (r"$\alpha_1$", r"$\alpha_2$")
         assert axes.get_zlabel() == rf"$\mu_{{{body}}}$"  # type: ignore[attr-defined]
         assert axes.get_zlim() == pytest.approx((both.min(), both.max()))  # type: ignore[attr-defined]
-
-
-@pytest.mark.parametrize("body", [1, 2])
-def test_the_figure_of_a_family_has_every_step_in_percent(
-    body: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    run = "friction = {range = [0.1, 0.2], steps = 3}"
-    (tmp_path / "mine.toml").write_text(scene_text("fig3-I", ("friction = 0.1", run)), encoding="utf-8")
-    family = load_family(tmp_path / "mine.toml")
-    study = Study(family.scenes, GRID, 1e-3, distinct_hierarchy())
-    surfaces = solved(study)
-    bars = {scene.name: [waterfall(study, surfaces, scene, each) for each in (1, 2)] for scene in family.scenes}
-    means, entries = family_steps(family, bars), budget(study, surfaces)
-    figure = drawn(monkeypatch, draw_family, UNUSED, family, means, entries, study.hierarchy, body)
-    left, right = figure.axes
-    assert left.get_ylabel() == "mean over the phases, % of the first model's value"
-    assert right.get_ylabel() == "largest over the phases, %"
-    assert left.get_xlabel() == right.get_xlabel() == "isolator.friction"
-    for number, key in enumerate([*KEYS[1:], TOTAL]):
-        mean, largest, dashed = left.lines[number], right.lines[2 * number], right.lines[2 * number + 1]
-        assert largest.get_label().replace("v_reg", "$v_{\\mathrm{reg}}$") == TITLES[number]
-        size, error = part(key, body)
-        share = np.array([1.0, 1.5, 2.0])
-        coarse = differences_of("spatial", body, grid_phases(COARSE)) if key == TOTAL else step(key, body)
-        for line, values in ((mean, share * coarse.mean()), (largest, share * np.abs(size).max())):
-            assert line.get_xdata() == pytest.approx([0.1, 0.15, 0.2])
-            assert line.get_ydata() == pytest.approx(100.0 * values, rel=1e-9), (key, line.get_label())
-            assert line.get_color() == largest.get_color()
-        assert dashed.get_linestyle() == "--"
-        assert dashed.get_ydata()[0] == pytest.approx(100.0 * np.median(error), rel=1e-9)
 
 
 def test_the_map_of_the_assumptions_has_every_change_in_its_field(monkeypatch: pytest.MonkeyPatch) -> None:

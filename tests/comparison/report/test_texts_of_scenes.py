@@ -17,8 +17,7 @@ from studies import solved
 
 from comparison.analyses.assumptions.figure import draw_assumptions
 from comparison.analyses.assumptions.variations import FEW, AssumptionCell
-from comparison.analyses.families.analysis import FamilyStep
-from comparison.analyses.families.figure import draw_family
+from comparison.analyses.panels import draw_panels, panel
 from comparison.registry import report_of
 from comparison.report.junit import junit
 from comparison.report.summary_text import summary_text
@@ -27,7 +26,7 @@ from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import figure_file, with_ending
 from comparison.wording import degrees, mathtext, percent, scientific, signed, significant, symbols
 from reference.drawing import verbatim
-from reference.problem import Family, Scene, load_scene
+from reference.problem import Scene, load_scene
 
 
 def _written(folder: Path, name: str, title: str = "plain", friction: str = "0.1") -> str:
@@ -75,14 +74,9 @@ def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
     nothing = (tuple([0.01] * 2),) * 3
     cells = [AssumptionCell(scene.name, variation, nothing, nothing, ("ok",) * 3) for variation in FEW]
     draw_assumptions(tmp_path / "assumptions.png", scene, cells)
-    draw_family(
-        tmp_path / "family.png",
-        Family("fam", (scene, scene), "a$b$", ("$c$", r"$\frac{$")),
-        [FamilyStep("total", 1, (0.01, 0.02), (1e-3, 1e-3), (True, True))],
-        [],
-        fake_hierarchy(),
-        1,
-    )
+    axes = {"title": "a$b$", "ticks": [[0.0, r"$\frac{$"]]}, {"title": "$"}
+    odd = panel("$c$", "", *axes, [{"name": "$d", "x": [0.0], "y": [1.0]}])
+    draw_panels(tmp_path / "family.png", scene.title, [odd])
     assert (tmp_path / "assumptions.png").stat().st_size > 0
     assert (tmp_path / "family.png").stat().st_size > 0
 

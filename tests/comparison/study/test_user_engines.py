@@ -24,7 +24,7 @@ from runs import Run
 from studies import solved
 
 import reference
-from comparison.analyses.extremes.cells import cells
+from comparison.analyses.extremes.analysis import cells
 from comparison.analyses.extremes.rows import rows, user_column
 from comparison.analyses.extremes.verdicts import Reply, judged
 from comparison.analyses.tradeoff import analysis
