@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 
 import reference
 from comparison.analyses.claims import evidence
-from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.evidence import MOTIONS, Evidence, Question, with_facts
-from comparison.analyses.claims.readings import LITERAL, SPEED, Reading, has_stops
+from comparison.analyses.claims.readings import CASES, LITERAL, SPEED, Reading, has_stops
 from comparison.analyses.claims.table import Claims
 from comparison.runner.task import Task
 from reference.problem import GRAVITY, Outcome, Scene, exponents, ground_peak, phase_grid

@@ -22,12 +22,10 @@ from claims_settled import GRIDS, Settled, Settling
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
 
-from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.evidence import without_value
-from comparison.analyses.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
-from comparison.analyses.claims.result import ClaimTable
-from comparison.analyses.claims.table import GRID, RECORD, SIGNS
-from comparison.analyses.effective_values.forced_ratio import forced_ratios
+from comparison.analyses.claims.readings import CASES, LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
+from comparison.analyses.claims.table import GRID, RECORD, SIGNS, ClaimTable
+from comparison.analyses.effective_values.analysis import forced_ratios
 from comparison.json_file import json_text
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.executors import cores

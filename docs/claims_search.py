@@ -16,7 +16,7 @@ import numpy as np
 from scipy.stats import qmc
 
 from comparison.analyses.claims.readings import Peak, Reading, loading_around
-from comparison.analyses.claims.result import ClaimTable
+from comparison.analyses.claims.table import ClaimTable
 
 SEARCH_GRID = 8  # phases per axis of the search; the best are judged again on a finer grid
 TITLE = "searched"

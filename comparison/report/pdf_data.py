@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from comparison.analyses.assumptions.validity import ASSUMPTIONS
-from comparison.analyses.demands.pdf import HEADINGS, demand_rows, demands_note
+from comparison.analyses.demands.feature import HEADINGS, demand_rows, demands_note
 from comparison.report.results import VALIDATED, ModelDescription, Results
 from comparison.report.scene_result import ModelOutcome, SceneResult
 from comparison.surfaces.acceptance import Limit

@@ -15,8 +15,15 @@ from pathlib import Path
 from rich.console import Console
 
 from comparison.analyses.assumptions.feature import draw_assumption_figure
-from comparison.analyses.assumptions.validity import Assumptions, lines
-from comparison.analyses.assumptions.variations import CLOSE_ENOUGH, DURATION, MANY, PHASES, AssumptionCell
+from comparison.analyses.assumptions.validity import (
+    CLOSE_ENOUGH,
+    DURATION,
+    MANY,
+    PHASES,
+    AssumptionCell,
+    Assumptions,
+    lines,
+)
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
 from comparison.cli.terminal import new_table

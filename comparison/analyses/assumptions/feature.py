@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.assumptions.validity import Assumptions, Validity, uneven_lines
-from comparison.analyses.assumptions.variations import AssumptionCell
+from comparison.analyses.assumptions.validity import AssumptionCell, Assumptions, Validity, uneven_lines
 from comparison.report.drawings import drawing_task, drawn
 from comparison.report.section import Feature, Report, Section
 from comparison.runner.output import made_by

@@ -11,7 +11,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from comparison.analyses.assumptions.variations import WITHIN, AssumptionCell
+from comparison.analyses.assumptions.validity import WITHIN, AssumptionCell
 from comparison.surfaces.figures.pairs import save
 from reference.drawing import verbatim
 from reference.problem import Scene

@@ -4,33 +4,275 @@ The paper's assumptions (i)-(vi): what the engine's models do with each, and how
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
-from comparison.analyses.assumptions.variations import (
-    DURATION,
-    FEW,
-    PHASES,
-    UNDER_LOAD,
-    AssumptionCell,
-    ValidityRange,
-    Variation,
-    arguments,
-    cell_of,
-    ranges,
-    varied,
-    without_value,
-)
-from comparison.result_types import Phases, result
+from comparison.result_types import Number, Phases, Text, result
 from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task
+from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
+from comparison.study.batches import imported
+from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from reference.problem import Scene
+from reference.measures import demands
+from reference.measures.demands import ANSWERED
+from reference.problem import Scene, Trajectory, ground_peak, untilted
+
+Array = NDArray[np.float64]
+
+PHASES = np.array([(0.0, 0.0), (0.3, 1.1), (2.0, 0.7)])  # rad; the first is where turning tells most in fig3-I
+DURATION = 6.0  # s: the loading is strongest in its first seconds
+WITHIN = (0.01, 0.05)  # of mu_i
+CLOSE_ENOUGH = 0.2 * WITHIN[0]  # relative error of mu_i that says whether it stays within: no smaller one is asked for
+
+
+@result
+class Variation:
+    """The scene with another ring of supports and other heights, uneven, or on loaded bars."""
+
+    ring: float = 1.0
+    """radius of the ring, as a multiple of the stated one"""
+    height: float = 1.0
+    """heights of the bodies, as multiples of the stated ones"""
+    supports: int | None = None
+    """number of supports; null for the stated one"""
+    offset: float = 0.0
+    """by which centers of mass above the platform are moved along x and along y, over the radius of the ring"""
+    yaw: float = 0.0
+    """by which bodies above the platform and their links are turned about the vertical, rad"""
+    bars: Literal["softening", "shortening"] | None = None
+    """what the weight above does to bars that give way: softening or shortening; null as stated"""
+
+    @property
+    def is_uneven(self) -> bool:
+        """Whether centers of mass leave the axis, or bodies and links their common directions."""
+        return self.offset != 0.0 or self.yaw != 0.0
+
+    @property
+    def is_usual(self) -> bool:
+        """Whether it only varies the ring and the heights."""
+        return self.supports is None and not self.is_uneven and self.bars is None
+
+    def of(self, scene: Scene) -> Scene:
+        """The scene with this variation."""
+        radius, stated = scene.support_radius, scene.isolator.supports
+        assert radius is not None
+        values: dict[str, Any] = {"isolator.supports": self.supports or stated, "isolator.ring": radius * self.ring}
+        if isinstance(stated, list) and self.supports is None:
+            values = {"isolator.supports": self.ring * np.array(stated)}
+        for number, body in enumerate(scene.bodies):
+            assert body.height is not None
+            values[f"bodies.{number}.height"] = body.height * self.height
+            if number and self.offset:
+                values[f"bodies.{number}.offset"] = scene.offsets[number] + self.offset * radius
+            if number and self.yaw:
+                values[f"bodies.{number}.yaw"] = float(scene.yaws[number] + self.yaw)
+            if self.bars and body.bars is not None:
+                gives_way = body.bars.axial_stiffness is not None
+                values[f"bodies.{number}.bars.load_effect"] = self.bars if gives_way else "softening"
+        return scene.with_values(values)
+
+
+FEW = (
+    *(Variation(ring=ring) for ring in (0.5, 1.0, 2.0)),
+    *(Variation(height=height) for height in (0.0, 0.25, 0.5)),
+    Variation(offset=0.1),  # a twentieth of the width: what codes take for accidental
+    Variation(yaw=0.2),
+)
+MANY = (
+    *(Variation(ring, height) for ring in (0.5, 1.0, 2.0, 4.0, 8.0) for height in (0.0, 0.25, 0.5, 1.0)),
+    *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # on the narrowest ring the scenes would topple
+    Variation(supports=3),
+    *(Variation(offset=offset) for offset in (0.025, 0.05, 0.1, 0.2)),
+    *(Variation(yaw=yaw) for yaw in (0.05, 0.1, 0.2, 0.4)),
+)
+
+UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # of scenes whose bars give way
+
+
+@result
+class AssumptionCell:
+    """The spatial model of one variation against the translational model."""
+
+    scene: Text
+    """name of the scene"""
+    variation: Variation
+    """what is varied"""
+    change: tuple[tuple[Number, ...], ...]
+    """relative change of mu by phase pair and body"""
+    uncertainty: tuple[tuple[Number, ...], ...]
+    """of the change, the two error estimates together"""
+    status: tuple[str, ...]
+    """outcome of each phase pair"""
+    error_message: Text = ""
+    """what went wrong, or empty"""
+    cost: float = 0.0
+    """compute time of the spatial model, s"""
+    torsion: tuple[tuple[Number, ...], ...] = ()
+    """largest rotation about the vertical by phase pair and body, rad, of an uneven variation; else empty"""
+
+    def largest(self, body: int) -> float:
+        """Largest |change| of mu_i over the phase pairs; NaN if one has no value: nothing is claimed then."""
+        return float(np.abs([row[body - 1] for row in self.change]).max())
+
+    def error_estimate(self, body: int) -> float:
+        """Largest uncertainty of mu_i over the phase pairs; NaN likewise."""
+        return float(np.max([row[body - 1] for row in self.uncertainty]))
+
+    def holds(self, body: int, share: float) -> bool:
+        """Whether mu_i stays within `share` at every phase pair, uncertainty included."""
+        return self.largest(body) + self.error_estimate(body) <= share
+
+
+Axis = Literal["ring", "height", "offset", "yaw"]
+
+
+@result
+class ValidityRange:
+    """Where mu of one body stays within a fraction of the translational result, on one line of variations."""
+
+    scene: Text
+    """name of the scene"""
+    body: int
+    """number of the body; 1 is the platform"""
+    share: float
+    """largest relative change"""
+    key: Axis
+    """what varies: ring, m; height, as a multiple of the stated one; offset, m along x and y; or yaw, rad"""
+    holds: float | None
+    """last value up to which every value tried stays within; null if none does"""
+    fails: float | None
+    """first value tried that does not; null if all do"""
+
+
+Arguments = tuple[Scene, Model, Variation | None, float]
+Rows = tuple[tuple[float, ...], ...]  # by phase pair and body
+
+
+@dataclass(frozen=True)
+class Solved:
+    """mu (M, N) at PHASES, its errors, statuses, what went wrong, or "", the cost, s, and torsion as `Cell` has it."""
+
+    mu: Array
+    error: Array
+    status: tuple[str, ...]
+    error_message: str
+    cost: float
+    torsion: Rows = ()
+
+    def __post_init__(self) -> None:
+        if self.mu.ndim != 2 or self.error.shape != self.mu.shape or len(self.status) != len(self.mu):
+            raise ValueError(f"mu {self.mu.shape}, error {self.error.shape}, {len(self.status)} statuses")
+
+
+def arguments(study: Study, variations: Sequence[Variation]) -> list[Arguments]:
+    """
+    What has to be computed: the translational model and every variation of the spatial one.
+
+    study: every scene with phases to which both models of the engine apply. variations: UNDER_LOAD is added where bars
+    give way. Returns scene, model, variation (None: the scene itself), tolerance.
+    """
+    asked: list[Arguments] = []
+    for scene in study.phased:
+        models = models_of(scene, study.hierarchy)
+        engines = [model for model in models if model.side == "engine" and "softened" not in model.settings]
+        if len(engines) == 2:
+            plain, spatial = engines
+            of_plain, tolerance = (max(engine.tolerance(study.tolerance), CLOSE_ENOUGH) for engine in engines)
+            asked.append((scene, plain, None, of_plain))
+            loaded = UNDER_LOAD if any(link is not None for link in scene.bar_links) else ()
+            asked += [(scene, spatial, variation, tolerance) for variation in (*variations, *loaded)]
+    return asked
+
+
+def varied(task: Arguments) -> Solved:
+    """One variation at PHASES. Runs inside a worker process."""
+    scene, model, variation, tolerance = task
+    short = scene.with_values({"duration": min(scene.duration, DURATION)})
+    changed = short if variation is None else variation.of(short)
+    without_torsion = ""
+    if variation is not None and variation.is_uneven and model.trajectory is not None:
+        try:
+            return _moved(changed, model, tolerance)
+        except Exception as error:  # the factors are known without motions
+            without_torsion = f"no motion: {type(error).__name__}: {error}"
+    whole = {"full": True} if untilted(changed) else {}  # a check of assumption (vi) must not make use of it
+    result = imported(model.amplification)(changed, PHASES, **model.settings, tolerance=tolerance, **whole)
+    return Solved(result.mu, result.error, tuple(map(str, result.status)), without_torsion, float(result.cost))
+
+
+def _moved(scene: Scene, model: Model, tolerance: float) -> Solved:
+    """The same from whole motions, which show how far the bodies turn; NaN where one ends early."""
+    clock = time.process_time()
+    trajectory: Callable[..., Trajectory] = imported(str(model.trajectory))
+    motions = [trajectory(scene, phase, **model.settings, tolerance=tolerance) for phase in PHASES]
+    nothing = np.full(len(scene.bodies), np.nan)
+    rows = [
+        (motion.peak, motion.accuracy.peak_error)
+        if motion.status in ANSWERED and motion.accuracy is not None
+        else (nothing, nothing)
+        for motion in motions
+    ]
+    peaks, errors = np.moveaxis(np.array(rows), 1, 0) / ground_peak(scene, PHASES)[:, None]
+    turns = tuple(tuple(turn.value for turn in demands(motion).torsion or ()) for motion in motions)
+    status, cost = tuple(str(motion.status) for motion in motions), time.process_time() - clock
+    return Solved(peaks, errors, status, "", cost, turns)
+
+
+def without_value(task: Arguments, failed: TaskResult) -> Solved:
+    """In place of what a task did not return."""
+    nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
+    return Solved(nothing, nothing, (failed.outcome.value,) * len(PHASES), failed.error_message, 0.0)
+
+
+def cell_of(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> AssumptionCell:
+    """A variation of the spatial model against the translational model."""
+    shares = spatial.mu / plain.mu - 1.0, np.hypot(spatial.error, plain.error) / plain.mu
+    change, uncertainty = (tuple(map(tuple, share.tolist())) for share in shares)
+    error_message = spatial.error_message or plain.error_message
+    return AssumptionCell(
+        scene.name, variation, change, uncertainty, spatial.status, error_message, spatial.cost, spatial.torsion
+    )
+
+
+def ranges(scene: Scene, cells: Sequence[AssumptionCell]) -> list[ValidityRange]:
+    """
+    Where every mu_i stays within each share of WITHIN, over rings, heights, offsets and angles, all else as stated.
+
+    cells: those of other scenes are left out. Offsets and angles are there only where one was tried.
+    """
+    lines: dict[Axis, list[tuple[float, AssumptionCell]]] = {}
+    of_scene = [cell for cell in cells if cell.scene == scene.name]
+    for key in get_args(Axis):
+        unit = scene.support_radius or float("nan") if key in ("ring", "offset") else 1.0
+        stated = getattr(Variation(), key)
+        varied_alone = [cell for cell in of_scene if replace(cell.variation, **{key: stated}) == Variation()]
+        line = [(getattr(cell.variation, key) * unit, cell) for cell in varied_alone]
+        if any(value for value, _ in line):  # as stated, offset and yaw are 0
+            lines[key] = sorted(line, key=lambda pair: pair[0], reverse=key == "ring")
+    return [
+        ValidityRange(scene.name, body, share, key, *_bracket(line, body, share))
+        for body in range(1, len(scene.bodies) + 1)
+        for share in WITHIN
+        for key, line in lines.items()
+    ]
+
+
+def _bracket(
+    line: Sequence[tuple[float, AssumptionCell]], body: int, share: float
+) -> tuple[float | None, float | None]:
+    last = None
+    for value, cell in line:
+        if not cell.holds(body, share):
+            return last, value
+        last = value
+    return last, None
 
 
 @result

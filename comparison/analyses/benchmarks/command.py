@@ -16,10 +16,8 @@ from pathlib import Path
 from rich.console import Console
 
 from comparison.analyses.benchmarks.analysis import MODELS, BenchmarkTable
-from comparison.analyses.benchmarks.cases import Case, cases
-from comparison.analyses.benchmarks.mastodon import mastodon
-from comparison.analyses.benchmarks.page import page, with_error
-from comparison.analyses.benchmarks.table import PAGE, STORED, Benchmarks, Verdict
+from comparison.analyses.benchmarks.cases import Case, cases, mastodon
+from comparison.analyses.benchmarks.table import PAGE, STORED, Benchmarks, Verdict, page, with_error
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed, run_facts

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from comparison.analyses.benchmarks.page import stated, with_error
-from comparison.analyses.benchmarks.table import MEANING, STORED, Benchmarks, Verdict
+from comparison.analyses.benchmarks.table import MEANING, STORED, Benchmarks, Verdict, stated, with_error
 from comparison.report.section import Feature, Section
 
 COLORS = {

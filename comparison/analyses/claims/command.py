@@ -9,9 +9,8 @@ from rich.table import Table
 
 from comparison.analyses.claims.checks import Finding
 from comparison.analyses.claims.readings import EVERY_READING, READINGS
-from comparison.analyses.claims.result import ClaimTable
-from comparison.analyses.claims.table import GRID, SIGNS, Claims
-from comparison.analyses.effective_values.forced_ratio import forced_ratios
+from comparison.analyses.claims.table import GRID, SIGNS, Claims, ClaimTable
+from comparison.analyses.effective_values.analysis import forced_ratios
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, whole_number
 from comparison.cli.computing import computed
 from comparison.runner.executors import Pool

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import reference
-from comparison.analyses.claims.cases import CASES
-from comparison.analyses.claims.readings import Reading, settings
+from comparison.analyses.claims.readings import CASES, Reading, settings
 from comparison.analyses.claims.smoothness import Bend, bends
 from comparison.runner.task import TaskResult
 from reference.problem import Amplification, Scene, exponents, ground_peak, phase_grid

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from comparison.analyses.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
-from comparison.analyses.claims.result import ClaimTable
-from comparison.analyses.claims.table import SIGNS, Claims
+from comparison.analyses.claims.table import SIGNS, Claims, ClaimTable
 from comparison.report.section import Feature, Report, Section
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from comparison.analyses.convergence.analysis import Convergence
-from comparison.analyses.trend_plots import trend_panels
+from comparison.analyses.panels import trend_panels
 from comparison.analyses.trends import Trend
 from comparison.report.section import Feature, Section
 

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.effective_values.analysis import PHASES, Effective, EffectiveValues
-from comparison.analyses.effective_values.forced_ratio import ForcedRatio, forced_ratios
+from comparison.analyses.effective_values.analysis import PHASES, Effective, EffectiveValues, ForcedRatio, forced_ratios
 from comparison.report.section import Feature, Findings, Report, SceneField, Section
 from reference.problem import Scene
 

@@ -4,13 +4,73 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import fields
+from typing import Any
+
+from pydantic import Field, create_model
 
 from comparison.analyses.motions.analysis import Motions, StoredMotion
 from comparison.analyses.motions.page_data import significant_digits
-from comparison.analyses.motions.result import FloorSpectra, MotionDemands
 from comparison.report.section import Feature, Findings, SceneField
+from comparison.result_types import Number, Part, Phases, Text, UncertainNumber
+from reference.measures import Demands
 from reference.measures import FloorSpectra as SpectraOfMotion
+from reference.measures.peak_demands import PER_BODY, QUANTITIES
 from reference.problem import Scene
+
+
+class Residual(UncertainNumber):
+    """A displacement at rest, which a motion may not have."""
+
+    reason: Text
+    """why there is no value although the motion lasts as long as the scene; empty otherwise"""
+
+
+class FloorSpectra(Part):
+    """Floor response spectra of one motion: largest displacement of an oscillator times its squared frequency."""
+
+    period: list[float]
+    """natural periods of the oscillator, s"""
+    damping: float
+    """damping ratio of the oscillator"""
+    acceleration: list[list[list[Number]]]
+    """pseudo-acceleration, m/s^2, by body, direction x and y, and period"""
+    error: list[list[list[Number]]]
+    """estimated absolute error"""
+
+
+class _Motion(Part):
+    """What one stored motion demands of isolator and structure; no value where the motion ended early."""
+
+    model: str
+    """key of the model"""
+    phases: Phases
+    """(alpha1, alpha2), rad; null under a record"""
+    why: Text
+    """why this phase pair was chosen; empty for one of an even spread"""
+    status: str
+    """how the motion ended"""
+
+
+def _kind(annotation: str) -> Any:
+    """Of a field of `Demands`: of the isolator, or of every body; null in a model that lacks it."""
+    kind: Any = list[UncertainNumber] if annotation.startswith("tuple") else UncertainNumber
+    return kind | None if annotation.endswith("None") else kind
+
+
+def _described(name: str) -> Any:
+    of = f"; by body, from body {PER_BODY[name] + 1} on" if name in PER_BODY else ""
+    meaning, unit = QUANTITIES[name]
+    return Field(description=f"{meaning}, {unit}{of}; null where the motion does not have it")
+
+
+_DEMANDS: dict[str, Any] = {
+    each.name: (Residual if each.name == "residual" else _kind(str(each.type)), _described(each.name))
+    for each in fields(Demands)
+    if each.name in QUANTITIES
+}
+_DEMANDS["spectra"] = FloorSpectra | None, Field(description="null where the motion ended early")
+MotionDemands: Any = create_model("MotionDemands", __base__=_Motion, __doc__=_Motion.__doc__, **_DEMANDS)
 
 
 def _demands(findings: Findings, scene: Scene) -> list[MotionDemands]:

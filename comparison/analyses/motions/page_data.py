@@ -45,8 +45,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.analyses.motions.analysis import Place, StoredMotion
-from comparison.analyses.motions.decimation import swing
+from comparison.analyses.motions.analysis import Place, StoredMotion, swing
 from comparison.report.section import Report
 from reference.measures import Demands, Estimate
 from reference.problem import Scene

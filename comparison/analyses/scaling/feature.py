@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from comparison.analyses.panels import trend_panels
 from comparison.analyses.scaling.analysis import Scaling
-from comparison.analyses.trend_plots import trend_panels
 from comparison.analyses.trends import Trend
 from comparison.report.section import Feature, Section
 

@@ -16,7 +16,7 @@ from typing import Any, Literal
 import numpy as np
 import xarray as xr
 
-from comparison.analyses.tradeoff.measure import Measurement, measure, sample, without_value
+from comparison.analyses.tradeoff.analysis import Measurement, measure, sample, without_value
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import result
 from comparison.runner.analysis import Analysis

@@ -15,9 +15,9 @@ from pathlib import Path
 from rich.console import Console
 
 from comparison.analyses.sides import ENGINE, EQUATIONS
-from comparison.analyses.validation import assess, frame, pendulum
+from comparison.analyses.validation import frame, pendulum
 from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE, read_folder
-from comparison.analyses.validation.table import MEANING, NONE, STORED, Validation, recorded
+from comparison.analyses.validation.table import MEANING, NONE, STORED, Validation, joined, recorded
 from comparison.cli.arguments import CommandParser, command, writing
 from comparison.cli.terminal import new_table
 from comparison.runner.output import destination, publish, refuse_foreign_files
@@ -57,7 +57,7 @@ def compared(folder: Path) -> Validation:
     found += [pendulum.compare_large(measured.large)] if measured.large else []
     seconds = round(time.process_time() - begin, 1)
     run = {"command": f"{STORED.command} FOLDER", "seconds": seconds, "provenance": provenance()}
-    return Validation(*assess.joined(found), run)
+    return Validation(*joined(found), run)
 
 
 def print_validation(console: Console, table: Validation) -> None:

@@ -21,10 +21,9 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from comparison.analyses.sides import ENGINE, EQUATIONS
-from comparison.analyses.validation import assess
-from comparison.analyses.validation.assess import COVERAGE, SIDES, Answer, Array, Found
+from comparison.analyses.validation import table
 from comparison.analyses.validation.files import Shaken, wrong_file
-from comparison.analyses.validation.table import INPUT, LAW
+from comparison.analyses.validation.table import COVERAGE, INPUT, LAW, SIDES, Answer, Array, Found
 from reference.problem import GRAVITY, Scene, Trajectory
 
 HEAVY, LOOSE = 10.0, 1e4  # mass of the second body over that of the platform; period of its link, s
@@ -170,7 +169,7 @@ def scene_of(cycles: Cycles, setup: Setup) -> tuple[Scene, tuple[float, float]]:
 def last_cycle(motion: Trajectory, frequency: float) -> Array:
     """The last computed cycle, (SAMPLES,), mm about its mean."""
     grid = (CYCLES - 1 + np.arange(SAMPLES) / SAMPLES) / frequency
-    place = 1e3 * assess.spline(motion)(grid)
+    place = 1e3 * table.spline(motion)(grid)
     about: Array = place - place.mean()
     return about
 
@@ -179,13 +178,13 @@ def compute(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
     """The motion of a run by one side, from the base's largest position on."""
     scene, phases = scene_of(cycles, setup)
     place = np.array([1e-3 * cycles.amplitude, 0.0])
-    return assess.motion_of(side, scene, phases, place, REGULARIZATION, TOLERANCE, "small")
+    return table.motion_of(side, scene, phases, place, REGULARIZATION, TOLERANCE, "small")
 
 
 def read(cycles: Cycles, motion: Trajectory) -> Answer:
     """The quantities of a computed motion of a run."""
     rate = cycles.frequency
-    return assess.answer(motion, lambda each: read_cycle(last_cycle(each, rate), rate), len(NAMES))
+    return table.answer(motion, lambda each: read_cycle(last_cycle(each, rate), rate), len(NAMES))
 
 
 def solve(cycles: Cycles, setup: Setup) -> Array:
@@ -229,12 +228,12 @@ def compare(runs: Sequence[Shaken]) -> Found:
     ]
     parts += _with_friction_of_the_load(first, folded, setup, varied, other, own)
     inputs = [
-        assess.given(f"frame: {name}", getattr(setup, key), size, unit, source)
+        table.given(f"frame: {name}", getattr(setup, key), size, unit, source)
         for key, (size, name, unit, source) in ASSUMED.items()
     ]
     source = f"fitted to the motion of the run with {1e3 * first.run.weight:g} g; its scatter over the cycles"
-    inputs.append(assess.given("frame: friction ratio", setup.ratio, spread, "", source))
-    return assess.joined([Found([], inputs, [], []), *parts])
+    inputs.append(table.given("frame: friction ratio", setup.ratio, spread, "", source))
+    return table.joined([Found([], inputs, [], []), *parts])
 
 
 def _with_friction_of_the_load(
@@ -269,7 +268,7 @@ def _compare_run(
     """One run; other: ratio and base motion fitted to the first run, own: ratio to this one; each may explain E."""
     title = cycles.run.name + law
     found = [read_cycle(motion, cycles.frequency) for motion in cycles.motions]
-    data = assess.Data(NAMES, UNITS, [use] * 5, np.mean(found, axis=0), COVERAGE * np.std(found, axis=0, ddof=1))
+    data = table.Data(NAMES, UNITS, [use] * 5, np.mean(found, axis=0), COVERAGE * np.std(found, axis=0, ddof=1))
     motions = {side: compute(side, cycles, setup) for side in SIDES}
     answers = {side: read(cycles, motion) for side, motion in motions.items()}
     by_input, by_ratio = (np.abs(solve(cycles, each) - data.values) for each in (other, own))
@@ -282,7 +281,7 @@ def _compare_run(
             return LAW, f"gone with the ratio of this run, {own.ratio:.3f}: the ratio depends on the load"
         return LAW, f"gone neither with the ratio of this run, {own.ratio:.3f}, nor with {shift}"
 
-    rows = assess.quantities(title, data, answers, [solve(cycles, each) for each in varied], explain)
+    rows = table.quantities(title, data, answers, [solve(cycles, each) for each in varied], explain)
     best = last_cycle(compute(EQUATIONS, cycles, own), cycles.frequency)
     lines = {"measured": cycles.mean} | {
         side: last_cycle(motions[side], cycles.frequency) for side in (EQUATIONS, ENGINE)
@@ -293,4 +292,4 @@ def _compare_run(
         f"{setup.ratio:.3f}"
     )
     axes, turn = ("phase of the base, deg", "top plate, mm"), np.arange(SAMPLES) * 360.0 / SAMPLES
-    return Found(rows, [], [fact], assess.curves(title, axes, {name: (turn, y) for name, y in lines.items()}))
+    return Found(rows, [], [fact], table.curves(title, axes, {name: (turn, y) for name, y in lines.items()}))

@@ -13,10 +13,9 @@ import numpy as np
 from scipy.special import ellipk
 
 from comparison.analyses.sides import ENGINE, EQUATIONS
-from comparison.analyses.validation import assess
-from comparison.analyses.validation.assess import COVERAGE, SIDES, Answer, Array, Data, Found
+from comparison.analyses.validation import table
 from comparison.analyses.validation.files import DECAY, LARGE, Swing, wrong_file
-from comparison.analyses.validation.table import INPUT, LAW
+from comparison.analyses.validation.table import COVERAGE, INPUT, LAW, SIDES, Answer, Array, Data, Found
 from reference.problem import GRAVITY, Scene, Trajectory
 
 REGULARIZATION, TOLERANCE = 1e-5, 1e-4  # of the engine; v_reg in m/s
@@ -63,10 +62,10 @@ def compare_decay(swing: Swing) -> Found:
         return _motion(side, half, 0.5 * loss, start, SHOWN[-1] + 2.5)
 
     motions = {side: compute(side, nominal) for side in SIDES}
-    answers = {side: assess.answer(motion, read, len(data.names)) for side, motion in motions.items()}
+    answers = {side: table.answer(motion, read, len(data.names)) for side, motion in motions.items()}
     varied = [read(compute(EQUATIONS, nominal + change)) for change in np.diag(uncertain)]
     cause = "friction before sliding gives way like a spring, which Coulomb's law lacks"
-    rows = assess.quantities("pendulum, decay", data, answers, varied, lambda k, allowed: (LAW, cause))
+    rows = table.quantities("pendulum, decay", data, answers, varied, lambda k, allowed: (LAW, cause))
     named = zip(("half period", "loss of a half swing", "first angle"), nominal, uncertain, ("s", "rad", "rad"))
     source = f"fitted to the first {HALF} half periods and {COULOMB} half swings, and its scatter"
     fact = (
@@ -75,8 +74,8 @@ def compare_decay(swing: Swing) -> Found:
     )
     drawn = {"measured": sizes} | {side: 1e3 * _computed_turns(motions[side])[1] for side in (EQUATIONS, ENGINE)}
     axes = ("number of the turning point", "angle, mrad")
-    curves = assess.curves("pendulum, decay", axes, {name: (numbers, y) for name, y in drawn.items()})
-    given = [assess.given(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named]
+    curves = table.curves("pendulum, decay", axes, {name: (numbers, y) for name, y in drawn.items()})
+    given = [table.given(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named]
     return Found(rows, given, [fact], curves)
 
 
@@ -96,7 +95,7 @@ def compare_large(swing: Swing) -> Found:
 
     def compute(side: str, half: float, equations: str = "exact") -> Answer:
         motions = [_motion(side, half, 0.0, angle, 3.2, equations) for angle in ANGLES]
-        parts = [assess.answer(each, lambda motion: 1e3 * np.diff(_zeros(motion))[:1], 1) for each in motions]
+        parts = [table.answer(each, lambda motion: 1e3 * np.diff(_zeros(motion))[:1], 1) for each in motions]
         return Answer(*(np.concatenate(each) for each in zip(*parts)))
 
     answers = {side: compute(side, half) for side in SIDES}
@@ -107,17 +106,17 @@ def compare_large(swing: Swing) -> Found:
             return INPUT, f"gone with the half period fitted at {REFITTED} rad, where friction weighs less"
         return LAW, f"not gone with the half period fitted at {REFITTED} rad"
 
-    rows = assess.quantities("pendulum, large angles", data, answers, [varied], explain)
+    rows = table.quantities("pendulum, large angles", data, answers, [varied], explain)
     off = zip(100.0 * (small / data.values - 1.0), ANGLES)
     fact = "pendulum, large angles: the half period of the small-vibration equations is off by "
     fact += ", ".join(f"{error:.1f} % at {angle:g} rad" for error, angle in off)
     source = f"fitted to the half period at {FITTED} rad, and the scatter of the swings about it"
-    given = assess.given("pendulum, large angles: half period", half, scatter, "s", source)
+    given = table.given("pendulum, large angles: half period", half, scatter, "s", source)
     drawn = {"measured": (sizes, 1e3 * periods)} | {
         s: (np.array(ANGLES), answers[s].values) for s in (EQUATIONS, ENGINE)
     }
     axes = ("amplitude, rad", "half period, ms")
-    return Found(rows, [given], [fact], assess.curves("pendulum, large angles", axes, drawn))
+    return Found(rows, [given], [fact], table.curves("pendulum, large angles", axes, drawn))
 
 
 def _motion(
@@ -134,7 +133,7 @@ def _motion(
     }
     made = Scene.model_validate(scene)
     place = np.array([made.radius * np.sin(start)])
-    return assess.motion_of(side, made, (0.0, 0.0), place, REGULARIZATION, TOLERANCE, equations)
+    return table.motion_of(side, made, (0.0, 0.0), place, REGULARIZATION, TOLERANCE, equations)
 
 
 def _turns(swing: Swing, back: float) -> tuple[Array, Array]:
@@ -177,13 +176,13 @@ def _near(sizes: Array, periods: Array, angle: float) -> tuple[float, float]:
 
 
 def _zeros(motion: Trajectory) -> Array:
-    zeros: Array = assess.spline(motion).roots(extrapolate=False)
+    zeros: Array = table.spline(motion).roots(extrapolate=False)
     return zeros
 
 
 def _computed_turns(motion: Trajectory) -> tuple[Array, Array]:
     """Instants and angles, towards the side of each turn, of the turning points from the first on; at last the rest."""
-    place, end = assess.spline(motion), float(motion.time[-1])
+    place, end = table.spline(motion), float(motion.time[-1])
     found: list[tuple[float, float]] = []
     for begin, stop in pairwise([0.0, *_zeros(motion), end]):
         dense = np.linspace(begin, stop, PARTS)

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
-from typing import Any
+from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import TypeAdapter
+from scipy.interpolate import CubicHermiteSpline
 
-from comparison.analyses.sides import ENGINE, EQUATIONS
-from comparison.json_file import StoredFile
+import multibody
+import reference
+from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
+from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import result
+from reference.measures.demands import ANSWERED
+from reference.problem import Scene, State, Trajectory
 
 VALID, LAW, INPUT, NONE = "within u_val", "law", "input", "no answer"
 MEANING = {
@@ -106,3 +114,115 @@ def recorded() -> Validation:
     """The table of the published files, as the command made it; without their motions."""
     file = resources.files("comparison.analyses.validation") / "recorded.json"
     return TypeAdapter(Validation).validate_json(file.read_bytes())
+
+
+Array = NDArray[np.float64]
+SIDES = (EQUATIONS, SMOOTHED, ENGINE)
+COVERAGE = 2.0  # standard deviations of an expanded uncertainty
+
+
+class Answer(NamedTuple):
+    """What one side computes, (Q,), with its numerical errors."""
+
+    values: Array
+    errors: Array
+
+
+class Found(NamedTuple):
+    """What one experiment adds to the table."""
+
+    quantities: list[Quantity]
+    inputs: list[str]
+    facts: list[str]
+    curves: list[Curve]
+
+
+def joined(parts: Sequence[Found]) -> Found:
+    """What several experiments add."""
+    return Found(*([each for part in column for each in part] for column in zip(*parts)))
+
+
+class Data(NamedTuple):
+    """What was measured: names and units of the quantities, their use, D and u_D."""
+
+    names: Sequence[str]
+    units: Sequence[str]
+    use: Sequence[str]
+    values: Array
+    uncertainty: Array
+
+
+def motion_of(
+    side: str,
+    scene: Scene,
+    phases: tuple[float, float],
+    place: Array,
+    regularization: float,
+    tolerance: float,
+    equations: str = "exact",
+) -> Trajectory:
+    """The motion of bodies released from rest at `place` (N,), m along x; the tolerance is the engine's."""
+    start = np.column_stack([place, np.zeros_like(place)])
+    initial = State(start, np.zeros_like(start))
+    if side == ENGINE:
+        return multibody.trajectory(scene, phases, tolerance=tolerance, regularization=regularization, initial=initial)
+    threshold = regularization if side == SMOOTHED else None
+    return reference.trajectory(scene, phases, equations, threshold, 1e-7, initial=initial)
+
+
+def answer(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> Answer:
+    """What is read from a motion, `count` values, and its errors; NaN from one that ended early."""
+    nothing = np.full(count, np.nan)
+    if motion.status not in ANSWERED or motion.accuracy is None:
+        return Answer(nothing, nothing)
+    values, others = read(motion), [read(each) for each in motion.accuracy.coarser]
+    errors = [motion.accuracy.error_of(value, rest) for value, *rest in zip(values, *others)]
+    return Answer(values, np.array(errors))
+
+
+def spline(motion: Trajectory) -> CubicHermiteSpline:
+    """Position of the platform along x, m."""
+    return CubicHermiteSpline(motion.time, motion.position[:, 0, 0], motion.velocity[:, 0, 0])
+
+
+def given(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:
+    """An input as a sentence."""
+    return f"{name} {value:.5g} ± {uncertainty:.2g} {unit}".rstrip() + f" ({source})"
+
+
+def quantities(
+    experiment: str,
+    data: Data,
+    answers: Mapping[str, Answer],
+    varied: Sequence[Array],
+    explain: Callable[[int, float], tuple[str, str]],
+) -> list[Quantity]:
+    """
+    The table of one run.
+
+    varied: by the equations, with each input changed by its uncertainty; u_input is the root of the sum of the squared
+    changes. explain: verdict and cause of quantity k, whose E exceeds this u_val.
+    """
+    rows, inputs = [], np.sqrt(np.sum(np.square([each - answers[EQUATIONS].values for each in varied]), axis=0))
+    for k, (name, unit, use) in enumerate(zip(data.names, data.units, data.use)):
+        if math.isnan(data.values[k]):  # phases of starts and stops in a run at rest
+            continue
+        sides, cause = {}, ""
+        for side, (values, errors) in answers.items():
+            error = float(values[k] - data.values[k])
+            allowed = math.hypot(errors[k], inputs[k], data.uncertainty[k])
+            verdict = VALID
+            if not (math.isfinite(error) and math.isfinite(allowed)):
+                verdict = NONE
+            elif abs(error) > allowed:
+                verdict, cause = explain(k, allowed)
+            value, off, numerical, limit = map(finite_or_none, (float(values[k]), error, float(errors[k]), allowed))
+            sides[side] = Comparison(value, off, numerical, limit, verdict)
+        measured, spread, propagated = (float(row[k]) for row in (data.values, data.uncertainty, inputs))
+        rows.append(Quantity(experiment, name, unit, use, measured, spread, propagated, cause, sides))
+    return rows
+
+
+def curves(title: str, axes: tuple[str, str], lines: Mapping[str, tuple[NDArray[Any], Array]]) -> list[Curve]:
+    """The lines of one plot, by name."""
+    return [Curve(title, axes, name, x.tolist(), y.tolist()) for name, (x, y) in lines.items()]

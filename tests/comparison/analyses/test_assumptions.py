@@ -15,18 +15,21 @@ from known_analyses import collected
 
 from comparison.analyses.assumptions import command
 from comparison.analyses.assumptions.command import main
-from comparison.analyses.assumptions.validity import ASSUMPTIONS, Assumptions, Validity, describe
-from comparison.analyses.assumptions.validity import lines as lines_of
-from comparison.analyses.assumptions.variations import (
+from comparison.analyses.assumptions.validity import (
+    ASSUMPTIONS,
     FEW,
     PHASES,
     UNDER_LOAD,
     AssumptionCell,
+    Assumptions,
+    Validity,
     Variation,
     arguments,
+    describe,
     ranges,
     varied,
 )
+from comparison.analyses.assumptions.validity import lines as lines_of
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from multibody import amplification

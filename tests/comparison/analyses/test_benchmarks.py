@@ -26,11 +26,9 @@ from comparison.analyses.benchmarks.analysis import (
     _benchmark,
     solve,
 )
-from comparison.analyses.benchmarks.cases import Case, Reading, cases, published, shipped
+from comparison.analyses.benchmarks.cases import Case, Reading, cases, mastodon, published, shipped
 from comparison.analyses.benchmarks.command import main
-from comparison.analyses.benchmarks.mastodon import mastodon
-from comparison.analyses.benchmarks.page import HEAD, page
-from comparison.analyses.benchmarks.table import STORED, Benchmarks, Verdict
+from comparison.analyses.benchmarks.table import HEAD, STORED, Benchmarks, Verdict, page
 from reference.analytical import den_hartog
 from reference.problem import GRAVITY, SceneError, State
 

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from claims_literal import STEPS, literal_peaks, spike_over_the_step
 
-from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.evidence import Question, gathered
-from comparison.analyses.claims.readings import LIGHT_BODY, LITERAL, OWN_PERIOD, Reading
-from comparison.analyses.effective_values.forced_ratio import forced_ratios
+from comparison.analyses.claims.readings import CASES, LIGHT_BODY, LITERAL, OWN_PERIOD, Reading
+from comparison.analyses.effective_values.analysis import forced_ratios
 from reference import amplification, load_scene, modes
 from reference.problem import ground_peak
 

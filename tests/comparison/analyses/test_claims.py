@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 
 from comparison.analyses.claims import evidence
 from comparison.analyses.claims import table as table_module  # table: what a test made
-from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.checks import Finding, Verdict, counted, judged, similar
 from comparison.analyses.claims.claims import CLAIMS, Claim
 from comparison.analyses.claims.command import main
 from comparison.analyses.claims.evidence import Evidence, Question
 from comparison.analyses.claims.peaks_and_valleys import Counts
-from comparison.analyses.claims.readings import EVERY_READING, READINGS, Reading, without_effect
+from comparison.analyses.claims.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
 from comparison.analyses.claims.smoothness import Bend
 from comparison.analyses.claims.table import Claims, table_of
 from comparison.cli import computing

@@ -14,10 +14,10 @@ from scipy.linalg import eigh
 from second_integration import LITERAL as LITERAL_LAW
 from second_integration import SET_VALUED, by_scipy, fast, ground_tops, stepped
 
-from comparison.analyses.claims.cases import CASES
 from comparison.analyses.claims.claims import CLAIMS
 from comparison.analyses.claims.evidence import MOTIONS, Evidence
 from comparison.analyses.claims.readings import (
+    CASES,
     LIGHT_BODY,
     LITERAL,
     OWN_PERIOD,

@@ -16,13 +16,22 @@ from matplotlib.image import imread
 from runs import no_executor
 
 import reference
-from comparison.analyses.extremes.analysis import Cell, Extremes, answers, cells, read_scene, reduced, solve_cell
+from comparison.analyses.extremes.analysis import (
+    Cell,
+    Extremes,
+    Reply,
+    answers,
+    cells,
+    judged,
+    read_scene,
+    reduced,
+    solve_cell,
+)
 from comparison.analyses.extremes.command import main
 from comparison.analyses.extremes.engine import amplification
 from comparison.analyses.extremes.figure import draw_extremes
 from comparison.analyses.extremes.matrix import FILE, STORED, Entry, Extreme, Matrix, Verdict, describe
 from comparison.analyses.extremes.rows import CAUSES, COLUMNS, PLAIN_RADIUS, Row, rows, scene
-from comparison.analyses.extremes.verdicts import Reply, judged
 from comparison.runner.cache import Cache
 from comparison.runner.executors import Pool, TimeLimitError, WorkerDiedError
 from comparison.runner.processes import process_pool

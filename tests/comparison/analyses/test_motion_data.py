@@ -17,8 +17,7 @@ from report_texts import summary_of
 
 import multibody
 import reference
-from comparison.analyses.motions.analysis import Place, StoredMotion, moved
-from comparison.analyses.motions.decimation import SHARE, swing
+from comparison.analyses.motions.analysis import SHARE, Place, StoredMotion, moved, swing
 from comparison.analyses.motions.page_data import (
     ROUNDING,
     contact_geometry,

@@ -18,9 +18,8 @@ import xarray as xr
 from known_analyses import collected
 from known_results import known_trade
 
-from comparison.analyses.tradeoff import analysis, command, measure
-from comparison.analyses.tradeoff.analysis import TradeOff, entry
-from comparison.analyses.tradeoff.measure import Measured, Measurement, joined, sample
+from comparison.analyses.tradeoff import analysis, command
+from comparison.analyses.tradeoff.analysis import Measured, Measurement, TradeOff, entry, joined, sample
 from comparison.analyses.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
 from comparison.analyses.tradeoff.trade import (
     FILE,
@@ -182,8 +181,8 @@ def test_a_model_that_raises_leaves_points_without_a_value(monkeypatch: pytest.M
     def broken(path: str) -> Callable[..., object]:
         raise RuntimeError("the matrix is singular")
 
-    monkeypatch.setattr(measure, "imported", broken)
-    measured = measure.measure(Measurement(load_scene("fig3-I"), ("anything:at all", {}), 0, sample(2)))
+    monkeypatch.setattr(analysis, "imported", broken)
+    measured = analysis.measure(Measurement(load_scene("fig3-I"), ("anything:at all", {}), 0, sample(2)))
     assert np.isnan(measured.mu).all()
     assert "the matrix is singular" in measured.error_message
 
@@ -211,7 +210,7 @@ def test_the_command_measures_nothing_twice(
     values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
     assert dict(values.sizes) == {"setting": 2, "point": 3, "body": 2}
     capsys.readouterr()
-    monkeypatch.setattr(measure, "imported", lambda path: pytest.fail("it was measured again"))
+    monkeypatch.setattr(analysis, "imported", lambda path: pytest.fail("it was measured again"))
     assert command.main(words, ThreadPoolExecutor) == 0
     assert "9 of 9 tasks are in" in capsys.readouterr().out
     again = load(tmp_path / "out")

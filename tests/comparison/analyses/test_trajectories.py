@@ -13,8 +13,15 @@ from numpy.typing import NDArray
 from studies import solved
 
 from comparison.analyses.motions import analysis
-from comparison.analyses.motions.analysis import Motions, chosen_places, motion_arguments, moved, shown_models
-from comparison.analyses.motions.decimation import SHARE, thinned
+from comparison.analyses.motions.analysis import (
+    SHARE,
+    Motions,
+    chosen_places,
+    motion_arguments,
+    moved,
+    shown_models,
+    thinned,
+)
 from comparison.study.study import Study
 from reference.problem import Scene, Trajectory, load_scene
 

@@ -16,7 +16,7 @@ from scipy.io import savemat
 from scipy.special import ellipk
 
 from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
-from comparison.analyses.validation import assess, frame, pendulum
+from comparison.analyses.validation import frame, pendulum, table
 from comparison.analyses.validation.command import compared, main
 from comparison.analyses.validation.files import DECAY, LARGE, Swing, read_folder
 from comparison.analyses.validation.table import LAW, VALID, recorded
@@ -244,10 +244,10 @@ def test_without_files_what_is_recorded_is_printed(capsys: pytest.CaptureFixture
 def test_a_comparison_error_is_within_all_uncertainties():
     """0.03, 0.04 and 0.12 make 0.13: 0.125 is within, 0.135 is not; any two of them make less than 0.127."""
     one = np.ones(2)
-    data = assess.Data(("a", "b"), ("mm", "mm"), ("predicted",) * 2, one, np.array([0.12, 0.12]))
+    data = table.Data(("a", "b"), ("mm", "mm"), ("predicted",) * 2, one, np.array([0.12, 0.12]))
     values = np.array([1.1285, 1.135])
-    answers, varied = {EQUATIONS: assess.Answer(values, np.array([0.03, 0.03]))}, [values + 0.024, values - 0.032]
-    first, second = assess.quantities("run", data, answers, varied, lambda k, allowed: (LAW, "why"))
+    answers, varied = {EQUATIONS: table.Answer(values, np.array([0.03, 0.03]))}, [values + 0.024, values - 0.032]
+    first, second = table.quantities("run", data, answers, varied, lambda k, allowed: (LAW, "why"))
     assert [each.sides[EQUATIONS].verdict for each in (first, second)] == [VALID, LAW]
     assert [each.sides[EQUATIONS].error for each in (first, second)] == pytest.approx([0.1285, 0.135])
     assert first.sides[EQUATIONS].validation == pytest.approx(0.13)

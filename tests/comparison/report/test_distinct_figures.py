@@ -36,7 +36,7 @@ from report_texts import summary_of
 from runs import quick_figures
 
 from comparison.analyses.assumptions.figure import draw_assumptions
-from comparison.analyses.assumptions.variations import AssumptionCell, Variation
+from comparison.analyses.assumptions.validity import AssumptionCell, Variation
 from comparison.analyses.extremes.figure import draw_extremes
 from comparison.analyses.tradeoff.feature import draw_growth, draw_tradeoff
 from comparison.analyses.tradeoff.growth import SCHEMA, MeasuredGrowth, with_slope

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 
+from comparison.analyses.panels import trend_panels
 from comparison.analyses.tradeoff.feature import tradeoff_answers, tradeoff_panels
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
-from comparison.analyses.trend_plots import trend_panels
 from comparison.analyses.trends import Trend
 from comparison.report.glossary import GLOSSARY, emphasized, explained
 from comparison.report.page import content_policy

@@ -13,7 +13,7 @@ from report_texts import flat, page_of, text_of
 from runs import RUN, Run, quick_figures
 from studies import solved
 
-from comparison.analyses.demands.pdf import HEADINGS, demand_rows
+from comparison.analyses.demands.feature import HEADINGS, demand_rows
 from comparison.registry import report_of
 from comparison.report import pdf
 from comparison.report.section import Report

@@ -16,7 +16,7 @@ from runs import RUN, Run
 from studies import solved
 
 from comparison.analyses.assumptions.figure import draw_assumptions
-from comparison.analyses.assumptions.variations import FEW, AssumptionCell
+from comparison.analyses.assumptions.validity import FEW, AssumptionCell
 from comparison.analyses.panels import draw_panels, panel
 from comparison.registry import report_of
 from comparison.report.junit import junit

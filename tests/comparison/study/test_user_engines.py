@@ -24,9 +24,8 @@ from runs import Run
 from studies import solved
 
 import reference
-from comparison.analyses.extremes.analysis import cells
+from comparison.analyses.extremes.analysis import Reply, cells, judged
 from comparison.analyses.extremes.rows import rows, user_column
-from comparison.analyses.extremes.verdicts import Reply, judged
 from comparison.analyses.tradeoff import analysis
 from comparison.analyses.tradeoff.analysis import TradeOff
 from comparison.analyses.tradeoff.feature import draw_tradeoff
