@@ -22,7 +22,9 @@ from comparison.analyses.assumptions.validity import (
     PHASES,
     AssumptionCell,
     Assumptions,
-    lines,
+    describe,
+    ranges,
+    uneven_lines,
 )
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
@@ -77,9 +79,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 def _spatial(name: str) -> Scene:
     scene = load_scene(name)
     if scene.recorded:
-        rule = (
-            "rings and heights are varied at phases, which a recorded motion has not: give a scene of two frequencies"
-        )
+        rule = "rings and heights are varied at phases, which a record has not: give a scene of two frequencies"
         raise SceneError(name, "excitation.record", scene.name, rule)
     if not has_spatial_data(scene):
         rule = "the spatial model needs supports, ring and sphere_radius of the isolator, height and size of every body"
@@ -90,19 +90,20 @@ def _spatial(name: str) -> Scene:
 def _print(console: Console, scene: Scene, cells: Sequence[AssumptionCell]) -> None:
     console.print(f"{scene.title} ({scene.name}): largest change of mu_i against the translational model, per body")
     table = new_table("ring, m", "heights x", "supports", "offset, m", "yaw, rad", "change, %", "u_D, %", "outcomes")
-    bodies = range(1, len(scene.bodies) + 1)
+    bodies, radius = range(1, len(scene.bodies) + 1), scene.support_radius or 0.0
     for cell in cells:
+        each = cell.variation
         table.add_row(
-            f"{cell.variation.ring * (scene.support_radius or 0.0):g}",
-            f"{cell.variation.height:g}",
-            str(cell.variation.supports or scene.isolator.support_count),
-            f"{cell.variation.offset * (scene.support_radius or 0.0):g}",
-            f"{cell.variation.yaw:g}",
+            f"{each.ring * radius:g}",
+            f"{each.height:g}",
+            str(each.supports or scene.isolator.support_count),
+            f"{each.offset * radius:g}",
+            f"{each.yaw:g}",
             "  ".join(f"{100.0 * cell.largest(body):.3f}" for body in bodies),
             "  ".join(f"{100.0 * cell.error_estimate(body):.3f}" for body in bodies),
             ", ".join(sorted(set(cell.status))),
         )
     console.print(table)
     console.print(f"{sum(cell.cost for cell in cells):.0f} s of compute")
-    for line in lines(scene, cells):
+    for line in [*map(describe, ranges(scene, cells)), *uneven_lines(scene, cells)]:
         console.print(line)

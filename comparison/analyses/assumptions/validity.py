@@ -4,6 +4,7 @@ The paper's assumptions (i)-(vi): what the engine's models do with each, and how
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -61,14 +62,12 @@ class Variation:
 
     def of(self, scene: Scene) -> Scene:
         """The scene with this variation."""
-        radius, stated = scene.support_radius, scene.isolator.supports
-        assert radius is not None
+        radius, stated = float(scene.support_radius or np.nan), scene.isolator.supports
         values: dict[str, Any] = {"isolator.supports": self.supports or stated, "isolator.ring": radius * self.ring}
         if isinstance(stated, list) and self.supports is None:
             values = {"isolator.supports": self.ring * np.array(stated)}
         for number, body in enumerate(scene.bodies):
-            assert body.height is not None
-            values[f"bodies.{number}.height"] = body.height * self.height
+            values[f"bodies.{number}.height"] = float(body.height or 0.0) * self.height
             if number and self.offset:
                 values[f"bodies.{number}.offset"] = scene.offsets[number] + self.offset * radius
             if number and self.yaw:
@@ -173,21 +172,19 @@ class Solved:
 
 def arguments(study: Study, variations: Sequence[Variation]) -> list[Arguments]:
     """
-    What has to be computed: the translational model and every variation of the spatial one.
+    The translational model and every variation of the spatial one, of every scene with phases that has both.
 
-    study: every scene with phases to which both models of the engine apply. variations: UNDER_LOAD is added where bars
-    give way. Returns scene, model, variation (None: the scene itself), tolerance.
+    UNDER_LOAD is added where bars give way. Returns scene, model, variation (None: the scene itself), tolerance.
     """
     asked: list[Arguments] = []
     for scene in study.phased:
         models = models_of(scene, study.hierarchy)
         engines = [model for model in models if model.side == "engine" and "softened" not in model.settings]
         if len(engines) == 2:
-            plain, spatial = engines
-            of_plain, tolerance = (max(engine.tolerance(study.tolerance), CLOSE_ENOUGH) for engine in engines)
-            asked.append((scene, plain, None, of_plain))
             loaded = UNDER_LOAD if any(link is not None for link in scene.bar_links) else ()
-            asked += [(scene, spatial, variation, tolerance) for variation in (*variations, *loaded)]
+            for model, each in zip(engines, ((None,), (*variations, *loaded))):
+                tolerance = max(model.tolerance(study.tolerance), CLOSE_ENOUGH)
+                asked += [(scene, model, variation, tolerance) for variation in each]
     return asked
 
 
@@ -235,9 +232,9 @@ def cell_of(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) 
     """A variation of the spatial model against the translational model."""
     shares = spatial.mu / plain.mu - 1.0, np.hypot(spatial.error, plain.error) / plain.mu
     change, uncertainty = (tuple(map(tuple, share.tolist())) for share in shares)
-    error_message = spatial.error_message or plain.error_message
+    why = spatial.error_message or plain.error_message
     return AssumptionCell(
-        scene.name, variation, change, uncertainty, spatial.status, error_message, spatial.cost, spatial.torsion
+        scene.name, variation, change, uncertainty, spatial.status, why, spatial.cost, spatial.torsion
     )
 
 
@@ -264,15 +261,10 @@ def ranges(scene: Scene, cells: Sequence[AssumptionCell]) -> list[ValidityRange]
     ]
 
 
-def _bracket(
-    line: Sequence[tuple[float, AssumptionCell]], body: int, share: float
-) -> tuple[float | None, float | None]:
-    last = None
-    for value, cell in line:
-        if not cell.holds(body, share):
-            return last, value
-        last = value
-    return last, None
+def _bracket(line: Sequence[tuple[float, AssumptionCell]], body: int, share: float) -> tuple[Any, Any]:
+    """The last value up to which all hold, and the first that does not; None without."""
+    held = [value for value, _ in itertools.takewhile(lambda pair: pair[1].holds(body, share), line)]
+    return next(reversed(held), None), next((value for value, _ in line[len(held) :]), None)
 
 
 @result
@@ -356,11 +348,6 @@ class Validity:
     """what the cells allow to say"""
 
 
-def lines(scene: Scene, cells: Sequence[AssumptionCell]) -> list[str]:
-    """One line per body, share and direction, and those of uneven variations and loaded bars."""
-    return [describe(validity) for validity in ranges(scene, cells)] + uneven_lines(scene, cells)
-
-
 def uneven_lines(scene: Scene, cells: Sequence[AssumptionCell]) -> list[str]:
     """One line per uneven variation, and one on bars under load, from the cells of a scene."""
     uneven = [describe_torsion(scene, cell) for cell in cells if cell.variation.is_uneven]
@@ -397,28 +384,25 @@ class Assumptions(Analysis[Validity]):
         return Validity(ASSUMPTIONS, phases, DURATION, cells, within)
 
 
+# of a line of variations: where nothing holds; what holds; what does not; where all that was tried holds
+WORDS: dict[Axis, tuple[str, str, str, str]] = {
+    "ring": ("at no ring tried, up to {fails:g} m", "with rings from {holds:g} m", "no longer at {fails:g} m",
+             "every smaller one tried too"),
+    "height": ("at no heights tried", "with heights up to {holds:g} times the stated ones",
+               "no longer at {fails:g} times", "the largest tried"),
+    "offset": ("at none of the offsets tried, not even the stated ones",
+               "with centers of mass moved along x and along y by up to {holds:g} m", "no longer by {fails:g} m",
+               "the largest tried"),
+    "yaw": ("at none of the angles tried, not even the stated ones",
+            "with bodies and links turned by up to {holds:g} rad", "no longer by {fails:g} rad", "the largest tried"),
+}  # fmt: skip
+
+
 def describe(validity: ValidityRange) -> str:
     """One line for people: where mu_i stays within a share of the translational result."""
-    what = f"mu_{validity.body} stays within {100.0 * validity.share:g} %"
-    if validity.key == "ring":
-        if validity.holds is None:
-            return f"{what} at no ring tried, up to {validity.fails:g} m"
-        fails = "every smaller one tried too" if validity.fails is None else f"no longer at {validity.fails:g} m"
-        return f"{what} with rings from {validity.holds:g} m, {fails}"
-    if validity.key in ("offset", "yaw"):
-        stated, moved, unit = "angles", "bodies and links turned", "rad"
-        if validity.key == "offset":
-            stated, moved, unit = "offsets", "centers of mass moved along x and along y", "m"
-        if validity.holds is None:
-            return f"{what} at none of the {stated} tried, not even the stated ones"
-        if validity.holds == 0.0:
-            return f"{what} with the stated {stated}, no longer with {moved} by {validity.fails:g} {unit}"
-        fails = "the largest tried" if validity.fails is None else f"no longer by {validity.fails:g} {unit}"
-        return f"{what} with {moved} by up to {validity.holds:g} {unit}, {fails}"
-    if validity.holds is None:
-        return f"{what} at no heights tried"
-    fails = "the largest tried" if validity.fails is None else f"no longer at {validity.fails:g} times"
-    return f"{what} with heights up to {validity.holds:g} times the stated ones, {fails}"
+    none, holds, fails, every = WORDS[validity.key]
+    where = none if validity.holds is None else f"{holds}, {every if validity.fails is None else fails}"
+    return f"mu_{validity.body} stays within {100.0 * validity.share:g} % {where.format(**vars(validity))}"
 
 
 def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
@@ -430,10 +414,8 @@ def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
     error = np.hypot(*(np.array(cell.uncertainty) for cell in loaded)).max(axis=0)
     if not np.isfinite(change).all():
         return ["no value says what it changes that bars shorten as they sway"]
-    pairs = enumerate(zip(change, error), start=1)
-    changes = ", ".join(
-        f"mu_{body} by up to {100.0 * size:.2g} ± {100.0 * about:.1g} %" for body, (size, about) in pairs
-    )
+    numbers = [f"{100.0 * size:.2g} ± {100.0 * about:.1g} %" for size, about in zip(change, error)]
+    changes = ", ".join(f"mu_{body} by up to {text}" for body, text in enumerate(numbers, start=1))
     return [f"bars that shorten as they sway, and not only soften under the weight, change {changes}"]
 
 
@@ -445,7 +427,7 @@ def describe_torsion(scene: Scene, cell: AssumptionCell) -> str:
     bodies = range(1, len(scene.bodies) + 1)
     changes = ", ".join(f"mu_{body} by up to {100.0 * cell.largest(body):.2g} %" for body in bodies)
     turns = np.array(cell.torsion)
-    known = turns.shape == (len(PHASES), len(scene.bodies)) and np.isfinite(turns).all()
-    unknown = f"no motion says how far they turn{f' ({cell.error_message})' if cell.error_message else ''}"
-    torsion = f"they turn by up to {1e3 * turns.max():.3g} mrad" if known else unknown
+    torsion = "no motion says how far they turn" + (f" ({cell.error_message})" if cell.error_message else "")
+    if turns.shape == (len(PHASES), len(scene.bodies)) and np.isfinite(turns).all():
+        torsion = f"they turn by up to {1e3 * turns.max():.3g} mrad"
     return f"the bodies above the platform {where} change {changes}; {torsion}"

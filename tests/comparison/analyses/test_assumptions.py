@@ -27,9 +27,9 @@ from comparison.analyses.assumptions.validity import (
     arguments,
     describe,
     ranges,
+    uneven_lines,
     varied,
 )
-from comparison.analyses.assumptions.validity import lines as lines_of
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from multibody import amplification
@@ -142,7 +142,7 @@ def test_where_motions_raise_the_factors_stay() -> None:
     reason = "no motion: ModuleNotFoundError: No module named 'comparison.nowhere'"
     assert solved.error_message == reason
     cell = replace(_cell(uneven, 0.03, 0.02), error_message=reason)
-    assert lines_of(STATED, [_cell(Variation(), 0.0, 0.0), cell])[-1].endswith(f"({reason})")
+    assert uneven_lines(STATED, [_cell(Variation(), 0.0, 0.0), cell])[-1].endswith(f"({reason})")
 
 
 def _turning(scene: Scene, variations: Sequence[Variation]) -> list[AssumptionCell]:
@@ -183,11 +183,11 @@ def test_what_uneven_bodies_change_is_said_with_their_torsion() -> None:
     even = _cell(Variation(), 0.002, 0.001)
     moved = replace(_cell(Variation(offset=0.1), 0.03, 0.02), torsion=((1e-3, 5e-3), (2e-3, 4e-3), (0.0, 0.0)))
     unknown = _cell(Variation(yaw=0.2), 0.002, 0.002)
-    lines = lines_of(STATED, [even, moved, unknown])
-    moving = "with the stated offsets, no longer with centers of mass moved along x and along y by 0.1 m"
+    lines = [describe(validity) for validity in ranges(STATED, [even, moved, unknown])]
+    moving = "with centers of mass moved along x and along y by up to 0 m, no longer by 0.1 m"
     assert f"mu_1 stays within 1 % {moving}" in lines
     assert "mu_1 stays within 1 % with bodies and links turned by up to 0.2 rad, the largest tried" in lines
-    first, second = lines[-2:]
+    first, second = uneven_lines(STATED, [even, moved, unknown])
     assert first.endswith("change mu_1 by up to 3 %, mu_2 by up to 0 %; they turn by up to 5 mrad")
     assert second.endswith("no motion says how far they turn")
 
@@ -212,10 +212,9 @@ def test_bars_under_load_are_varied_only_where_they_give_way() -> None:
 def test_what_shortening_changes_is_said_beside_softening_alone() -> None:
     cells = [_cell(variation, size, size, 1e-3) for variation, size in zip(UNDER_LOAD, (-0.1, -0.082))]
     even = _cell(Variation(), 0.0, 0.0)
-    lines = lines_of(STATED, [even, *cells])
-    assert lines[-1].endswith("change mu_1 by up to 2 ± 0.1 %, mu_2 by up to 0 ± 0 %")
+    assert uneven_lines(STATED, [even, *cells])[-1].endswith("change mu_1 by up to 2 ± 0.1 %, mu_2 by up to 0 ± 0 %")
     nothing = [even, cells[0], _cell(UNDER_LOAD[1], float("nan"), 0.0)]
-    assert lines_of(STATED, nothing)[-1].startswith("no value says")
+    assert uneven_lines(STATED, nothing)[-1].startswith("no value says")
 
 
 @pytest.mark.long
