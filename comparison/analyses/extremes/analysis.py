@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -135,13 +135,17 @@ class Cell:
 
 
 def cells(rows: Sequence[Row], columns: Sequence[Column] = COLUMNS) -> list[Cell]:
-    """Every model that each extreme concerns, row by row."""
-    return [Cell(row, column) for row in rows for column in columns if _concerns(row, column)]
+    """
+    Every model that each extreme concerns, row by row.
 
-
-def _concerns(row: Row, column: Column) -> bool:
-    """Whether the model meets the extreme; one of the numerics of our engine is none for an engine of the user."""
-    return not row.amplification and column.like in row.columns if column.like else column.key in row.columns
+    One of the numerics of our engine is none for an engine of the user.
+    """
+    return [
+        Cell(row, column)
+        for row in rows
+        for column in columns
+        if (column.like or column.key) in row.columns and not (column.like and row.amplification)
+    ]
 
 
 def solve_cell(cell: Cell) -> Entry:
@@ -154,25 +158,19 @@ def solve_cell(cell: Cell) -> Entry:
         function = row.amplification or column.amplification
         reply = _ask(row, function, {**column.settings, **row.settings, "tolerance": tolerance})
         seconds = time.process_time() - begin
-        finer = list(_finer_replies(cell, function, tolerance)) if answers(reply) else []
+        finer = []
+        for other, settings, usual in column.finer if answers(reply) else ():
+            # another function knows only what its own settings name
+            known = {key: value for key, value in row.settings.items() if other == function or key in settings}
+            strict = max(usual * min(1.0, tolerance / column.tolerance), STRICTEST)
+            finer.append(_ask(row, other, {**settings, **known, "tolerance": strict}))
+            if finer[-1].status and NUMERICS.isdisjoint(finer[-1].status):  # an answer, be it a refusal, at every point
+                break
     entry = judged(reply, finer, tolerance, row.invalid, row.right)
     cause = CAUSES.get((row.group, row.title), {}).get(column.key) if entry.verdict == Verdict.LIMIT else None
     reason = " ".join(": ".join(filter(None, (entry.reason, cause))).split())
     total = time.process_time() - begin
     return replace(entry, reason=reason, seconds=round(seconds, 3), total=round(total, 3))
-
-
-def _finer_replies(cell: Cell, answered_by: str, tolerance: float) -> Iterator[Reply]:
-    """What the finer runs of the column say, until one has an answer at every point."""
-    row, column = cell.row, cell.column
-    for function, settings, usual in column.finer:
-        share = min(1.0, tolerance / column.tolerance)
-        # another function knows only what its own settings name
-        known = {key: value for key, value in row.settings.items() if function == answered_by or key in settings}
-        reply = _ask(row, function, {**settings, **known, "tolerance": max(usual * share, STRICTEST)})
-        yield reply
-        if reply.status and NUMERICS.isdisjoint(reply.status):  # an answer, be it a refusal, at every point
-            return
 
 
 def answers(reply: Reply) -> bool:
@@ -202,17 +200,9 @@ def _ask(row: Row, function: str, settings: Mapping[str, Any]) -> Reply:
 def read_scene(stated: Mapping[str, Any]) -> Scene:
     """The scene of tables and keys, None standing for an absent key. Raises SceneError."""
     try:
-        return Scene.model_validate({**_without_none(stated), "name": "extreme"})
+        return Scene.model_validate({**stated, "name": "extreme"})
     except ValidationError as error:
         raise first_error("extreme", error, KEYS) from None
-
-
-def _without_none(table: Mapping[str, Any]) -> dict[str, Any]:
-    return {
-        key: _without_none(value) if isinstance(value, Mapping) else value
-        for key, value in table.items()
-        if value is not None
-    }
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,12 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     picture = made_by(lambda folder: draw_extremes(folder / PICTURE, matrix))
     with writing(out):
         files = publish(out, {FILE: STORED.as_json(matrix), **picture}, "comparison.extremes")
-    print_matrix(console, matrix)
+    for verdict in (Verdict.LIMIT, Verdict.FAILED):
+        for row, title, entry in matrix.listed(verdict):
+            console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
+    counts = ", ".join(f"{count} {name}" for name, count in matrix.counts().items())
+    spent = f"{matrix.run['seconds']} s, {matrix.run['cpu_seconds']} s of processor time"
+    console.print(f"{sum(matrix.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)
     console.print(f"Matrix: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by comparison.run shows it.")
     return 1 if matrix.counts()[Verdict.FAILED] else 0
@@ -54,11 +59,10 @@ def judged_matrix(
     extremes: Extremes, options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> Matrix:
     """The matrix with all that is known of its run; stored cells are not judged again."""
-    begin = time.monotonic()
-    tasks = extremes.tasks()
+    begin, tasks = time.monotonic(), extremes.tasks()
     results = computed("extremes", options, words, tasks, MODELS, console, executor)
     matrix = extremes.collect(None, None, results)
-    totals = [entry.total for row in matrix.rows for entry in row.entries.values() if entry.total is not None]
+    totals = [entry.total or 0.0 for row in matrix.rows for entry in row.entries.values()]
     run = {
         **run_facts("extremes", options, words, begin),
         "cpu_seconds": round(sum(totals), 1),
@@ -67,16 +71,6 @@ def judged_matrix(
         "reduced": len([task for task in tasks if not task.group]) < len(cells(list(rows()))),
     }
     return replace(matrix, run=run)
-
-
-def print_matrix(console: Console, matrix: Matrix) -> None:
-    """Counts, and what a model cannot do."""
-    for verdict in (Verdict.LIMIT, Verdict.FAILED):
-        for row, title, entry in matrix.listed(verdict):
-            console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
-    counts = ", ".join(f"{count} {name}" for name, count in matrix.counts().items())
-    spent = f"{matrix.run['seconds']} s, {matrix.run['cpu_seconds']} s of processor time"
-    console.print(f"{sum(matrix.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)
 
 
 def _chosen(options: argparse.Namespace) -> Extremes:

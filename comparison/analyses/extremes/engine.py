@@ -33,24 +33,22 @@ def amplification(
     """As `multibody.amplification`, in full and with few levels, from a contact stiffness, N/m, or largest step, s."""
     levels = multibody.levels(scene, model, tolerance, regularization)[:MAX_LEVELS]
     if contact_stiffness is not None:
-        penetration = scene.total_mass * GRAVITY / (contact_stiffness * scene.radius)
-        levels = [_with_contact(level, number, penetration) for number, level in enumerate(levels)]
-    if step is not None:
+        first = scene.total_mass * GRAVITY / (contact_stiffness * scene.radius)
+        for number, level in enumerate(levels):  # a penetration between that of the first level and its own
+            share = min(number / LEVELS_TO_USUAL_CONTACT, 1.0)
+            levels[number] = replace(level, penetration=first ** (1.0 - share) * level.penetration**share)
+    if step is not None:  # the largest one is so many times as long, the smallest stays what it is
         factor = step / math.sqrt(scene.radius / GRAVITY) / levels[0].step
-        levels = [_with_longer_step(level, factor) for level in levels]
+        more, error = math.ceil(math.log(factor, STEP_RATIO)), max(factor, 1.0) ** 2  # a method of second order
+        levels = [
+            replace(
+                level,
+                step=level.step * factor,
+                max_divisions=max(level.max_divisions + more, 0),
+                error_floor=level.error_floor * error,
+            )
+            for level in levels
+        ]
     return multibody.amplification(
         scene, phases, model, regularization, tolerance, full=True, levels=levels, max_work=max_work
     )
-
-
-def _with_contact(level: multibody.Level, number: int, first: float) -> multibody.Level:
-    """Level `number` with a penetration between `first`, that of the first level, and its own."""
-    share = min(number / LEVELS_TO_USUAL_CONTACT, 1.0)
-    return replace(level, penetration=first ** (1.0 - share) * level.penetration**share)
-
-
-def _with_longer_step(level: multibody.Level, factor: float) -> multibody.Level:
-    """`level` with the largest step `factor` times as long; the smallest step stays what it is."""
-    divisions = level.max_divisions + math.ceil(math.log(factor, STEP_RATIO))
-    error_floor = level.error_floor * max(factor, 1.0) ** 2  # the method is of second order
-    return replace(level, step=level.step * factor, max_divisions=max(divisions, 0), error_floor=error_floor)
