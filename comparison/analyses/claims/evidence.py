@@ -90,7 +90,8 @@ def with_facts(
     def ground(phases: Array) -> Array:
         return ground_peak(scene, phases)[:, None]
 
-    grid = len(surfaces.mu)
+    grid, natural = len(surfaces.mu), reference.modes(scene).period.ravel()
+    periods = 2.0 * np.pi / exponents(scene).imag
     peaks = ground(phase_grid(grid)).reshape(grid, grid, 1)
     numerators = bends(surfaces.mu * peaks, lambda at: factors(at) * ground(at)) if scene.lubricated else ()
     return replace(
@@ -98,7 +99,7 @@ def with_facts(
         bends=bends(surfaces.mu, factors),
         apart=apart,
         swing=swing,
-        resonance=_resonance(scene),
+        resonance=tuple((float(each), float(natural[np.abs(each / natural - 1.0).argmin()])) for each in periods),
         twins=bool(half_turn(scene)),
         ground=bends(peaks, ground)[0],
         numerators=numerators,
@@ -118,8 +119,3 @@ def _motion(scene: Scene, v_reg: float | None) -> tuple[tuple[float, ...], float
         apart = np.maximum(apart, np.abs(place[..., 0] - place[..., 1]).max(axis=0) / np.where(reach > 0, reach, 1.0))
         swing = max(swing, float((place[:, 0] ** 2).sum(axis=-1).max()) / scene.radius**2)
     return tuple(map(float, apart)), swing
-
-
-def _resonance(scene: Scene) -> tuple[tuple[float, float], ...]:
-    natural, periods = reference.modes(scene).period.ravel(), 2.0 * np.pi / exponents(scene).imag
-    return tuple((float(period), float(natural[np.abs(period / natural - 1.0).argmin()])) for period in periods)

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import xarray as xr
 
@@ -101,9 +101,9 @@ class Claims(Analysis[ClaimTable]):
         if not paper_complete(study):
             return []
         computed = [reading for reading in self.readings if not self._is_recorded(reading)]
-        every = [_question(case, reading, self.grid) for case in _cases(self.claims) for reading in computed]
-        longest = sorted(dict.fromkeys(every), key=lambda question: -question.reading.amplitude)
-        return [self.asking(question) for question in longest]
+        every = [self.task(case, reading) for case in _cases(self.claims) for reading in computed]
+        unique = {task.argument: task for task in every}.values()
+        return sorted(unique, key=lambda task: -task.argument.reading.amplitude)
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ClaimTable | None:
         """The table; None unless the study has every scene of the paper."""
@@ -119,8 +119,11 @@ class Claims(Analysis[ClaimTable]):
         return table_of(self.claims, self.readings, self.grid, list(zip(*map(verdicts, self.readings))))
 
     def task(self, case: str, reading: Reading) -> Task:
-        """What computes a case under a reading."""
-        return self.asking(_question(case, reading, self.grid))
+        """What gathers the evidence of a case under a reading."""
+        scene = CASES[case](reading)
+        compared = len(scene.bodies) == 1 and self.grid % COARSE == 0
+        grid = self.grid // COARSE if compared else self.grid
+        return self.asking(Question(case, without_effect(reading, scene), grid))
 
     def asking(self, question: Question) -> Task:
         """What gathers the evidence of a question."""
@@ -156,22 +159,13 @@ def table_of(
 
 
 @cache
-def _record() -> Any:
-    return json.loads((resources.files("comparison.analyses.claims") / RECORD).read_bytes())
-
-
 def recorded_verdict(reading: Reading, claim: Claim) -> Verdict:
     """What a literal reading says of a claim on 16 x 16 phases, as docs/claims_page.py computed it."""
-    finding, found = _record()[f"{reading.amplitude:g}"][f"{claim.figure}: {claim.says}"]
+    record = json.loads((resources.files("comparison.analyses.claims") / RECORD).read_bytes())
+    finding, found = record[f"{reading.amplitude:g}"][f"{claim.figure}: {claim.says}"]
     return Verdict(Finding(finding), found)
 
 
 def _cases(claims: Sequence[Claim]) -> list[str]:
     used = {case for claim in claims for case in claim.cases}
     return [case for case in CASES if case in used]
-
-
-def _question(case: str, reading: Reading, grid: int) -> Question:
-    scene = CASES[case](reading)
-    compared = len(scene.bodies) == 1 and grid % COARSE == 0
-    return Question(case, without_effect(reading, scene), grid // COARSE if compared else grid)

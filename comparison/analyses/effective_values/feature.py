@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from comparison.analyses.effective_values.analysis import PHASES, Effective, EffectiveValues, ForcedRatio, forced_ratios
-from comparison.report.section import Feature, Findings, Report, SceneField, Section
-from reference.problem import Scene
+from comparison.report.section import Feature, Report, SceneField, Section
 
 
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:
@@ -18,15 +17,17 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
     }
 
 
-def _of_scene(findings: Findings, scene: Scene) -> list[Effective]:
-    return [values for values in findings.found.get("effective") or [] if values.scene == scene.name]
-
-
 FEATURE = Feature(
     "effective",
     analysis=EffectiveValues(),
     scene_fields={
-        "effective": SceneField(list[Effective], "the scene, then every model", _of_scene),
+        "effective": SceneField(
+            list[Effective],
+            "the scene, then every model",
+            lambda findings, scene: [
+                each for each in findings.found.get("effective") or [] if each.scene == scene.name
+            ],
+        ),
         "forced": SceneField(
             list[ForcedRatio],
             "one per axis, harmonic and body above the platform; empty under a recorded motion",

@@ -34,7 +34,7 @@ from comparison.analyses.ensemble.result import (
 from comparison.analyses.families.analysis import listed_demands
 from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task, TaskResult
+from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL, Model, has_spatial_data, why_not_spatial
@@ -147,7 +147,7 @@ class Ensemble(Analysis[Points]):
 
         def point(member: Member, model: Model) -> Point:
             scene = member.scene
-            answer: Answer | str = results.value(self._task(scene, model), _outcome)
+            answer: Answer | str = results.value(self._task(scene, model), lambda task, failed: failed.outcome.value)
             peak = float(np.hypot(scene.record[:, 1], scene.record[:, 2]).max())
             named = member.structure, member.motion, member.scale, peak, scene.name, model.key
             if isinstance(answer, str):
@@ -252,9 +252,11 @@ def structures_of(members: Sequence[Member], means: Mapping[str, float | None]) 
     """The structures in their order. means: of their largest isolator displacements, m."""
     found = []
     for name, own in _by(members, "structure").items():
-        scene = own[0].scene
-        weight = scene.total_mass * GRAVITY
-        found.append(Structure(name, scene.title, len(scene.bodies), weight, _isolator(scene, means.get(name))))
+        scene, mean, isolator = own[0].scene, means.get(name), None
+        if mean and not scene.flat and scene.dry_friction.fast:
+            at = effective_isolator(scene, mean)
+            isolator = Isolator(mean, float(at.period), float(at.damping), float(at.restoring))
+        found.append(Structure(name, scene.title, len(scene.bodies), scene.total_mass * GRAVITY, isolator))
     return found
 
 
@@ -266,23 +268,12 @@ def _by(rows: Sequence[Any], name: str) -> dict[Any, list[Any]]:
     return groups
 
 
-def _isolator(scene: Scene, displacement: float | None) -> Isolator | None:
-    if not displacement or scene.flat or not scene.dry_friction.fast:
-        return None
-    at = effective_isolator(scene, displacement)
-    return Isolator(displacement, float(at.period), float(at.damping), float(at.restoring))
-
-
 def answered(task: Arguments) -> Answer:
     """The demands of one motion by one model, and its floor spectra by the equations."""
     scene, model, tolerance = task
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     motion = imported(model.trajectory)(scene, REST, tolerance=tolerance, **settings)
     return Answer(demands(motion), floor_spectra(motion) if model == EXACT else None)
-
-
-def _outcome(task: Arguments, failed: TaskResult) -> str:
-    return failed.outcome.value
 
 
 def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
@@ -404,7 +395,8 @@ def _differences(quantity: Quantity, first: Sequence[Point], second: Sequence[Po
 
 def as_rows(points: Points) -> list[dict[str, object]]:
     """A row for every motion, scale and model, with all demands and their errors; None where there is no answer."""
-    names = {quantity: quantity_name(quantity) for quantity in quantities([*points.equations, *points.engine])}
+    listed = quantities([*points.equations, *points.engine])
+    names = {quantity: "_".join(map(str, filter(None, quantity))) for quantity in listed}  # drift_2 of body 2
     rows = []
     alike = [point for point in points.alike if point.model != EXACT.key]  # else it is among the points
     for point in (*points.equations, *alike, *points.engine):
@@ -424,8 +416,3 @@ def as_rows(points: Points) -> list[dict[str, object]]:
             row[name], row[f"{name}_error"] = finite_or_none(number.value), finite_or_none(number.error)
         rows.append(row)
     return rows
-
-
-def quantity_name(quantity: Quantity) -> str:
-    """A demand as one word, "drift_2" of body 2."""
-    return "_".join(map(str, filter(None, quantity)))

@@ -129,17 +129,20 @@ def how_paired(suite: str | None) -> str:
     return f"{len(motions)} motions of .AT2 files paired by name, {vertical} with a vertical one: {first}, and so on."
 
 
-def _as_cell(value: object) -> object:
-    """A text that a spreadsheet would take for a formula behind an apostrophe; anything else as it is."""
-    return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
-
-
 def table_text(points: Points) -> str:
-    """The content of ensemble.csv: a row for every motion, scale and model."""
+    """
+    The content of ensemble.csv: a row for every motion, scale and model.
+
+    A text that a spreadsheet would take for a formula stands behind an apostrophe.
+    """
+
+    def cell(value: object) -> object:
+        return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
+
     rows, stream = as_rows(points), io.StringIO()
     writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
     writer.writeheader()
-    writer.writerows({key: _as_cell(value) for key, value in row.items()} for row in rows)
+    writer.writerows({key: cell(value) for key, value in row.items()} for row in rows)
     return stream.getvalue()
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,12 +16,13 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import reference
-from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
+from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING
+from comparison.analyses.errata.printed_matrices import printed_amplification as _printed
 from comparison.result_types import Number, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
-from comparison.study.models import V_REG
+from comparison.study.models import V_REG, any_scene
 from comparison.study.study import Study
 from reference.problem import Scene
 
@@ -33,45 +33,30 @@ DURATION = 6.0  # s
 
 RIGID_PERIOD = 1e-3  # s, of half of the platform on its other half, critically damped; moves exact mu_i by 1e-4
 
-Measure = Callable[[Scene], Array | None]  # relative change of mu (M, N), NaN where the printed form has no answer
+Mu = Callable[[Scene], Array]  # mu (M, N), NaN where the printed form has no answer
 
 
-def _softened(scene: Scene) -> Array | None:
+def _mu(scene: Scene, **settings: Any) -> Array:
+    return reference.amplification(scene, PHASES, **settings).mu
+
+
+def _softened(scene: Scene) -> Array:
     """Every link 144 times softer: 12 n E J / l^3 read as n E J / (12 l^3)."""
     softer: dict[str, Any] = {}
     for number, link in enumerate(scene.stiffness, start=1):
         softer |= {f"bodies.{number}.{key}": None for key in ("period", "bars")}
         softer |= {f"bodies.{number}.stiffness": link / 144.0}
-    return _change(*(reference.amplification(each, PHASES).mu for each in (scene.with_values(softer), scene)))
+    return _mu(scene.with_values(softer))
 
 
-def _without_coefficient(scene: Scene) -> Array | None:
-    """Friction as large as the normal force: mu = 1."""
-    if scene.lubricated:
-        return None
-    rough = scene.with_values({"isolator.friction": 1.0})
-    return _change(*(reference.amplification(each, PHASES).mu for each in (rough, scene)))
+def _two_springs(scene: Scene) -> bool:
+    """Whether the lowest link differs along x and y; the printed matrices have no plane and no normal force."""
+    differ = len(scene.bodies) > 1 and scene.stiffness[0, 0] != scene.stiffness[0, 1]
+    return differ and not scene.flat and not scene.dry_friction.exponent
 
 
-def _printed_rest(scene: Scene) -> Array | None:
-    if scene.lubricated:
-        return None
-    ask = partial(reference.amplification, scene, PHASES, equations="small")
-    return _change(*(ask(rest_condition=rule).mu for rule in ("printed", "consistent")))
-
-
-def _wrong_spring(scene: Scene) -> Array | None:
-    if scene.flat or len(scene.bodies) < 2 or scene.stiffness[0, 0] == scene.stiffness[0, 1]:
-        return None
-    if scene.dry_friction.exponent:  # the printed matrices have no normal force
-        return None
-    return _change(printed_amplification(scene, PHASES, [WRONG_SPRING]), printed_amplification(scene, PHASES))
-
-
-def _wrong_damping(scene: Scene) -> Array | None:
-    if scene.flat or not scene.lubricated:  # (3.9) is multiplied by Delta, which is infinite on a plane
-        return None
-    return _change(printed_amplification(scene, PHASES, [WRONG_DAMPING]), printed_amplification(scene, PHASES))
+def _moving(scene: Scene) -> bool:
+    return not scene.lubricated
 
 
 def cut_platform(scene: Scene) -> Scene:
@@ -86,23 +71,14 @@ def cut_platform(scene: Scene) -> Scene:
     return scene.with_values({"bodies": [{"mass": half}, rigid, *above], "measured": None})
 
 
-def _change_by_cut(scene: Scene, **settings: Any) -> Array:
-    """Change of mu by the cut, (M, N): of the platform that of its lower half."""
-    cut = reference.amplification(cut_platform(scene), PHASES, **settings).mu
-    return _change(np.delete(cut, 1, axis=1), reference.amplification(scene, PHASES, **settings).mu)
+def _cut(scene: Scene, **settings: Any) -> Array:
+    """mu with the platform cut: of the platform that of its lower half."""
+    return np.delete(_mu(cut_platform(scene), **settings), 1, axis=1)
 
 
-def _cut_small(scene: Scene) -> Array | None:
-    """With regularized friction, which keeps the one-sided limits at stops out."""
-    return _change_by_cut(scene, equations="small", regularization=None if scene.lubricated else V_REG)
-
-
-def _cut_supremum(scene: Scene) -> Array | None:
-    return None if scene.lubricated else _change_by_cut(scene)
-
-
-def _change(printed: Array, mended: Array) -> Array:
-    return printed / mended - 1.0
+def _small(scene: Scene) -> dict[str, Any]:
+    """Small equations with regularized friction, which keeps the one-sided limits at stops out."""
+    return {"equations": "small", "regularization": None if scene.lubricated else V_REG}
 
 
 @result
@@ -209,15 +185,23 @@ ERRATA = (
     ),
     MeasuredErratum("section 5", "solution (5.7)", "solution (4.7)", "there is no (5.7)", _NAME),
 )
-# by the number of the erratum, from 0: (2.3), (2.5), c_24 of (3.12), (3.15), (4.3), (4.6), (5.1)
-MEASURES: dict[int, Measure] = {
-    0: _softened,
-    1: _without_coefficient,
-    4: _wrong_spring,
-    6: _wrong_damping,
-    7: _cut_small,
-    8: _printed_rest,
-    10: _cut_supremum,
+# by number of the erratum, from 0: to which scenes it applies, mu as printed, and mu without it
+MEASURES: dict[int, tuple[Callable[[Scene], bool], Mu, Mu]] = {
+    0: (any_scene, _softened, _mu),
+    1: (_moving, lambda scene: _mu(scene.with_values({"isolator.friction": 1.0})), _mu),
+    4: (_two_springs, lambda scene: _printed(scene, PHASES, [WRONG_SPRING]), lambda scene: _printed(scene, PHASES)),
+    6: (
+        lambda scene: scene.lubricated and not scene.flat,  # (3.9) is multiplied by Delta, which is infinite on a plane
+        lambda scene: _printed(scene, PHASES, [WRONG_DAMPING]),
+        lambda scene: _printed(scene, PHASES),
+    ),
+    7: (any_scene, lambda scene: _cut(scene, **_small(scene)), lambda scene: _mu(scene, **_small(scene))),
+    8: (
+        _moving,
+        lambda scene: _mu(scene, equations="small", rest_condition="printed"),
+        lambda scene: _mu(scene, equations="small", rest_condition="consistent"),
+    ),
+    10: (_moving, _cut, _mu),
 }
 
 
@@ -248,11 +232,13 @@ def with_effects(effects: Sequence[Effect]) -> list[MeasuredErratum]:
 def measured(task: tuple[Scene, int]) -> Effect:
     """The effect of one erratum in one scene."""
     scene, number = task
+    short = scene.with_values({"duration": min(scene.duration, DURATION)})
+    applies, printed, mended = MEASURES[number]
     try:
-        change = MEASURES[number](scene.with_values({"duration": min(scene.duration, DURATION)}))
+        change = printed(short) / mended(short) - 1.0 if applies(short) else np.empty((0, 0))
     except Exception as error:
         return Effect(scene.name, number, error_message=f"{type(error).__name__}: {error}")
-    return Effect(scene.name, number, () if change is None else tuple(tuple(map(float, row)) for row in change))
+    return Effect(scene.name, number, tuple(tuple(map(float, row)) for row in change))
 
 
 def _without_value(task: tuple[Scene, int], failed: TaskResult) -> Effect:

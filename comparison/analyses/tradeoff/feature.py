@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
@@ -44,7 +43,8 @@ def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
     for question in trade.questions:
         parts = []
         for target in TARGETS:
-            able = [entry for entry in trade.of(question.key) if _meets(entry, target)]
+            listed = [entry for entry in trade.of(question.key) if entry.complete and not entry.model_error]
+            able = [entry for entry in listed if all(size is not None and size <= target for size in entry.most)]
             estimated = [entry for entry in able if entry.controlled]
             if not able:
                 parts.append(f"for {target:.0e} none")
@@ -111,11 +111,6 @@ def _curve(method: str, entries: Sequence[Entry], body: int, number: int) -> dic
         "color": number,
     }
     return {**line, "dash": "5 3"} if entries[0].model_error else line
-
-
-def _meets(entry: Entry, target: float) -> bool:
-    errors = [math.inf if size is None else size for size in entry.most]
-    return entry.complete and not entry.model_error and max(errors) <= target
 
 
 def _draw(figures: Path, report: Report) -> None:

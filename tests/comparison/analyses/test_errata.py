@@ -23,14 +23,16 @@ def _study(*names: str) -> Study:
 
 
 def test_effects_come_in_order_and_a_measure_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    def half(scene: Scene) -> np.ndarray | None:
-        return np.full((2, 2), 0.5) if scene.name == "fig3-I" else None
+    def whole(scene: Scene) -> np.ndarray:
+        return np.ones((2, 2))
 
-    def breaks(scene: Scene) -> np.ndarray | None:
+    def breaks(scene: Scene) -> np.ndarray:
         raise RuntimeError("singular")
 
+    half = (lambda scene: scene.name == "fig3-I"), (lambda scene: np.full((2, 2), 1.5)), whole
+
     monkeypatch.setattr(errata, "ERRATA", [MeasuredErratum(where, "p", "c", "w") for where in "abc"])
-    monkeypatch.setattr(errata, "MEASURES", {0: half, 2: breaks})
+    monkeypatch.setattr(errata, "MEASURES", {0: half, 2: (lambda scene: True, breaks, whole)})
     halved, harmless, broken = [row.effects for row in collected(Errata(), _study("fig3-I", "fig3-II"))]
     assert [(effect.scene, effect.erratum) for effect in halved] == [("fig3-I", 0), ("fig3-II", 0)]
     assert harmless == ()
