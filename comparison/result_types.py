@@ -8,10 +8,11 @@ replaces what UTF-8 does not know.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, is_dataclass
+from types import MappingProxyType
 from typing import Annotated, Any, Literal, TypeVar, dataclass_transform
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer
+from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer, TypeAdapter
 
 from comparison.json_file import finite_or_none
 
@@ -68,6 +69,10 @@ def result(cls: type[Class]) -> type[Class]:
 
     The text below a field is its meaning, with the unit. What a property adds to the file is a `computed_field`.
     """
+    for base in filter(is_dataclass, cls.__bases__):
+        properties = TypeAdapter(base).json_schema()["properties"]
+        for field in fields(base):  # pydantic reads the texts of a class itself, not of its base
+            field.metadata = MappingProxyType({"description": properties[field.name]["description"]})
     computed = any(hasattr(value, "decorator_info") for value in vars(cls).values())  # which a file has, too
     cls.__pydantic_config__ = {**RESULT, "extra": "ignore" if computed else "forbid"}  # type: ignore[attr-defined]
     return dataclass(frozen=True)(cls)

@@ -73,19 +73,17 @@ class Trend:
 def fitted(parameter: Sequence[float], sizes: Array, errors: Array) -> Slope:
     """One exponent for all rows of sizes (P, S) with absolute errors (P, S), over the parameter (S,)."""
     known = np.isfinite(sizes) & (errors <= KNOWN * np.abs(sizes)) & (sizes != 0.0)
-    rows = [row for row in range(len(sizes)) if known[row].sum() > 1]
-    points = sum(int(known[row].sum()) for row in rows)
+    rows = np.flatnonzero(known.sum(axis=1) > 1)
+    points = int(known[rows].sum())
     freedom = points - len(rows) - 1
     if freedom < 1:
         return Slope(np.nan, np.nan, points, len(rows))
-    x, y, error_estimate = [], [], []
+    parts = []
     for row in rows:
-        abscissa = np.log(np.asarray(parameter)[known[row]])
-        ordinate = np.log(np.abs(sizes[row, known[row]]))
-        x.append(abscissa - abscissa.mean())
-        y.append(ordinate - ordinate.mean())
-        error_estimate.append(errors[row, known[row]] / np.abs(sizes[row, known[row]]))
-    along, up, noise = (np.concatenate(parts) for parts in (x, y, error_estimate))
+        size = np.abs(sizes[row, known[row]])
+        logarithms = np.log([np.asarray(parameter)[known[row]], size])
+        parts.append([*(logarithms - logarithms.mean(axis=1, keepdims=True)), errors[row, known[row]] / size])
+    along, up, noise = (np.concatenate(column) for column in zip(*parts))
     spread = float(along @ along)
     exponent = float(along @ up) / spread
     scatter = float(((up - exponent * along) ** 2).sum()) / freedom / spread
@@ -105,12 +103,11 @@ def trend(
 ) -> Trend:
     """A trend from signed sizes and their errors, (P, S), NaN without an answer; error_message: what went wrong."""
     slope = fitted(parameter, sizes, errors)
-    medians = [math.nan] * len(parameter)
-    for number, column in enumerate(np.abs(sizes).T):
-        if np.isfinite(column).any():
-            medians[number] = float(np.median(column[np.isfinite(column)]))
-    verdict = error_message or _verdict(slope, expected)
-    return Trend(scene, body, what, tuple(parameter), tuple(medians), *slope, expected, verdict)
+    columns = [column[np.isfinite(column)] for column in np.abs(sizes).T] if len(sizes) else [sizes] * len(parameter)
+    medians = tuple(float(np.median(column)) if column.size else math.nan for column in columns)
+    return Trend(
+        scene, body, what, tuple(parameter), medians, *slope, expected, error_message or _verdict(slope, expected)
+    )
 
 
 def _verdict(slope: Slope, expected: float | None) -> str:

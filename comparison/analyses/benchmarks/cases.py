@@ -216,7 +216,7 @@ def _linear() -> list[Case]:
 OPTION = "--mastodon"
 READ_TO = 3.0  # mm, from the published loops
 RADIUS = 2.2352  # m
-WEIGHT = 6285710.0  # N
+HEAVY = 6285710.0  # N, of the pendulum
 LIMITS = (-432.0, 330.0, -197.0, 152.0)  # mm: smallest and largest along x, then along y
 
 
@@ -238,7 +238,7 @@ def mastodon(path: Path) -> Case:
             "name": "mastodon",
             "duration": float(samples[-1, 0]),
             "isolator": {"radius": RADIUS, "friction": {"slow": 0.03, "fast": 0.06, "rate": 100.0}},
-            "bodies": [{"mass": WEIGHT / GRAVITY}],
+            "bodies": [{"mass": HEAVY / GRAVITY}],
             "excitation": {"record": {"time": samples[:, 0], "acceleration": samples[:, 1:]}},
         }
     )

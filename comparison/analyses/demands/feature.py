@@ -64,10 +64,7 @@ FEATURE = Feature(
             lambda findings, scene: demand_statistics(findings.study, findings.found.get("demands"), scene),
         )
     },
-    section=Section(
-        "Demands over all phases",
-        context=_context,
-    ),
+    section=Section("Demands over all phases", context=_context),
 )
 
 

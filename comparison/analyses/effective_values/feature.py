@@ -34,10 +34,5 @@ FEATURE = Feature(
             lambda findings, scene: forced_ratios(scene),
         ),
     },
-    section=Section(
-        "Effective values",
-        context=_context,
-        verifies=True,
-        template="effective_values/section.html.j2",
-    ),
+    section=Section("Effective values", context=_context, verifies=True, template="effective_values/section.html.j2"),
 )

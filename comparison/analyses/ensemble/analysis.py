@@ -294,7 +294,7 @@ def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
                     for number, point in zip(numbers, at_scale)
                     if not math.isfinite(number.value)
                 )
-                about = name, own[0].model, *_named(quantity), unit_of(quantity[0]), scale
+                about = name, *_named(quantity), own[0].model, unit_of(quantity[0]), scale
                 answered = len(numbers) - lacking.total()
                 yield Stripe(*about, answered, mean, fractiles, largest, smallest, dict(lacking))
 

@@ -85,17 +85,23 @@ class Spectrum:
 
 
 @result
-class Stripe:
-    """A demand at one scale over all motions by one model."""
+class Demand:
+    """What every number of an ensemble is of."""
 
     structure: str
     """name"""
-    model: str
-    """key of the model"""
     quantity: str
     """demand"""
     body: int | None
     """from 1, counted from the platform; null for the isolator"""
+
+
+@result
+class Stripe(Demand):
+    """A demand at one scale over all motions by one model."""
+
+    model: str
+    """key of the model"""
     unit: str
     """SI; empty for a pure number"""
     scale: float
@@ -120,15 +126,9 @@ class Stripe:
 
 
 @result
-class Curve:
+class Curve(Demand):
     """A demand of one motion over its scale factors."""
 
-    structure: str
-    """name"""
-    quantity: str
-    """demand"""
-    body: int | None
-    """from 1; null for the isolator"""
     model: str
     """key of the model"""
     motion: str
@@ -142,15 +142,9 @@ class Curve:
 
 
 @result
-class Difference:
+class Difference(Demand):
     """How far the engine is from the equations in one demand."""
 
-    structure: str
-    """name"""
-    quantity: str
-    """demand"""
-    body: int | None
-    """from 1; null for the isolator"""
     largest: float | None
     """relative difference from the equations of the ensemble; null without a common point"""
     like_for_like: float | None

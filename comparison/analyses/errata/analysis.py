@@ -144,11 +144,7 @@ ERRATA = (
         "(3.7) has the spring of y; printed, the springs of y do work in every cycle unless T_3x = T_3y",
     ),
     MeasuredErratum(
-        "(3.12)",
-        "c_1e = 0 for e = 4 ... N, c_2e = 0 for e = 5 ... N",
-        "up to 2 N",
-        "q has 2 N components (3.9)",
-        _NAME,
+        "(3.12)", "c_1e = 0 for e = 4 ... N, c_2e = 0 for e = 5 ... N", "up to 2 N", "q has 2 N components (3.9)", _NAME
     ),
     MeasuredErratum(
         "(3.15)",

@@ -14,12 +14,7 @@ from comparison.analyses.extremes.matrix import MEANING, Entry, Matrix, Verdict,
 Line = tuple[str, Mapping[str, Entry] | None]  # title and its entries; None for the heading of a group
 
 # distinct for those who do not see red and green apart; the letter says it without any color
-COLORS = {
-    Verdict.CONVERGED: "#a8d5ba",
-    Verdict.REFUSED: "#bcd4f0",
-    Verdict.LIMIT: "#f7d488",
-    Verdict.FAILED: "#8c1d18",
-}
+COLORS = {Verdict.CONVERGED: "#a8d5ba", Verdict.REFUSED: "#bcd4f0", Verdict.LIMIT: "#f7d488", Verdict.FAILED: "#8c1d18"}
 HEIGHT, WIDTH, LABELS, MARGIN, TOP = 0.2, 0.9, 1.75, 0.2, 1.15  # of fields, labels and borders, inches
 LEGEND = 4.0  # inches, the width of a column of it
 

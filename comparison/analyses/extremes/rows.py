@@ -144,11 +144,7 @@ def scene(
         "duration": duration,
         "isolator": {"friction": 0.1, "supports": 4, "ring": 1.0, "sphere_radius": 0.05, **isolator},
         "bodies": bodies,
-        "excitation": {
-            "amplitudes": [list(row) for row in amplitudes],
-            "periods": list(periods),
-            "decay": list(decay),
-        },
+        "excitation": {"amplitudes": [list(row) for row in amplitudes], "periods": list(periods), "decay": list(decay)},
     }
 
 

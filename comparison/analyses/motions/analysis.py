@@ -138,17 +138,12 @@ class StoredMotion:
 Arguments = tuple[Scene, Model, float, Place, tuple[float, float]]
 
 
-def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Place]:
+def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Place, set[str]]:
     """
     Where the difference of each body is largest, total and translational, then an even spread over the phases.
 
-    No place is listed twice.
+    With the keys of the engine's models that move there: all, or that of the difference.
     """
-    return list(_engines_at(study, surfaces, scene))
-
-
-def _engines_at(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Place, set[str]]:
-    """The places with the keys of the engine's models that move there: all, or that of the difference."""
     engines = {model.key for model in shown_models(study, scene) if model.side == "engine"}
     if scene.recorded:
         return {Place(scene.name, 0, 0, ""): engines}
@@ -170,7 +165,7 @@ def motion_arguments(study: Study, surfaces: xr.Dataset) -> list[Arguments]:
     return [
         (scene, model, model.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
         for scene in study.scenes
-        for place, engines in _engines_at(study, surfaces, scene).items()
+        for place, engines in chosen_places(study, surfaces, scene).items()
         for model in shown_models(study, scene)
         if (model.side != "engine" or model.key in engines)
         and place.row % study.stride(model, scene) == place.column % study.stride(model, scene) == 0

@@ -39,7 +39,7 @@ from __future__ import annotations
 import base64
 import gzip
 from collections.abc import Iterator, Sequence
-from itertools import groupby
+from itertools import accumulate, groupby
 from typing import Any
 
 import numpy as np
@@ -142,15 +142,13 @@ def _numbers(motion: StoredMotion) -> bytes:
 def starts_of(motions: Sequence[StoredMotion]) -> Starts:
     """Where the first number of every motion stands among all of them."""
     sizes = [sum(block.size for block in motion.blocks().values()) for motion in motions]
-    keys = [(motion.place, motion.model) for motion in motions]
-    return dict(zip(keys, np.concatenate([[0], np.cumsum(sizes)]).astype(int).tolist()))
+    return {(motion.place, motion.model): last for motion, last in zip(motions, accumulate(sizes, initial=0))}
 
 
 def _blocks(motion: StoredMotion) -> dict[str, list[int]]:
     """By name, the first column and the number of columns of what the motion has."""
     widths = {name: block.shape[1] for name, block in motion.blocks().items()}
-    firsts = np.concatenate([[0], np.cumsum(list(widths.values()))]).astype(int).tolist()
-    return {name: [first, width] for (name, width), first in zip(widths.items(), firsts)}
+    return {name: [last - width, width] for (name, width), last in zip(widths.items(), accumulate(widths.values()))}
 
 
 def significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:

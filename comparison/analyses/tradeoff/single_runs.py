@@ -20,11 +20,7 @@ USUAL_LEVEL = 1  # of the engine: it usually answers at a tolerance of 1e-3
 
 
 def reference_run(
-    scene: Scene,
-    phases: ArrayLike,
-    inside: float,
-    equations: str = "exact",
-    regularization: float | None = None,
+    scene: Scene, phases: ArrayLike, inside: float, equations: str = "exact", regularization: float | None = None
 ) -> tuple[Array, float]:
     """mu of one run of the reference for each phase pair at a tolerance inside a step, and the mean step, s."""
     pairs = checked_phases(phases)

@@ -10,16 +10,8 @@ from typing import Any
 from comparison.analyses.panels import distribution_panels
 from comparison.analyses.worst_phases.analysis import Worst, WorstPhases
 from comparison.report.plots import fractile_heads
-from comparison.report.results import Results
 from comparison.report.section import Feature, Report, Section
 from comparison.wording import significant
-
-
-def worst_lines(results: Results) -> list[dict[str, Any]]:
-    """Rows of the table of worst phases, each with its model's title and what stands there."""
-    titles = {model.key: model.title for model in results.models}
-    searched = results.of("worst_phases") or ()
-    return [{"worst": worst, "title": titles[worst.model], "kind": _kind(worst)} for worst in searched]
 
 
 def _kind(worst: Worst) -> str:
@@ -37,6 +29,7 @@ def _kind(worst: Worst) -> str:
 
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:
     results = report.results
+    titles = {model.key: model.title for model in results.models}
     return {
         "distribution_panels": [
             panel
@@ -45,7 +38,10 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
             for curves in [[(each.model, each.curve) for each in scene.distributions if each.body == body]]
             for panel in distribution_panels(results, scene.name, f"μ_{body}", "", curves)
         ],
-        "worst_lines": worst_lines(results),
+        "worst_lines": [
+            {"worst": worst, "title": titles[worst.model], "kind": _kind(worst)}
+            for worst in results.of("worst_phases") or ()
+        ],
         "fractiles": fractile_heads(),
     }
 
@@ -56,8 +52,6 @@ FEATURE = Feature(
     "the largest values over all phases; null if not computed",
     analysis=WorstPhases(),
     section=Section(
-        "Largest values over all phases",
-        "python -m comparison.run makes it, of scenes with phases",
-        _context,
+        "Largest values over all phases", "python -m comparison.run makes it, of scenes with phases", _context
     ),
 )

@@ -83,14 +83,6 @@ def test_a_range_ends_at_the_first_value_that_fails(
     assert (validity.holds, validity.fails) == expected
 
 
-def test_the_sentences_name_what_holds_and_what_was_tried_next() -> None:
-    cells = [_cell(Variation(ring=2.0), 0.0, 0.0), _cell(Variation(), 0.02, 0.0)]
-    lines = [describe(validity) for validity in ranges(STATED, cells) if validity.body == 1]
-    assert "mu_1 stays within 1 % with rings from 2 m, no longer at 1 m" in lines
-    assert "mu_1 stays within 5 % with rings from 1 m, every smaller one tried too" in lines
-    assert "mu_1 stays within 1 % at no heights tried" in lines
-
-
 def test_cells_compare_the_two_engine_models() -> None:
     bare = parse_scene(BARE, "bare.toml")
     study = Study((STATED, bare), 2, 1e-3, fake_hierarchy(gap=0.0))

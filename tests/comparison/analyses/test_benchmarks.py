@@ -120,11 +120,6 @@ def test_closed_forms_give_the_published_digits():
     assert swings == pytest.approx([each.published for each in BY_NAME["vm73"].published], abs=5e-6)
 
 
-def test_the_periods_of_the_frame_are_also_those_of_its_modes():
-    modes = reference.modes(shipped("frame")).period[0]
-    assert modes == pytest.approx([each.published for each in BY_NAME["frame"].published], abs=5e-5)
-
-
 # readings ------------------------------------------------------------------------------------------------------------
 
 

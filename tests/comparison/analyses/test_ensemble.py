@@ -27,8 +27,7 @@ from comparison.analyses.ensemble.analysis import (
 )
 from comparison.analyses.ensemble.command import FILES, main, table_text
 from comparison.analyses.ensemble.feature import draw_ensemble
-from reference.measures import Demands, Estimate, phase_distribution
-from reference.measures.distribution import FRACTILES
+from reference.measures import Demands, Estimate
 from reference.problem import load_family, load_scene
 from reference.problem.record_suites import suite_samples
 
@@ -81,14 +80,6 @@ def test_fractiles_of_known_numbers_are_those_of_numpy() -> None:
         expected = np.quantile(values, share, method="hazen")
         assert uncertain_fractile(numbers, share).value == pytest.approx(expected, abs=1e-12)
         assert uncertain_fractile(numbers, share).error == 0.0
-
-
-def test_ensemble_and_phases_have_one_definition_of_fractiles() -> None:
-    """(k - 1/2)/M: 84 % of four values lies 0.86 of the way from the third to the fourth."""
-    values = [1.0, 2.0, 3.0, 4.0]
-    of_phases = phase_distribution(np.reshape(values, (2, 2)), np.zeros((2, 2)))
-    assert uncertain_fractile([Estimate(value, 0.0) for value in values], 0.84).value == pytest.approx(3.86)
-    assert of_phases.fractiles[FRACTILES.index(0.84)].value == pytest.approx(3.86)
 
 
 def test_the_error_of_a_fractile_covers_every_change() -> None:
@@ -160,13 +151,6 @@ def test_one_motion_in_the_scene_needs_neither_suite_nor_scales(folder: Path, un
     (folder / "mine.toml").write_text(text)
     assert run("mine.toml", "--engine", "1") == 0
     assert (content()["motions"], content()["scales"]) == (1, [0.5])
-
-
-def test_the_columns_of_the_table_are_the_shares_that_they_name() -> None:
-    """Eleven motions, 0, 1 ... 10: k - 1/2 of 11 lie below the k-th."""
-    points = [demanding(float(number), 0.0, Estimate(1.0, 0.0)) for number in range(11)]
-    displacement = next(stripes(points))
-    assert [each.value for each in displacement.fractiles] == pytest.approx([1.26, 5.0, 8.74])
 
 
 def test_the_picture_has_the_numbers_in_the_units_of_its_axes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

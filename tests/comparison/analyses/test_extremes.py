@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from known_results import FOUND, PLAIN, fake
+from known_results import PLAIN, fake
 from matplotlib.image import imread
 from runs import no_executor
 
@@ -30,7 +29,7 @@ from comparison.analyses.extremes.analysis import (
 from comparison.analyses.extremes.command import main
 from comparison.analyses.extremes.engine import amplification
 from comparison.analyses.extremes.figure import draw_extremes
-from comparison.analyses.extremes.matrix import FILE, STORED, Entry, Extreme, Matrix, Verdict, describe
+from comparison.analyses.extremes.matrix import STORED, Extreme, Matrix, Verdict
 from comparison.analyses.extremes.rows import CAUSES, COLUMNS, PLAIN_RADIUS, Row, rows, scene
 from comparison.runner.cache import Cache
 from comparison.runner.executors import Pool, TimeLimitError, WorkerDiedError
@@ -128,20 +127,6 @@ def test_every_kind_of_answer_has_its_verdict(row, column, verdict, reason):
     assert (cell.verdict, reason in cell.reason) == (verdict, True), cell.reason
 
 
-def test_the_matrix_has_every_extreme_and_at_least_120_cells():
-    every = list(rows())
-    groups = Counter(row.group for row in every)
-    for group in (
-        "friction", "v_reg, m/s", "amplitude, m/s^2", "rho, m", "bodies N", "total mass, kg",
-        "platform's share of the mass", "link periods, s", "harmonics", "decay, 1/s", "duration, s",
-        "vertical loading, m/s^2", "phases", "direction", "start at the friction limit", "three supports, ring in m",
-        "offset over the ring", "yaw, rad", "positions of supports",
-    ):  # fmt: skip
-        assert groups[group] > 0, group
-    assert len(cells(every)) >= 120
-    assert len({(row.group, row.title, key) for row in every for key in row.columns}) == len(cells(every))
-
-
 @pytest.mark.parametrize("group", ["friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"])
 def test_the_equations_fail_at_no_extreme(group):
     tasks = cells(named(group))
@@ -212,13 +197,6 @@ def test_a_wrong_option_is_one_line(words, rule, tmp_path, capsys):
     assert rule in line
 
 
-def test_the_matrix_is_read_back_as_it_was(tmp_path: Path):
-    assert STORED.load(tmp_path) is None
-    (tmp_path / FILE).write_bytes(STORED.as_json(FOUND))
-    assert STORED.load(tmp_path) == FOUND
-    draw_extremes(tmp_path / "picture.png", FOUND)
-
-
 @pytest.mark.parametrize(("models", "groups"), [(1, 1), (3, 2)])
 def test_the_legend_of_the_picture_lies_within_it(tmp_path: Path, models: int, groups: int) -> None:
     columns = {f"model {number}": "an engine" for number in range(models)}
@@ -226,34 +204,6 @@ def test_the_legend_of_the_picture_lies_within_it(tmp_path: Path, models: int, g
     draw_extremes(tmp_path / "picture.png", Matrix(columns, rows, {}))
     picture = imread(tmp_path / "picture.png")
     assert (picture[:, [0, -1]] == 1.0).all(), "nothing goes on beyond its borders"
-
-
-def test_a_field_shows_the_error_or_the_outcome():
-    assert describe(Entry("converged", "a reason", "ok", 2e-7, 0.1, 0.1)) == "2e-07"
-    assert describe(Entry("limit", "a reason: 1e-3", "tolerance not met", 1e-3, 0.1, 0.1)) == "tolerance not met"
-    assert describe(Entry("refused", "rim reached: a rule of the scene", "", None, 0.1, 0.1)) == "against a rule"
-    assert describe(Entry("FAILED", "hangs: a reason", "time limit", None, None, None)) == "FAILED"
-
-
-@pytest.mark.parametrize(
-    ("content", "reason"),
-    [
-        ('{"columns": {}, "rows": [], "run": {}, "old": 1}', "old: "),
-        ('{"columns": {}, "rows": 3, "run": {}}', "rows: "),
-        (
-            '{"columns": {}, "rows": [{"group": "", "title": "", "entries": {"a": {"verdict": "fine"}}}], "run": {}}',
-            "verdict: Input should be 'converged', 'refused', 'limit' or 'FAILED'",
-        ),
-        ('{"columns": {}', "Invalid JSON"),
-        ("\xff", "Invalid JSON"),
-    ],
-)
-def test_a_matrix_of_an_earlier_version_is_refused_in_one_line(content: str, reason: str, tmp_path: Path):
-    (tmp_path / FILE).write_bytes(content.encode("latin-1"))
-    with pytest.raises(ValueError, match="not a matrix of extremes") as error:
-        STORED.load(tmp_path)
-    assert reason in str(error.value)
-    assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize("choice", [{"contact_stiffness": 1e4}, {"contact_stiffness": 1e6}, {"step": 0.1}])
@@ -284,11 +234,6 @@ def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):
     monkeypatch.setitem(CAUSES, (PLAIN.group, PLAIN.title), {"fake": "the fake gives up"})
     assert solve_cell(Cell(PLAIN, fake("unable"))).reason == "step limit: the fake gives up"
     assert "gives up" not in solve_cell(Cell(PLAIN, fake("honest"))).reason
-
-
-def test_the_reduced_form_asks_the_engine_as_well():
-    asked = {cell.column.key for cell in cells(reduced(list(rows())))}
-    assert asked == {column.key for column in COLUMNS}
 
 
 def test_a_value_that_says_nothing_is_not_confirmed() -> None:

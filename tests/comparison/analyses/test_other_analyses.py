@@ -23,24 +23,12 @@ def page(finished: Path) -> str:
     return both_pages(finished)
 
 
-def test_the_page_states_the_best_reading(page: str) -> None:
-    assert (
-        "(how far one must go down from it to reach anything higher) is at least\n30 % of the surface’s range" in page
-    )
-    assert "Most claims, 2 of 3, are reproduced under\n1 m/s², resolved." in page
-    assert "No reading reproduces: Fig. 3b: μ<sub>2</sub> has several peaks and valleys" in page
-
-
 def test_every_verdict_is_on_the_page_with_what_was_found(page: str) -> None:
     table = page.split("Every claim under every reading", 1)[1].split("</table>", 1)[0]
     assert table.count('class="differs" title="periodic 4 and 3">yes</td>') == 2
     assert table.count('class="differs" title="drawn 4 and 3">drawn</td>') == 1
     assert '<td title="fig3-I: rim reached">?</td>' in table
     assert "<li>1: no, |x<sub>2</sub> - y<sub>2</sub>| up to 0</li>" in page
-
-
-def test_the_page_lists_the_forced_ratios(page: str) -> None:
-    assert "How intensively the bodies above the platform are forced" in page
 
 
 def test_exponents_stand_with_their_uncertainty(page: str) -> None:

@@ -1,12 +1,23 @@
-"""Exponents are fitted with their uncertainty; what is not known, or has no single slope, is said and not fitted."""
+"""Fitted exponents, and the trends over scaled loading, ever smaller v_reg and ever stiffer contacts."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
+from known_analyses import collected
 from numpy.typing import NDArray
 
-from comparison.analyses.trends import Slope, fitted, trend
+import multibody
+import reference
+from comparison.analyses.convergence import analysis as convergence
+from comparison.analyses.convergence.analysis import LIMITS, PENETRATIONS, Convergence, limit_trends
+from comparison.analyses.scaling.analysis import PRINTED, STEP, Scaling, scaled
+from comparison.analyses.trends import Slope, Trend, fitted, trend
+from comparison.study.study import Study
+from reference import trajectory
+from reference.problem import Amplification, Scene, load_scene
 
 Array = NDArray[np.float64]
 SCALES = (1.0, 0.5, 0.25, 0.125)
@@ -80,3 +91,151 @@ def test_medians_are_of_the_absolute_size_of_what_is_known() -> None:
     sizes = trend("s", 1, "w", (1.0, 0.5), np.array([[-4.0, 1.0], [2.0, np.nan], [3.0, np.nan]]), np.ones((3, 2)), None)
     assert sizes.medians == (3.0, 1.0)
     assert Slope(1.0, 0.1, 2, 1).points == 2
+
+
+def _model(step: Callable[[float], float]) -> Callable[..., Amplification]:
+    """mu = 2 + i, small as printed 1 + 0.01 s^2 of it, exact step(s) above that; s read from the scene's loading."""
+
+    def amplification(scene: Scene, phases: Array, equations: str, **settings: object) -> Amplification:
+        s = float(np.abs(scene.amplitudes).max())
+        factor = (1.0 + 0.01 * s**2) * (1.0 + (step(s) if equations == "exact" else 0.0))
+        mu = factor * (2.0 + np.arange(len(scene.bodies)) + 0.1 * np.cos(phases[:, :1]))
+        return Amplification(mu, 1e-9 * mu, np.full(len(mu), "ok"), np.full(len(mu), np.nan), 0.0)
+
+    return amplification
+
+
+def _found(monkeypatch: pytest.MonkeyPatch, step: Callable[[float], float], name: str = "fig3-I") -> list[Trend]:
+    monkeypatch.setattr(reference, "amplification", _model(step))
+    return list(collected(Scaling(), _study(name)))
+
+
+def test_a_geometric_step_has_the_exponent_two(monkeypatch: pytest.MonkeyPatch) -> None:
+    trends = _found(monkeypatch, lambda s: 0.03 * s**2)
+    assert len(trends) == 2 * 2 * 2, "supremum and resolved, two bodies, two trends"
+    assert {trend.verdict for trend in trends} == {"like the power 2"}
+    assert {round(trend.exponent, 2) for trend in trends if trend.what.startswith(STEP)} == {2.0}
+
+
+@pytest.mark.parametrize("step", [lambda s: 0.03 * s, lambda s: 0.03, lambda s: 0.03 * s**3])
+def test_a_step_that_is_no_geometry_is_found_out(
+    monkeypatch: pytest.MonkeyPatch, step: Callable[[float], float]
+) -> None:
+    verdicts = {trend.what.split(",")[0]: trend.verdict for trend in _found(monkeypatch, step)}
+    assert verdicts[STEP] == "not like the power 2"
+    assert verdicts[PRINTED.split(",")[0]] == "like the power 2", "the small equations alone are untouched"
+
+
+def test_a_step_that_jumps_has_no_exponent(monkeypatch: pytest.MonkeyPatch) -> None:
+    trends = _found(monkeypatch, lambda s: 0.2 if s == 0.25 else -0.03 * s**2)
+    assert {trend.verdict[:15] for trend in trends if trend.what.startswith(STEP)} == {"no single slope"}
+
+
+def test_a_lubricated_scene_has_one_peak(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert len(_found(monkeypatch, lambda s: 0.03 * s**2, "fig4-viscous")) == 2 * 2
+
+    def broken(*args: object, **settings: object) -> None:
+        raise RuntimeError("singular")
+
+    monkeypatch.setattr(reference, "amplification", broken)
+    trends = collected(Scaling(), _study("fig4-viscous"))
+    assert [trend.body for trend in trends] == [1, 2]
+    assert {trend.verdict for trend in trends} == {"solver failed: RuntimeError: singular"}
+
+
+VARYING = {"slow": 0.02, "fast": 0.1, "rate": 20.0}  # s/m; slips of 0.05 m/s lie in the middle of its rise
+
+
+@pytest.mark.parametrize(("name", "friction"), [("fig3-II", 0.1), ("fig3-II", VARYING), ("fig4-viscous", None)])
+def test_the_scaled_scene_moves_as_the_scene_scaled(name: str, friction: object) -> None:
+    """Small equations without the kept terms would do so exactly; with them to s^2 of the swing, 1e-2 here."""
+    scene = load_scene(name).with_values({"duration": 2.0, **({"isolator.friction": friction} if friction else {})})
+    larger, smaller = (trajectory(scaled(scene, s), (2.0, 0.7), equations="small").position for s in (0.25, 0.125))
+    np.testing.assert_allclose(larger, 2.0 * smaller, atol=1e-2 * np.abs(larger).max())
+
+
+@pytest.mark.long
+def test_the_step_to_the_exact_equations_is_geometry() -> None:
+    """fig3-II: every trend like s^2, with an uncertainty below 0.1."""
+    trends = collected(Scaling(), _study("fig3-II"))
+    assert {trend.verdict for trend in trends} == {"like the power 2"}
+    assert max(trend.uncertainty for trend in trends) < 0.1
+
+
+def _study(*names: str) -> Study:
+    return Study(tuple(load_scene(name) for name in names), 2, 1e-3)
+
+
+def test_a_lubricated_scene_has_only_the_limit_of_the_contact(monkeypatch: pytest.MonkeyPatch) -> None:
+    def planted(scene: Scene) -> tuple[Array, Array]:
+        sizes = np.array(PENETRATIONS)[None, :, None] * np.array([1.0, -2.0])[None, None, :]
+        return sizes, 1e-3 * np.abs(sizes)
+
+    limits = [limit._replace(parameter=PENETRATIONS, expected=1.0, measure=planted) for limit in LIMITS]
+    monkeypatch.setattr(convergence, "LIMITS", limits)
+    trends = collected(Convergence(), _study("fig3-I", "fig4-viscous"))
+    assert [trend.scene for trend in trends] == ["fig3-I"] * 10 + ["fig4-viscous"] * 2
+    assert [trend.body for trend in trends] == [1, 2] * 6
+    assert {trend.verdict for trend in trends} == {"like the power 1"}
+
+
+def _regularized(power: float) -> object:
+    """mu = 3, or 3 + v^power under a regularized law."""
+
+    def amplification(scene: Scene, phases: Array, tolerance: float, **settings: float) -> Amplification:
+        v = settings.get("regularization")
+        mu = np.full((len(phases), len(scene.bodies)), 3.0 + (0.0 if v is None else v**power))
+        return Amplification(mu, 1e-9 * mu, np.full(len(mu), "ok"), np.full(len(mu), np.nan), 0.0)
+
+    return amplification
+
+
+@pytest.mark.parametrize(("power", "says"), [(1.0, "like the power 1"), (0.5, "not like the power 1")])
+def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, power: float, says: str) -> None:
+    monkeypatch.setattr(reference, "amplification", _regularized(power))
+    monkeypatch.setattr(multibody, "amplification", _regularized(power))
+    for number in (0, 2):  # the equations and the engine, against the resolved peak
+        trends = limit_trends((load_scene("fig3-I"), number))
+        assert {each.verdict for each in trends} == {says}
+        assert [each.exponent for each in trends] == pytest.approx([power] * 2, abs=1e-6)
+
+
+def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(scene: Scene) -> None:
+        raise RuntimeError("no engine")
+
+    monkeypatch.setattr(convergence, "LIMITS", [LIMITS[4]._replace(measure=broken)])
+    trends = collected(Convergence(), _study("fig3-I"))
+    assert [trend.verdict for trend in trends] == ["solver failed: RuntimeError: no engine"] * 2
+
+
+def test_a_contact_ten_times_stiffer_is_ten_times_closer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Second body of fig3-II: 8e-5 of mu at 3e-3 of rho; what is of higher order there is a tenth of it."""
+    monkeypatch.setattr(convergence, "FEWEST_PERIODS", 2.0)
+    trend = limit_trends((load_scene("fig3-II"), 4))[1]
+    assert trend.verdict == "like the power 1"
+    assert trend.medians[0] == pytest.approx(8.4e-5, rel=0.2)
+    assert trend.exponent == pytest.approx(1.0, abs=0.15)
+
+
+@pytest.mark.long
+def test_regularization_is_of_first_order() -> None:
+    scene = load_scene("fig3-II")
+    resolved, supremum = (limit_trends((scene, number)) for number in (0, 1))
+    assert [trend.verdict for trend in resolved] == ["like the power 1"] * 2
+    assert supremum[0].verdict.startswith("hardly falls")
+    assert supremum[1].verdict == "falls"
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_the_error_of_a_constant_step_covers_it(monkeypatch: pytest.MonkeyPatch, order: int) -> None:
+    """A method of this order that is off by 1 % with the coarser steps."""
+
+    def stepped(scene: Scene, v_reg: float, penetration: float, factor: int) -> Array:
+        return np.full((len(convergence.FEW), 2), 3.0 * (1.0 + 0.01 / factor**order))
+
+    monkeypatch.setattr(convergence, "_at_constant_step", stepped)
+    monkeypatch.setattr(reference, "amplification", _regularized(60.0))
+    sizes, errors = convergence._stiffened(load_scene("fig3-I"))
+    assert (np.abs(sizes) <= errors).all()
+    assert (errors <= 5.0 * np.abs(sizes)).all()

@@ -73,7 +73,7 @@ def known_ensemble() -> ensemble.EnsembleResult:
         for values in ((0.132, 0.2, 0.268), (0.296, 0.5, None))
     )
     mean, largest, smallest = (ensemble.Statistic(value, 0.0) for value in (0.21, 0.3, 0.1))
-    none, named = ensemble.Statistic(None, None), ("tower", "exact", "displacement", None, "m")
+    none, named = ensemble.Statistic(None, None), ("tower", "displacement", None, "exact", "m")
     stripes = [ensemble.Stripe(*named, 1.0, 3, mean, low, largest, smallest),
                ensemble.Stripe(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
     difference = ensemble.Difference("tower", "displacement", None, 0.02, 1e-4, 2e-3, 1)
