@@ -12,6 +12,8 @@ from dataclasses import dataclass, fields, is_dataclass
 from types import MappingProxyType
 from typing import Annotated, Any, Literal, TypeVar, dataclass_transform
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer, TypeAdapter
 
 from comparison.json_file import finite_or_none
@@ -30,6 +32,7 @@ def _encodable(value: Any) -> Any:
     return value.encode("utf-16", "surrogatepass").decode("utf-16", "replace") if isinstance(value, str) else value
 
 
+Array = NDArray[np.float64]
 Number = Annotated[float, BeforeValidator(_nan), PlainSerializer(finite_or_none, return_type=float | None)]
 Radius = Annotated[
     float,

@@ -14,17 +14,14 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from comparison.result_types import Number, Text, result
+from comparison.result_types import Array, Number, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from comparison.surfaces.steps import RESOLVED
 from reference.problem import Scene
-
-Array = NDArray[np.float64]
 
 NONE: Array = np.empty((0, 1))  # sizes and errors where nothing has a value
 KNOWN = 1.0 / RESOLVED  # largest error of a value that enters the fit, as its fraction

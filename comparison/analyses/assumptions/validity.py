@@ -12,9 +12,8 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from comparison.result_types import Number, Phases, Text, result
+from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -24,8 +23,6 @@ from comparison.study.study import Study
 from reference.measures import demands
 from reference.measures.demands import ANSWERED
 from reference.problem import Scene, Trajectory, ground_peak, untilted
-
-Array = NDArray[np.float64]
 
 PHASES = np.array([(0.0, 0.0), (0.3, 1.1), (2.0, 0.7)])  # rad; the first is where turning tells most in fig3-I
 DURATION = 6.0  # s: the loading is strongest in its first seconds

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from comparison.analyses.benchmarks import readings
-from comparison.analyses.benchmarks.readings import Array
 from comparison.analyses.benchmarks.table import Row
+from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, SceneError, Trajectory, load_scene
 from reference.problem.files import read_file
 from reference.problem.record_files import LARGEST, RecordError, csv_samples

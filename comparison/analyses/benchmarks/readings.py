@@ -8,12 +8,11 @@ the instants are.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicHermiteSpline
 
+from comparison.result_types import Array
 from reference.problem import Trajectory
-
-Array = NDArray[np.float64]
 
 PARTS = 16  # between two instants, for extremes and lengths
 ROUNDING = 1e-12  # relative, of the last instant

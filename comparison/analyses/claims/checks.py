@@ -12,7 +12,6 @@ from collections.abc import Callable, Sequence
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
 from comparison.analyses.claims.evidence import Evidence
 from comparison.analyses.claims.peaks_and_valleys import (
@@ -27,10 +26,8 @@ from comparison.analyses.claims.peaks_and_valleys import (
 )
 from comparison.analyses.claims.readings import EPSILON
 from comparison.analyses.claims.smoothness import Bend
-from comparison.result_types import Text, result
+from comparison.result_types import Array, Text, result
 from comparison.surfaces.budget import torus_distance
-
-Array = NDArray[np.float64]
 
 SIMILAR = 0.7  # correlation of two surfaces: half of what one does is in the other
 PLANE = 1e-6  # |x - y| relative to the largest displacement: the same to the solver's tolerance

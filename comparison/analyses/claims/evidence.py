@@ -6,17 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 import reference
 from comparison.analyses.claims.readings import CASES, Reading, settings
 from comparison.analyses.claims.smoothness import Bend, bends
+from comparison.result_types import Array
 from comparison.runner.task import TaskResult
 from reference.problem import Amplification, Scene, exponents, ground_peak, phase_grid
 from reference.problem.reductions import half_turn
 from reference.problem.symmetry import surface
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-3  # relative, of the surfaces: peaks are counted in parts of their range
 SHARP = 1e-6  # of the values that tell a fold from a curvature

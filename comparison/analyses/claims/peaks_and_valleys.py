@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from comparison.result_types import Array
 
 SHARE = 0.3  # of the range
 LEAST_SHARE, MOST_SHARE = 0.2, 0.4  # a count that changes between these depends on the definition

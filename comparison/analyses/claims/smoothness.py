@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from comparison.result_types import Array
 
 DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])
 PLACES = 2  # of the grid, that are looked at

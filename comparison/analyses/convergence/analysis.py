@@ -21,16 +21,15 @@ from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 import multibody
 import reference
 from comparison.analyses.trends import NONE, Trend, TrendAnalysis, trend
+from comparison.result_types import Array
 from comparison.runner.task import TaskResult
 from comparison.study.models import dry, has_spatial_data
 from reference.problem import Amplification, Outcome, Scene, exponents, ground_peak, loading_period
 
-Array = NDArray[np.float64]
 Values = tuple[Array, Array]  # relative sizes and their errors, (P, S, N)
 
 PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad

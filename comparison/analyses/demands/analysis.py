@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.result_types import Number, Phases, UncertainNumber, result
+from comparison.result_types import Array, Number, Phases, UncertainNumber, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -28,8 +28,6 @@ from reference.measures import Estimates, phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import PER_BODY, QUANTITIES, demands_of_motions
 from reference.problem import Scene, phase_axis, phase_grid
-
-Array = NDArray[np.float64]
 
 BATCH = {"reference": 32, "engine": 4}  # motions of one task: about two seconds
 PREFIX = "demand_"  # of a demand in surfaces.nc

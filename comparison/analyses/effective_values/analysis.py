@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from comparison.result_types import Number, Radius, Text, result
+from comparison.result_types import Array, Number, Radius, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -23,8 +22,6 @@ from comparison.study.models import Model, steps_of
 from comparison.study.study import Study
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, exponents, ground_acceleration
 from reference.problem.friction import LEAST_LOAD
-
-Array = NDArray[np.float64]
 
 PHASES = (0.3, 1.1)  # rad, of the motion that is measured
 DURATION = 6.0  # s: two frequencies are strongest in their first seconds; a record is followed to its end

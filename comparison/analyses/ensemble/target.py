@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from comparison.analyses.ensemble.analysis import SCALE, Member
 from comparison.analyses.ensemble.result import MatchedMotion, Target
 from comparison.cli.arguments import number
+from comparison.result_types import Array
 from reference.measures import factor_for_spectrum, response_spectrum
 from reference.problem import SceneError
 from reference.problem.files import read_file
@@ -21,8 +21,6 @@ COMPARED, DRAWN = 40, 60  # periods, evenly spaced in their logarithm, of the le
 LARGEST = 2**20  # bytes of a file
 HEADS = {f"acceleration[{unit}]": factor for unit, factor in UNITS.items()}
 RULE = "must be CSV with a header such as period [s], acceleration [g], and at least two rows of rising periods"
-
-Array = NDArray[np.float64]
 
 
 def read_target(file: str) -> tuple[Array, Array]:

@@ -13,20 +13,17 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 import reference
 from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING
 from comparison.analyses.errata.printed_matrices import printed_amplification as _printed
-from comparison.result_types import Number, Text, result
+from comparison.result_types import Array, Number, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import V_REG, any_scene
 from comparison.study.study import Study
 from reference.problem import Scene
-
-Array = NDArray[np.float64]
 
 PHASES = np.array([(0.3, 1.1), (4.0, 5.5)])  # rad
 DURATION = 6.0  # s

@@ -13,13 +13,12 @@ from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from comparison.result_types import Array
 from comparison.study.models import V_REG
 from reference.problem import GRAVITY, Scene, ground_peak
 from reference.problem.excitation import acceleration_of_ground
-
-Array = NDArray[np.float64]
 
 WRONG_SPRING = "(3.12) c_24 with k^x"
 WRONG_DAMPING = "(3.15) h_12, h_21 without rho, h_22 with xi''"

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from comparison.analyses.extremes.matrix import Entry, Extreme, Matrix, Verdict
 from comparison.analyses.extremes.rows import CAUSES, COLUMNS, EQUATIONS, REFERENCE, Column, Row
 from comparison.json_file import finite_or_none
+from comparison.result_types import Array
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -26,7 +26,6 @@ from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
 from reference.problem.scene_error import first_error
 
-Array = NDArray[np.float64]
 Finer = tuple[str, Array, Array]  # status, mu and error of a finer run at a phase pair
 
 PHYSICS = {

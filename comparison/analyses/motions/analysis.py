@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.result_types import Array
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -23,8 +24,6 @@ from reference.build_cache import cached_on_disk
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
 from reference.measures.demands import ANSWERED
 from reference.problem import Outcome, Scene, Trajectory
-
-Array = NDArray[np.float64]
 
 SHARE = 0.003  # of the swing of a component: what a thinned motion may be off by
 MIN_SWING = 0.01  # of its largest value: a component that changes less is as good as constant

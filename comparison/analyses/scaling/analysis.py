@@ -13,15 +13,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import reference
 from comparison.analyses.trends import NONE, Trend, TrendAnalysis, trend
+from comparison.result_types import Array
 from comparison.runner.task import TaskResult
 from comparison.study.models import dry
 from reference.problem import Scene
-
-Array = NDArray[np.float64]
 
 SCALES = (1.0, 0.5, 0.25, 0.125)
 PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad

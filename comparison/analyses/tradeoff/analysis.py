@@ -10,7 +10,6 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from comparison.analyses.tradeoff.settings import Question, Setting, Settings, asked, settings, user_settings
 from comparison.analyses.tradeoff.trade import (
@@ -24,6 +23,7 @@ from comparison.analyses.tradeoff.trade import (
     with_pareto_fronts,
 )
 from comparison.json_file import finite_or_none
+from comparison.result_types import Array
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -33,8 +33,6 @@ from comparison.study.study import Study
 from comparison.study.user_models import engine_of
 from comparison.wording import exception_line
 from reference.problem import Amplification, Scene
-
-Array = NDArray[np.float64]
 
 SEED = 20  # of the sample of phase pairs: the same in every run
 SHORT = 0.2  # s of motion, to warm up

@@ -9,14 +9,13 @@ from typing import Any
 
 import numpy as np
 from numba import njit
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 
+from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, checked_phases, exponents, ground_acceleration, ground_peak
 from reference.solver.equations import exact_acceleration
 from reference.solver.system import pack
-
-Array = NDArray[np.float64]
 
 ABSOLUTE = 1e-2  # absolute tolerance of a step, m and m/s, over its relative one
 SAMPLES = 2001  # of the motion besides the solver's own steps, to find where the peaks are

@@ -5,15 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 import multibody
+from comparison.result_types import Array
 from reference.problem import Outcome, Scene, checked_phases, ground_peak
 from reference.solver.error_estimate import peaks_at
 from reference.solver.system import SOLVED
 from reference.surface import checked_demand
-
-Array = NDArray[np.float64]
 
 DISCONTINUOUS = 1.0  # the engine's own default
 USUAL_LEVEL = 1  # of the engine: it usually answers at a tolerance of 1e-3

@@ -10,12 +10,9 @@ from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from comparison.json_file import StoredFile
-from comparison.result_types import result
-
-Array = NDArray[np.float64]
+from comparison.result_types import Array, result
 
 FILE = "tradeoff.json"
 SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"

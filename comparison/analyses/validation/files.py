@@ -8,13 +8,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.io import loadmat
 
+from comparison.result_types import Array
 from reference.problem import SceneError
 from reference.problem.files import read_file
-
-Array = NDArray[np.float64]
 
 LARGEST = 2**24  # bytes of a file
 MAX_SAMPLES = 2_000_000

@@ -23,7 +23,8 @@ from scipy.optimize import least_squares
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import table
 from comparison.analyses.validation.files import Shaken, wrong_file
-from comparison.analyses.validation.table import COVERAGE, INPUT, LAW, SIDES, Answer, Array, Found
+from comparison.analyses.validation.table import COVERAGE, INPUT, LAW, SIDES, Answer, Found
+from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
 HEAVY, LOOSE = 10.0, 1e4  # mass of the second body over that of the platform; period of its link, s

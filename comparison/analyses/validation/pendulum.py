@@ -15,7 +15,8 @@ from scipy.special import ellipk
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import table
 from comparison.analyses.validation.files import DECAY, LARGE, Swing, wrong_file
-from comparison.analyses.validation.table import COVERAGE, INPUT, LAW, SIDES, Answer, Array, Data, Found
+from comparison.analyses.validation.table import COVERAGE, INPUT, LAW, SIDES, Answer, Data, Found
+from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
 REGULARIZATION, TOLERANCE = 1e-5, 1e-4  # of the engine; v_reg in m/s

@@ -17,7 +17,7 @@ import multibody
 import reference
 from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import StoredFile, finite_or_none
-from comparison.result_types import result
+from comparison.result_types import Array, result
 from reference.measures.demands import ANSWERED
 from reference.problem import Scene, State, Trajectory
 
@@ -116,7 +116,6 @@ def recorded() -> Validation:
     return TypeAdapter(Validation).validate_json(file.read_bytes())
 
 
-Array = NDArray[np.float64]
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
 COVERAGE = 2.0  # standard deviations of an expanded uncertainty
 

@@ -16,10 +16,9 @@ from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 import reference
-from comparison.result_types import Number, Phases, Text, result
+from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -31,8 +30,6 @@ from comparison.surfaces.surfaces import values_of
 from reference.measures.local_maxima import GRID, local_maxima
 from reference.measures.local_search import LocalSearch, Points, Surface, predicted, square_of
 from reference.problem import Scene
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 1e-5  # relative error of mu by the equations
 POINTS = 600  # of the equations that a search takes
