@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from markupsafe import Markup
 
@@ -60,7 +60,7 @@ def explained(sentence: str, seen: set[str] | None = None) -> Markup:
         seen.add(word)
         return symbols(word) if known else term(word)
 
-    return _by_parts(WORDS, sentence, first, symbols)
+    return _by_parts(WORDS.finditer(sentence), sentence, first, symbols)
 
 
 def emphasized(sentence: str) -> Markup:
@@ -70,15 +70,15 @@ def emphasized(sentence: str) -> Markup:
     def strong(text: str) -> Markup:
         return Markup("<strong>{}</strong>").format(explained(text, seen))
 
-    return _by_parts(LEAD, sentence, strong, lambda text: explained(text, seen))
+    return _by_parts(LEAD.finditer(sentence), sentence, strong, lambda text: explained(text, seen))
 
 
 def _by_parts(
-    pattern: re.Pattern[str], text: str, inside: Callable[[str], Markup], outside: Callable[[str], Markup]
+    found: Iterable[re.Match[str]], text: str, inside: Callable[[str], Markup], outside: Callable[[str], Markup]
 ) -> Markup:
-    """The text with what the pattern finds written by `inside`, and the rest by `outside`."""
+    """The text with what was found written by `inside`, and the rest by `outside`."""
     parts, end = [], 0
-    for match in pattern.finditer(text):
+    for match in found:
         parts += [outside(text[end : match.start()]), inside(match.group())]
         end = match.end()
     return Markup("").join([*parts, outside(text[end:])])

@@ -247,6 +247,7 @@ def read_manifest(folder: Path) -> dict[str, Own]:
 
 
 def manifest_json(manifest: Mapping[str, Own]) -> bytes:
+    """The list of a report's files as it is stored."""
     files = {
         name: {"command": manifest[name].command, "sha256": list(manifest[name].hashes)} for name in sorted(manifest)
     }
