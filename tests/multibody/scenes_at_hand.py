@@ -8,13 +8,14 @@ import numpy as np
 from rigid_chain import spatial_motion
 
 import multibody
+import reference
 from multibody.integration.constant_step import set_initial_state, silence
 from multibody.models.assembly import assemble
 from multibody.models.depressions import angular_velocity_matrix
 from multibody.models.engine import exudyn
 from multibody.models.system import EngineState
 from reference.measures import demands
-from reference.problem import Outcome, Scene
+from reference.problem import Amplification, Outcome, Scene
 
 CONSTANT = 1e9  # s, period of a harmonic that stays at its first value
 
@@ -86,6 +87,20 @@ def forces_of_links(scene: Scene, coordinates: Any, velocities: Any) -> tuple[An
     for body, angles in enumerate(np.reshape(coordinates, (-1, 6))[:, 3:]):
         pushed[body, 1] = np.linalg.solve(angular_velocity_matrix(angles).T, pushed[body, 1])
     return pushed[:, 0], pushed[:, 1], model
+
+
+def both_sides(
+    scene: Scene, phases: Any, v_reg: float = 1e-3, *, outcome: str = Outcome.OK, strict: float = 1e-6, **asked: Any
+) -> tuple[Amplification, Amplification]:
+    """Answers of the engine and, to a tolerance `strict`, of the equations with its law: equal within their errors."""
+    regularization = None if scene.lubricated else v_reg
+    engine = multibody.amplification(scene, phases, regularization=regularization, **asked)
+    equations = reference.amplification(scene, phases, regularization=regularization, tolerance=strict)
+    assert (set(engine.status), set(equations.status)) == ({outcome}, {Outcome.OK})
+    share = np.abs(engine.mu - equations.mu) / (engine.error + equations.error)
+    print(f"\n{scene.title}: largest difference over the errors {share.max():.2f}")
+    assert (share <= 1.0).all(), (engine.mu, equations.mu, engine.error)
+    return engine, equations
 
 
 def assert_agrees_with_newton_and_euler(scene: Scene, phase: tuple[float, float], torsion: bool = True) -> Any:

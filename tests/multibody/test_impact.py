@@ -191,19 +191,9 @@ def test_the_largest_value_behind_an_impact_converges() -> None:
 
 def tower(ring: float) -> Scene:
     """A tower of two bodies on three supports, shaken by 4 m/s^2."""
-    size = [2.0, 2.0, 0.2]
-    return Scene.model_validate(
-        {
-            "title": "tower",
-            "duration": 3.0,
-            "isolator": {"period": 1.0, "friction": 0.05, "supports": 3, "ring": ring, "sphere_radius": 0.05},
-            "bodies": [
-                {"mass": 1.0, "height": 0.2, "size": size},
-                {"mass": 1.0, "height": 1.2, "size": size, "period": [1.5, 1.2]},
-            ],
-            "excitation": {"amplitudes": [[4.0, 0.0], [0.0, 4.0]], "periods": [0.9, 1.1], "decay": [0.33, 0.27]},
-        }
-    )
+    isolator = {"isolator.friction": 0.05, "isolator.supports": 3, "isolator.ring": ring}
+    load = {"excitation.amplitudes": [[4.0, 0.0], [0.0, 4.0]], "excitation.decay": [0.33, 0.27]}
+    return load_scene("fig3-I").with_values({"duration": 3.0, **isolator, **load})
 
 
 def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float, **changes: Any) -> EngineRun:

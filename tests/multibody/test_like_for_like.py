@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes_at_hand import changed, frame
+from scenes_at_hand import both_sides, changed, frame
 
 import multibody
 import reference
@@ -75,48 +75,41 @@ RECORDED: dict[str, Scene] = {
 }
 
 
-def share_of_errors(scene: Scene, phases: Any, v_reg: float = V_REG, **asked: Any) -> float:
-    """Largest difference of the two sides over the sum of their errors; every point of both has an answer."""
-    regularization = None if scene.lubricated else v_reg
-    engine = multibody.amplification(scene, phases, regularization=regularization, **asked)
-    equations = reference.amplification(scene, phases, regularization=regularization)
-    assert set(engine.status) == set(equations.status) == {Outcome.OK}
+def compare(scene: Scene, phases: Any, **asked: Any) -> tuple[reference.Amplification, reference.Amplification]:
+    engine, equations = both_sides(scene, phases, V_REG, **asked)
     assert (engine.error <= 1e-3 * engine.mu).all()
     if scene.flat:
         np.testing.assert_allclose(engine.displacement, equations.displacement, rtol=5e-3)
-    return float((np.abs(engine.mu - equations.mu) / (engine.error + equations.error)).max())
+    return engine, equations
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_every_factor_lies_within_its_error(name: str) -> None:
-    phases = PHASES if name in ("fig3-I", "plane") else PHASES[:1]
-    assert share_of_errors(SCENES[name].with_values({"duration": 5.0}), phases) <= 1.0
+    compare(SCENES[name].with_values({"duration": 5.0}), PHASES if name in ("fig3-I", "plane") else PHASES[:1])
 
 
 @pytest.mark.parametrize("name", RECORDED)
 def test_factors_under_a_record_lie_within_their_errors(name: str) -> None:
-    assert share_of_errors(RECORDED[name], PHASES[:1]) <= 1.0
+    compare(RECORDED[name], PHASES[:1])
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("scale", [0.2, 0.7, 1.0, 1.4, 2.0, 2.6])
 @pytest.mark.parametrize("name", ["synthetic-pair", "synthetic-triple"])
 def test_factors_lie_within_their_errors_at_any_scale(name: str, scale: float) -> None:
-    assert share_of_errors(load_scene(name).with_values({"excitation.scale": scale}), PHASES[:1]) <= 1.0
+    compare(load_scene(name).with_values({"excitation.scale": scale}), PHASES[:1])
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", SCENES)
 def test_64_points_of_a_surface_lie_within_their_errors(name: str) -> None:
-    share = share_of_errors(SCENES[name], np.random.default_rng(7).uniform(0.0, 2.0 * np.pi, (64, 2)))
-    print(f"\n{name}: largest difference over the errors {share:.2f}")
-    assert share <= 1.0
+    compare(SCENES[name], np.random.default_rng(7).uniform(0.0, 2.0 * np.pi, (64, 2)))
 
 
 @pytest.mark.parametrize("place", [{}, PLANE], ids=["sphere", "plane"])
 def test_a_moving_plate_lies_within_its_errors(place: dict[str, Any]) -> None:
     scene = load_scene("fig3-I").with_values({"duration": 4.0, **place})
-    assert share_of_errors(scene, PHASES[:1], loading="plate") <= 1.0
+    compare(scene, PHASES[:1], loading="plate")
 
 
 def test_a_locked_platform_moves_with_the_ground() -> None:
@@ -153,32 +146,16 @@ def test_a_contact_made_stiff_by_a_small_v_reg_is_solved() -> None:
     scene = Scene.model_validate(
         {"title": "", "duration": 1.2, "isolator": bearing, "bodies": [{"mass": 1.0}, above], "excitation": loading}
     )
-    engine = multibody.amplification(scene, [(1.8, 1.27)], regularization=1.1e-4)
-    equations = reference.amplification(scene, [(1.8, 1.27)], regularization=1.1e-4)
-    assert engine.status[0] == Outcome.OK
-    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+    both_sides(scene, [(1.8, 1.27)], 1.1e-4)
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(
-    ("scene", "tolerance", "count", "largest"), [("fig3-I", 1e-3, 256, 2e-3), ("fig3-II", 1e-3, 128, 2e-3)]
-)
-def test_a_whole_surface_lies_within_its_errors(scene: str, tolerance: float, count: int, largest: float) -> None:
-    phases = np.random.default_rng(11).uniform(0.0, 2.0 * np.pi, (count, 2))
-    engine = multibody.amplification(load_scene(scene), phases, regularization=V_REG, tolerance=tolerance)
-    equations = reference.amplification(load_scene(scene), phases, equations="exact", regularization=V_REG)
-    gap = np.abs(engine.mu - equations.mu)
-    share = largest_share(engine.mu, engine.error, equations.mu, equations.error)
-    print(f"\n{scene}: {count} points, largest difference over the errors {share:.2f}")
-    assert (engine.status == Outcome.OK).all()
-    assert share <= 1.0
-    assert (gap <= largest * equations.mu).all()
-    assert (np.median(gap / equations.mu, axis=0) <= 1e-4).all()
-
-
-def largest_share(values: np.ndarray, errors: np.ndarray, others: np.ndarray, other_errors: np.ndarray) -> float:
-    """Largest difference over the sum of the two errors."""
-    return float((np.abs(values - others) / (errors + other_errors)).max())
+@pytest.mark.parametrize(("scene", "count"), [("fig3-I", 256), ("fig3-II", 128)])
+def test_a_whole_surface_lies_within_its_errors(scene: str, count: int) -> None:
+    engine, equations = compare(load_scene(scene), np.random.default_rng(11).uniform(0.0, 2.0 * np.pi, (count, 2)))
+    gap = np.abs(engine.mu - equations.mu) / equations.mu
+    assert gap.max() <= 2e-3
+    assert (np.median(gap, axis=0) <= 1e-4).all()
 
 
 FINE = 1e-5
@@ -207,7 +184,7 @@ def test_no_finer_run_contradicts_an_answer(scene: str, model: str) -> None:
     coarse, fine = points[: len(phases)], points[len(phases) :]
     values, errors = (np.array([point[part] for point in coarse]) for part in (0, 1))
     finer, finer_errors = (np.array([point[part] for point in fine]) for part in (0, 1))
-    share = largest_share(values, errors, finer, finer_errors)
+    share = (np.abs(values - finer) / (errors + finer_errors)).max()
     print(f"\n{scene} {model}: {len(phases)} points, largest difference over the errors {share:.2f};", end=" ")
     print(f"largest error of the finer runs {np.max(finer_errors / finer):.1e}")
     assert {point[2] for point in coarse} == {Outcome.OK}
@@ -237,14 +214,10 @@ def test_asked_for_too_much_the_engine_says_so() -> None:
     assert (np.median(gap / equations.mu, axis=0) <= 5e-6).all()
 
 
-@pytest.mark.parametrize("regularization", [1e-4, 1e-5])
-def test_a_sharp_corner_asks_for_a_quick_contact(regularization: float) -> None:
+@pytest.mark.parametrize("v_reg", [1e-4, 1e-5])
+def test_a_sharp_corner_asks_for_a_quick_contact(v_reg: float) -> None:
     # the contact of 1e-6 rho is 3 or 30 times slower than the friction relaxes: off by 1.4e-4 and 7e-4, estimate less
-    scene, phase = changed(load_scene("fig3-I"), duration=4.0), PHASES[:1]
-    engine = multibody.amplification(scene, phase, regularization=regularization)
-    equations = reference.amplification(scene, phase, equations="exact", regularization=regularization)
-    assert engine.status.tolist() == [Outcome.OK]
-    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+    engine, equations = both_sides(changed(load_scene("fig3-I"), duration=4.0), PHASES[:1], v_reg)
     np.testing.assert_allclose(engine.mu, equations.mu, rtol=8e-5)
 
 
@@ -252,9 +225,4 @@ def test_a_sharp_corner_asks_for_a_quick_contact(regularization: float) -> None:
 @pytest.mark.parametrize("scene", ["fig3-I", "fig3-II"])
 def test_errors_hold_where_v_reg_is_small(scene: str) -> None:
     phases = np.vstack([PHASES[:1], np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, (15, 2))])
-    engine = multibody.amplification(load_scene(scene), phases, regularization=1e-4)
-    equations = reference.amplification(
-        load_scene(scene), phases, equations="exact", regularization=1e-4, tolerance=1e-6
-    )
-    assert (engine.status == Outcome.OK).all()
-    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
+    both_sides(load_scene(scene), phases, 1e-4)

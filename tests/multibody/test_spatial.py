@@ -90,30 +90,20 @@ def test_a_support_that_opens_agrees_with_newton_euler(phase: tuple[float, float
 @pytest.mark.long
 def test_a_peak_between_stopping_supports_has_its_error() -> None:
     """Six supports do so within two steps, by whose corners two levels are off alike."""
-    size = [2.769, 2.144, 0.2]
+    isolator = {"period": None, "radius": 1.5109488690600799, "friction": 0.13702487838262958, "supports": 6}
+    isolator |= {"ring": 1.8849358580428093, "sphere_radius": 0.07221883481476457}
     link = {"period": [0.5312192606019572, 0.991200731177353], "damping": 0.5002314702340517}
-    scene = Scene.model_validate(
-        {
-            "title": "six supports",
-            "duration": 1.75,
-            "isolator": {
-                "radius": 1.5109488690600799,
-                "friction": 0.13702487838262958,
-                "supports": 6,
-                "ring": 1.8849358580428093,
-                "sphere_radius": 0.07221883481476457,
-            },
-            "bodies": [
-                {"mass": 0.4860224287235741, "height": 0.2715879486456664, "size": [2.769, 2.123, 0.2]},
-                {"mass": 1.5089034471187415, "height": 0.9415856649043736, "size": size, **link},
-            ],
-            "excitation": {
-                "amplitudes": [[0.9884619223154059, 1.5142309688525009], [0.487195159791489, 1.2812097580802067]],
-                "periods": [0.8877204743438363, 0.6258783326452761],
-                "decay": [0.13871698008886618, 0.1328893183074945],
-            },
-        }
-    )
+    bodies = [
+        {"mass": 0.4860224287235741, "height": 0.2715879486456664, "size": [2.769, 2.123, 0.2]},
+        {"mass": 1.5089034471187415, "height": 0.9415856649043736, "size": [2.769, 2.144, 0.2], **link},
+    ]
+    load = {
+        "amplitudes": [[0.9884619223154059, 1.5142309688525009], [0.487195159791489, 1.2812097580802067]],
+        "periods": [0.8877204743438363, 0.6258783326452761],
+        "decay": [0.13871698008886618, 0.1328893183074945],
+    }
+    values = {f"isolator.{key}": value for key, value in isolator.items()}
+    scene = load_scene("fig3-I").with_values({"duration": 1.75, "bodies": bodies, "excitation": load, **values})
     phase = [(3.8166055207835377, 5.136433486035645)]
     answers = [
         multibody.amplification(scene, phase, "spatial", regularization=8.669743844387806e-4, tolerance=tolerance)

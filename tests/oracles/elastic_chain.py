@@ -158,6 +158,20 @@ def _forces(q, rates, ground, masses, tensors, centers, free, stiffness, damping
     return force, mass, gap_rates, supports, moved
 
 
+def beam_column(beam: float, length: float, load: float) -> tuple[float, float, float]:
+    """Of a clamped beam of bending stiffness EJ: sway and bending stiffness, and what it leans per length of sway."""
+    if load == 0.0:
+        return 12.0 * beam / length**3, beam / length, 1.2 / length
+
+    def sway(axial: float) -> float:
+        x = 0.5 * length * math.sqrt(axial / beam)
+        return axial / (length * (math.tan(x) / x - 1.0))
+
+    x = 0.5 * length * math.sqrt(load / beam)
+    slope = (sway(0.999 * load) - sway(1.001 * load)) / (0.002 * load)
+    return sway(load), beam / length * x / math.tan(x), slope
+
+
 @dataclass(frozen=True)
 class Motion:
     """Peaks of the absolute accelerations, (N,), m/s^2, with their instants, and what else was read."""
@@ -222,17 +236,7 @@ class ElasticBuilding:
         """Clamped beams under their load, half-way up: (2.3) with the functions of a beam-column."""
         bars = body["bars"]
         count, beam, length, spread = bars["count"], bars["bending_stiffness"], bars["length"], bars["spread"]
-        each = load / count
-
-        def sway(axial: float) -> float:
-            x = 0.5 * length * math.sqrt(axial / beam)
-            return axial / (length * (math.tan(x) / x - 1.0))
-
-        k, bent, slope = 12.0 * beam / length**3, beam / length, 1.2 / length
-        if bars.get("load_effect"):
-            x = 0.5 * length * math.sqrt(each / beam)
-            k, bent = sway(each), beam / length * x / math.tan(x)
-            slope = (sway(0.999 * each) - sway(1.001 * each)) / (0.002 * each)
+        k, bent, slope = beam_column(beam, length, load / count if bars.get("load_effect") else 0.0)
         rod = 1.0 / slope if bars.get("load_effect") == "shortening" else 0.0
         tension = count * bars["axial_stiffness"] / length
         bending = count * bent + 0.5 * tension * spread**2 + 0.25 * load * (length - rod)

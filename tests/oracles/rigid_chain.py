@@ -18,6 +18,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from elastic_chain import beam_column
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import Radau
@@ -277,17 +278,8 @@ def _beams(scene: Scene, link: int, bars: Bars) -> tuple[Array, float, tuple[flo
     Then tension, bending, length of the rod or 0, load, and the two moments that hold centers of mass off the axis.
     """
     load = GRAVITY * scene.masses[link + 1 :].sum()
-    each, beam, length = load / bars.count, bars.bending_stiffness, bars.length
-    k, bent, slope = 12.0 * beam / length**3, beam / length, 1.2 / length
-    if bars.load_effect is not None:
-
-        def sway(axial: float) -> float:
-            x = 0.5 * length * math.sqrt(axial / beam)
-            return axial / (length * (math.tan(x) / x - 1.0))
-
-        x = 0.5 * length * math.sqrt(each / beam)
-        k, bent = sway(each), beam / length * x / math.tan(x)
-        slope = (sway(0.999 * each) - sway(1.001 * each)) / (0.002 * each)
+    length = bars.length
+    k, bent, slope = beam_column(bars.bending_stiffness, length, 0.0 if bars.load_effect is None else load / bars.count)
     rod = 1.0 / slope if bars.load_effect == "shortening" else 0.0
     tension = bars.count * bars.axial_stiffness / length
     bending = bars.count * bent + 0.5 * tension * bars.spread**2 + 0.25 * load * (length - rod)
