@@ -16,7 +16,6 @@ from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.runner.resume import changed, command_line
 from comparison.study.levels import Level
-from comparison.surfaces.alerts import Alert
 from comparison.surfaces.headline import Headline
 from comparison.wording import percent, signed
 from reference.problem import builtin_scenes, example_scenes
@@ -56,7 +55,8 @@ def print_closing(console: Console, results: Results, options: Options, words: S
     """The last lines of a run."""
     _print_differences(console, results)
     console.print(f"The run took {results.run.took}.", soft_wrap=True)
-    for alert in _shown(results, options.check):
+    on_stderr = ("fault", "limit") if options.check else ("fault",)
+    for alert in (alert for alert in results.alerts if alert.kind not in on_stderr):
         color = "red" if alert.level == "red" else "yellow"
         console.print(f"{LABELS[alert.kind]}: {alert.line}", style=color, soft_wrap=True)
     for headline in (headline for scene in results.scenes for headline in scene.headlines):
@@ -118,11 +118,6 @@ def _source(scene: SceneResult, words: Sequence[str]) -> str:
     if scene.name in (*builtin_scenes(), *example_scenes()):
         return scene.name
     return next((word for word in words if word.endswith(".toml") and Path(word).stem == scene.name), "")
-
-
-def _shown(results: Results, check: bool) -> list[Alert]:
-    """The alerts that are not on standard error."""
-    return [alert for alert in results.alerts if alert.kind != "fault" and not (check and alert.kind == "limit")]
 
 
 def _print_differences(console: Console, results: Results) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -11,7 +10,6 @@ from rich.table import Table
 
 from comparison.cli.options import Options
 from comparison.registry import chosen_analyses, first_tasks, levels
-from comparison.runner.analysis import Analysis
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -42,7 +40,10 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
                 table.add_row(family.name, str(len(scenes)), model.title, *counts)
     console.print(table)
     analyses = chosen_analyses(study)
-    counted = {each.stage: _number_of_tasks(study, each) for each in analyses}
+    counted = {
+        each.stage: "chosen by the surfaces" if each.needs_surfaces else len(each.tasks(study.selecting(each.key)))
+        for each in analyses
+    }
     console.print(f"Analyses (tasks): {', '.join(f'{name} ({count})' for name, count in counted.items()) or 'none'}.")
     for level in levels(study) if study.phased else ():
         console.print(f"{level.title.capitalize()}: {_grids(level.study)}.")
@@ -68,12 +69,6 @@ def _grids(study: Study) -> str:
         "equations" if model.side == "reference" else model.title: len(study.axis(model)) for model in study.hierarchy
     }
     return ", ".join(f"{kind} {count} x {count} phases" for kind, count in grids.items())
-
-
-def _number_of_tasks(study: Study, analysis: Analysis[Any]) -> str:
-    return (
-        "chosen by the surfaces" if analysis.needs_surfaces else str(len(analysis.tasks(study.selecting(analysis.key))))
-    )
 
 
 def _listed(names: Sequence[str]) -> str:

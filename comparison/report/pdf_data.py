@@ -10,7 +10,6 @@ from comparison.analyses.assumptions.validity import ASSUMPTIONS
 from comparison.analyses.demands.feature import HEADINGS, demand_rows, demands_note
 from comparison.report.results import VALIDATED, ModelDescription, Results
 from comparison.report.scene_result import ModelOutcome, SceneResult
-from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.headline import Headline
 from comparison.surfaces.waterfall import Waterfall
 from comparison.surfaces.waterfall_chart import Scale, bars_of, scale_of
@@ -158,15 +157,12 @@ def _limits(results: Results) -> dict[str, Any]:
     line = f"{broken} of {count} acceptance limits are broken." if broken else f"All {count} acceptance limits hold."
     limited = [scene for scene in results.scenes if scene.limits]
     lines = [
-        f"{shortened(scene.name, MAX_NAME)}: " + ", ".join(_limit(limit) for limit in scene.limits)
+        f"{shortened(scene.name, MAX_NAME)}: "
+        + ", ".join(f"{x.key} ≤ {x.allowed:g} {'is broken' if x.breaches else 'holds'}" for x in scene.limits)
         for scene in limited[:MAX_LINES]
     ]
     more = _more("first scenes with limits", len(limited), len(lines))
     return {"limits_line": f"{line} {more}", "limits": lines}
-
-
-def _limit(limit: Limit) -> str:
-    return f"{limit.key} ≤ {limit.allowed:g} {'is broken' if limit.breaches else 'holds'}"
 
 
 def _provenance(results: Results) -> list[list[str]]:

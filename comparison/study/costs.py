@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from comparison.study.models import Model
+from comparison.study.models import SOFTENED, Model
 from comparison.study.study import Study
 from reference.problem import Scene
 
@@ -41,7 +41,9 @@ DURATION, BODIES = 20.0, 2  # of the scenes that the costs of the models were re
 
 def seconds_per_point(scene: Scene, model: Model) -> float:
     """Rough processor time of a phase pair, s."""
-    return SECONDS.get(model.recorded_key, UNKNOWN) * scene.duration / DURATION * len(scene.bodies) / BODIES
+    return (
+        SECONDS.get(model.key.removeprefix(SOFTENED), UNKNOWN) * scene.duration / DURATION * len(scene.bodies) / BODIES
+    )
 
 
 def seconds_of_model(study: Study, model: Model) -> float:

@@ -110,11 +110,6 @@ class Model:
     timeout: float | None = None
 
     @property
-    def recorded_key(self) -> str:
-        """Key in the table of costs: bars that are softer cost as much."""
-        return self.key.removeprefix(SOFTENED)
-
-    @property
     def is_spatial(self) -> bool:
         """Whether bodies turn in it."""
         return self.settings.get("model") == "spatial"

@@ -53,17 +53,14 @@ def _of(study: Study, scene: Scene) -> Iterator[tuple[str, str, str]]:
         concerned = [model for model, own in zip(models, shares) if own == share]
         yield f"mirrored phases, all but 1/{share:.3g}", _titles(concerned, models), _mirror(scene)
     if no_friction(scene):
-        laws = [model for model in study.hierarchy if model not in models and _reads_friction(model)]
+        others = [model for model in study.hierarchy if model not in models]
+        laws = [m for m in others if m.settings.get("regularization") is not None or "cutoff" in m.settings]
         if laws:
             yield "laws of friction", _titles(laws, models), no_friction(scene).reason
     for what, decided, setting, values in LEFT_OUT:
         concerned = [model for model in models if model.settings.get(setting) in values]
         if concerned and (reduction := decided(scene)):
             yield what, _titles(concerned, models), reduction.reason
-
-
-def _reads_friction(model: Model) -> bool:
-    return model.settings.get("regularization") is not None or "cutoff" in model.settings
 
 
 def _mirror(scene: Scene) -> str:

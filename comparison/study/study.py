@@ -27,11 +27,6 @@ def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
         seen[name] = source
 
 
-def _group(model: Model) -> str:
-    """The worker group of a model: engines of the user share none with anything else."""
-    return model.key if model.side == "user" else ""
-
-
 @dataclass(frozen=True)
 class Study:
     """
@@ -145,13 +140,12 @@ class Study:
     def _batches_of(self, scene: Scene, model: Model) -> list[Batch]:
         phases = phase_grid(self.grid)
         settings = model.arguments(self.tolerance, self.full)
+        group = model.key if model.side == "user" else ""  # engines of the user share no worker with anything else
         batches, first = [], 0
         for level, places in enumerate(self.solved_by_level(scene, model)):
             for start in range(0, len(places), model.batch):
                 part = phases[places[start : start + model.batch]]
                 about = first + start, part, level
-                batches.append(
-                    Batch(scene, model.key, model.amplification, settings, *about, model.timeout, _group(model))
-                )
+                batches.append(Batch(scene, model.key, model.amplification, settings, *about, model.timeout, group))
             first += len(places)
         return batches

@@ -142,15 +142,14 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
         """Scene, model and its tasks."""
         for scene in study.phased:
             for model in study.compared(scene) if study.selection.has("surfaces", scene.name) else ():
-                if _is_completed(study, model) and _finer(study, scene, model):
+                # with supports that stop one by one no surface may be interpolated
+                lacks = study.stride(model) > 1 and not model.is_spatial and study.points(model) >= MIN_VALUES
+                if lacks and _finer(study, scene, model):
                     phases = phase_grid(study.grid)[held_out_places(study, scene, model)]
                     about = scene, model, model.arguments(study.tolerance, study.full)
                     parts = [phases[first : first + POINTS] for first in range(0, len(phases), POINTS)]
-                    yield (
-                        scene,
-                        model,
-                        [Task(held_out_values, (*about, part), self.stage, about=scene) for part in parts],
-                    )
+                    arguments = [(*about, part) for part in parts]
+                    yield scene, model, [Task(held_out_values, each, self.stage, about=scene) for each in arguments]
 
 
 def held_out_values(task: Arguments) -> HeldOut:
@@ -231,11 +230,6 @@ def with_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dat
         for name in certificate:
             stated[f"completed_{name}"].loc[place] = getattr(surface, name)
     return surfaces.assign({"completed": completed, **stated})
-
-
-def _is_completed(study: Study, model: Model) -> bool:
-    """Whether the model lacks phases that an interpolation may give: with supports that stop one by one, none may."""
-    return study.stride(model) > 1 and not model.is_spatial and study.points(model) >= MIN_VALUES
 
 
 def _finer(study: Study, scene: Scene, model: Model) -> Model | None:

@@ -120,7 +120,9 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
             if lacking or unusable:
                 asked = study.points(model, scene)
                 used = model.key not in left_out and lacking < asked
-                notes = _notes(study, surfaces, scene, model)
+                counts = outcome_counts(surfaces, scene.name, model).items()
+                bad = [(outcome, count) for outcome, count in counts if outcome != Outcome.OK]
+                notes = tuple(OutcomeNote(*each, advice(study, scene, model, each[0])) for each in bad)
                 gaps.append(Unanswered(scene.name, model.key, model.title, lacking, unusable, asked, used, notes))
     return gaps
 
@@ -133,15 +135,6 @@ def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
     if outcome in (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED):  # the latter of bars that would buckle
         refused = refusal_of(scene, model, model.tolerance(study.tolerance), study.full)
     return refused or ADVICE[Outcome(outcome)]
-
-
-def _notes(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> tuple[OutcomeNote, ...]:
-    counts = outcome_counts(surfaces, scene.name, model)
-    return tuple(
-        OutcomeNote(outcome, count, advice(study, scene, model, outcome))
-        for outcome, count in counts.items()
-        if outcome != Outcome.OK
-    )
 
 
 def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:

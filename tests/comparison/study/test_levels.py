@@ -55,7 +55,7 @@ def every_level(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("grid", [1, 2, 3, 7, 12, 16, 24, 47, 48])
-@pytest.mark.parametrize("hierarchy", [MODEL_HIERARCHY, fake_hierarchy(batch=3)], ids=["real", "fake"])
+@pytest.mark.parametrize("hierarchy", [MODEL_HIERARCHY, fake_hierarchy(batch=24)], ids=["real", "fake"])
 def test_every_level_begins_with_what_the_level_before_has(grid: int, hierarchy: Any) -> None:
     study = Study(SCENES, grid, 1e-3, hierarchy)
     found = levels_of(study, {"motions": 3})
