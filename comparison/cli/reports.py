@@ -27,7 +27,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.runner.warm_up import compiling_task
 from comparison.study.levels import Level
 from comparison.study.study import Study
-from comparison.surfaces.alerts import Fault
+from comparison.surfaces.alerts import Alert
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.tasks import batch_results, surface_tasks
 from comparison.surfaces.unanswered import compared_study
@@ -148,14 +148,14 @@ class Reports:
         return report_of(study, surfaces, found, faults, run, no_pdf=no_pdf, families=families)
 
 
-def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Fault]:
+def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
     """What solvers reported, once for each scene, model and message."""
-    faults = {
-        Fault(task.argument.scene.name, f"{task.stage}: {result.error_message}")
+    texts = {
+        (task.argument.scene.name, f"{task.stage}: {result.error_message}")
         for task, result in zip(tasks, batch_results(tasks, results))
         if result.error_message
     }
-    return sorted(faults, key=lambda fault: fault.line)
+    return [Alert(level="amber", kind="fault", scene=scene, text=text, help="") for scene, text in sorted(texts)]
 
 
 def _loaded(feature: Feature, out: Path) -> Any:

@@ -14,13 +14,13 @@ from comparison.study.analyses import ANALYSES
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import checked_limits
-from comparison.surfaces.alerts import Fault, alerts
+from comparison.surfaces.alerts import Alert, alerts
 from comparison.surfaces.budget import budget
 from comparison.surfaces.completion import completions, with_completed
 from comparison.surfaces.differences import Difference, differences
 from comparison.surfaces.distribution import distributions, grid_maxima
 from comparison.surfaces.headline import headline
-from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share, outcome_counts
+from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share, outcome_counts, values_of
 from comparison.surfaces.unanswered import advice, unanswered
 from comparison.surfaces.waterfall import waterfall
 from reference.problem import Family, Outcome, Scene
@@ -30,7 +30,7 @@ def build_report(
     study: Study,
     surfaces: xr.Dataset,
     found: Mapping[str, Any],
-    faults: Sequence[Fault],
+    faults: Sequence[Alert],
     run: Mapping[str, Any],
     features: Sequence[Feature],
     kind: type[Results],
@@ -69,7 +69,7 @@ def build_report(
         absent=study.absent,
         unanswered=lacking,
         alerts=alerts(study, surfaces, lacking, limits, faults),
-        faults=[fault.line for fault in faults],
+        faults=[f"{fault.scene}, {fault.text}" for fault in faults],
         no_pdf=no_pdf,
         **summaries,
     )
@@ -114,15 +114,11 @@ def _model(study: Study, surfaces: xr.Dataset, scene: Scene, model: Model) -> Mo
 
 def _values(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[RecordValue]:
     """mu under the record, by model and body."""
-    data = surfaces.sel(scene=scene.name).isel(alpha1=0, alpha2=0)
-    return [
-        RecordValue(
-            model=model.key,
-            body=body,
-            mu=float(data["mu"].sel(model=model.key, body=body)),
-            error=float(data["error"].sel(model=model.key, body=body)),
-            status=str(data["status"].sel(model=model.key).item()),
+    listed = []
+    for model in models_of(scene, study.hierarchy):
+        mu, error, status = (
+            values_of(surfaces, name, scene.name, model)[..., 0, 0] for name in ("mu", "error", "status")
         )
-        for model in models_of(scene, study.hierarchy)
-        for body in range(1, len(scene.bodies) + 1)
-    ]
+        for body in range(1, len(scene.bodies) + 1):
+            listed.append(RecordValue(model.key, body, float(mu[body - 1]), float(error[body - 1]), str(status)))
+    return listed

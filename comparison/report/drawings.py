@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import xarray as xr
@@ -15,23 +14,15 @@ from comparison.surfaces.completion import Completion
 from comparison.surfaces.figures.pictures import SHOWN, Files, Pictures
 from reference.problem import Scene
 
-
-@dataclass(frozen=True)
-class PrintMaps:
-    """The maps of a scene for report.pdf; the fields are the arguments of `draw_maps`."""
-
-    surfaces: xr.Dataset
-    scene: Scene
-    models: tuple[Model, Model]
-    bodies: Sequence[int]
-    completed: Sequence[Completion]
+# surfaces, scene, its two models, bodies, completed surfaces: what `draw_maps` takes
+PrintMaps = tuple[xr.Dataset, Scene, tuple[Model, Model], Sequence[int], Sequence[Completion]]
 
 
 def map_task(report: Report, scene: Scene, models: tuple[Model, Model], bodies: Sequence[int]) -> Task:
     """The maps of two models of a scene."""
     completed = [surface for surface in report.completions if surface.scene == scene.name]
     shown = report.surfaces[SHOWN].sel(scene=[scene.name])
-    return drawing_task(draw_print_maps, PrintMaps(shown, scene, models, tuple(bodies), completed))
+    return drawing_task(draw_print_maps, (shown, scene, models, tuple(bodies), completed))
 
 
 def drawing_task(function: Callable[[Any], Files], argument: object) -> Task:
@@ -49,5 +40,4 @@ def draw_print_maps(maps: PrintMaps) -> Files:
     """One SVG. Runs inside a worker process."""
     from comparison.surfaces.figures import print_maps  # matplotlib: only a worker that draws needs it
 
-    content = print_maps.draw_maps(maps.surfaces, maps.scene, maps.models, maps.bodies, maps.completed)
-    return (("maps.svg", content),)
+    return (("maps.svg", print_maps.draw_maps(*maps)),)

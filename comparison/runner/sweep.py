@@ -27,6 +27,7 @@ class _Work:
     result: TaskResult | None = None
 
 
+@dataclass
 class Sweep:
     """
     Tasks that are run on an executor. Each is told to `done` with its result as that arrives, in any order.
@@ -40,18 +41,15 @@ class Sweep:
     that is not started any more.
     """
 
-    def __init__(
-        self,
-        tasks: Sequence[Task],
-        executor: Executor,
-        jobs: int,
-        done: Callable[[Task, TaskResult], None],
-        ready: Callable[[Task], bool] = lambda task: True,
-        given_up: Callable[[Task], TaskResult | None] = lambda task: None,
-    ) -> None:
-        self._executor, self._jobs = executor, jobs
-        self._done, self._ready, self._given_up = done, ready, given_up
-        self._queue = deque(map(_Work, tasks))
+    tasks: Sequence[Task]
+    executor: Executor
+    jobs: int
+    done: Callable[[Task, TaskResult], None]
+    ready: Callable[[Task], bool] = lambda task: True
+    given_up: Callable[[Task], TaskResult | None] = lambda task: None
+
+    def __post_init__(self) -> None:
+        self._queue = deque(map(_Work, self.tasks))
         self._at_work: dict[Future[TaskResult], _Work] = {}
 
     def run(self) -> None:
@@ -69,14 +67,14 @@ class Sweep:
         except BaseException:
             for future in self._at_work:
                 future.cancel()
-            if hasattr(self._executor, "abandon"):
-                self._executor.abandon()
+            if hasattr(self.executor, "abandon"):
+                self.executor.abandon()
             raise
 
     def _fill(self, arriving: bool = False) -> None:
         """As many tasks at work as there are workers; arriving: results that may make tasks ready are not told yet."""
-        while len(self._at_work) < getattr(self._executor, "width", self._jobs) and (work := self._next(arriving)):
-            given_up = self._given_up(work.task)
+        while len(self._at_work) < getattr(self.executor, "width", self.jobs) and (work := self._next(arriving)):
+            given_up = self.given_up(work.task)
             if given_up is not None:
                 self._keep(work, given_up)
             else:
@@ -85,7 +83,7 @@ class Sweep:
     def _next(self, arriving: bool) -> _Work | None:
         """What starts now, taken from the queue: the first that is ready, or the first of all if nothing is at work."""
         candidates = list(self._queue)[:1] if arriving else self._queue
-        work = next((work for work in candidates if self._ready(work.task)), None)
+        work = next((work for work in candidates if self.ready(work.task)), None)
         if work is None and self._queue and not (self._at_work or arriving):
             work = self._queue[0]
         if work is not None:
@@ -93,10 +91,10 @@ class Sweep:
         return work
 
     def _start(self, task: Task) -> Future[TaskResult]:
-        start: Callable[..., Future[TaskResult]] | None = getattr(self._executor, "start", None)
+        start: Callable[..., Future[TaskResult]] | None = getattr(self.executor, "start", None)
         try:
             if start is None:  # such as threads: they keep no limit of time
-                return self._executor.submit(execute, task)
+                return self.executor.submit(execute, task)
             return start(partial(execute, task), task.timeout, task.group)
         except BrokenExecutor as error:
             raise ExecutorLostError(f"the executor is broken: {error}") from None
@@ -131,7 +129,7 @@ class Sweep:
     def _keep(self, work: _Work, result: TaskResult) -> None:
         work.result, parent = result, work.parent
         if parent is None:
-            self._done(work.task, result)
+            self.done(work.task, result)
             return
         results = [half.result for half in parent.halves if half.result is not None]
         if len(results) == len(parent.halves):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import xarray as xr
 
@@ -39,30 +39,18 @@ class Alert(Part):
         return f"{self.scene}: {self.text}{f'. {self.help[0].upper()}{self.help[1:]}' if self.help else ''}"
 
 
-class Fault(NamedTuple):
-    """What a solver reported."""
-
-    scene: str  # name of the scene
-    text: str  # model and error message
-
-    @property
-    def line(self) -> str:
-        """With the name of the scene."""
-        return f"{self.scene}, {self.text}"
-
-
 def alerts(
     study: Study,
     surfaces: xr.Dataset,
     unanswered: Sequence[Unanswered],
     limits: Sequence[Limit],
-    faults: Sequence[Fault],
+    faults: Sequence[Alert],
 ) -> list[Alert]:
-    """Every alert of a run: red, where a model has no value or a limit is broken, before amber."""
+    """Every alert of a run: red, where a model has no value or a limit is broken, before amber; faults: of solvers."""
     listed = [
         *_gaps(unanswered),
         *_broken(limits),
-        *(Alert(level="amber", kind="fault", scene=fault.scene, text=fault.text, help="") for fault in faults),
+        *faults,
         *_far_motions(study, surfaces),
     ]
     return sorted(listed, key=lambda alert: alert.level != "red")

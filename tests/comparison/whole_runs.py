@@ -1,10 +1,15 @@
-"""A run of batches and of tasks beside and after them, which other processes repeat."""
+"""A run of batches and of tasks beside and after them, which other processes repeat, and one that ends itself."""
 
 from __future__ import annotations
 
+import itertools
+import os
+import signal
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from fake_models import fake_hierarchy
@@ -52,3 +57,15 @@ def whole_run(folder: Path) -> tuple[list[BatchResult], list[object], int, int]:
         sum(task.key in results.stored for task in batches),
         results.parts["motions"].stored,
     )
+
+
+def end_after(results: int, seconds: float) -> None:
+    """Kill this process so many seconds after it has begun to store the result of this number: others would be late."""
+    put, stored = Cache.put, itertools.count()
+
+    def counted(cache: Cache, key: Any, value: Any) -> None:
+        if next(stored) == results:
+            threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGKILL)).start()
+        put(cache, key, value)
+
+    Cache.put = counted  # type: ignore[method-assign]

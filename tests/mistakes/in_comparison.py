@@ -215,7 +215,7 @@ MISTAKES = (
     Mistake(RUNNER + "sweep.py", "work.deaths < 2 and", "work.deaths < 3 and",
             "A task that kills its worker is tried three times.",
             (DEATHS + "a_death_costs_its_own_task_one_retry_and_no_other",)),
-    Mistake(RUNNER + "sweep.py", "            if hasattr(self._executor, \"abandon\"):\n                self._executor.abandon()\n",
+    Mistake(RUNNER + "sweep.py", "            if hasattr(self.executor, \"abandon\"):\n                self.executor.abandon()\n",
             "", "A run that is stopped waits for the tasks at work.", (DEATHS + "a_run_that_is_stopped_abandons_its_workers",)),
     Mistake(RUNNER + "runner.py", "self.lost[task.group] >= GIVEN_UP_AFTER", "self.lost[task.group] > GIVEN_UP_AFTER",
             "An engine that hangs is asked a third time.", (DEATHS + "a_batch_that_was_given_up_is_not_stored",)),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -143,3 +144,7 @@ def test_the_worst_body_breaks_a_limit_whichever_it_is(limit: str, body: int) ->
     surfaces["mu"].loc[{"model": "translational", "body": body}] *= 1.021
     found = [limit for limit in limits_of(study, surfaces) if limit.breaches]
     assert [(each.key, [breach.body for breach in each.breaches]) for each in found] == [(limit, [body])]
+    rows = {(row.pair, row.body): getattr(row, limit) for row in differences(study, surfaces)}
+    at_it = scene.with_values({"acceptance": {limit: rows["like-for-like", body]}})
+    at_limit = limits_of(replace(study, scenes=(at_it,)), surfaces)
+    assert [each.breaches for each in at_limit if each.key == limit] == [()], "as large as allowed is allowed"

@@ -19,7 +19,7 @@ from comparison.report import pdf
 from comparison.report.section import Report
 from comparison.study.models import Model
 from comparison.study.study import Study
-from comparison.surfaces.alerts import Fault
+from comparison.surfaces.alerts import Alert
 from comparison.surfaces.unanswered import compared_study
 from reference.problem import Scene, load_scene
 
@@ -36,7 +36,8 @@ def studied(scenes: list[Scene], hierarchy: tuple[Model, ...], grid: int = 4) ->
     study = Study(tuple(scenes), grid, 1e-3, hierarchy)
     surfaces = solved(study)
     study = compared_study(study, surfaces)
-    return report_of(study, surfaces, {}, [Fault("fig3-I", "engine: it broke")], RUN)
+    fault = Alert(level="amber", kind="fault", scene="fig3-I", text="engine: it broke", help="")
+    return report_of(study, surfaces, {}, [fault], RUN)
 
 
 def _called(scene: Scene, name: str, title: str) -> Scene:

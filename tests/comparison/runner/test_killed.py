@@ -35,8 +35,7 @@ import os, random, shutil, signal, sys
 sys.path[:0] = [{here!r}, {root!r}]
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from ending import end_after
-from whole_runs import whole_run
+from whole_runs import end_after, whole_run
 
 def killed(place, results, seconds):
     child = os.fork()
