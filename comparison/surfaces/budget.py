@@ -9,12 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from pydantic import Field
 
 from comparison.result_types import Number, Phases, Text, result
 from comparison.study.study import Study
@@ -31,16 +30,24 @@ TOTAL = "total"
 class Sizes:
     """How large the difference of two models is in one body, over the phase pairs where both have a value."""
 
-    # the text below a field is not inherited
-    scene: Annotated[Text, Field(description="name of the scene")]
-    body: Annotated[int, Field(description="number of the body; 1 is the platform")]
-    first: Annotated[str, Field(description="key of the first model")]
-    second: Annotated[str, Field(description="key of the second model")]
-    median: Annotated[Number, Field(description="median of the absolute size")]
-    percentile95: Annotated[Number, Field(description="95 % of the absolute sizes are below this")]
-    maximum: Annotated[Number, Field(description="largest absolute size")]
-    phases: Annotated[Phases, Field(description="(alpha1, alpha2) of the largest, rad")]
-    asked: Annotated[int, Field(description="phase pairs that both models were asked for")]
+    scene: Text
+    """name of the scene"""
+    body: int
+    """number of the body; 1 is the platform"""
+    first: str
+    """key of the first model"""
+    second: str
+    """key of the second model"""
+    median: Number
+    """median of the absolute size"""
+    percentile95: Number
+    """95 % of the absolute sizes are below this"""
+    maximum: Number
+    """largest absolute size"""
+    phases: Phases
+    """(alpha1, alpha2) of the largest, rad"""
+    asked: int
+    """phase pairs that both models were asked for"""
 
 
 @result
