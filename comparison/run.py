@@ -28,7 +28,7 @@ from rich.console import Console
 
 from comparison.cli.arguments import EndedEarlyError, command
 from comparison.cli.closing import print_check, print_closing, print_faults, print_level
-from comparison.cli.computing import ending_early
+from comparison.cli.computing import workers
 from comparison.cli.options import Options, parsed
 from comparison.cli.reports import Complete, Reports, computed_level
 from comparison.cli.start import Clock, start_time
@@ -44,7 +44,6 @@ from comparison.runner.progress import progress, wide_console
 from comparison.runner.resume import changed, resume_hint
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
-from comparison.runner.workers import workers
 from comparison.study.costs import WRITING, seconds_of_analysis, seconds_of_model
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
 from comparison.study.study import Study
@@ -103,10 +102,7 @@ def _ended(study: Study, options: Options, console: Console, words: Sequence[str
     def hint(rest: Sequence[str]) -> str:
         return resume_hint(store, rest, batches=len(study.batches()))
 
-    with (
-        ending_early(hint, words, options.scheduler),
-        workers(options.jobs, options.scheduler, models, executor) as (width, pool),
-    ):
+    with workers(options.jobs, options.scheduler, models, executor, words, hint) as (width, pool):
         return _run(study, options, width, console, words, pool, store, began, hint)
 
 

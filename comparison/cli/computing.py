@@ -19,8 +19,10 @@ from rich.console import Console
 
 from comparison.cli.arguments import EndedEarlyError, jobs
 from comparison.runner.cache import Cache, StoreError, refuse_foreign_store, store_beside
+from comparison.runner.dask import cluster
 from comparison.runner.executors import ExecutorLostError, Pool
 from comparison.runner.output import destination
+from comparison.runner.processes import process_pool
 from comparison.runner.progress import progress
 from comparison.runner.provenance import provenance
 from comparison.runner.resume import changed, command_line, resume_hint
@@ -28,7 +30,6 @@ from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.runner.warm_up import compiling_task
-from comparison.runner.workers import workers
 
 
 def run_facts(command: str, options: argparse.Namespace, words: Sequence[str], begin: float) -> dict[str, Any]:
@@ -64,9 +65,12 @@ def computed(
     if stored := len(tasks) - len(missing):
         line = f"{stored} of {len(tasks)} tasks are in {cache.folder}: only the others are computed."
         console.print(line, soft_wrap=True)  # a path is copied whole
+
+    def hint(rest: Sequence[str]) -> str:
+        return resume_hint(cache, rest, command)
+
     with (
-        ending_early(lambda rest: resume_hint(cache, rest, command), words, options.scheduler),
-        workers(width, options.scheduler, models, executor) as (count, pool),
+        workers(width, options.scheduler, models, executor, words, hint) as (count, pool),
         progress(console, sum(task.seconds for task in missing), count) as display,
     ):
         Runner(results, count, pool, display).run(missing, compiling_task)
@@ -74,10 +78,28 @@ def computed(
 
 
 @contextmanager
-def ending_early(hint: Callable[[Sequence[str]], str], words: Sequence[str], scheduler: str | None) -> Iterator[None]:
-    """Whatever ends the block early is an EndedEarlyError that says what is kept and, by `hint`, how to go on."""
+def workers(
+    jobs: int,
+    scheduler: str | None,
+    models: set[str],
+    executor: Pool,
+    words: Sequence[str],
+    hint: Callable[[Sequence[str]], str],
+) -> Iterator[tuple[int, Pool]]:
+    """
+    The number of workers and what runs them, for all that a command computes in the block. Raises SceneError.
+
+    Whatever ends the block early is an EndedEarlyError that says what is kept and, by `hint`, how to go on.
+    """
     try:
-        yield
+        if scheduler is not None:
+            with cluster(scheduler, models) as remote:
+                yield remote.width, remote
+        elif executor is process_pool:
+            with process_pool(jobs) as pool:
+                yield jobs, pool
+        else:
+            yield jobs, executor
     except KeyboardInterrupt as stop:
         raise EndedEarlyError(128 + getattr(stop, "number", signal.SIGINT), f"interrupted: {hint(words)}") from None
     except ExecutorLostError as error:
