@@ -7,9 +7,12 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 from enum import StrEnum
+from importlib import resources
 from typing import Any
 
-from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
+import jinja2
+
+from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.json_file import StoredFile
 from comparison.result_types import result
 
@@ -110,34 +113,15 @@ STORED = StoredFile(FILE, Benchmarks, "a table of benchmarks", "python -m compar
 
 MOST_DIGITS = 7  # of a value
 SHORT = (("sdnd104-1.5", 0), ("sdnd100", 2), ("frame", 0), ("den-hartog", 0), ("newmark", 0))  # name, and row
-HEAD = """# Checked against outside
-
-Numbers published elsewhere, each solved by the paper's exact equations and by the translational engine model. A source
-that publishes a formula is evaluated. This page is `benchmarks.md` as `python -m comparison.benchmarks` writes it.
-
-None of the numbers is a measurement: they verify the two codes. What would validate the models is in
-docs/validation.md of the project.
-"""
 
 
 def page(table: Benchmarks) -> str:
-    """The page."""
-    counts = [f"- **{verdict}** ({table.counts()[verdict.value]}): {text}" for verdict, text in MEANING.items()]
-    parts = [HEAD, short_table(table), "\n".join(counts), *map(_section, table.benchmarks)]
-    return "\n\n".join(part.strip("\n") for part in parts) + "\n"
-
-
-def short_table(table: Benchmarks) -> str:
-    """Five numbers, one of each kind, with the verdict where it is not "met"."""
-    by_name = {each.name: each for each in table.benchmarks}
-    lines = ["| benchmark | published | equations | engine |", "|---|---|---|---|"]
-    for name, place in SHORT:
-        if name in by_name:
-            row = by_name[name].rows[place]
-            sides = [row.numbers[side] for side in (EQUATIONS, ENGINE)]
-            cells = [with_error(side) + ("" if side.verdict == Verdict.MET else f" ({side.verdict})") for side in sides]
-            lines.append(f"| {by_name[name].title}, {row.quantity} | {stated(row)} | {' | '.join(cells)} |")
-    return "\n".join(lines)
+    """benchmarks.md: five numbers, one of each kind, the counts, and every number by its benchmark."""
+    text = (resources.files("comparison.analyses.benchmarks") / "page.md.j2").read_text(encoding="utf-8")
+    short = [(each, each.rows[place]) for name, place in SHORT for each in table.benchmarks if each.name == name]
+    shown = {"meaning": MEANING, "counts": table.counts(), "stated": stated, "with_error": with_error}
+    made: str = jinja2.Template(text, trim_blocks=True).render(table=table, short=short, **shown)
+    return made
 
 
 def with_error(number: Number, digits: int = MOST_DIGITS) -> str:
@@ -153,20 +137,3 @@ def with_error(number: Number, digits: int = MOST_DIGITS) -> str:
 def stated(row: Row) -> str:
     """The published number with its unit and uncertainty."""
     return f"{row.published:.7g} {row.unit}".rstrip() + (f" ± {row.uncertainty:g}" if row.uncertainty else "")
-
-
-def _section(each: Benchmark) -> str:
-    lines = [
-        f"## {each.title}",
-        f"Source: {each.source}. Evidence for: {each.evidence}. v_reg of the engine: {each.regularization:g} m/s.",
-        *([f"Difference of the models: {each.difference}."] if each.difference else []),
-        "| quantity | published | equations | | equations with the engine's friction | engine | |\n"
-        "|---|---|---|---|---|---|---|\n" + "\n".join(map(_line, each.rows)),
-    ]
-    return "\n\n".join(lines)
-
-
-def _line(row: Row) -> str:
-    equations, smoothed, engine = (row.numbers[side] for side in (EQUATIONS, SMOOTHED, ENGINE))
-    ours, theirs = (f"{with_error(side)} | {side.verdict}" for side in (equations, engine))
-    return f"| {row.quantity} | {stated(row)} | {ours} | {with_error(smoothed)} | {theirs} |"

@@ -163,13 +163,12 @@ def counted(case: Evidence, wanted: Counts) -> Verdict:
     finding = Finding.AS_DRAWN if holds["drawn"] or holds["profile"] else Finding.NOT
     if holds["periodic"]:
         finding = Finding.REPRODUCED
-    spans = {name: map(_span, zip(*(each[name] for each in at_shares))) for name in VIEWS}
-    return Verdict(finding, "; ".join(f"{name} {' and '.join(span)}" for name, span in spans.items()))
-
-
-def _span(counts: Sequence[int]) -> str:
-    """The count at SHARE, and between which it lies at other shares."""
-    return f"{counts[0]}" if min(counts) == max(counts) else f"{counts[0]} ({min(counts)} to {max(counts)})"
+    words = []
+    for name in VIEWS:  # the count at SHARE, and between which it lies at other shares
+        columns = list(zip(*(each[name] for each in at_shares)))
+        spans = [f" ({min(column)} to {max(column)})" if min(column) < max(column) else "" for column in columns]
+        words.append(f"{name} " + " and ".join(f"{column[0]}{span}" for column, span in zip(columns, spans)))
+    return Verdict(finding, "; ".join(words))
 
 
 def more_complex(case: Evidence) -> Verdict:

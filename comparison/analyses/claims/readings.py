@@ -155,29 +155,23 @@ def _read(name: str, reading: Reading) -> Scene:
 
 
 @lru_cache(KEPT)
-def _alone(name: str, reading: Reading) -> Scene:
-    """The platform without what stands on it, under the loading as printed: close to its own resonance T_c."""
-    natural = _read(name, reading).isolator.period
-    assert natural is not None
-    return _platform(name, reading, "alone", **dict(loading_around(natural)))
+def _alone(name: str, oscillator: bool, reading: Reading) -> Scene:
+    """
+    The platform without what stands on it, under the loading as printed: close to its own resonance T_c.
 
-
-@lru_cache(KEPT)
-def _oscillator(name: str, reading: Reading) -> Scene:
-    """One body without friction, of the period T_3x of the second body on its springs: far from both harmonics."""
-    second = _read(name, reading).bodies[1].period
-    assert second is not None
-    return _platform(name, reading, "oscillator", isolator={"period": second[0], "friction": 0.0})
-
-
-def _platform(name: str, reading: Reading, kind: str, **values: Any) -> Scene:
+    oscillator: instead without friction, of the period T_3x of the second body on its springs: far from both harmonics.
+    """
     scene = _read(name, reading)
+    soft: Any = scene.bodies[1].period
+    kind, values = "alone", dict[str, Any](loading_around(float(scene.isolator.period or np.nan)))
+    if oscillator:
+        kind, values = "oscillator", {"isolator": {"period": soft[0], "friction": 0.0}}
     platform = scene.bodies[0].model_dump(exclude_none=True)
     return scene.with_values({"name": f"{name} {kind}", "bodies": [platform], **values})
 
 
 CASES: Mapping[str, Callable[[Reading], Scene]] = {
     **{name: partial(_read, name) for name in ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous")},
-    **{f"{name} alone": partial(_alone, name) for name in ("fig3-I", "fig3-II")},
-    "fig3-II oscillator": partial(_oscillator, "fig3-II"),
+    **{f"{name} alone": partial(_alone, name, False) for name in ("fig3-I", "fig3-II")},
+    "fig3-II oscillator": partial(_alone, "fig3-II", True),
 }

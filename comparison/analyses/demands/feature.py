@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -68,11 +67,17 @@ FEATURE = Feature(
 )
 
 
-HEADINGS = (
-    "scene", "model", "isolator, mm", "residual, mm", "base shear, N", "platform, m/s²", "top, m/s²", "drift, mm",
-    "contact force, N",
-)  # fmt: skip
 MILLI = 1e3
+COLUMNS = (  # of report.pdf: heading, demand, body (None: all of them, -1: the uppermost), factor
+    ("isolator, mm", "displacement", None, MILLI),
+    ("residual, mm", "residual", None, MILLI),
+    ("base shear, N", "base_shear", None, 1.0),
+    ("platform, m/s²", "acceleration", 1, 1.0),
+    ("top, m/s²", "acceleration", -1, 1.0),
+    ("drift, mm", "drift", None, MILLI),
+    ("contact force, N", "contact_force_min", None, 1.0),
+)
+HEADINGS = ("scene", "model", *(column[0] for column in COLUMNS))
 
 
 def demand_rows(results: Results) -> list[list[str]]:
@@ -97,50 +102,29 @@ def _of_two_models(scene: SceneResult, titles: dict[str, str]) -> Iterator[tuple
     over_phases = scene.of("demand_statistics")
     rows = over_phases or scene.of("demands")
     keys = [key for key in titles if key in {row.model for row in rows}]
+    numbers = _of_phases if over_phases else _of_motions
     for key in dict.fromkeys((keys[0], keys[-1])):
-        of_model = [row for row in rows if row.model == key]
-        yield key, _cells(partial(_extremes if over_phases else _of_motions, of_model), scene.bodies)
+        own = [row for row in rows if row.model == key]
+        of_bodies = [(name, scene.bodies if body == -1 else body, factor) for _, name, body, factor in COLUMNS]
+        yield key, [_cell(name, numbers(own, name, body), factor) for name, body, factor in of_bodies]
 
 
-def _extremes(rows: Sequence[DemandStatistics], quantity: str, body: int = 0) -> list[PhaseExtreme]:
-    """Of one body, or without one of all."""
-    shown = [row for row in rows if row.quantity == quantity and body in (0, row.body)]
-    return [row.lowest if quantity == "contact_force_min" else row.highest for row in shown]
+def _of_phases(rows: Sequence[DemandStatistics], name: str, body: int | None) -> list[PhaseExtreme]:
+    shown = [row for row in rows if row.quantity == name and body in (None, row.body)]
+    return [row.lowest if name.endswith("_min") else row.highest for row in shown]
 
 
-def _of_motions(motions: Sequence[MotionDemands], quantity: str, body: int = 0) -> list[UncertainNumber]:
-    """Of one body, or without one of all."""
-    found = [getattr(motion, quantity) for motion in motions]
+def _of_motions(motions: Sequence[MotionDemands], name: str, body: int | None) -> list[UncertainNumber]:
+    found = [getattr(motion, name) for motion in motions]
     listed = [[each] if isinstance(each, UncertainNumber) else each for each in found]
     return [number for each in listed for number in (each[body - 1 : body] if body else each)]
 
 
-def _cells(numbers: Callable[..., Sequence[PhaseExtreme | UncertainNumber]], bodies: int) -> list[str]:
-    return [
-        _text(numbers("displacement"), MILLI),
-        _with_error(numbers("residual")),
-        _text(numbers("base_shear")),
-        _text(numbers("acceleration", 1)),
-        _text(numbers("acceleration", bodies)),
-        _text(numbers("drift"), MILLI),
-        _text(numbers("contact_force_min"), pick=min),
-    ]
-
-
-def _with_error(numbers: Sequence[PhaseExtreme | UncertainNumber]) -> str:
-    """The largest residual with its error, which includes the creep of regularized friction, in mm."""
+def _cell(name: str, numbers: Sequence[PhaseExtreme | UncertainNumber], factor: float) -> str:
+    """The worst known value; of a residual with its error, which includes the creep of regularized friction."""
     known = [number for number in numbers if math.isfinite(number.value)]
-    largest = max(known, key=lambda number: number.value, default=None)
-    if largest is None:
+    if not known:
         return ""
-    return f"{MILLI * largest.value:.4g}" + (f" ± {MILLI * largest.error:.1g}" if largest.error >= 0.0 else "")
-
-
-def _text(
-    numbers: Sequence[PhaseExtreme | UncertainNumber],
-    factor: float = 1.0,
-    pick: Callable[[Sequence[float]], float] = max,
-) -> str:
-    """The largest of the known values, or the one to pick."""
-    known = [number.value for number in numbers if math.isfinite(number.value)]
-    return f"{factor * pick(known):.4g}" if known else ""
+    worst = (min if name.endswith("_min") else max)(known, key=lambda number: number.value)
+    error = f" ± {factor * worst.error:.1g}" if name == "residual" and worst.error >= 0.0 else ""
+    return f"{factor * worst.value:.4g}{error}"

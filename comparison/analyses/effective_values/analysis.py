@@ -102,9 +102,8 @@ def read_back(task: tuple[Scene, Model]) -> Effective:
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
         motion: Trajectory = imported(model.trajectory)(short, PHASES, **settings)
-        if motion.status != Outcome.OK:
-            return replace(nothing, error_message=f"the motion ended: {motion.status}")
-        return replace(nothing, **_measured(short, motion))
+        ended = {"error_message": f"the motion ended: {motion.status}"}
+        return replace(nothing, **(_measured(short, motion) if motion.status == Outcome.OK else ended))
     except Exception as error:
         return replace(nothing, error_message=f"{type(error).__name__}: {error}")
 
@@ -218,18 +217,15 @@ def forced_ratios(scene: Scene) -> list[ForcedRatio]:
     """
     if scene.recorded or len(scene.bodies) == 1:
         return []
-    ratios = []
-    for axis, name in enumerate(AXES):
-        for harmonic, exponent in enumerate(exponents(scene)):
-            if scene.amplitudes[axis, harmonic] == 0.0:
-                continue
-            period = float(2.0 * np.pi / exponent.imag)
-            forced, steady = (_ratios(scene, axis, s) for s in (exponent, 1j * exponent.imag))
-            ratios += [
-                ForcedRatio(number + 2, harmonic + 1, name, period, float(forced[number]), float(size))
-                for number, size in enumerate(steady)
-            ]
-    return ratios
+    return [
+        ForcedRatio(body, harmonic, name, float(2.0 * np.pi / s.imag), float(forced), float(steady))
+        for axis, name in enumerate(AXES)
+        for harmonic, s in enumerate(exponents(scene), start=1)
+        if scene.amplitudes[axis, harmonic - 1] != 0.0
+        for body, (forced, steady) in enumerate(
+            zip(*(_ratios(scene, axis, each) for each in (s, 1j * s.imag))), start=2
+        )
+    ]
 
 
 def _ratios(scene: Scene, axis: int, s: complex) -> Array:

@@ -109,36 +109,33 @@ def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[Fami
                 if math.isfinite(estimate.value):
                     column = numbers.setdefault((motion.model, quantity, body), {})
                     column.setdefault(motion.place.scene, []).append(estimate.value)
-    demands = []
-    for (model, quantity, body), column in numbers.items():
-        rows = [np.array(column.get(scene.name, [])) for scene in family.scenes]
-        median, lowest, highest = (
-            tuple(float(function(row)) if row.size else NAN for row in rows) for function in (np.median, np.min, np.max)
+    return [
+        _demand(
+            family, key, {name: (float(np.median(row)), min(row), max(row), len(row)) for name, row in rows.items()}
         )
-        demands.append(FamilyDemand(model, quantity, body, median, lowest, highest, tuple(row.size for row in rows)))
-    return demands
+        for key, rows in numbers.items()
+    ]
 
 
 def family_demands_over_phases(
     family: Family, statistics: Mapping[str, Sequence[DemandStatistics]]
 ) -> list[FamilyDemand]:
     """One per model, quantity and body, from all phases instead of stored motions."""
-    found = {
-        (scene.name, row.model, row.quantity, row.body): row
-        for scene in family.scenes
-        for row in statistics.get(scene.name, ())
-    }
-    demands = []
-    for key in dict.fromkeys(key[1:] for key in found):
-        rows = [found.get((scene.name, *key)) for scene in family.scenes]
-        numbers = (
-            (row.fractile(0.5), row.lowest.value, row.highest.value, round(row.points * (1.0 - row.unknown)))
-            if row
-            else (NAN, NAN, NAN, 0)
-            for row in rows
-        )
-        demands.append(FamilyDemand(*key, *map(tuple, zip(*numbers))))
-    return demands
+    found: dict[tuple[str, str, int], dict[str, tuple[float, float, float, int]]] = {}
+    for scene in family.scenes:
+        for row in statistics.get(scene.name, ()):
+            known = round(row.points * (1.0 - row.unknown))
+            numbers = row.fractile(0.5), row.lowest.value, row.highest.value, known
+            found.setdefault((row.model, row.quantity, row.body), {})[scene.name] = numbers
+    return [_demand(family, key, rows) for key, rows in found.items()]
+
+
+def _demand(
+    family: Family, key: tuple[str, str, int], rows: Mapping[str, tuple[float, float, float, int]]
+) -> FamilyDemand:
+    """rows: median, lowest, highest and number of motions, by scene."""
+    numbers = (rows.get(scene.name, (NAN, NAN, NAN, 0)) for scene in family.scenes)
+    return FamilyDemand(*key, *map(tuple, zip(*numbers)))
 
 
 def listed_demands(demands: Demands) -> Iterator[tuple[str, int, Estimate]]:

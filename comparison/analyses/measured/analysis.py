@@ -15,7 +15,7 @@ import xarray as xr
 
 from comparison.result_types import Number, Phases, Text, result
 from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task, TaskResult
+from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, steps_of
@@ -84,7 +84,10 @@ class MeasuredPeaks(Analysis[list[MeasuredPeak]]):
         """In the order of the scene files; None where no scene has measured peaks."""
         known: dict[tuple[str, tuple[float, float]], list[tuple[str, Mapping[Asked, Peak]]]] = {}
         for scene, phases, model in _points(study):
-            peaks = results.value(self._task(study, scene, phases, model), _failed)
+            peaks = results.value(
+                self._task(study, scene, phases, model),
+                lambda task, failed: [(math.nan, math.nan, failed.outcome.value)] * len(task[4]),
+            )
             found = dict(zip(_asked(scene, phases, model), peaks, strict=True))
             known.setdefault((scene.name, phases), []).append((model.key, found))
         listed = [
@@ -134,14 +137,9 @@ def peaks_at(task: Arguments) -> list[Peak]:
     if any(quantity != "mu" for quantity, _ in asked):
         motion = imported(model.trajectory)(scene, phases, tolerance=tolerance, **settings)
         known, status = vars(demands(motion)) | known, str(motion.status)
-    found = []
-    for quantity, body in asked:
-        each = known[quantity]
-        if isinstance(each, tuple):
-            each = each[body - OF_BODIES[quantity]]
-        number: Estimate = each or LACKING
-        found.append((number.value, number.error, number.reason or status))
-    return found
+    listed = ((known[name], body - OF_BODIES.get(name, 0)) for name, body in asked)
+    numbers = [(each[place] if isinstance(each, tuple) else each) or LACKING for each, place in listed]
+    return [(number.value, number.error, number.reason or status) for number in numbers]
 
 
 def _beside(scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[Asked, Peak]]]) -> MeasuredPeak:
@@ -155,7 +153,3 @@ def _beside(scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[As
             computed.append(ComputedPeak(model, value, error, difference, exceeds, status))
     phases = (math.nan, math.nan) if peak.phases is None else phases_of(peak)
     return MeasuredPeak(scene.name, *asked, phases, peak.value, peak.uncertainty, peak.source or "", computed)
-
-
-def _failed(task: Arguments, failed: TaskResult) -> list[Peak]:
-    return [(math.nan, math.nan, failed.outcome.value)] * len(task[4])

@@ -6,7 +6,7 @@ A reference solution is a run at a tolerance at least 100 times tighter than any
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -106,64 +106,55 @@ def _curve(
     ]
 
 
-def _reference(scene: Scene) -> list[Setting]:
-    measured = []
+def _reference(scene: Scene) -> Iterator[Setting]:
     powers = [10.0**-power for power in range(1, 9)]
     for question, law in _LAWS.items():
         held, single = (REFERENCE, "tolerance", law), (RUN, "inside", law)
         method = "reference, two runs and an estimate"
-        measured += _curve(question, method, "tolerance of mu", held, powers[1:], 0.003, controlled=True)
-        measured += _curve(question, "reference, one run", "tolerance inside a step", single, powers, 0.0015)
+        yield from _curve(question, method, "tolerance of mu", held, powers[1:], 0.003, controlled=True)
+        yield from _curve(question, "reference, one run", "tolerance inside a step", single, powers, 0.0015)
     call = REFERENCE, "regularization", {"tolerance": 1e-6}
-    for speed in DRY_SPEEDS if dry(scene) and scene.friction_coefficient > 0.0 else ():
+    for speed in DRY_SPEEDS if dry(scene) else ():
         faster = REFERENCE, {"cutoff": speed, "tolerance": TIGHT}
         for what, against in (("supremum", None), ("peak faster than v_reg", faster)):
             method = f"v_reg, model error against the {what}"
-            measured += _curve("exact", method, "v_reg", call, [speed], 0.004, "m/s", False, True, against)
-    return measured
+            yield from _curve("exact", method, "v_reg", call, [speed], 0.004, "m/s", False, True, against)
 
 
-def _scipy(quick: bool) -> list[Setting]:
+def _scipy(quick: bool) -> Iterator[Setting]:
     lsoda, others = ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
-    measured = []
     # LSODA checks the reference solution, too
     for method, powers, seconds in (("LSODA", lsoda, 0.15), ("Radau", others, 1.0), ("DOP853", others, 1.0)):
         call = SCIPY, "tolerance", {"method": method, "v_reg": V_REG}
         values = [10.0**-power for power in powers]
-        measured += _curve("regularised", f"SciPy {method}", "relative tolerance of a step", call, values, seconds)
-    return measured
+        yield from _curve("regularised", f"SciPy {method}", "relative tolerance of a step", call, values, seconds)
 
 
-def _levels(quick: bool) -> list[Setting]:
+def _levels(quick: bool) -> Iterator[Setting]:
     """The engine as the package runs it: error-controlled, and single runs with one parameter changed."""
     parameters = (
         ("step", "largest step over the usual one", "step", (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)),
         ("contact compliance", PENETRATION, "penetration", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)),
         ("Newton", "relative tolerance of Newton's iteration", "newton", (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)),
     )
-    measured = []
     for question, model, tolerances, dearer in (
         ("regularised", "translational", {1e-2: 0.35, 1e-3: 0.35, 1e-4: 1.0, 1e-5: 1.8}, 1.0),
         ("spatial", "spatial", {1e-2: 0.35, 1e-3: 0.35}, 1.7),
     ):
-        law = {"model": model, "regularization": V_REG}
-        method, seconds = f"{model} engine, two levels and an estimate", [dearer * each for each in tolerances.values()]
-        held = ENGINE, "tolerance", law
-        measured += _curve(question, method, "tolerance of mu", held, list(tolerances), seconds, controlled=True)
+        law, method = {"model": model, "regularization": V_REG}, f"{model} engine, two levels and an estimate"
+        seconds, held = [dearer * each for each in tolerances.values()], (ENGINE, "tolerance", law)
+        yield from _curve(question, method, "tolerance of mu", held, list(tolerances), seconds, controlled=True)
         for name, parameter, key, values in parameters:
             method, few = f"{model} engine, one run: {name}", values[:: 3 if quick else 1]
-            measured += _curve(question, method, parameter, (LEVEL, key, law), few, 0.25 * dearer)
-    return measured
+            yield from _curve(question, method, parameter, (LEVEL, key, law), few, 0.25 * dearer)
 
 
-def _constant(quick: bool) -> list[Setting]:
+def _constant(quick: bool) -> Iterator[Setting]:
     """The engine at constant step, by its integrators."""
-    measured = []
     for solver, steps in STEPS.items():
         call, few = (CONSTANT, "step", {"solver": solver, "v_reg": V_REG}), steps[:: 2 if quick else 1]
         seconds = [0.25e-3 / step for step in few]
-        measured += _curve("regularised", f"Exudyn, {solver}", "constant step", call, few, seconds, "s")
-    return measured
+        yield from _curve("regularised", f"Exudyn, {solver}", "constant step", call, few, seconds, "s")
 
 
 def user_settings(models: Sequence[Model]) -> list[Setting]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,37 +32,33 @@ def reference_run(
 
 
 def engine_run(
-    scene: Scene,
-    phases: ArrayLike,
-    model: str,
-    regularization: float,
-    step: float = 1.0,
-    penetration: float | None = None,
-    newton: float | None = None,
+    scene: Scene, phases: ArrayLike, model: str, regularization: float, step: float = 1.0, **level: Any
 ) -> Array:
-    """mu of one run of the engine for each phase pair at USUAL_LEVEL; step: a factor; penetration: over rho."""
-    pairs = checked_phases(phases)
+    """mu of one run of the engine for each phase pair at USUAL_LEVEL; step: a factor; level: fields of the level."""
     usual = multibody.levels(scene, model, 1e-3, regularization)[USUAL_LEVEL]
-    level = replace(
-        usual,
-        step=usual.step * step,
-        slip_change=usual.slip_change * step,
-        penetration=usual.penetration if penetration is None else penetration,
-        newton=usual.newton if newton is None else newton,
-    )
-    runs = [multibody.single_run(scene, phase, model, regularization, level=level) for phase in pairs]
-    peaks = [run.peak if run.status == Outcome.OK else np.full(len(scene.bodies), np.nan) for run in runs]
-    return np.array(peaks) / ground_peak(scene, pairs)[:, None]
+    changed = replace(usual, step=usual.step * step, slip_change=usual.slip_change * step, **level)
+    return _peaks(scene, phases, lambda run: run.peak, model, regularization, level=changed)
 
 
 def constant_step_run(scene: Scene, phases: ArrayLike, solver: str, step: float, v_reg: float) -> Array:
     """mu (M, N) of the translational model by an integrator of `multibody.single_run`; NaN where it gives up."""
+
+    def largest(run: Any) -> Array:
+        size: Array = np.linalg.norm(run.absolute_acceleration, axis=-1).max(axis=0)
+        return size
+
+    how = {"step": step, "integrator": solver, "discontinuous": DISCONTINUOUS}
+    return _peaks(scene, phases, largest, "translational", v_reg, **how)
+
+
+def _peaks(
+    scene: Scene, phases: ArrayLike, peak: Callable[[Any], Array], model: str, v_reg: float, **how: Any
+) -> Array:
+    """mu (M, N) of one run for each phase pair; NaN where it ends early."""
     pairs = checked_phases(phases)
-    peaks = np.full((len(pairs), len(scene.bodies)), np.nan)
-    for row, phase in enumerate(pairs):
-        run = multibody.single_run(
-            scene, phase, "translational", v_reg, step=step, integrator=solver, discontinuous=DISCONTINUOUS
-        )
-        if run.status == Outcome.OK:
-            peaks[row] = np.linalg.norm(run.absolute_acceleration, axis=-1).max(axis=0)
-    return peaks / ground_peak(scene, pairs)[:, None]
+    runs = [multibody.single_run(scene, phase, model, v_reg, **how) for phase in pairs]
+    nothing = np.full(len(scene.bodies), np.nan)
+    return (
+        np.array([peak(run) if run.status == Outcome.OK else nothing for run in runs])
+        / ground_peak(scene, pairs)[:, None]
+    )

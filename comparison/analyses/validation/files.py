@@ -66,22 +66,21 @@ def read_folder(folder: Path) -> Measured:
     plates, bases = ({match[1]: files[match[0]] for match in named if match[2] == axis} for axis in "xy")
     for grams in plates.keys() ^ bases.keys():
         missing = "y" if grams in plates else "x"
-        raise SceneError(
-            "command line", "FOLDER", str(folder), f"s_b_{grams}g_{missing}.mat is missing beside its partner"
+        raise wrong_file(folder, f"s_b_{grams}g_{missing}.mat is missing beside its partner")
+    runs = []
+    for grams in sorted(plates, key=int):
+        x, y = _content(plates[grams], "t", "x"), _content(bases[grams], "t", "y")
+        time = _series(plates[grams], "t", x["t"])
+        plate, base = (
+            _series(*each, len(time)) for each in ((plates[grams], "x", x["x"]), (bases[grams], "y", y["y"]))
         )
-    runs = [_run(int(grams) * 1e-3, plates[grams], bases[grams]) for grams in sorted(plates, key=int)]
+        runs.append(Shaken(int(grams) * 1e-3, time, plate, base))
     decay = _decay(files[DECAY]) if DECAY in files else None
     large = _large(files[LARGE]) if LARGE in files else None
     if not (runs or decay or large):
         rule = f"holds none of the measured files: s_b_<weight>g_x.mat with s_b_<weight>g_y.mat, {DECAY}, {LARGE}"
         raise wrong_file(folder, rule)
     return Measured(runs, decay, large)
-
-
-def _run(weight: float, plate: Path, base: Path) -> Shaken:
-    x, y = _content(plate, "t", "x"), _content(base, "t", "y")
-    time = _series(plate, "t", x["t"])
-    return Shaken(weight, time, _series(plate, "x", x["x"], len(time)), _series(base, "y", y["y"], len(time)))
 
 
 def _decay(file: Path) -> Swing:
