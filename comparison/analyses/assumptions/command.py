@@ -1,10 +1,7 @@
 """
 How far the paper's assumptions hold: `python -m comparison.assumptions [SCENE ...]`.
 
-Varies the ring of supports, the heights of the bodies, their centers of mass and their angles. Prints how far mu_i then
-is from the translational result, where it stays within 1 % and 5 %, and how far uneven bodies turn. Every variation is
-stored as it is finished: the same command goes on where it stopped. Exit codes: 0 done; 2 a wrong scene or option;
-others as in `run_command`.
+Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
 """
 
 from __future__ import annotations

@@ -1,6 +1,4 @@
-"""
-The paper's assumptions (i)-(vi): what the engine's models do with each, and how far they carry.
-"""
+"""The paper's assumptions (i)-(vi): what the engine's models do with each, and how far they carry."""
 
 from __future__ import annotations
 

@@ -1,9 +1,8 @@
 """
 Numbers published elsewhere, each solved by the equations and by the engine: `python -m comparison.benchmarks`.
 
-Every benchmark is stored as it is solved: the same command goes on where it stopped. Writes benchmarks.json and
-benchmarks.md. Exit codes: 0 every number is met or its difference explained; 1 not; 2 a wrong option; 3 the files could
-not be written; others as in `run_command`.
+Exit codes: 0 every number is met or its difference explained; 1 not; 2 a wrong option; 3 the files could not be
+written; others as in `run_command`.
 """
 
 from __future__ import annotations

@@ -1,10 +1,4 @@
-"""
-Checks of what the paper says about its surfaces: each sees the evidence of its cases and computes its answer.
-
-Peaks that run as ridges along alpha_1 - alpha_2 = const are counted three ways: on the square that closes at 2 pi, on
-the square as it is drawn, and on the profile, the mean along these diagonals, as the drawn square shows it: over
--2 pi <= alpha_1 - alpha_2 <= 2 pi, two periods of it.
-"""
+"""Checks of what the paper says about its surfaces: each sees the evidence of its cases and computes its answer."""
 
 from __future__ import annotations
 

@@ -44,10 +44,6 @@ def periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     Peaks and valleys on the square that closes at 2 pi.
 
     mu: (n, n), finite, at phases 2 pi k / n. error: absolute, of the values. share: least prominence over the range.
-
-    >>> phases = 2.0 * np.pi * np.arange(16) / 16
-    >>> periodic(np.cos(phases)[:, None] + np.cos(phases))
-    Counts(peaks=1, valleys=1)
     """
     return Counts(len(relief(mu, error, share).tops), len(relief(-mu, error, share).tops))
 
@@ -58,16 +54,7 @@ def drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
 
 
 def profiled(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
-    """
-    Peaks and valleys of the profile over alpha1 - alpha2 as the drawn square shows it, from -2 pi to 2 pi.
-
-    The profile is the mean along the diagonals alpha1 - alpha2 = const. Ridges along the other diagonal, or none, leave
-    a profile of less than `share` of the surface's range: no peaks. Arguments as of `periodic`.
-
-    >>> phases = 2.0 * np.pi * np.arange(16) / 16
-    >>> profiled(-np.cos(phases[:, None] - phases))
-    Counts(peaks=2, valleys=1)
-    """
+    """Peaks and valleys of the mean along the diagonals alpha1 - alpha2 as the drawn square shows it, -2 pi to 2 pi."""
     n = len(mu)
     rows = np.arange(n)
     along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])

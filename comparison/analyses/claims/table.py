@@ -1,9 +1,4 @@
-"""
-The claims of section 5 against readings of the paper.
-
-The paper leaves units, duration and f_c open, so that a claim can hold under one reading and not under another; the
-table says which, names the reading that reproduces most, and lists what none reproduces.
-"""
+"""The claims of section 5 against readings of what the paper leaves open: units, duration and f_c."""
 
 from __future__ import annotations
 

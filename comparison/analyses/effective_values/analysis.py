@@ -1,9 +1,4 @@
-"""
-What each model really computed with, read back from one of its motions and not from its inputs.
-
-Codes that take the same numbers may use different ones: contact laws combine stiffness and friction in their own
-ways, and an elastic contact moves on another sphere. Here the motion itself is measured.
-"""
+"""What each model really computed with, read back from one of its motions and not from its inputs."""
 
 from __future__ import annotations
 
@@ -208,13 +203,7 @@ class ForcedRatio:
 
 
 def forced_ratios(scene: Scene) -> list[ForcedRatio]:
-    """
-    The ratios of a scene by axis, harmonic and body: none of a platform alone or under a recorded motion.
-
-    >>> from reference import load_scene
-    >>> [(each.axis, each.harmonic, round(each.ratio, 2)) for each in forced_ratios(load_scene("fig3-I"))]
-    [('x', 1, 0.56), ('y', 2, 4.56)]
-    """
+    """The ratios by axis, harmonic and body above the platform; none under a recorded motion."""
     if scene.recorded or len(scene.bodies) == 1:
         return []
     return [

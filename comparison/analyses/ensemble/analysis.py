@@ -1,10 +1,4 @@
-"""
-Demands of a structure under many motions at many intensities (incremental dynamic analysis).
-
-Families of scenes with recorded motions: one curve of demand against scale for every motion, statistics for every
-structure, which is a file or one of the values that run in it, such as bounds of friction. The equations compute every
-scene, the engine a stated subset of them.
-"""
+"""Demands of structures under many motions at many intensities (incremental dynamic analysis), by both sides."""
 
 from __future__ import annotations
 
@@ -216,11 +210,7 @@ def _spread(members: Sequence[Member], subset: int) -> set[int]:
 
 
 def members_of(families: Sequence[Family]) -> tuple[Member, ...]:
-    """
-    The members of an ensemble of families.
-
-    Raises SceneError unless every scene has a recorded motion and families of different files have different names.
-    """
+    """The members of families. Raises SceneError unless every scene has a record and every file a name of its own."""
     names = [family.name for family in families]
     for name in names:
         if names.count(name) > 1:
@@ -277,11 +267,7 @@ def answered(task: Arguments) -> Answer:
 
 
 def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
-    """
-    Statistics of every demand of every structure at every scale.
-
-    A motion without an answer counts as worse than all others: it reached the rim, or is not known to demand less.
-    """
+    """Statistics of every demand at every scale; a motion without an answer counts as worse than all others."""
     for name, own in _by(points, "structure").items():
         for quantity in quantities(own):
             for scale, at_scale in sorted(_by(own, "scale").items()):
@@ -355,14 +341,7 @@ def quantities(points: Sequence[Point]) -> list[Quantity]:
 
 
 def uncertain_fractile(numbers: Sequence[Estimate], share: float, worst: float = math.inf) -> Estimate:
-    """
-    Fractile of numbers with errors; NaN ones count as `worst`. Its error is the largest change within the errors.
-
-    >>> numbers = [Estimate(1.0, 0.1), Estimate(2.0, 0.2), Estimate(float("nan"), float("nan"))]
-    >>> median = uncertain_fractile(numbers, 0.5)
-    >>> median.value, round(median.error, 12), uncertain_fractile(numbers, 0.75).value
-    (2.0, 0.2, nan)
-    """
+    """Fractile of numbers; NaN ones count as `worst`. Its error is the largest change within the errors."""
     value = np.array([number.value for number in numbers])
     error = np.array([number.error for number in numbers])
     low, middle, high = (

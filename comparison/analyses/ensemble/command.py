@@ -1,11 +1,7 @@
 """
 Demands under a suite: `python -m comparison.ensemble SCENE [SCENE ...] --suite SUITE --scales LOW HIGH COUNT`.
 
-Every motion of the suite at every scale factor, by the equations, and by the engine at some of them, with statistics
-for every scene; several scale factors make an incremental dynamic analysis. Writes
-ensemble.json, which the next report beside it shows, ensemble.csv and a picture. Every motion is stored as it is
-finished: the same command goes on where it stopped. `--plan` only says what it would cost. Exit codes: 0 done; 2 a
-wrong scene or option; others as in `run_command`.
+Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
 """
 
 from __future__ import annotations
@@ -130,11 +126,7 @@ def how_paired(suite: str | None) -> str:
 
 
 def table_text(points: Points) -> str:
-    """
-    The content of ensemble.csv: a row for every motion, scale and model.
-
-    A text that a spreadsheet would take for a formula stands behind an apostrophe.
-    """
+    """ensemble.csv: a row for every motion, scale and model; what begins like a formula stands behind an apostrophe."""
 
     def cell(value: object) -> object:
         return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value

@@ -134,11 +134,7 @@ class Cell:
 
 
 def cells(rows: Sequence[Row], columns: Sequence[Column] = COLUMNS) -> list[Cell]:
-    """
-    Every model that each extreme concerns, row by row.
-
-    One of the numerics of our engine is none for an engine of the user.
-    """
+    """Every model that each extreme concerns; of the numerics of our engine none is for an engine of the user."""
     return [
         Cell(row, column)
         for row in rows

@@ -1,9 +1,8 @@
 """
 Numerical stability at the extremes: `python -m comparison.extremes [--out DIR]`.
 
-Every model meets every extreme of `rows` in a process that can be ended, and its answer is judged by a finer run. Every
-cell is stored as it is finished: the same command goes on where it stopped. Writes extremes.json and extremes.png. Exit
-codes: 0 no cell failed; 1 some did; 2 a wrong option; 3 the files could not be written; others as in `run_command`.
+Exit codes: 0 no cell failed; 1 some did; 2 a wrong option; 3 the files could not be written; others as in
+`run_command`.
 """
 
 from __future__ import annotations

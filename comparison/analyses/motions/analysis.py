@@ -1,8 +1,4 @@
-"""
-Motions kept for the report: a few phase pairs of every scene, by the models of its two differences.
-
-A motion is thinned only as far as straight lines between the instants left reproduce every instant dropped.
-"""
+"""Motions kept for the report: a few phase pairs of every scene, by the models of its two differences, thinned."""
 
 from __future__ import annotations
 
@@ -138,11 +134,7 @@ Arguments = tuple[Scene, Model, float, Place, tuple[float, float]]
 
 
 def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Place, set[str]]:
-    """
-    Where the difference of each body is largest, total and translational, then an even spread over the phases.
-
-    With the keys of the engine's models that move there: all, or that of the difference.
-    """
+    """Where the difference of each body is largest, and an even spread; with the engine's models that move there."""
     engines = {model.key for model in shown_models(study, scene) if model.side == "engine"}
     if scene.recorded:
         return {Place(scene.name, 0, 0, ""): engines}

@@ -1,6 +1,4 @@
-"""
-The trade-off as an analysis: a task for every few seconds of a function's phase pairs, and the diagram made of them.
-"""
+"""The trade-off as an analysis: a task for every few seconds of a function's phase pairs, and the diagram of them."""
 
 from __future__ import annotations
 
@@ -67,12 +65,7 @@ class Measured:
 
 
 def sample(points: int) -> Array:
-    """
-    The phase pairs that are measured, rad; a smaller sample is the beginning of a larger one.
-
-    >>> bool((sample(3) == sample(5)[:3]).all())
-    True
-    """
+    """The phase pairs that are measured, rad."""
     return np.random.default_rng(SEED).uniform(0.0, 2.0 * np.pi, (points, 2))
 
 

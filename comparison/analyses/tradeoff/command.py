@@ -1,10 +1,7 @@
 """
 Speed for accuracy: `python -m comparison.tradeoff [SCENE ...] [--quick | --growth] [--out DIR]`.
 
-Measures the error of mu_i against compute time per point, for every model and every numerical parameter. Every part of
-a measurement is stored as it is finished: the same command goes on where it stopped, with the times measured then.
-Writes tradeoff.json, in which other scenes stay, SCENE-tradeoff.nc and SCENE-tradeoff.png. Exit codes: 0 done; 2 a
-wrong scene or option; 3 the files could not be written; others as in `run_command`.
+Exit codes: 0 done; 2 a wrong scene or option; 3 the files could not be written; others as in `run_command`.
 """
 
 from __future__ import annotations

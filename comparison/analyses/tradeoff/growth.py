@@ -1,9 +1,4 @@
-"""
-How the cost of a phase pair grows with bodies and duration, and that of a call with its phase pairs.
-
-Every measurement is one task with a limit on its processor time. An exponent is the slope of a line through the
-logarithms of the larger half of the values, where fixed costs count least.
-"""
+"""How the cost of a phase pair grows with bodies and duration, and that of a call with its phase pairs and workers."""
 
 from __future__ import annotations
 
@@ -128,12 +123,7 @@ def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], se
 
 
 def fitted_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
-    """
-    Exponent of seconds over the larger half of the values before the first NaN, and its standard error; NaN for two.
-
-    >>> [round(number, 6) for number in fitted_slope([1, 2, 4, 8], [3, 12, 48, 192])]
-    [2.0, 0.0]
-    """
+    """Exponent of the larger half of the values before the first NaN, and its standard error; NaN for fewer than 3."""
     known = int(np.isfinite([*seconds, np.nan]).argmin())  # what is behind one without a measurement is no trend
     if known < 3:
         return float("nan"), float("nan")

@@ -40,9 +40,7 @@ Settings = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Question:
-    """
-    One panel of the diagram. reference_solution: its function and settings. points, quick: phase pairs of the sample.
-    """
+    """One panel. reference_solution: its function and settings. points, quick: phase pairs of the sample."""
 
     key: str
     title: str

@@ -127,24 +127,13 @@ class Trade:
 
 
 def quantile(errors: Array, share: float) -> float | None:
-    """
-    The error that a share of the points does not exceed: one that occurred; None if no error is known.
-
-    >>> quantile(np.array([1.0, 2.0, 3.0, np.nan]), 0.5)
-    2.0
-    """
+    """The error that a share of the points does not exceed: one that occurred; None if no error is known."""
     known = errors[np.isfinite(errors)]
     return float(np.quantile(known, share, method="higher")) if len(known) else None
 
 
 def unbeaten(mine: tuple[float, float], others: Sequence[tuple[float, float]]) -> bool:
-    """
-    Whether nothing else is at least as good in cost and error and better in one.
-
-    >>> pairs = [(1.0, 1e-2), (2.0, 1e-3), (3.0, 1e-2)]
-    >>> [unbeaten(pair, pairs) for pair in pairs]
-    [True, True, False]
-    """
+    """Whether nothing else is at least as good in cost and error and better in one."""
     beaten = any(other != mine and other[0] <= mine[0] and other[1] <= mine[1] for other in others)
     return math.isfinite(sum(mine)) and not beaten
 

@@ -1,9 +1,8 @@
 """
 Measured motions, by the equations and by the engine: `python -m comparison.validation [FOLDER]`.
 
-Reads the files where the user has them; without a folder it prints what is recorded in the package and says how to get
-them. Writes validation.json. Exit codes: 0 done; 1 a side has no value for a quantity; 2 wrong input; 3 the file could
-not be written; others as in `run_command`.
+Exit codes: 0 done; 1 a side has no value for a quantity; 2 wrong input; 3 the file could not be written; others as in
+`run_command`.
 """
 
 from __future__ import annotations
