@@ -14,7 +14,6 @@ from fake_models import fake_hierarchy
 from known_analyses import collected
 
 from comparison.analyses.assumptions import command
-from comparison.analyses.assumptions.command import main
 from comparison.analyses.assumptions.validity import (
     ASSUMPTIONS,
     FEW,
@@ -103,15 +102,6 @@ def test_a_model_that_raises_leaves_no_value_and_says_why() -> None:
         assert np.isnan(cell.change).all()
         assert cell.error_message == "RuntimeError: the matrix is singular"
         assert not cell.holds(1, 0.05)
-
-
-def test_a_scene_without_supports_is_refused_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = tmp_path / "bare.toml"
-    path.write_bytes(BARE)
-    assert main([str(path)]) == 2
-    err = capsys.readouterr().err
-    assert err.count("\n") == 1
-    assert "the spatial model needs supports, ring and sphere_radius" in err
 
 
 def test_an_uneven_variation_gives_factors_and_torsion() -> None:

@@ -202,26 +202,6 @@ def test_the_command_prints_the_table(capsys: pytest.CaptureFixture[str], tmp_pa
     assert not (tmp_path / "report").exists(), "the command writes no report"
 
 
-@pytest.mark.usefixtures("evidence_of_the_paper")
-def test_settle_and_search_say_where_results_are_recorded(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    words = ["--jobs", "1", "--grid", "16", "--out", str(tmp_path / "report")]
-    recorded = "docs/claims.md records the counts on finer grids"
-    for option, said in (["--settle"], True), (["--search"], True), (["--search", "4"], True), ([], False):
-        assert main([*words, *option], ThreadPoolExecutor) == 0
-        assert (recorded in capsys.readouterr().out) == said
-
-
-@pytest.mark.parametrize(("option", "value", "rule"), [("--grid", "7", "from 8 to 512"), ("--search", "0", "from 1")])
-def test_a_number_out_of_range_is_one_line(
-    option: str, value: str, rule: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main([option, value], ThreadPoolExecutor) == 2
-    message = capsys.readouterr().err
-    assert f"{option}" in message
-    assert f"must be a whole number {rule}" in message
-    assert message.count("\n") == 1
-
-
 def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
     """Short and coarse: the plane of (4.7) to rounding, two unequal axes apart, no fold without a grid to see one."""
     dry = evidence.gathered(Question("fig4-dry", Reading(duration=1.5), 4))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields, replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -144,14 +143,6 @@ def test_the_report_shows_them_where_they_are_asked_for(
     assert float(stored["demand_base_shear"].sel(model="small").max()) == pytest.approx(
         float(demands["base_shear"].sel(scene="fig3-I", model="small").max())
     )
-
-
-def test_without_them_the_report_says_how_to_get_them(finished: Path) -> None:
-    page = page_of(finished)
-    assert "Demands over all phases: on request; --also demands makes it" in page
-    summary = summary_of(finished)
-    assert [scene["demand_statistics"] for scene in summary["scenes"]] == [[], []]
-    assert not [name for name in xr.load_dataset(finished / "surfaces.nc") if str(name).startswith(PREFIX)]
 
 
 def test_panels_are_in_the_units_of_their_axes(study: Study, demands: xr.Dataset) -> None:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 from known_analyses import collected
-from report_texts import summary_of
-from runs import Run
 
 from comparison.analyses.effective_values.analysis import PHASES, EffectiveValues, read_back, stated
 from comparison.study.models import EXACT, MODEL_HIERARCHY, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
@@ -79,14 +76,6 @@ def test_every_scene_has_its_statement_and_its_models() -> None:
     dry = ["scene", "small", "exact", "resolved", "regularised", "translational", "spatial"]
     assert [row.model for row in rows if row.scene == "fig3-I"] == dry
     assert [row.model for row in rows if row.scene == "fig4-viscous"] == ["scene", "small", "exact", *dry[-2:]]
-
-
-def test_the_summary_has_null_for_what_is_not_known(command: Callable[..., Run]) -> None:
-    run = command("fig3-I", "--grid", "2")
-    (scene,) = summary_of(run.report)["scenes"]
-    assert scene["effective"][0]["model"] == "scene"
-    assert scene["effective"][0]["mass"] == 2.0
-    assert scene["effective"][1]["mass"] is None
 
 
 def test_the_dampers_of_both_sides_are_those_of_the_scene() -> None:

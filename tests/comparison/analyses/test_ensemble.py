@@ -138,14 +138,6 @@ def test_a_motion_that_still_moves_is_counted_with_its_reason() -> None:
     assert (residual.answered, residual.reasons) == (1, {reason: 1})
 
 
-@pytest.mark.parametrize("options", [(), ("--scales", "1", "1", "1")])
-def test_one_scale_factor_makes_one_set_of_statistics(folder: Path, undrawn: None, options: tuple[str, ...]) -> None:
-    assert run("mine.toml", "--suite", "suite", *options, "--engine", "1") == 0
-    summary = content()
-    assert (summary["motions"], summary["scales"], summary["outcomes"]) == (3, [1.0], {"ok": 3})
-    assert {stripe["scale"] for stripe in summary["stripes"]} == {1.0}
-
-
 def test_one_motion_in_the_scene_needs_neither_suite_nor_scales(folder: Path, undrawn: None) -> None:
     text = SCENE[: SCENE.index("excitation")] + 'excitation = {record = "suite/m1.csv", scale = 0.5}\n'
     (folder / "mine.toml").write_text(text)
@@ -249,16 +241,6 @@ def test_motions_that_reach_the_rim_are_counted(folder: Path, undrawn: None) -> 
         worst = stripe["fractiles"][0 if stripe["quantity"] == "contact_force_min" else 2]
         assert (worst["value"], stripe["mean"]["value"]) == (None, None)
         assert stripe["smallest" if stripe["quantity"] == "contact_force_min" else "largest"]["value"] is None
-
-
-def test_the_same_command_computes_nothing_again(
-    folder: Path, undrawn: None, capsys: pytest.CaptureFixture[str]
-) -> None:
-    words = ("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "0")
-    run(*words)
-    capsys.readouterr()
-    run(*words)
-    assert "6 of 6 tasks are in" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

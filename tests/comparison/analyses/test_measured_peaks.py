@@ -88,14 +88,6 @@ def test_a_quantity_that_a_model_lacks_is_not_known():
     assert only.computed[0].status == "the model has no such value"
 
 
-def test_a_residual_of_a_platform_that_still_moves_says_so():
-    displacement, residual = peak("displacement", 0.03, 0.001), peak("residual", 0.01, 0.001)
-    scene = PLAIN.with_values({"duration": 1.2, "measured": [displacement, residual]})
-    moving, rest = compared(scene, EXACT, TRANSLATIONAL)
-    assert [each.status for each in moving.computed] == ["ok", "ok"]
-    assert [each.status for each in rest.computed] == ["moving at the end: take a longer duration"] * 2
-
-
 def test_a_record_is_compared_without_phases():
     scene = load_scene("synthetic-pair").with_values({"duration": 3.0})
     stated = peak("displacement", 0.01, 0.001)

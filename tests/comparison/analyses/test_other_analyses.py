@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -61,12 +60,3 @@ def test_claims_are_tested_only_with_all_scenes_of_the_paper() -> None:
     assert Claims().collect(study, None, TaskResults()) is None
     for analysis in (Scaling(), Convergence()):
         assert {task.about.name for task in analysis.tasks(study)} == {"fig3-I"}
-
-
-def test_a_report_without_them_says_which_command_makes_them(command: Callable[..., Any]) -> None:
-    run = command("fig3-I", "--grid", "2", "--jobs", "1")
-    assert run.code == 0, run.err
-    page = both_pages(run.report)
-    assert 'id="claims"' not in page
-    assert "python -m comparison.claims alone" in page
-    assert summary_of(run.report)["claims"] is None

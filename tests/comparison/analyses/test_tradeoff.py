@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -12,26 +11,20 @@ import numpy as np
 import pytest
 import xarray as xr
 from known_analyses import collected
-from known_results import known_trade
 from scipy.stats import linregress
 
 from comparison.analyses.tradeoff import analysis, command, growth
 from comparison.analyses.tradeoff.analysis import Measured, Measurement, TradeOff, entry, joined, sample
 from comparison.analyses.tradeoff.growth import (
     QUANTITIES,
-    SCHEMA,
     STORED,
     Growth,
-    MeasuredGrowth,
-    Series,
     fitted_slope,
     tall,
     with_slope,
 )
 from comparison.analyses.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
 from comparison.analyses.tradeoff.trade import (
-    FILE,
-    MeasuredTrade,
     Trade,
     load,
     quantile,
@@ -149,34 +142,6 @@ def test_the_loosest_tolerances_are_those_that_are_taken() -> None:
     assert loosest["reference, one run"] == 1e-1
 
 
-def test_the_command_writes_what_the_report_reads(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    trade = known_trade("fig3-I")
-    data = xr.Dataset({"mu": ("point", [1.0])})
-    monkeypatch.setattr(command, "measured_trades", lambda *arguments: [MeasuredTrade(trade, data)])
-    assert command.main(["fig3-I", "--quick", "--out", str(tmp_path / "out")]) == 0
-    names = {file.name for file in (tmp_path / "out").iterdir()}
-    assert names == {FILE, "fig3-I-tradeoff.nc", "fig3-I-tradeoff.png", "fig3-I-tradeoff.pdf", "manifest.json"}
-    again = load(tmp_path / "out")
-    assert again is not None
-    assert json.loads(json.dumps(again[0].__dict__, default=vars)) == json.loads(
-        json.dumps(trade.__dict__, default=vars)
-    )
-    assert "on the Pareto front" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [(["nowhere.toml"], "nowhere.toml"), (["--jobs", "0"], "--jobs = 0: must be a whole number from 1")],
-)
-def test_a_wrong_command_is_one_line(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert command.main(words) == 2
-    line = capsys.readouterr().err
-    assert said in line
-    assert line.count("\n") == 1
-
-
 def test_a_model_that_raises_leaves_points_without_a_value(monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(path: str) -> Callable[..., object]:
         raise RuntimeError("the matrix is singular")
@@ -254,23 +219,6 @@ def test_the_cost_grows_with_bodies_and_phase_pairs() -> None:
     assert pairs.quantity == "phase pairs"
     assert None not in bodies.seconds
     assert pairs.seconds[-1] > pairs.seconds[0]
-
-
-def test_growth_without_an_answer_is_read_back(tmp_path: Path) -> None:
-    measured = growth_of(
-        with_slope("bodies", "", "exact", (2.0, 4.0), (0.1, float("nan"))),
-        with_slope("workers", "", "exact", (1.0,), (2.0,)),
-    )
-    files = command.growth_files(measured)
-    assert set(files) == set(command.GROWTH_FILES)
-    assert STORED.load(tmp_path) is None
-    (tmp_path / "growth.json").write_bytes(files["growth.json"])
-    assert STORED.load(tmp_path) == measured
-    assert (measured.series[0].seconds, measured.series[0].slope) == ([0.1, None], None)
-
-
-def growth_of(*series: Series) -> MeasuredGrowth:
-    return MeasuredGrowth(SCHEMA, "fig3-I", "a scene", list(series), {"command": "made up"})
 
 
 def test_the_command_writes_and_prints_the_growth(
