@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -63,27 +64,14 @@ class Member:
 
 
 @dataclass(frozen=True)
-class Answer:
-    """What is kept of a motion."""
-
-    demands: Demands
-    spectra: FloorSpectra | None
-
-
-@dataclass(frozen=True)
 class Point:
     """One motion at one scale by one model. demands: NaN if it ended early; None if there is nothing at all."""
 
-    structure: str
-    curve: str  # the motion
-    scale: float
-    peak: float  # m/s^2, largest horizontal acceleration of the ground
-    scene: str  # name
+    member: Member
     model: str  # key
     status: str
-    demands: Demands | None
+    demands: Demands | None = None
     spectra: FloorSpectra | None = None
-    factor: float = 1.0  # of the motion, to a target spectrum
 
     def estimate(self, quantity: Quantity) -> Estimate:
         """A demand; NaN without an answer."""
@@ -101,6 +89,7 @@ class Points:
 
 
 Arguments = tuple[Scene, Model, float]
+Answer = tuple[Demands, FloorSpectra | None]  # what is kept of a motion
 
 
 def _alike(scene: Scene) -> Model:
@@ -140,13 +129,10 @@ class Ensemble(Analysis[Points]):
         """Every motion by every model that was asked for it."""
 
         def point(member: Member, model: Model) -> Point:
-            scene = member.scene
-            answer: Answer | str = results.value(self._task(scene, model), lambda task, failed: failed.outcome.value)
-            peak = float(np.hypot(scene.record[:, 1], scene.record[:, 2]).max())
-            named = member.structure, member.motion, member.scale, peak, scene.name, model.key
-            if isinstance(answer, str):
-                return Point(*named, answer, None, factor=member.factor)
-            return Point(*named, answer.demands.status, answer.demands, answer.spectra, member.factor)
+            task = self._task(member.scene, model)
+            found: Answer | str = results.value(task, lambda task, failed: failed.outcome.value)
+            answer = (found,) if isinstance(found, str) else (found[0].status, *found)
+            return Point(member, model.key, *answer)
 
         asked = [self.members[place] for place in self.chosen()]
         return Points(
@@ -159,7 +145,7 @@ class Ensemble(Analysis[Points]):
         """The statistics of the points, the curves of the motions and the engine's bound."""
         both = points.equations, points.engine
         rows = [stripe for each in both for stripe in stripes(each)]
-        scales = sorted({point.scale for point in points.equations})
+        scales = sorted({point.member.scale for point in points.equations})
         asked = "displacement", EXACT.key, scales[-1]
         means = {row.structure: row.mean.value for row in rows if (row.quantity, row.model, row.scale) == asked}
         statuses = Counter(sorted(point.status for point in points.equations))
@@ -167,14 +153,14 @@ class Ensemble(Analysis[Points]):
             schema=SCHEMA,
             structures=structures_of(self.members, means),
             scales=scales,
-            motions=len({point.curve for point in points.equations}),
+            motions=len({point.member.motion for point in points.equations}),
             outcomes=dict(statuses.most_common()),
             stripes=rows,
             curves=list(curves(*both)),
             spectra=list(spectrum_bands(points.equations)),
             engine=Engine(
                 self.model.key,
-                [{"scene": point.scene, "status": point.status} for point in points.engine],
+                [{"scene": point.member.scene.name, "status": point.status} for point in points.engine],
                 list(bounds(points.equations, points.engine, points.alike)),
             ),
             run=run,
@@ -254,7 +240,7 @@ def _by(rows: Sequence[Any], name: str) -> dict[Any, list[Any]]:
     """The rows by one of their attributes, in the order in which its values come."""
     groups: dict[Hashable, list[Any]] = {}
     for row in rows:
-        groups.setdefault(getattr(row, name), []).append(row)
+        groups.setdefault(attrgetter(name)(row), []).append(row)
     return groups
 
 
@@ -263,14 +249,14 @@ def answered(task: Arguments) -> Answer:
     scene, model, tolerance = task
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     motion = imported(model.trajectory)(scene, REST, tolerance=tolerance, **settings)
-    return Answer(demands(motion), floor_spectra(motion) if model == EXACT else None)
+    return demands(motion), floor_spectra(motion) if model == EXACT else None
 
 
 def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
     """Statistics of every demand at every scale; a motion without an answer counts as worse than all others."""
-    for name, own in _by(points, "structure").items():
+    for name, own in _by(points, "member.structure").items():
         for quantity in quantities(own):
-            for scale, at_scale in sorted(_by(own, "scale").items()):
+            for scale, at_scale in sorted(_by(own, "member.scale").items()):
                 numbers = [point.estimate(quantity) for point in at_scale]
                 worst = -math.inf if quantity[0] in SMALLEST else math.inf
                 mean, *shares, largest, smallest = statistics(numbers, (*FRACTILES, 1.0, 0.0), worst)
@@ -302,8 +288,8 @@ def statistics(numbers: Sequence[Estimate], shares: Sequence[float], worst: floa
 
 def spectrum_bands(points: Sequence[Point]) -> Iterator[Spectrum]:
     """Floor spectra of every body of every structure at the largest scale, over all motions; the larger of x and y."""
-    top = max((point.scale for point in points), default=math.nan)
-    for name, own in _by([point for point in points if point.scale == top], "structure").items():
+    top = max((point.member.scale for point in points), default=math.nan)
+    for name, own in _by([point for point in points if point.member.scale == top], "member.structure").items():
         known = [point.spectra for point in own if point.spectra is not None]
         if not known:
             continue
@@ -321,15 +307,15 @@ def spectrum_bands(points: Sequence[Point]) -> Iterator[Spectrum]:
 
 def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[Curve]:
     """Every demand of every motion over its scales, by structure, demand, model and motion."""
-    for name in _by(equations, "structure"):
-        both = [[point for point in points if point.structure == name] for points in (equations, engine)]
+    for name in _by(equations, "member.structure"):
+        both = [[point for point in points if point.member.structure == name] for points in (equations, engine)]
         for quantity in quantities([*equations, *engine]):
             for own in both:
-                for motion, points in _by(own, "curve").items() if quantity in quantities(own) else ():
-                    points = sorted(points, key=lambda point: point.scale)
+                for motion, points in _by(own, "member.motion").items() if quantity in quantities(own) else ():
+                    points = sorted(points, key=lambda point: point.member.scale)
                     numbers = [_statistic(point.estimate(quantity)) for point in points]
                     values, errors = [each.value for each in numbers], [each.error for each in numbers]
-                    scales = [point.scale for point in points]
+                    scales = [point.member.scale for point in points]
                     yield Curve(name, *_named(quantity), points[0].model, motion, scales, values, errors)
 
 
@@ -352,10 +338,10 @@ def uncertain_fractile(numbers: Sequence[Estimate], share: float, worst: float =
 
 def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Point]) -> Iterator[Difference]:
     """The largest difference of every demand that both sides have, and the largest with the same friction law."""
-    equations = {(point.structure, point.scene): point for point in points}
-    for name, own in _by(engine, "structure").items():
-        same_law = [point for point in alike if point.structure == name]
-        matching = [equations[name, point.scene] for point in own]
+    equations = {(point.member.structure, point.member.scene.name): point for point in points}
+    for name, own in _by(engine, "member.structure").items():
+        same_law = [point for point in alike if point.member.structure == name]
+        matching = [equations[name, point.member.scene.name] for point in own]
         for quantity in quantities(own):
             apart, same = ([*_differences(quantity, first, own)] for first in (matching, same_law))
             closest = max(same, default=(math.nan, math.nan))
@@ -381,12 +367,12 @@ def as_rows(points: Points) -> list[dict[str, object]]:
     for point in (*points.equations, *alike, *points.engine):
         numbers = {name: point.estimate(quantity) for quantity, name in names.items()}
         row: dict[str, object] = {
-            "structure": point.structure,
-            "scene": point.scene,
-            "motion": point.curve,
-            "scale": point.scale,
-            "factor": point.factor,
-            "peak_ground_acceleration": point.peak,
+            "structure": point.member.structure,
+            "scene": point.member.scene.name,
+            "motion": point.member.motion,
+            "scale": point.member.scale,
+            "factor": point.member.factor,
+            "peak_ground_acceleration": float(np.hypot(*point.member.scene.record[:, 1:3].T).max()),
             "model": point.model,
             "status": point.status,
             "missing": "; ".join(f"{name}: {number.reason}" for name, number in numbers.items() if number.reason),

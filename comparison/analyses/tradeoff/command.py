@@ -81,18 +81,13 @@ def _grown(
     series = [*Growth().collect(study, None, results), by_workers(scene, process_pool)]
     facts = run_facts("tradeoff", options, words, begin)
     measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
-    files = growth_files(measured)
+    picture = made_by(lambda folder: draw_growth(folder / growth.PICTURE, measured))
+    files = {growth.FILE: growth.STORED.as_json(measured), **picture}
     with writing(out):
         publish(out, files, COMMAND)
     print_growth(console, series)
     console.print(f"Growth: {out / growth.FILE}, and growth.png beside it.", soft_wrap=True)
     return 0
-
-
-def growth_files(measured: MeasuredGrowth) -> dict[str, bytes]:
-    """Table and figure."""
-    picture = made_by(lambda folder: draw_growth(folder / growth.PICTURE, measured))
-    return {growth.FILE: growth.STORED.as_json(measured), **picture}
 
 
 def print_growth(console: Console, series: Sequence[Series]) -> None:

@@ -105,7 +105,7 @@ def demanding(
     """A motion of which two demands are known, every other is lacking."""
     known = {"status": "ok", "displacement": Estimate(displacement, error), "residual": residual}
     demands = Demands(**{**{field.name: None for field in fields(Demands)}, **known})  # type: ignore[arg-type]
-    return Point("mine", motion, 1.0, 1.0, "mine", model, "ok", demands)
+    return Point(Member("mine", motion, 1.0, load_scene("fig3-I")), model, "ok", demands)
 
 
 def test_the_bound_of_the_engine_has_the_errors_of_both_sides() -> None:
