@@ -17,7 +17,7 @@ from reference.problem.scene import Scene
 
 ANSWERED = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
 ROUNDING = 1e-9  # of the duration: the last instant of a motion may miss its end by it
-THINNING = 5  # the sampling error is the largest change if only one of so many samples is taken
+DECIMATION = 5  # the sampling error is the largest change if only one of so many samples is taken
 
 
 @dataclass(frozen=True)
@@ -227,9 +227,11 @@ class _Samples(NamedTuple):
             uplift,
         )
 
-    def thinned(self) -> list[_Samples]:
-        """One of THINNING samples, from the first, the second, ... on."""
-        return [_Samples(*(part[first::THINNING] for part in self)) for first in range(min(THINNING, len(self.time)))]
+    def decimated(self) -> list[_Samples]:
+        """One of DECIMATION samples, from the first, the second, ... on."""
+        return [
+            _Samples(*(part[first::DECIMATION] for part in self)) for first in range(min(DECIMATION, len(self.time)))
+        ]
 
     def largest(self, place: Array, velocity: Array) -> float:
         """Largest length of a displacement (T, 2)."""
@@ -249,13 +251,13 @@ Read = Callable[[_Samples], float]
 
 
 class _Reading:
-    """Reads numbers from a motion, and their errors from its thinned samples and from the runs beside it."""
+    """Reads numbers from a motion, and their errors from its decimated samples and from the runs beside it."""
 
     def __init__(self, motion: Trajectory) -> None:
         self.motion, self.accuracy = motion, motion.accuracy
         self.answered = motion.status in ANSWERED and len(motion.time) > 0
         self.samples = _Samples.of(motion)
-        self.thinned = self.samples.thinned()
+        self.decimated = self.samples.decimated()
         self.coarser = [_Samples.of(other) for other in self.accuracy.coarser] if self.accuracy else []
 
     def extreme(self, read: Read) -> Estimate:
@@ -263,7 +265,7 @@ class _Reading:
         if not self.answered:
             return UNKNOWN
         value = read(self.samples)
-        sampling = max(abs(read(samples) - value) for samples in self.thinned)
+        sampling = max(abs(read(samples) - value) for samples in self.decimated)
         return Estimate(value, sampling + self._of_solution(value, [read(samples) for samples in self.coarser]))
 
     def residual(self) -> Estimate:
@@ -277,8 +279,8 @@ class _Reading:
         if stick[-1][0] > self.samples.time[-1]:
             return Estimate(math.nan, math.nan, NOT_SAMPLED)
         value, creep = self.samples.at_rest(stick)
-        thinned = (samples.at_rest(stick) for samples in self.thinned if samples.time[-1] >= stick[-1][0])
-        sampling = max(abs(place - value) + abs(way - creep) for place, way in thinned)
+        decimated = (samples.at_rest(stick) for samples in self.decimated if samples.time[-1] >= stick[-1][0])
+        sampling = max(abs(place - value) + abs(way - creep) for place, way in decimated)
         coarser = self.accuracy.coarser if self.accuracy else ()
         others = [samples.at_rest(motion.stick)[0] for samples, motion in zip(self.coarser, coarser)]
         return Estimate(value, creep + sampling + self._of_solution(value, others))
@@ -287,18 +289,18 @@ class _Reading:
         """An amount of energy, which is added up over the samples."""
         if not self.answered:
             return UNKNOWN
-        (energy, *coarser), thinned = self._energies
+        (energy, *coarser), decimated = self._energies
         value = read(energy)
-        sampling = max(abs(read(part) - value) for part in thinned) / (THINNING - 1)
+        sampling = max(abs(read(part) - value) for part in decimated) / (DECIMATION - 1)
         others = [read(other) for other in coarser]
         return Estimate(value, sampling + self._of_solution(value, others, energy.dissipated()))
 
     @cached_property
     def _energies(self) -> tuple[list[Energy], list[Energy]]:
-        """Energy of the motion and of the runs beside it, and of the motion's thinned samples."""
+        """Energy of the motion and of the runs beside it, and of the motion's decimated samples."""
         others = self.accuracy.coarser if self.accuracy else ()
         energies = [energy_of(motion) for motion in (self.motion, *others)]
-        return energies, energies[0].thinned(THINNING)
+        return energies, energies[0].decimated(DECIMATION)
 
     def count(self, read: Callable[[Trajectory], float]) -> Estimate:
         """A number of events: the error is what the runs differ by."""

@@ -32,7 +32,7 @@ class Energy(NamedTuple):
         power = self.ground - self.friction - self.dampers
         return float(np.trapezoid(power, self.time) - (self.stored[-1] - self.stored[0]))
 
-    def thinned(self, step: int) -> list[Energy]:
+    def decimated(self, step: int) -> list[Energy]:
         """One of `step` instants, from the first, the second, ... on, and both ends."""
         last = len(self.time) - 1
         kept = [np.unique(np.r_[0, first:last:step, last]) for first in range(step)]
@@ -43,15 +43,15 @@ def energy_of(motion: Trajectory) -> Energy:
     """Powers and stored energy of a motion, NaN but for friction where bodies turn; small ones are on a paraboloid."""
     scene, place, velocity = motion.scene, motion.position, motion.velocity
     masses = scene.masses
-    height, climb = place[:, :, 2], velocity[:, :, 2]
+    height, upward = place[:, :, 2], velocity[:, :, 2]
     if not height.any():
         height = np.broadcast_to((place[:, :1, :2] ** 2).sum(axis=2) / (2.0 * scene.radius), height.shape)
-        climb = np.broadcast_to((place[:, :1, :2] * velocity[:, :1, :2]).sum(axis=2) / scene.radius, climb.shape)
+        upward = np.broadcast_to((place[:, :1, :2] * velocity[:, :1, :2]).sum(axis=2) / scene.radius, upward.shape)
     kinetic = 0.5 * (masses[:, None] * velocity**2).sum(axis=(1, 2))
     elastic = 0.5 * (scene.stiffness * np.diff(place[:, :, :2], axis=1) ** 2).sum(axis=(1, 2))
     dampers = (scene.damping * np.diff(velocity[:, :, :2], axis=1) ** 2).sum(axis=(1, 2))
     stored = kinetic + elastic + GRAVITY * height @ masses
-    shaking = np.concatenate([velocity[:, :, :2], climb[:, :, None]], axis=2)
+    shaking = np.concatenate([velocity[:, :, :2], upward[:, :, None]], axis=2)
     ground = -np.einsum("i,tia,ta->t", masses, shaking, motion.ground)
     if "turns" in motion.extra:
         stored, ground, dampers = np.full((3, len(motion.time)), np.nan)

@@ -27,7 +27,7 @@ TERMS = 8  # of the power series of a step
 MAX_ANGLE = 0.25  # rad, that the oscillator goes through in a step: the series then has an error of 1e-12
 # The sampling error is so many times the largest change if only one of so many samples is taken. Measured on the
 # built-in scenes against ten times as many samples: 0.6 of that at most.
-SAMPLING_FACTOR, THINNING = 2.0, 3
+SAMPLING_FACTOR, DECIMATION = 2.0, 3
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     value, accuracy = spectra(trajectory), trajectory.accuracy
     if accuracy is None:
         return FloorSpectra(period, damping, value, np.full_like(value, np.nan))
-    changes = [np.abs(spectra(trajectory, first, THINNING) - value) for first in range(THINNING)]
+    changes = [np.abs(spectra(trajectory, first, DECIMATION) - value) for first in range(DECIMATION)]
     error = SAMPLING_FACTOR * np.max(changes, axis=0) + accuracy.floor * value
     for share, other in zip(accuracy.share, accuracy.coarser, strict=True):
         error += share * np.abs(spectra(other) - value)

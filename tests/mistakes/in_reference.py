@@ -159,7 +159,7 @@ MISTAKES = (
             "Spectra are read at the steps, not between them.", (SMALL + "test_a_spectrum_is_read_between_the_steps",)),
     Mistake(MEASURES + "spectra.py", "1.0 - s - 2.0 * damping * b, angle", "1.0 - s - damping * b, angle",
             "Oscillators are damped half.", (SPECTRA + "test_an_oscillator_in_resonance_amplifies_by_1_over_2_zeta",)),
-    Mistake(MEASURES + "spectra.py", "SAMPLING_FACTOR, THINNING = 2.0, 3", "SAMPLING_FACTOR, THINNING = 0.02, 3",
+    Mistake(MEASURES + "spectra.py", "SAMPLING_FACTOR, DECIMATION = 2.0, 3", "SAMPLING_FACTOR, DECIMATION = 0.02, 3",
             "The error of spectra lacks what the samples miss.",
             (SPECTRA + "test_more_samples_change_less_than_the_error",)),
     Mistake(MEASURES + "distribution.py", "probability * len(ordered) - 0.5", "probability * len(ordered) - 1.0",
