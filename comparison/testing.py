@@ -79,6 +79,7 @@ def assert_consistent(
     >>> from comparison.testing import assert_consistent
     >>> assert_consistent("fig4-dry", like_for_like=1e-3, grid=2)
     """
+    __tracebackhide__ = True  # pytest shows the line of the test
     limits = {
         "like_for_like": like_for_like,
         "like_for_like_maximum": like_for_like_maximum,
@@ -150,4 +151,4 @@ def _broken(
 
 def _value(place: xr.Dataset, model: Model) -> str:
     mu, error = (float(place[name].sel(model=model.key)) for name in ("mu", "error"))
-    return f"{model.title} {mu:.6g} ± {error:.1g}"
+    return f"{model.title} {mu:.6g} ± {error:.1g}" if np.isfinite(error) else f"{model.title} {mu:.6g} (error unknown)"

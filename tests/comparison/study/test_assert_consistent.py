@@ -64,6 +64,7 @@ def test_a_user_engine_is_compared_with_the_equations_of_its_law(law: str) -> No
     lines = str(failure.value).splitlines()
     assert len(lines) == 4, "median and maximum of two bodies"
     assert all("difference 0.021, allowed 0.0001" in line and "engine " in line for line in lines)
+    assert all(line.endswith(" (error unknown)") for line in lines)
 
 
 def test_a_point_without_a_value_fails_unless_it_is_allowed() -> None:
