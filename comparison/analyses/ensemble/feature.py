@@ -17,13 +17,14 @@ from reference.measures.peak_demands import QUANTITIES, unit_of
 from reference.problem import GRAVITY
 
 SHOWN = ("displacement", "residual", "base_shear", "uplift", "support_force_max")
+OF_BODY = {"acceleration": "acceleration of body {}", "drift": "drift below body {}", "torsion": "rotation of body {}"}
 WIDTH = 0.3  # of a strip, in steps from one structure to the next
 READ = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "J": ("kJ", 1e-3), "rad": ("mrad", 1e3), "m/s^2": ("g", 1.0 / GRAVITY)}
 
 
 def title_of(quantity: str, body: int | None = None) -> str:
     """A demand in words."""
-    return QUANTITIES[quantity][0] + (f" of body {body}" if body else "")
+    return OF_BODY[quantity].format(body) if body else QUANTITIES[quantity][0]
 
 
 def unit_for_reading(quantity: str, weight: float) -> tuple[str, float]:
