@@ -1,18 +1,26 @@
 """
 The table that docs/evidence.md opens with: `python docs/evidence_table.py` writes it anew.
 
-Measured rows come from what `python -m comparison.validation FOLDER` recorded, the others from the checks that a report
-lists, which the tests of every commit repeat.
+Measured rows come from what `python -m comparison.validation FOLDER` recorded. The others are the checks that a report
+lists: `python docs/evidence_table.py --measure [WORD]` runs their tests, or those whose names hold a word, and keeps in
+evidence.json what each found.
 """
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
+from datetime import UTC, datetime
 from pathlib import Path
+from tempfile import TemporaryDirectory
+from xml.etree import ElementTree
 
 from comparison.analyses.validation.table import recorded
-from comparison.report.verification import CHECKS
+from comparison.report.verification import CHECKS, Check
 
-PAGE = Path(__file__).with_name("evidence.md")
+PAGE, STORE = Path(__file__).with_name("evidence.md"), Path(__file__).with_name("evidence.json")
+TESTS = PAGE.parent.parent / "tests"
 BEGIN, END = "<!-- written by evidence_table.py -->\n", "<!-- end -->\n"
 HEAD = "| claim | independent check | result | limit | repeated by | at |\n|---|---|---|---|---|---|\n"
 MEASURED = (  # experiment and quantity of rows that lead the table
@@ -42,15 +50,42 @@ def measured_rows() -> list[str]:
     return rows
 
 
+def measure(word: str) -> None:
+    """Run the tests of the checks and keep the value of each that is nearest to its limit, with commit and day."""
+    chosen = [check for check in CHECKS if word in check.test]
+    names = [f"{TESTS / check.file}::{check.test}" for check in chosen]
+    with TemporaryDirectory() as folder:
+        found = Path(folder, "found.xml")
+        run = [sys.executable, "-m", "pytest", "-q", "-n0", "-m", "long or not long", f"--junitxml={found}"]
+        subprocess.run([*run, "-o", "junit_family=xunit1", *names], check=True)
+        cases = list(ElementTree.parse(found).iter("testcase"))
+    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], check=True, capture_output=True, text=True)
+    at = {"commit": commit.stdout.strip(), "date": f"{datetime.now(UTC):%Y-%m-%d}"}
+    store = json.loads(STORE.read_text(encoding="utf-8")) if STORE.exists() else {}
+    for check in chosen:
+        own = [case for case in cases if case.get("name", "").split("[")[0] == check.test]
+        texts = [each.get("value", "") for case in own for each in case.iter("property")]
+        value, limit = max(
+            (tuple(map(float, text.split(" of "))) for text in texts), key=lambda pair: pair[0] / pair[1]
+        )
+        store[check.test] = {"value": value, "limit": limit, **at}
+    STORE.write_text(json.dumps(store, indent=1) + "\n", encoding="utf-8")
+
+
+def row(check: Check) -> str:
+    """One row; a limit of 1 is that of an error which each value states."""
+    claims = {"reference": "the equations are solved", "engine": "the engine's model is solved"}
+    found = json.loads(STORE.read_text(encoding="utf-8"))[check.test]
+    result = f"{found['value']:.2g} of it" if found["limit"] == 1.0 else f"{found['value']:.1e}"
+    return (
+        f"| {claims[check.side]} | {check.against} | {result} | {check.closeness} "
+        f"| `{check.file}::{check.test}` | {found['commit']}, {found['date']} |"
+    )
+
+
 def table() -> str:
     """The table in Markdown."""
-    claims = {"reference": "the equations are solved", "engine": "the engine's model is solved"}
-    tests = [
-        f"| {claims[check.side]} | {check.against} | within | {check.closeness} "
-        f"| `{check.file}::{check.test}` | every commit or night |"
-        for check in CHECKS
-    ]
-    return HEAD + "\n".join([*measured_rows(), *tests]) + "\n"
+    return HEAD + "\n".join([*measured_rows(), *map(row, CHECKS)]) + "\n"
 
 
 def with_table(page: str) -> str:
@@ -60,4 +95,6 @@ def with_table(page: str) -> str:
 
 
 if __name__ == "__main__":
+    if "--measure" in sys.argv[1:2]:
+        measure("".join(sys.argv[2:]))
     PAGE.write_text(with_table(PAGE.read_text(encoding="utf-8")), encoding="utf-8")

@@ -82,8 +82,7 @@ def trajectory(
     pair = checked_phase(phase)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     max_work = checked_number("max_work", max_work, WORK)
-    if initial is not None:
-        initial = State(*checked_state(initial, len(scene.bodies), scene.radius, scene.isolator.travel))
+    initial = _checked_initial(scene, initial)
     with silence():
         built = assemble(scene, model, regularization, loading=loading, contact_force=True)
         point = refine(scene, built, pair, tolerance, initial=initial, keep=True, max_work=max_work)
@@ -110,6 +109,7 @@ def single_run(
     residual: float | None = None,
     integrator: str = "generalized alpha",
     discontinuous: float | None = None,
+    initial: State | None = None,
 ) -> Trajectory:
     """
     Run the engine once, at a level of accuracy or at a constant step, without an error estimate.
@@ -136,6 +136,8 @@ def single_run(
     discontinuous : float, optional
         Tolerance of the engine's iteration over contacts that open or turn within a step; `newton` without. The
         engine's own default is 1, with which it leaves stops less accurate.
+    initial : State, optional
+        As in `trajectory`.
 
     Returns
     -------
@@ -167,7 +169,7 @@ def single_run(
     newton = checked_number("newton", newton, NEWTON)
     with silence():
         built = assemble(scene, model, regularization, contact_force=True)
-        point = PhasePair(scene, built, pair)
+        point = PhasePair(scene, built, pair, _checked_initial(scene, initial))
         if level is not None:
             run = point.at_level(level, Budget(MAX_STEPS), keep=True)
         else:
@@ -176,6 +178,12 @@ def single_run(
             residual = 1e-3 * newton if residual is None else residual
             run = point.at_constant_step(count, penetration, newton, residual, integrator, discontinuous)
     return _trajectory(point, run, run.outcome, run.instant * built.units.time)
+
+
+def _checked_initial(scene: Scene, initial: State | None) -> State | None:
+    if initial is None:
+        return None
+    return State(*checked_state(initial, len(scene.bodies), scene.radius, scene.isolator.travel))
 
 
 def _trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) -> Trajectory:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from random import Random
@@ -62,6 +62,17 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     count = Counter(item.path for item in items)
     order = {name: k for k, name in enumerate(FIRST)}
     items.sort(key=lambda item: (order.get(item.path.name, len(FIRST)), -count[item.path], item.path))
+
+
+@pytest.fixture
+def within(record_property: Callable[[str, object], None]) -> Callable[[float, float], None]:
+    """Assert that a number is within its limit, and keep it for the table of docs/evidence.md."""
+
+    def check(value: float, limit: float) -> None:
+        record_property("measured", f"{value:.3g} of {limit:g}")
+        assert value <= limit
+
+    return check
 
 
 @pytest.hookimpl(optionalhook=True)

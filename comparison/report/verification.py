@@ -32,6 +32,9 @@ reference: reference/test_closed_form_motions.py
     test_den_hartog_s_oscillation_goes_on_as_it_was_begun
   surface without friction, by superposed modes | within the error each value states |
     test_frictionless_surface_is_the_closed_form_to_its_error
+reference: reference/test_manufactured_motion.py
+  manufactured motion: circles of a chain over friction; order 8 inside steps | 1e-10, a hundredth of the tolerance |
+    test_circles_over_friction_are_kept
 reference: reference/test_natural_modes.py
   frequencies and shapes of a uniform chain | rounding | test_uniform_chain_has_its_closed_form
 reference: reference/test_energy_balance.py
@@ -54,6 +57,9 @@ engine: multibody/test_contact.py
     test_planar_sliding_follows_the_closed_form
   large-angle period without friction; conical pendulum | 1e-5 |
     test_a_conical_pendulum_keeps_its_circle_at_its_own_rate
+engine: multibody/test_orders_of_accuracy.py
+  manufactured motion: circles of a chain over friction; second order in the step | 0.03 of the order |
+    test_a_motion_without_stops_is_of_second_order
 engine: multibody/test_energy.py
   energy along a whole run of the chain | stated in the test |
     test_energy_equals_the_plate_s_work_less_friction

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scenes_at_hand import CONSTANT, one_body
@@ -21,7 +23,7 @@ def started(scene: Scene, position: tuple[float, float], velocity: tuple[float, 
     return multibody.trajectory(scene, (0.0, 0.0), initial=state, **options)  # type: ignore[arg-type]
 
 
-def test_the_weight_presses_the_contact_in() -> None:
+def test_the_weight_presses_the_contact_in(within: Callable[[float, float], None]) -> None:
     model = assemble(one_body(), "translational", 1e-3)
     penetration = 1e-4
     model.set_contact(penetration)
@@ -32,11 +34,11 @@ def test_the_weight_presses_the_contact_in() -> None:
     assert motion is not None
     assert motion.gap[0, 0] == pytest.approx(0.0, abs=1e-15)
     # settled after 100 of its own time constants, up to Newton's tolerance
-    assert motion.gap[-1, 0] == pytest.approx(-penetration, rel=1e-6)
+    within(abs(motion.gap[-1, 0] / penetration + 1.0), 1e-6)
     assert motion.coordinates[-1, 2] == pytest.approx(0.0, abs=1e-6 * penetration)
 
 
-def test_a_held_platform_creeps_as_v_reg_says() -> None:
+def test_a_held_platform_creeps_as_v_reg_says(within: Callable[[float, float], None]) -> None:
     push, mu, v_reg = 0.5, 0.1, 1e-3
     scene = one_body(friction=mu, duration=0.3, amplitudes=[[-push, 0.0], [0.0, 0.0]], periods=(CONSTANT, CONSTANT))
     motion = multibody.trajectory(scene, (0.0, 0.0), regularization=v_reg, tolerance=1e-4)
@@ -44,22 +46,22 @@ def test_a_held_platform_creeps_as_v_reg_says() -> None:
     force = push - GRAVITY * x / scene.radius - a
     assert 0.4 < force / push < 1.0
     # the slope of the sphere, x / rho = 6e-4, enters squared
-    assert v == pytest.approx(v_reg * force / (mu * motion.contact_force[-1]), rel=2e-6)
+    within(abs(v * mu * motion.contact_force[-1] / (v_reg * force) - 1.0), 2e-6)
     assert motion.stick == [(0.0, pytest.approx(scene.duration, rel=1e-14))]  # the engine adds up its steps
 
 
-def test_sliding_stops_after_v_squared_over_two_mu_g() -> None:
+def test_sliding_stops_after_v_squared_over_two_mu_g(within: Callable[[float, float], None]) -> None:
     speed, mu, v_reg, radius = 1.0, 0.1, 1e-3, 1e4
     scene = one_body(radius=radius, friction=mu, duration=1.2)
     motion = started(scene, (0.0, 0.0), (speed, 0.0), regularization=v_reg, tolerance=1e-5)
     flat = speed**2 / (2.0 * mu * GRAVITY)
     # the slope of the sphere takes x / (2 rho mu) of it, the last bit below v_reg gives v_reg^2 / (2 mu g) back
     distance = flat * (1.0 - flat / (2.0 * radius * mu)) + v_reg**2 / (2.0 * mu * GRAVITY)
-    assert motion.position[-1, 0, 0] == pytest.approx(distance, rel=2e-5)
+    within(abs(motion.position[-1, 0, 0] / distance - 1.0), 2e-5)
     assert motion.stick[0][0] == pytest.approx(speed / (mu * GRAVITY), rel=2e-3)
 
 
-def test_planar_sliding_follows_the_closed_form() -> None:
+def test_planar_sliding_follows_the_closed_form(within: Callable[[float, float], None]) -> None:
     mu, radius, begin, speed = 0.15, 0.25, 1.0, 0.5
     scene = one_body(radius=radius, friction=mu, duration=0.4)
     position = (radius * np.sin(begin), 0.0)
@@ -73,10 +75,10 @@ def test_planar_sliding_follows_the_closed_form() -> None:
 
     amplitude = ((speed / radius) ** 2 - particular(begin)) * np.exp(-2.0 * mu * begin)
     expected = radius * np.sqrt(amplitude * np.exp(2.0 * mu * angle) + particular(angle))
-    measured = np.linalg.norm(motion.velocity[:, 0], axis=-1)
+    speeds = np.linalg.norm(motion.velocity[:, 0], axis=-1)
     assert angle[falling].min() < -0.5
     # h^2 of 3.5 ms steps against the swing of 1 s
-    np.testing.assert_allclose(measured[falling], expected[falling], rtol=1e-4)
+    within(abs(speeds[falling] / expected[falling] - 1.0).max(), 1e-4)
 
 
 def test_a_frictionless_swing_has_the_large_angle_period() -> None:
@@ -90,7 +92,7 @@ def test_a_frictionless_swing_has_the_large_angle_period() -> None:
     assert zeros[1] - zeros[0] == pytest.approx(half, rel=1e-5)
 
 
-def test_a_conical_pendulum_keeps_its_circle_at_its_own_rate() -> None:
+def test_a_conical_pendulum_keeps_its_circle_at_its_own_rate(within: Callable[[float, float], None]) -> None:
     radius, cone = 0.25, 0.6
     rate = np.sqrt(GRAVITY / (radius * np.cos(cone)))
     scene = one_body(radius=radius, friction=0.0, duration=2.0)
@@ -98,7 +100,7 @@ def test_a_conical_pendulum_keeps_its_circle_at_its_own_rate() -> None:
     motion = started(scene, (across, 0.0), (0.0, rate * across), tolerance=1e-5)
     x, y = motion.position[:, 0, 0], motion.position[:, 0, 1]
     np.testing.assert_allclose(np.hypot(x, y), across, rtol=2e-5)
-    assert np.unwrap(np.arctan2(y, x))[-1] == pytest.approx(rate * scene.duration, rel=1e-5)
+    within(abs(np.unwrap(np.arctan2(y, x))[-1] / (rate * scene.duration) - 1.0), 1e-5)
     # the compliance gives way by N / k more than at rest: 1e-8 of rho
     np.testing.assert_allclose(motion.contact_force, GRAVITY / np.cos(cone), rtol=1e-4)
 

@@ -37,7 +37,7 @@ def state(position, velocity) -> State:
 
 
 @pytest.mark.parametrize("direction", [0.0, 0.7, 2.5])
-def test_free_coulomb_decay_of_the_small_equations(direction):
+def test_free_coulomb_decay_of_the_small_equations(direction, within):
     """Turning points, stops and rest of a straight decay, in a direction that is no axis of the coordinates."""
     radius, friction, amplitude = 0.25, 0.05, 0.1
     scene = chain(radius, friction, amplitudes=STILL, duration=4.0)
@@ -49,7 +49,7 @@ def test_free_coulomb_decay_of_the_small_equations(direction):
     )  # fmt: skip
     assert run.status == "ok"
     position, velocity = coulomb_decay(run.time, amplitude, dead_zone, frequency)
-    np.testing.assert_allclose(run.position[:, 0, :2], np.outer(position, along), atol=10 * TOLERANCE * amplitude)
+    within(abs(run.position[:, 0, :2] - np.outer(position, along)).max() / amplitude, 10 * TOLERANCE)
     np.testing.assert_allclose(
         run.velocity[:, 0, :2], np.outer(velocity, along), atol=10 * TOLERANCE * amplitude * frequency
     )
@@ -59,7 +59,7 @@ def test_free_coulomb_decay_of_the_small_equations(direction):
 
 
 @pytest.mark.parametrize("friction", [0.02, 0.1, 0.3])
-def test_swing_down_and_up_the_cap_with_friction(friction):
+def test_swing_down_and_up_the_cap_with_friction(friction, within):
     """Speed along the way, contact force with its centripetal part, and where and when the first swing ends."""
     radius, start = 0.25, 1.0
     end_time, end_angle = turning_time(start, friction, radius), turning_angle(start, friction, radius)
@@ -78,7 +78,7 @@ def test_swing_down_and_up_the_cap_with_friction(friction):
     np.testing.assert_allclose(
         run.contact_force[:-1], (GRAVITY * np.cos(angle) + radius * rate2)[:-1], rtol=100 * TOLERANCE
     )
-    assert angle[-1] == pytest.approx(end_angle, abs=10 * TOLERANCE)
+    within(abs(angle[-1] - end_angle), 10 * TOLERANCE)
     np.testing.assert_allclose(run.position[:, 0, 2], radius * (1.0 - np.cos(angle)), atol=1e-14)
 
 
@@ -129,7 +129,7 @@ def test_planar_pendulum_has_its_large_angle_period(swing):
 
 
 @pytest.mark.parametrize("circle", [0.01, 0.15, 0.24])
-def test_conical_pendulum_turns_at_its_frequency(circle):
+def test_conical_pendulum_turns_at_its_frequency(circle, within):
     radius, mass = 0.25, 3.0
     omega = conical_frequency(radius, circle)
     scene = chain(radius, 0.0, masses=(mass,), amplitudes=STILL, duration=5.0)
@@ -139,7 +139,7 @@ def test_conical_pendulum_turns_at_its_frequency(circle):
     )  # fmt: skip
     turn = np.exp(1j * omega * run.time)
     found = run.position[:, 0, 0] + 1j * run.position[:, 0, 1]
-    np.testing.assert_allclose(found, circle * turn, atol=100 * TOLERANCE * circle)
+    within(abs(found / circle - turn).max(), 100 * TOLERANCE)
     cosine = np.sqrt(1.0 - (circle / radius) ** 2)
     np.testing.assert_allclose(run.contact_force, mass * GRAVITY / cosine, rtol=100 * TOLERANCE)
 
@@ -149,7 +149,7 @@ def test_conical_pendulum_turns_at_its_frequency(circle):
 
 @BOTH
 @pytest.mark.parametrize(("ratio", "dead_zone"), [(0.6, 0.3), (1.4, 0.2), (2.0, 0.15), (0.8, 0.5)])
-def test_den_hartog_s_oscillation_goes_on_as_it_was_begun(ratio, dead_zone, equations):
+def test_den_hartog_s_oscillation_goes_on_as_it_was_begun(ratio, dead_zone, equations, within):
     """
     Started at a turning point of the steady motion, six loading periods long, in a direction that is no axis.
 
@@ -173,9 +173,8 @@ def test_den_hartog_s_oscillation_goes_on_as_it_was_begun(ratio, dead_zone, equa
     assert run.status == "ok"
     assert run.stick == []
     wanted = unit * steady.position(ratio * own * run.time)
-    np.testing.assert_allclose(
-        run.position[:, 0, :2], np.outer(wanted, along), atol=(100 * TOLERANCE + 1e-7) * unit * steady.amplitude
-    )
+    found = run.position[:, 0, :2] / (unit * steady.amplitude)
+    within(abs(found - np.outer(wanted / (unit * steady.amplitude), along)).max(), 100 * TOLERANCE + 1e-7)
 
 
 @BOTH
@@ -226,12 +225,12 @@ def test_frictionless_motion_is_the_modal_sum():
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
-def test_frictionless_surface_is_the_closed_form_to_its_error(tolerance):
+def test_frictionless_surface_is_the_closed_form_to_its_error(tolerance, within):
     phases = phase_grid(4)
     found = reference.amplification(FRICTIONLESS, phases, equations="small", tolerance=tolerance, full=True)
     exact = frictionless_amplification(FRICTIONLESS, phases)
     assert (found.status == "ok").all()
-    assert np.all(np.abs(found.mu - exact) <= found.error + 1e-12)
+    within((np.abs(found.mu - exact) / (found.error + 1e-12)).max(), 1.0)
     assert np.all(found.error <= tolerance * found.mu)
 
 

@@ -32,15 +32,14 @@ def ask(entry: dict[str, Any], tolerance: float, cutoff: float | None = None) ->
 
 
 @pytest.mark.parametrize("entry", VALUES, ids=lambda entry: entry["name"])
-def test_amplification_is_the_oracle_s(entry):
+def test_amplification_is_the_oracle_s(entry, within):
     """Supremum (or smooth law), and the resolved peak at every cutoff, each body."""
     for cutoff, mu, error in zip(entry["cutoff"], entry["mu"], entry["error"], strict=True):
         found = ask(entry, TOLERANCE, cutoff or None)
         assert found.status[0] == "ok"
         slack = CUTOFF_LOSS if cutoff else 1.0
-        np.testing.assert_array_less(
-            np.abs(found.mu[0] - mu), np.array(error) + slack * TOLERANCE * np.array(mu), err_msg=f"cutoff {cutoff}"
-        )
+        allowed = np.array(error) + slack * TOLERANCE * np.array(mu)
+        within((np.abs(found.mu[0] - mu) / allowed).max(), 1.0)
 
 
 @pytest.mark.parametrize("entry", [e for e in VALUES if e["regularization"] is None], ids=lambda entry: entry["name"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -53,11 +54,13 @@ def test_the_report_and_the_summary_show_the_effects(finished: Path) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("damping", [None, [2.0, 0.5]], ids=["undamped", "damped"])
 @pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
-def test_the_mended_matrices_are_the_exact_equations(name: str, damping: list[float] | None) -> None:
+def test_the_mended_matrices_are_the_exact_equations(
+    name: str, damping: list[float] | None, within: Callable[[float, float], None]
+) -> None:
     """Written apart from the reference; what is left is the reading of peaks, 4e-5, and the integrator, 1e-5."""
     scene = load_scene(name).with_values({"duration": 3.0, "bodies.1.damping": damping})
     expected = amplification(scene, PHASES, regularization=None if scene.lubricated else V_REG).mu
-    np.testing.assert_allclose(printed_amplification(scene, PHASES), expected, rtol=1e-4)
+    within(abs(printed_amplification(scene, PHASES) / expected - 1.0).max(), 1e-4)
 
 
 @pytest.mark.long
