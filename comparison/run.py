@@ -41,7 +41,7 @@ from comparison.runner.executors import Pool
 from comparison.runner.output import clear_dead
 from comparison.runner.processes import process_pool
 from comparison.runner.progress import progress, wide_console
-from comparison.runner.resume import changed, resume_hint
+from comparison.runner.resume import changed, command_line, resume_hint
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.costs import WRITING, seconds_of_analysis, seconds_of_model
@@ -79,10 +79,24 @@ def main(
             if options.plan:
                 print_plan(console, study, options)
                 return 0
-            return _ended(study, options, console, words, executor, began)
+            code = _ended(study, options, console, words, executor, began)
+            if options.check and code < 2 and any(scene.acceptance.confirm for scene in options.scenes):
+                words = _tighter(options, words)
+                console.print(f"Again at a tenth of the tolerance: {command_line(words)}", soft_wrap=True)
+                options = parsed(words)
+                again = _ended(_study(options, hierarchy), options, console, words, executor, Clock.now())
+                return max(code, again)
+            return code
         except KeyboardInterrupt:
             print("interrupted before anything was computed", file=sys.stderr)
             return 130
+
+
+def _tighter(options: Options, words: Sequence[str]) -> list[str]:
+    """The command that computes the differences again at a tenth of the tolerance, with a report beside the first."""
+    beside = options.out.with_name(f"{options.out.name}-tighter")
+    tighter = ["--tolerance", f"{options.tolerance / 10.0:g}", "--out", str(beside), "--only", "differences,budget"]
+    return changed(words, tighter, options=["--tolerance", "--out", "--only", "--skip", "--also"])
 
 
 def _study(options: Options, hierarchy: Sequence[Model]) -> Study:

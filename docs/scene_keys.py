@@ -128,6 +128,8 @@ def _limits(key: str, field: dict[str, Any]) -> str:
         return " or ".join(f'"{choice}"' for choice in kinds[0]["enum"])
     if any("$ref" in kind for kind in kinds):
         return "table"
+    if kinds[0]["type"] == "boolean":
+        return "true or false"
     if kinds[0]["type"] == "array":
         return "list of names"
     if kinds[0]["type"] == "string":

@@ -80,6 +80,13 @@ class Acceptance(Limits):
         ),
     ] = None
 
+    confirm: Annotated[
+        bool | None,
+        about(
+            "true: --check computes the study again at a tenth of the tolerance, where the limits hold, too", "", STUDY
+        ),
+    ] = None
+
     @model_validator(mode="after")
     def _once(self) -> Acceptance:
         if twice := sorted(self.stated().keys() & (self.like_for_like or Limits()).stated().keys()):

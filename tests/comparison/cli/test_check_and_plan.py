@@ -54,6 +54,21 @@ def test_check_names_a_gap_beyond_twice_its_uncertainty(gap: float, broken: bool
     assert limits["ratio"][:1] == (["fig3-I: body 1: acceptance.ratio: 2.1 found, 2 allowed"] if broken else [])
 
 
+@pytest.mark.parametrize("confirm", [True, False])
+def test_a_limit_must_hold_at_a_tenth_of_the_tolerance(
+    confirm: bool, command: Callable[..., Run], tmp_path: Path
+) -> None:
+    """The engine claims its tolerance as its error: 0.5 of both errors at 1e-3 are 5 at 1e-4, where 2 are allowed."""
+    scene = tmp_path / "mine.toml"
+    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8").partition("[acceptance")[0]
+    limits = f"[acceptance]\nratio = 2.0\n{'confirm = true' if confirm else ''}\n"
+    scene.write_text(text + limits, encoding="utf-8")
+    run = command(str(scene), "--grid", "2", "--check", "--only", "budget", hierarchy=fake_hierarchy(gap=5e-4))
+    assert run.code == (1 if confirm else 0)
+    assert ("acceptance.ratio: 5 found" in run.err) is confirm
+    assert run.report.with_name("report-tighter").exists() is confirm
+
+
 def test_without_check_a_broken_limit_is_no_exit_code(command: Callable[..., Run]) -> None:
     run = command(*SMALL, hierarchy=fake_hierarchy(gap=5e-4))
     assert run.code == 0
