@@ -99,9 +99,7 @@ def writing(folder: Path, option: str = "--out") -> Iterator[None]:
         raise EndedEarlyError(3, line) from None
 
 
-def command(
-    main: Callable[Concatenate[Sequence[str], Rest], int],
-) -> Callable[..., int]:
+def command(main: Callable[Concatenate[Sequence[str], Rest], int]) -> Callable[..., int]:
     """Give a command its exit codes 2, 3, 4 and 128 + signal, and its words where a program gives none."""
 
     @wraps(main)

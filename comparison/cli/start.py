@@ -32,10 +32,7 @@ COMMANDS = {  # module whose `main` is the command, and what it does
         "comparison.analyses.benchmarks.command",
         "numbers published elsewhere, by the equations and by the engine",
     ),
-    "validation": (
-        "comparison.analyses.validation.command",
-        "measured motions, by the equations and by the engine",
-    ),
+    "validation": ("comparison.analyses.validation.command", "measured motions, by the equations and by the engine"),
     "extremes": ("comparison.analyses.extremes.command", "every model at the extremes of every quantity"),
     "tradeoff": ("comparison.analyses.tradeoff.command", "error against compute time"),
     "ensemble": ("comparison.analyses.ensemble.command", "demands under a suite of motions at many intensities"),

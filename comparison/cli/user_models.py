@@ -21,15 +21,7 @@ from comparison.runner.environment import engine_fingerprint
 from comparison.runner.executors import TimeLimitError, WorkerDiedError
 from comparison.runner.processes import Workers
 from comparison.study.models import MODEL_HIERARCHY, Model
-from comparison.study.user_models import (
-    LIKE,
-    TIME_LIMIT,
-    names_of,
-    note_line,
-    silent,
-    user_function,
-    user_model,
-)
+from comparison.study.user_models import LIKE, TIME_LIMIT, names_of, note_line, silent, user_function, user_model
 from comparison.wording import exception_line
 from reference.problem import SceneError
 from reference.problem.acceptance import ENGINE_NAME, Acceptance

@@ -47,12 +47,7 @@ def alerts(
     faults: Sequence[Alert],
 ) -> list[Alert]:
     """Every alert of a run: red, where a model has no value or a limit is broken, before amber; faults: of solvers."""
-    listed = [
-        *_gaps(unanswered),
-        *_broken(limits),
-        *faults,
-        *_far_motions(study, surfaces),
-    ]
+    listed = [*_gaps(unanswered), *_broken(limits), *faults, *_far_motions(study, surfaces)]
     return sorted(listed, key=lambda alert: alert.level != "red")
 
 

@@ -42,6 +42,12 @@ CONFIDENCE = 0.95
 HELD_OUT = 59  # phase pairs of a model and scene: 1 - 0.05^(1/59) = 5 %
 MAX_SHARE = 0.1  # of the phase pairs may be off by more than the stated error; fewer held-out values state nothing
 POINTS = 8  # phase pairs of one task
+CERTIFICATE = {  # what is stored of a completed surface
+    "error": "largest relative error of `completed` at phase pairs that were computed and not used",
+    "share": "at most so many phase pairs are off by more than completed_error, with the confidence of `completed`",
+    "held_out": "phase pairs that were computed and not used",
+    "model_error": "largest relative error estimate of the model itself at these",
+}
 
 # scene, model, settings of its amplification, phases (M, 2), rad
 Arguments = tuple[Scene, Model, Mapping[str, object], Array]
@@ -206,30 +212,18 @@ def completions(
 
 def with_completed(surfaces: xr.Dataset, listed: Sequence[Completion]) -> xr.Dataset:
     """The surfaces with the variable `completed`, mu where a completed surface may be drawn, and its certificate."""
-    completed, per_body = xr.full_like(surfaces["mu"], np.nan), xr.full_like(surfaces["mu"][..., 0, 0], np.nan)
-    completed.attrs = {
-        "units": "1",
-        "long_name": "mu on all phases, completed through a finer model",
-        "confidence": CONFIDENCE,
-    }
-    certificate = {
-        "error": "largest relative error of `completed` at phase pairs that were computed and not used",
-        "share": "at most so many phase pairs are off by more than completed_error, with the confidence of `completed`",
-        "held_out": "phase pairs that were computed and not used",
-        "model_error": "largest relative error estimate of the model itself at these",
-    }
-    stated = {
-        f"completed_{name}": per_body.drop_vars(["alpha1", "alpha2"], errors="ignore")
-        .copy()
-        .assign_attrs({"units": "1", "long_name": meaning})
-        for name, meaning in certificate.items()
-    }
+    nothing, meaning = np.full(surfaces["mu"].shape, np.nan), "mu on all phases, completed through a finer model"
+    about = {"units": "1", "long_name": meaning, "confidence": CONFIDENCE}
+    found = surfaces.assign(completed=(surfaces["mu"].dims, nothing, about))
+    for name, meaning in CERTIFICATE.items():
+        dims, empty = ("scene", "model", "body"), nothing[..., 0, 0].copy()
+        found[f"completed_{name}"] = dims, empty, {"units": "1", "long_name": meaning}
     for surface in listed:
         place = {"scene": surface.scene, "model": surface.model, "body": surface.body}
-        completed.loc[place] = surface.mu
-        for name in certificate:
-            stated[f"completed_{name}"].loc[place] = getattr(surface, name)
-    return surfaces.assign({"completed": completed, **stated})
+        found["completed"].loc[place] = surface.mu
+        for name in CERTIFICATE:
+            found[f"completed_{name}"].loc[place] = getattr(surface, name)
+    return found
 
 
 def _finer(study: Study, scene: Scene, model: Model) -> Model | None:

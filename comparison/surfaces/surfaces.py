@@ -18,11 +18,12 @@ from reference.problem import Scene, phase_axis
 
 NOT_APPLICABLE = "not applicable"  # status of a model that the scene gives nothing to add
 MEANING = {  # unit and meaning of the variables
-    "mu": ("1", "dynamic amplification factor (5.1)"),
-    "error": ("1", "estimated absolute error of mu"),
-    "instant": ("s", "time when the outcome arose"),
-    "displacement": ("m", "largest horizontal displacement of the platform"),
-    "cap_share": ("1", "largest horizontal displacement of the platform over rho"),
+    "mu": {"units": "1", "long_name": "dynamic amplification factor (5.1)"},
+    "error": {"units": "1", "long_name": "estimated absolute error of mu"},
+    "instant": {"units": "s", "long_name": "time when the outcome arose"},
+    "displacement": {"units": "m", "long_name": "largest horizontal displacement of the platform"},
+    "cap_share": {"units": "1", "long_name": "largest horizontal displacement of the platform over rho"},
+    "status": {"long_name": "named outcome of the point"},
 }
 NOT_ASKED = "not asked"  # status of the phases between those of a model that computes every k-th
 
@@ -39,38 +40,33 @@ def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[B
     names = [scene.name for scene in study.scenes]
     models = [model.key for model in study.hierarchy]
     bodies = max(len(scene.bodies) for scene in study.scenes)
-    plane = (len(names), len(models), study.grid**2)
-    values: dict[str, Any] = {name: np.full((*plane, bodies), np.nan) for name in ("mu", "error")}
-    values |= {name: np.full(plane, np.nan) for name in ("instant", "displacement")}
-    status, cost, solved = np.full(plane, NOT_APPLICABLE, dtype=object), np.zeros(plane[:2]), {}
+    square, points = (len(names), len(models)), study.grid**2
+    values: dict[str, Any] = {name: np.full((*square, bodies, points), np.nan) for name in ("mu", "error")}
+    values |= {name: np.full((*square, points), np.nan) for name in ("instant", "displacement")}
+    values["status"] = np.full((*square, points), NOT_APPLICABLE, dtype=object)
+    cost, solved = np.zeros(square), {}
     for row, scene in enumerate(study.scenes):
         for model in models_of(scene, study.hierarchy):
-            status[row, models.index(model.key)] = NOT_ASKED
+            values["status"][row, models.index(model.key)] = NOT_ASKED
             solved[scene.name, model.key] = study.solved(scene, model)
     for batch, answer in zip(batches, answers, strict=True):
         where = names.index(batch.scene.name), models.index(batch.model)
         span = solved[batch.scene.name, batch.model][batch.first : batch.first + len(batch.phases)]
         for name, array in values.items():
-            found = getattr(answer, name)
-            array[where][(span, slice(found.shape[1])) if found.ndim > 1 else span] = found
-        status[where][span] = answer.status
+            found = np.asarray(getattr(answer, name))
+            array[where][(slice(found.shape[1]), span) if found.ndim > 1 else span] = found.T
         cost[where] += answer.cost
     for row, scene in enumerate(study.scenes):
         for model in models_of(scene, study.hierarchy):
-            column, place, source = models.index(model.key), study.places(model, scene), study.sources(scene, model)
-            for array in (*values.values(), status):
-                array[row, column, place] = array[row, column, source]
+            place, source = study.places(model, scene), study.sources(scene, model)
+            for array in values.values():
+                of_model = array[row, models.index(model.key)]
+                of_model[..., place] = of_model[..., source]
     values["cap_share"] = values["displacement"] / np.array([scene.radius for scene in study.scenes])[:, None, None]
-    square, axis = (len(names), len(models), study.grid, study.grid), phase_axis(study.grid)
-    point = ("scene", "model", "alpha1", "alpha2")
-    variables: dict[str, Any] = {"status": (point, status.reshape(square), {"long_name": "named outcome of the point"})}
+    axis, variables = phase_axis(study.grid), {}
     for name, array in values.items():
-        about = dict(zip(("units", "long_name"), MEANING[name]))
-        if array.ndim > len(plane):
-            by_body = np.moveaxis(array.reshape(*square, bodies), -1, 2)
-            variables[name] = ("scene", "model", "body", "alpha1", "alpha2"), by_body, about
-        else:
-            variables[name] = point, array.reshape(square), about
+        dims = ("scene", "model", *(("body",) if array.ndim > 3 else ()), "alpha1", "alpha2")
+        variables[name] = dims, array.reshape(*array.shape[:-1], study.grid, study.grid), MEANING[name]
     strides = [[study.stride(model, scene) for model in study.hierarchy] for scene in study.scenes]
     of_scenes = {
         "recorded": ([scene.recorded for scene in study.scenes], "whether it has no phases"),

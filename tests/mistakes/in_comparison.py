@@ -117,7 +117,7 @@ MISTAKES = (
     # surfaces
     Mistake(SURFACES + "surfaces.py", "cost[where] += answer.cost", "cost[where] = answer.cost",
             "A surface costs what its last batch does.", (CHECK + "the_cost_of_a_model_is_that_of_all_its_batches",)),
-    Mistake(SURFACES + "surfaces.py", '"displacement": ("m",', '"displacement": ("mm",',
+    Mistake(SURFACES + "surfaces.py", '"displacement": {"units": "m"', '"displacement": {"units": "mm"',
             "Values in m have the unit mm.", (TESTS + "surfaces/test_alerts.py",)),
     Mistake(SURFACES + "surfaces.py", '("alpha1", axis, {"units": "rad"', '("alpha1", axis, {"units": "degree"',
             "Radians have the unit degree.",

@@ -128,10 +128,7 @@ def test_the_gate_fails_where_a_side_is_off(study: Path, monkeypatch: pytest.Mon
 @pytest.mark.long
 @pytest.mark.parametrize(
     "words",
-    [
-        ["-m", "pytest", "-q"],
-        ["-m", "comparison.run", "building.toml", "--grid", "4", "--check"],
-    ],
+    [["-m", "pytest", "-q"], ["-m", "comparison.run", "building.toml", "--grid", "4", "--check"]],
     ids=["gate", "report"],
 )
 def test_what_its_continuous_integration_runs_passes(study: Path, words: list[str]) -> None:

@@ -170,9 +170,7 @@ def test_a_panel_of_an_ensemble_is_in_the_unit_of_its_axis(beside: tuple[str, Pa
     assert [engine[key] for key in ("low", "y", "high")] == [pytest.approx([x]) for x in (509.0, 510.0, 511.0)]
 
 
-def test_the_tables_of_an_ensemble_have_every_number_in_its_column(
-    beside: tuple[str, Path, dict[str, bytes]],
-) -> None:
+def test_the_tables_of_an_ensemble_have_every_number_in_its_column(beside: tuple[str, Path, dict[str, bytes]]) -> None:
     tables = Tables(page_of(beside[1]))
     high, low = (dict(zip(*table[:2])) for table in tables.tables if "84 %" in table[0])
     assert low == {

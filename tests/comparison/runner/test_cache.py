@@ -202,9 +202,7 @@ def test_what_is_damaged_in_one_bit_is_computed_again(tmp_path: Path) -> None:
     assert _run(task, tmp_path, no_executor).parts["motions"].stored == 1, "and mended"
 
 
-def test_a_task_that_fails_has_its_reason_and_costs_no_other(
-    tmp_path: Path,
-) -> None:
+def test_a_task_that_fails_has_its_reason_and_costs_no_other(tmp_path: Path) -> None:
     def on_failure(argument: object, failed: TaskResult) -> object:
         return argument, failed.outcome, failed.error_message
 

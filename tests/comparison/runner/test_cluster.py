@@ -51,9 +51,7 @@ def workers(tmp_path: Path) -> Iterator[LocalCluster]:
     started.end()
 
 
-def test_numbers_of_a_cluster_are_those_of_this_machine(
-    workers: LocalCluster,
-) -> None:
+def test_numbers_of_a_cluster_are_those_of_this_machine(workers: LocalCluster) -> None:
     here = _results("uneven", 1, ThreadPoolExecutor)
     with cluster(workers.address, {"fake_models:uneven"}) as there:
         assert there.width == 2

@@ -167,12 +167,7 @@ def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
 def test_what_is_left_out_is_listed_once_with_its_reason() -> None:
     scene = alone(short(isolator={"friction": 0.0}, bodies={"height": 0.0}))
     rows = {row.what: row for row in reductions(Study((scene,), GRID, 1e-3))}
-    assert [row.models for row in rows.values()] == [
-        "all models",
-        "resolved, regularised",
-        "small",
-        "spatial",
-    ]
+    assert [row.models for row in rows.values()] == ["all models", "resolved, regularised", "small", "spatial"]
     assert "mirrored phases, all but 1/4" in rows
     assert reductions(Study((scene,), GRID, 1e-3, full=True)) == []
     twins = tuple(

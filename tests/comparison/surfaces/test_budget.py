@@ -328,11 +328,7 @@ def test_a_mistake_moves_the_steps_of_its_model_and_no_other(
     assert min(map(abs, moved.values())) > 1e-3, "a change one would see in the table"
 
 
-@pytest.mark.parametrize(
-    "mistake",
-    [STIFFNESS, MASS, COARSE],
-    ids=["stiffness", "mass", "coarse step"],
-)
+@pytest.mark.parametrize("mistake", [STIFFNESS, MASS, COARSE], ids=["stiffness", "mass", "coarse step"])
 def test_a_mistake_beside_the_like_for_like_step_is_found(sound: Solved, mistake: Mistake) -> None:
     def broken(solved: Solved) -> list[str]:
         rows = differences(solved.study, solved.surfaces)
@@ -345,9 +341,7 @@ def test_a_mistake_beside_the_like_for_like_step_is_found(sound: Solved, mistake
     assert any(f"body {mistake.body}: acceptance.ratio" in line for line in lines), lines
 
 
-def test_a_mistake_in_three_models_enters_and_leaves(
-    sound: Solved,
-) -> None:
+def test_a_mistake_in_three_models_enters_and_leaves(sound: Solved) -> None:
     wrong = _with(sound, IN_ALL)
     moved = _moved(sound, wrong, body=2)
     moved.pop(TOTAL, None)

@@ -124,9 +124,7 @@ def test_a_difference_that_is_not_smooth_is_refused(blank: tuple[Study, xr.Datas
     assert np.isnan(surface.mu).all(), "nothing that could be drawn by mistake"
 
 
-def test_a_surface_may_be_drawn_where_its_difference_may_not(
-    blank: tuple[Study, xr.Dataset],
-) -> None:
+def test_a_surface_may_be_drawn_where_its_difference_may_not(blank: tuple[Study, xr.Dataset]) -> None:
     rough = 5e-4 * np.random.default_rng(0).uniform(-1.0, 1.0, (FINE, FINE))
     surface = completed(blank, ridge(*ALPHA), rough, first=1.0)
     assert (surface.accepted, surface.difference_accepted) == (True, False)
@@ -211,9 +209,7 @@ def test_the_analysis_computes_what_is_held_out(blank: tuple[Study, xr.Dataset])
     assert reasons == {"no phase pairs were held out to check an interpolation"}
 
 
-def test_completed_surfaces_have_their_certificate(
-    blank: tuple[Study, xr.Dataset],
-) -> None:
+def test_completed_surfaces_have_their_certificate(blank: tuple[Study, xr.Dataset]) -> None:
     study, surfaces = blank
     listed = completions(study, surfaces, study.scenes[0], collected(CompletedSurfaces(), study))
     both = with_completed(surfaces, [surface for surface in listed if surface.model == "translational"])
@@ -278,9 +274,7 @@ def kept_statements(grid: int, difference: Callable[..., Array], surfaces: int) 
 
 
 @pytest.mark.parametrize("difference", [bump, noise, wave])
-def test_a_certificate_holds_as_often_as_its_confidence(
-    difference: Callable[..., Array],
-) -> None:
+def test_a_certificate_holds_as_often_as_its_confidence(difference: Callable[..., Array]) -> None:
     assert kept_statements(18, difference, 120) >= CONFIDENCE
 
 

@@ -136,9 +136,7 @@ def test_like_for_like_is_never_said_of_other_models() -> None:
         )
 
 
-def test_page_summary_and_terminal_say_which_model_is_refused(
-    command: Callable[..., Run],
-) -> None:
+def test_page_summary_and_terminal_say_which_model_is_refused(command: Callable[..., Run]) -> None:
     run = command("fig3-I", "--grid", "4", hierarchy=silenced("spatial"))
     line = "fig3-I: spatial engine: no value at any of 16 phase pairs: step limit; comparisons leave this model out"
     assert run.code == 0
