@@ -102,6 +102,8 @@ MISTAKES = (
     # limits and alerts
     Mistake(SURFACES + "acceptance.py", "if not value <= allowed]", "if value > allowed]",
             "A missing error estimate holds a limit.", (ENGINES + "a_limit_in_units_of_errors_needs_all_of_them",)),
+    Mistake(SURFACES + "acceptance.py", "if not value <= allowed]", "if not value < allowed]",
+            "What is as large as allowed breaks a limit.", (CHECK + "the_worst_body_breaks_a_limit_whichever_it_is",)),
     Mistake(SURFACES + "acceptance.py", "gap.points + gap.unusable for gap in gaps", "gap.points for gap in gaps",
             "A value that says nothing counts as an answer.",
             (ENGINES + "a_value_with_an_error_as_large_as_itself_is_missing",)),
@@ -329,6 +331,8 @@ MISTAKES = (
             "The mass is read with the ground falling.", (OF + "effective.py::test_the_scene_states_what_the_motion_is_held_against",)),
     Mistake(ANALYSES + "effective_values/analysis.py", "for each in (s, 1j * s.imag)))", "for each in (1j * s.imag, s)))",
             "The ratio without decay is called that with it.", (OF + "claim_readings.py::test_forced_ratios_are_those_of_oscillator_and_chain",)),
+    Mistake(ANALYSES + "scaling/analysis.py", "np.hypot(exact_error, small_error) / small", "0.5 * np.hypot(exact_error, small_error) / small",
+            "A step of geometry states half its error.", (OF + "trends.py::test_a_step_enters_the_slope_where_known_to_a_fifth",)),
     Mistake(ANALYSES + "scaling/analysis.py", '"rate": law.rate / s', '"rate": law.rate',
             "Friction that varies is scaled without its rate.", (OF + "trends.py::test_the_scaled_scene_moves_as_the_scene_scaled",)),
     Mistake(ANALYSES + "trends.py", "2.0 * float(np.sqrt(scatter + carried))", "float(np.sqrt(scatter + carried))",

@@ -93,14 +93,14 @@ def test_medians_are_of_the_absolute_size_of_what_is_known() -> None:
     assert Slope(1.0, 0.1, 2, 1).points == 2
 
 
-def _model(step: Callable[[float], float]) -> Callable[..., Amplification]:
+def _model(step: Callable[[float], float], error: float = 1e-9) -> Callable[..., Amplification]:
     """mu = 2 + i, small as printed 1 + 0.01 s^2 of it, exact step(s) above that; s read from the scene's loading."""
 
     def amplification(scene: Scene, phases: Array, equations: str, **settings: object) -> Amplification:
         s = float(np.abs(scene.amplitudes).max())
         factor = (1.0 + 0.01 * s**2) * (1.0 + (step(s) if equations == "exact" else 0.0))
         mu = factor * (2.0 + np.arange(len(scene.bodies)) + 0.1 * np.cos(phases[:, :1]))
-        return Amplification(mu, 1e-9 * mu, np.full(len(mu), "ok"), np.full(len(mu), np.nan), 0.0)
+        return Amplification(mu, error * mu, np.full(len(mu), "ok"), np.full(len(mu), np.nan), 0.0)
 
     return amplification
 
@@ -115,6 +115,13 @@ def test_a_geometric_step_has_the_exponent_two(monkeypatch: pytest.MonkeyPatch) 
     assert len(trends) == 2 * 2 * 2, "supremum and resolved, two bodies, two trends"
     assert {trend.verdict for trend in trends} == {"like the power 2"}
     assert {round(trend.exponent, 2) for trend in trends if trend.what.startswith(STEP)} == {2.0}
+
+
+def test_a_step_enters_the_slope_where_known_to_a_fifth(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Errors of 3e-4 on both sides: 4.2e-4 together, a fifth of 2.1e-3. At s = 1/4 both differences are 1.9e-3."""
+    monkeypatch.setattr(reference, "amplification", _model(lambda s: 0.03 * s**2, 3e-4))
+    points = {trend.what.split(",")[0]: trend.points for trend in collected(Scaling(), _study("fig3-I"))}
+    assert points == {STEP: 4 * 2, PRINTED.split(",")[0]: 0}, "of four phase pairs; one value has no slope"
 
 
 @pytest.mark.parametrize("step", [lambda s: 0.03 * s, lambda s: 0.03, lambda s: 0.03 * s**3])
