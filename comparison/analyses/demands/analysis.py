@@ -8,7 +8,6 @@ study makes this analysis where it is asked for by name.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -34,14 +33,7 @@ PREFIX = "demand_"  # of a demand in surfaces.nc
 
 # scene, model, relative error asked, phases (M, 2), rad
 Arguments = tuple[Scene, Model, float, Array]
-
-
-@dataclass(frozen=True)
-class DemandBatch:
-    """Demands of some phase pairs."""
-
-    estimates: dict[str, Estimates]
-    status: list[str]
+Batch = tuple[dict[str, Estimates], list[str]]  # demands and statuses of some phase pairs
 
 
 @result
@@ -108,27 +100,40 @@ class DemandSurfaces(Analysis[xr.Dataset]):
         By the names of the fields of `Demands`; "_error" behind the name of the estimated absolute errors. `status`
         names the outcome of each pair.
         """
-        names = [scene.name for scene in study.scenes]
-        models = [model.key for model in study.hierarchy]
-        bodies = max(len(scene.bodies) for scene in study.scenes)
-        plane = (len(names), len(models), study.grid**2)
-        status = np.full(plane, NOT_ASKED, dtype=object)
+        names, models = [scene.name for scene in study.scenes], [model.key for model in study.hierarchy]
+        bodies, grid = max(len(scene.bodies) for scene in study.scenes), study.grid
+        status = np.full((len(names), len(models), grid**2), NOT_ASKED, dtype=object)
         numbers: dict[str, Array] = {}
         for (scene, model, places), task in zip(_batches(study), self.tasks(study), strict=True):
-            batch: DemandBatch = results.value(task, _without_value)
+            estimated, outcomes = results.value(task, _without_value)
             where = names.index(scene.name), models.index(model.key)
-            status[where][places] = batch.status
-            for name, estimates in batch.estimates.items():
+            status[where][places] = outcomes
+            for name, estimates in estimated.items():
+                shape = *status.shape[:2], bodies if name in PER_BODY else 1, grid**2
                 for key, values in ((name, estimates.value), (f"{name}_error", estimates.error)):
-                    table = numbers.setdefault(key, np.full((*plane, bodies if name in PER_BODY else 1), np.nan))
-                    first, count = PER_BODY.get(name, 0), values[0].size
-                    table[where][places, first : first + count] = values.reshape(len(places), count)
+                    rows, first = values.reshape(len(places), -1).T, PER_BODY.get(name, 0)
+                    numbers.setdefault(key, np.full(shape, np.nan))[where][first : first + len(rows), places] = rows
         for row, scene in enumerate(study.scenes):
             for model in _moving(study, scene):
                 place, source = study.places(model, scene), study.sources(scene, model)
                 for array in (status, *numbers.values()):
-                    array[row, models.index(model.key), place] = array[row, models.index(model.key), source]
-        return _labeled(names, models, study.grid, status, numbers)
+                    of_model = array[row, models.index(model.key)]
+                    of_model[..., place] = of_model[..., source]
+        point, axis, square = ("scene", "model", "alpha1", "alpha2"), phase_axis(grid), (*status.shape[:2], grid, grid)
+        variables: dict[str, Any] = {
+            "status": (point, status.reshape(square), {"long_name": "named outcome of the pair"})
+        }
+        for name, table in numbers.items():
+            quantity = name.removesuffix("_error")
+            meaning, unit = QUANTITIES.get(quantity, (quantity, "1"))
+            long_name = meaning if name == quantity else f"estimated absolute error: {meaning}"
+            surface = table.reshape(*table.shape[:3], grid, grid)
+            dims, data = (
+                ((*point[:2], "body", *point[2:]), surface) if quantity in PER_BODY else (point, surface[:, :, 0])
+            )
+            variables[name] = dims, data, {"units": unit, "long_name": long_name}
+        body = np.arange(1, bodies + 1)
+        return xr.Dataset(variables, {"scene": names, "model": models, "alpha1": axis, "alpha2": axis, "body": body})
 
 
 def _moving(study: Study, scene: Scene) -> list[Model]:
@@ -145,36 +150,16 @@ def _batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:
                 yield scene, model, places[first : first + size]
 
 
-def moved_demands(task: Arguments) -> DemandBatch:
+def moved_demands(task: Arguments) -> Batch:
     """Demands of the motions of one task. Runs inside a worker process."""
     scene, model, tolerance, phases = task
     trajectory, settings = imported(model.trajectory), dict(model.settings)
     demands = demands_of_motions(scene, phases, lambda phase: trajectory(scene, phase, tolerance=tolerance, **settings))
-    return DemandBatch(dict(demands), [str(status) for status in demands.status])
+    return dict(demands), [str(status) for status in demands.status]
 
 
-def _without_value(task: Arguments, failed: TaskResult) -> DemandBatch:
-    return DemandBatch({}, [failed.outcome.value] * len(task[3]))
-
-
-def _labeled(
-    names: list[str], models: list[str], grid: int, status: NDArray[np.object_], numbers: dict[str, Array]
-) -> xr.Dataset:
-    square, axis = (len(names), len(models), grid, grid), phase_axis(grid)
-    point, surface = ("scene", "model", "alpha1", "alpha2"), ("scene", "model", "body", "alpha1", "alpha2")
-    variables: dict[str, Any] = {"status": (point, status.reshape(square), {"long_name": "named outcome of the pair"})}
-    bodies = 1
-    for name, table in numbers.items():
-        quantity = name.removesuffix("_error")
-        meaning, unit = QUANTITIES.get(quantity, (quantity, "1"))
-        about = {"units": unit, "long_name": meaning if name == quantity else f"estimated absolute error: {meaning}"}
-        if quantity in PER_BODY:
-            bodies = table.shape[-1]
-            variables[name] = (surface, np.moveaxis(table.reshape(*square, bodies), -1, 2), about)
-        else:
-            variables[name] = (point, table.reshape(square), about)
-    coordinates = {"scene": names, "model": models, "alpha1": axis, "alpha2": axis, "body": np.arange(1, bodies + 1)}
-    return xr.Dataset(variables, coordinates)
+def _without_value(task: Arguments, failed: TaskResult) -> Batch:
+    return {}, [failed.outcome.value] * len(task[3])
 
 
 def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset:

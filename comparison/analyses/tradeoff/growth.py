@@ -29,6 +29,7 @@ FILE, PICTURE = "growth.json", "growth.png"
 SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"
 BODIES = (2, 4, 8, 16, 32, 64, 100)
 DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s
+PAIRED = "phase pairs"
 PHASES = (1, 4, 16, 64, 256)
 POINTS = {"reference": 16, "engine": 1}  # phase pairs of a measurement over bodies and durations
 TALL_DURATION = 5.0  # s, of scenes with many bodies
@@ -54,25 +55,21 @@ def tall(scene: Scene, bodies: int) -> Scene:
 
 @dataclass(frozen=True)
 class Quantity:
-    """What grows. scene: of a value, from the scene of the study. points: phase pairs of a measurement."""
+    """What grows. scene: of a value, from the scene of the study."""
 
     name: str
     unit: str
     values: tuple[float, ...]
     scene: Callable[[Scene, float], Scene]
-    points: Callable[[Model, float], int]
     models: tuple[Model, ...]
 
 
 _EACH = EXACT, TRANSLATIONAL, SPATIAL
 QUANTITIES = (
-    Quantity("bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), lambda model, n: POINTS[model.side], _EACH),
-    Quantity(
-        "duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}),
-        lambda model, n: POINTS[model.side], _EACH,
-    ),
-    Quantity("phase pairs", "", PHASES, lambda scene, n: scene, lambda model, n: int(n), (EXACT,)),
-)  # fmt: skip
+    Quantity("bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), _EACH),
+    Quantity("duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}), _EACH),
+    Quantity(PAIRED, "", PHASES, lambda scene, n: scene, (EXACT,)),
+)
 
 
 @result
@@ -149,11 +146,9 @@ class Growth(Analysis[list[Series]]):
         collected = []
         for quantity, model, tasks in self._series(study):
             answers = [results.value(task, without_value) for task in tasks]
-            whole = quantity.name == "phase pairs"
-            seconds = [
-                answer.seconds / (1 if whole else len(answer.mu)) if np.isfinite(answer.mu).all() else float("nan")
-                for answer in answers
-            ]
+            parts = [1 if quantity.name == PAIRED else len(answer.mu) for answer in answers]
+            known = [1.0 if np.isfinite(answer.mu).all() else float("nan") for answer in answers]
+            seconds = [answer.seconds / part * one for answer, part, one in zip(answers, parts, known)]
             collected.append(with_slope(quantity.name, quantity.unit, model.title, quantity.values, seconds))
         return collected
 
@@ -170,7 +165,7 @@ class Growth(Analysis[list[Series]]):
         settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(TOLERANCE)}
         if model.side == "engine":
             settings["max_work"] = MAX_WORK
-        phases = sample(quantity.points(model, value))
+        phases = sample(int(value) if quantity.name == PAIRED else POINTS[model.side])
         measurement = Measurement(quantity.scene(scene, value), (model.amplification, settings), 0, phases)
         return Task(measure, measurement, self.stage, about=scene, timeout=LIMIT)
 
