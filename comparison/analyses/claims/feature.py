@@ -2,18 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
-
 from comparison.analyses.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
 from comparison.analyses.claims.table import SIGNS, Claims, ClaimTable
-from comparison.report.section import Feature, Report, Section
-
-
-def _context(report: Report, figures: Path) -> Mapping[str, Any]:
-    return {"claim_signs": SIGNS, "peak_share": SHARE, "peak_shares": (LEAST_SHARE, MOST_SHARE)}
-
+from comparison.report.section import Feature, Section
 
 FEATURE = Feature(
     "claims",
@@ -23,7 +14,7 @@ FEATURE = Feature(
     section=Section(
         "The paper's claims",
         "python -m comparison.run with every scene of the paper makes it, and python -m comparison.claims alone",
-        _context,
+        lambda report, figures: {"claim_signs": SIGNS, "peak_share": SHARE, "peak_shares": (LEAST_SHARE, MOST_SHARE)},
         verifies=True,
     ),
 )

@@ -2,20 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
-
 from comparison.analyses.effective_values.analysis import PHASES, Effective, EffectiveValues, ForcedRatio, forced_ratios
-from comparison.report.section import Feature, Report, SceneField, Section
-
-
-def _context(report: Report, figures: Path) -> Mapping[str, Any]:
-    return {
-        "effective": [values for scene in report.results.scenes for values in scene.of("effective")],
-        "phases": PHASES,
-    }
-
+from comparison.report.section import Feature, SceneField, Section
 
 FEATURE = Feature(
     "effective",
@@ -34,5 +22,13 @@ FEATURE = Feature(
             lambda findings, scene: forced_ratios(scene),
         ),
     },
-    section=Section("Effective values", context=_context, verifies=True, template="effective_values/section.html.j2"),
+    section=Section(
+        "Effective values",
+        context=lambda report, figures: {
+            "effective": [values for scene in report.results.scenes for values in scene.of("effective")],
+            "phases": PHASES,
+        },
+        verifies=True,
+        template="effective_values/section.html.j2",
+    ),
 )

@@ -13,13 +13,8 @@ from comparison.report.section import Feature, Report, Section
 from comparison.wording import percent
 
 
-def _effects(erratum: MeasuredErratum) -> list[str]:
-    """One sentence about the largest effect of an erratum in every scene that it touches."""
-    touched = [effect for effect in erratum.effects if effect.change or effect.error_message]
-    return [_effect(effect) for effect in touched] or [erratum.none or "no scene here"]
-
-
 def _effect(effect: Effect) -> str:
+    """The largest effect in a scene, in a sentence."""
     if effect.error_message:
         return f"{effect.scene}: {effect.error_message}"
     change = np.array(effect.change)
@@ -32,7 +27,11 @@ def _effect(effect: Effect) -> str:
 
 
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:
-    return {"errata": [{"erratum": row, "effects": _effects(row)} for row in report.results.of("errata") or []]}
+    rows = []
+    for erratum in report.results.of("errata") or []:
+        touched = [_effect(effect) for effect in erratum.effects if effect.change or effect.error_message]
+        rows.append({"erratum": erratum, "effects": touched or [erratum.none or "no scene here"]})
+    return {"errata": rows}
 
 
 FEATURE = Feature(

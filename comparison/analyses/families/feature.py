@@ -24,7 +24,6 @@ from comparison.result_types import Part, Text
 from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.figures.file_names import figure_file
 from comparison.wording import MAX_NAMES
-from reference.problem import Family
 
 DECADES = 30.0  # of its largest over its smallest value: beyond it the axis is logarithmic
 
@@ -52,25 +51,22 @@ class FamilyResult(Part):
 
 def family_results(findings: Findings, scenes: Sequence[SceneResult]) -> list[FamilyResult] | None:
     """Of every family of the study; None without any."""
-    families: Sequence[Family] = findings.found.get("families") or []
-    return [_family(findings, family, scenes) for family in families] or None
-
-
-def _family(findings: Findings, family: Family, scenes: Sequence[SceneResult]) -> FamilyResult:
     statistics = {scene.name: scene.of("demand_statistics") for scene in scenes}
-    of_phases = any(statistics[scene.name] for scene in family.scenes)
-    motions = findings.found.get("motions") or []
-    demands = family_demands_over_phases(family, statistics) if of_phases else family_demands(family, motions)
-    return FamilyResult(
-        name=family.name,
-        key=family.key,
-        values=list(family.values),
-        scenes=[scene.name for scene in family.scenes],
-        curves=family_curves(findings.study, findings.surfaces, family),
-        steps=family_steps(family, {scene.name: scene.waterfalls for scene in scenes}),
-        demands=demands,
-        demands_over_phases=of_phases,
-    )
+    motions, found = findings.found.get("motions") or [], []
+    for family in findings.found.get("families") or []:
+        over = any(statistics[scene.name] for scene in family.scenes)
+        result = FamilyResult(
+            name=family.name,
+            key=family.key,
+            values=list(family.values),
+            scenes=[scene.name for scene in family.scenes],
+            curves=family_curves(findings.study, findings.surfaces, family),
+            steps=family_steps(family, {scene.name: scene.waterfalls for scene in scenes}),
+            demands=family_demands_over_phases(family, statistics) if over else family_demands(family, motions),
+            demands_over_phases=over,
+        )
+        found.append(result)
+    return found or None
 
 
 def family_panels(results: Results) -> list[dict[str, Any]]:
