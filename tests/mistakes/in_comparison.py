@@ -330,7 +330,7 @@ MISTAKES = (
     Mistake(ANALYSES + "effective_values/analysis.py", "(GRAVITY + ground[0, 2])", "(GRAVITY - ground[0, 2])",
             "The mass is read with the ground falling.", (OF + "effective.py::test_the_scene_states_what_the_motion_is_held_against",)),
     Mistake(ANALYSES + "effective_values/analysis.py", "for each in (s, 1j * s.imag)))", "for each in (1j * s.imag, s)))",
-            "The ratio without decay is called that with it.", (OF + "claim_readings.py::test_forced_ratios_are_those_of_oscillator_and_chain",)),
+            "The ratio without decay is called that with it.", (OF + "claims.py::test_forced_ratios_are_those_of_oscillator_and_chain",)),
     Mistake(ANALYSES + "scaling/analysis.py", "np.hypot(exact_error, small_error) / small", "0.5 * np.hypot(exact_error, small_error) / small",
             "A step of geometry states half its error.", (OF + "trends.py::test_a_step_enters_the_slope_where_known_to_a_fifth",)),
     Mistake(ANALYSES + "scaling/analysis.py", '"rate": law.rate / s', '"rate": law.rate',

@@ -1,31 +1,49 @@
-"""Every claim is computed: it holds on a surface that was built to show it and fails on one that violates it."""
+"""Every claim is computed, under readings that change what they say: on surfaces that show it and that violate it."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from claims_literal import STEPS, literal_peaks, spike_over_the_step
 from known_analyses import collected
 from numpy.typing import NDArray
+from report_texts import both_pages, summary_of
 
 from comparison.analyses.claims import evidence
 from comparison.analyses.claims import table as table_module  # table: what a test made
 from comparison.analyses.claims.checks import Finding, Verdict, counted, judged, similar
 from comparison.analyses.claims.claims import CLAIMS, Claim
 from comparison.analyses.claims.command import main
-from comparison.analyses.claims.evidence import Evidence, Question
+from comparison.analyses.claims.evidence import Evidence, Question, gathered
 from comparison.analyses.claims.peaks_and_valleys import Counts
-from comparison.analyses.claims.readings import CASES, EVERY_READING, READINGS, Reading, without_effect
+from comparison.analyses.claims.readings import (
+    CASES,
+    EVERY_READING,
+    LIGHT_BODY,
+    LITERAL,
+    OWN_PERIOD,
+    READINGS,
+    Reading,
+    without_effect,
+)
 from comparison.analyses.claims.smoothness import Bend
 from comparison.analyses.claims.table import Claims, table_of
+from comparison.analyses.convergence.analysis import Convergence
+from comparison.analyses.effective_values.analysis import forced_ratios
+from comparison.analyses.scaling.analysis import Scaling
 from comparison.cli import computing
 from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
-from reference.problem import builtin_scenes, load_scene
+from reference import amplification, modes
+from reference.problem import builtin_scenes, ground_peak, load_scene
 
 Array = NDArray[np.float64]
 N = 16
@@ -223,3 +241,145 @@ def test_peaks_that_only_the_cut_square_has_are_as_drawn() -> None:
     """One peak at the corner is four where the square is cut, and none on the profile."""
     found = counted(Evidence(CORNERS[..., None], 1e-4, ("ok",)), Counts(4, 1))
     assert found == Verdict(Finding.AS_DRAWN, "periodic 1 and 1; drawn 4 and 1; profile 0 and 0")
+
+
+PHASES = np.array([(0.3, 1.1), (2.0, 0.7)])
+
+
+def test_readings_change_the_keys_they_name() -> None:
+    light = CASES["fig4-dry"](LIGHT_BODY)
+    assert light.masses.tolist() == [1.0, 0.1]
+    assert light.bodies[1].period == pytest.approx([4.5, 4.5])
+    assert light.friction_coefficient == 0.01
+    assert light.largest_acceleration == pytest.approx(0.2)
+    own = CASES["fig3-I"](OWN_PERIOD)
+    assert own.excitation.periods == pytest.approx([0.54, 0.66])
+    assert own.excitation.decay == pytest.approx([0.3 / 0.54, 0.3 / 0.66])
+    assert np.abs(modes(own).period[:, 1] / 0.6 - 1.0).max() < 0.06, "the short natural periods"
+    wet = CASES["fig4-viscous"](OWN_PERIOD)
+    assert wet.lubricated
+    assert wet.friction_coefficient == Reading.lubrication
+
+
+def test_the_platform_alone_is_loaded_close_to_its_own_period() -> None:
+    alone = CASES["fig3-I alone"](OWN_PERIOD)
+    natural = float(modes(alone).period[0, 0])
+    gaps = np.array(alone.excitation.periods) / natural - 1.0
+    assert gaps == pytest.approx([-0.1, 0.1])
+
+
+@pytest.mark.long
+def test_the_literal_reading_tends_to_the_printed_rest() -> None:
+    scene = CASES["fig3-I"](LITERAL)
+    limit = amplification(scene, PHASES, "small", cutoff=1e-3, tolerance=1e-4, rest_condition="printed").mu
+    steps = 1e-3, 5e-4, 2.5e-4
+    gaps = [np.abs(literal_peaks(scene, PHASES, step, spike=False).mu / limit - 1.0).max() for step in steps]
+    assert gaps[0] > gaps[1] > gaps[2]
+    assert gaps[2] < 5e-3
+    spikes = [literal_peaks(scene, PHASES, step).mu[:, 0] for step in (1e-3, 1.25e-4)]
+    assert np.abs(spikes[0] / spikes[1] - 1.0).max() < 5e-3, "its height does not fade with its length"
+    assert (spikes[1] > 1.8 * limit[:, 0]).all()
+
+
+def test_the_literal_reading_rests_where_nothing_slides() -> None:
+    scene = CASES["fig3-I"](replace(LITERAL, amplitude=0.2))
+    peaks = literal_peaks(scene, PHASES, 5e-4)
+    expected = amplification(scene, PHASES, "small", tolerance=1e-6).mu
+    assert peaks.spikes.tolist() == [0, 0]
+    assert np.abs(peaks.mu / expected - 1.0).max() < 1e-3
+
+
+def test_the_spike_is_counted_once_for_every_beginning_of_slip() -> None:
+    spike = spike_over_the_step(Reading(1.0, duration=3.0, peak="literal (4.6)"))
+    counted, left_out, starts = map(np.array, (spike.counted, spike.left_out, spike.starts))
+    assert counted.shape == left_out.shape == starts.shape == (len(STEPS), 3)
+    assert (counted >= left_out).all()
+    assert (starts > 0).all()
+
+
+def test_forced_ratios_are_those_of_oscillator_and_chain() -> None:
+    scene = load_scene("fig3-II")
+    for each in forced_ratios(scene):
+        soft = {"x": 1.5, "y": 1.2}[each.axis]
+        s = complex(-0.3 / each.period, 2.0 * np.pi / each.period)
+        assert each.steady == pytest.approx(1.0 / abs(1.0 - (soft / each.period) ** 2))
+        assert each.ratio == pytest.approx(1.0 / abs(1.0 + (s * soft / (2.0 * np.pi)) ** 2))
+    assert [round(each.steady, 2) for each in forced_ratios(scene) if each.axis == "y"] == [1.29, 5.26]
+    body = scene.bodies[1].model_dump(exclude_none=True)
+    light = scene.with_values({"bodies": [scene.bodies[0].model_dump(exclude_none=True), body, {**body, "mass": 1e-9}]})
+    two = [each.ratio for each in forced_ratios(scene)]
+    three = [each.ratio for each in forced_ratios(light)]
+    assert three[::2] == pytest.approx(two, rel=1e-6)
+    assert three[1::2] == pytest.approx([each**2 for each in two], rel=1e-6), "each body drives the next alike"
+    assert forced_ratios(scene.with_values({"bodies": [scene.bodies[0].model_dump(exclude_none=True)]})) == []
+
+
+def test_a_peak_in_a_corner_has_its_twin_in_the_center() -> None:
+    """The proof that peaks cannot stand in corners alone, computed without any use of symmetry."""
+    scene = CASES["fig3-II"](LIGHT_BODY).with_values({"duration": 6.0})
+    phases = np.array([(0.1, 0.2), (5.9, 0.3)])
+    pairs = [amplification(scene, phases + shift, "small", tolerance=1e-6, full=True).mu for shift in (0.0, np.pi)]
+    assert np.abs(pairs[0] / pairs[1] - 1.0).max() < 1e-6
+
+
+def test_the_fold_of_the_denominator_is_in_viscous_surfaces() -> None:
+    """The proof that viscous friction cannot smooth them: second differences across it fall like the step alone."""
+    evidence = gathered(Question("fig4-viscous", Reading(), 8))
+    assert evidence.ground is not None
+    assert evidence.ground.kind == "fold"
+    scene, way = CASES["fig4-viscous"](Reading()), np.array([1.0, -1.0])
+    near = np.array(evidence.ground.phases) + np.linspace(-0.1, 0.1, 4001)[:, None] * way
+    center = near[1 + int(np.abs(np.diff(ground_peak(scene, near), 2)).argmax())]
+    sizes = []
+    for h in (0.02, 0.01, 0.005):
+        line = center + np.array([-h, 0.0, h])[:, None] * way
+        mu = amplification(scene, line, "small", tolerance=1e-8).mu
+        ground = ground_peak(scene, line)[:, None]
+        sizes.append([np.abs(np.diff(f, 2, axis=0)).max() for f in (ground, mu[:, :1], mu[:, 1:])])
+    exponents = np.log2(np.array(sizes[:-1]) / np.array(sizes[1:]))
+    assert (exponents[-1] < 1.5).all()
+
+
+@pytest.fixture(scope="module")
+def page(finished: Path) -> str:
+    return both_pages(finished)
+
+
+def test_every_verdict_is_on_the_page_with_what_was_found(page: str) -> None:
+    table = page.split("Every claim under every reading", 1)[1].split("</table>", 1)[0]
+    assert table.count('class="differs" title="periodic 4 and 3">yes</td>') == 2
+    assert table.count('class="differs" title="drawn 4 and 3">drawn</td>') == 1
+    assert '<td title="fig3-I: rim reached">?</td>' in table
+    assert "<li>1: no, |x<sub>2</sub> - y<sub>2</sub>| up to 0</li>" in page
+
+
+def test_exponents_stand_with_their_uncertainty(page: str) -> None:
+    rows = page.split('id="scaling"', 1)[1].split("</table>", 1)[0]
+    assert "2.00 ± 0.00" in rows
+    assert re.sub("<.*?>", "", rows).count("1: 4.0e-03, 0.5: 1.0e-03, 0.25: 2.5e-04") == 1
+    assert "like the power 2" in rows
+    rows = page.split('id="convergence"', 1)[1].split("</table>", 1)[0]
+    assert ">none</td>" in rows
+    assert "within the error bars: no slope can be told" in rows
+
+
+def test_the_summary_has_them_without_nan(finished: Path) -> None:
+    summary: dict[str, Any] = summary_of(finished)
+    claims = summary["claims"]
+    assert claims["reproduced"] == [1, 2]
+    assert [verdict["finding"] for verdict in claims["claims"][0]["verdicts"]] == ["reproduced", "as drawn"]
+    assert claims["never"] == ["Fig. 3b: mu_2 has several peaks and valleys, more complex than those of mu_1"]
+    forced = {scene["name"]: scene["forced"] for scene in summary["scenes"]}
+    assert [(each["axis"], round(each["ratio"], 2)) for each in forced["fig3-I"]] == [("x", 0.56), ("y", 4.56)]
+    assert summary["scaling"][0]["exponent"] == pytest.approx(2.0)
+    assert summary["convergence"][0]["exponent"] is None
+
+
+def test_claims_are_tested_only_with_all_scenes_of_the_paper() -> None:
+    every = Study(tuple(load_scene(name) for name in builtin_scenes()), 4, 1e-3)
+    assert Claims().tasks(every)
+    study = Study((load_scene("fig3-I"),), 4, 1e-3)
+    assert Claims().tasks(study) == []
+    assert Claims().collect(study, None, TaskResults()) is None
+    for analysis in (Scaling(), Convergence()):
+        assert {task.about.name for task in analysis.tasks(study)} == {"fig3-I"}
