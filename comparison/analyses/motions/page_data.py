@@ -47,7 +47,7 @@ from numpy.typing import NDArray
 
 from comparison.analyses.motions.analysis import Place, StoredMotion, swing
 from comparison.report.section import Report
-from reference.measures import Demands, Estimate
+from reference.measures import Demands
 from reference.problem import Scene
 
 Starts = dict[tuple[Place, str], int]
@@ -159,18 +159,14 @@ def significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:
 
 
 def _listed(demands: Demands) -> dict[str, Any]:
-    """The demands as JSON."""
+    """The demands as JSON, without the status, which the motion has, too."""
 
-    def pair(estimate: Estimate) -> list[float | str | None]:
+    def pair(estimate: Any) -> list[Any] | None:
+        if estimate is None:
+            return None
+        if isinstance(estimate, tuple):
+            return [pair(each) for each in estimate]
         numbers = [float(f"{n:.7g}") if np.isfinite(n) else None for n in (estimate.value, estimate.error)]
         return [*numbers, estimate.reason] if estimate.reason else [*numbers]
 
-    listed: dict[str, Any] = {}
-    for name, value in vars(demands).items():
-        if isinstance(value, Estimate):
-            listed[name] = pair(value)
-        elif isinstance(value, tuple):
-            listed[name] = [pair(estimate) for estimate in value]
-        elif name != "status":  # which the motion has, too
-            listed[name] = None
-    return listed
+    return {name: pair(value) for name, value in vars(demands).items() if name != "status"}

@@ -45,7 +45,6 @@ class Measurement:
 
     scene: Scene
     function: Function
-    first: int  # number of the first phase pair in the sample
     phases: Array  # (M, 2), rad
 
 
@@ -79,8 +78,7 @@ def measure(measurement: Measurement) -> Measured:
 
 
 def _called(scene: Scene, phases: Array, path: str, settings: Settings) -> Measured:
-    nothing, step = np.full((len(phases), len(scene.bodies)), np.nan), np.nan
-    clock = time.process_time()
+    nothing, step, clock = np.full((len(phases), len(scene.bodies)), np.nan), np.nan, time.process_time()
     try:
         answer = imported(path)(scene, phases, **settings)
     except Exception as error:
@@ -158,7 +156,7 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
         return [
             Task(
                 measure,
-                Measurement(scene, function, first, phases[first : first + size]),
+                Measurement(scene, function, phases[first : first + size]),
                 self.stage,
                 each * min(size, count - first),
                 scene,

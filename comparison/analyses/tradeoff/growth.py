@@ -166,7 +166,7 @@ class Growth(Analysis[list[Series]]):
         if model.side == "engine":
             settings["max_work"] = MAX_WORK
         phases = sample(int(value) if quantity.name == PAIRED else POINTS[model.side])
-        measurement = Measurement(quantity.scene(scene, value), (model.amplification, settings), 0, phases)
+        measurement = Measurement(quantity.scene(scene, value), (model.amplification, settings), phases)
         return Task(measure, measurement, self.stage, about=scene, timeout=LIMIT)
 
 
@@ -175,7 +175,7 @@ def by_workers(scene: Scene, pool: Callable[[int], Executor], most: int | None =
     most = most or cores()
     counts = sorted({*(2**n for n in range(most.bit_length()) if 2**n <= most), most})
     settings = {**EXACT.settings, "tolerance": 1e-6}
-    call = Measurement(scene, (EXACT.amplification, settings), 0, sample(PAIRS))
+    call = Measurement(scene, (EXACT.amplification, settings), sample(PAIRS))
     seconds = []
     for workers in counts:
         with pool(workers) as executor:

@@ -147,7 +147,7 @@ def test_a_model_that_raises_leaves_points_without_a_value(monkeypatch: pytest.M
         raise RuntimeError("the matrix is singular")
 
     monkeypatch.setattr(analysis, "imported", broken)
-    measured = analysis.measure(Measurement(load_scene("fig3-I"), ("anything:at all", {}), 0, sample(2)))
+    measured = analysis.measure(Measurement(load_scene("fig3-I"), ("anything:at all", {}), sample(2)))
     assert np.isnan(measured.mu).all()
     assert "the matrix is singular" in measured.error_message
 
