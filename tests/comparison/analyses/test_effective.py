@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from fake_models import fake_hierarchy
+from fake_models import fake_hierarchy, sliding
 from known_analyses import collected
 
 from comparison.analyses.effective_values.analysis import PHASES, EffectiveValues, read_back, stated
 from comparison.study.models import EXACT, MODEL_HIERARCHY, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
 from comparison.study.study import Study
-from reference.problem import ground_acceleration, load_scene
+from reference.problem import Scene, Trajectory, ground_acceleration, load_scene
 
 TRUE = {"radius": 0.31, "friction": 0.123, "mass": 2.2}  # the scene says 0.248 m, 0.1 and 2 kg
 
@@ -28,6 +29,19 @@ def test_what_a_model_computed_with_is_read_from_its_motion() -> None:
     assert values.mass == pytest.approx(TRUE["mass"], rel=1e-12)
     assert values.contact == pytest.approx(TRUE["mass"] * 9.81, rel=1e-12)
     assert values.friction == pytest.approx(TRUE["friction"], rel=1e-9)
+
+
+def jolted(scene: Scene, phase: Sequence[float], **values: float) -> Trajectory:
+    """Slides as it should but for one instant of the fastest slide."""
+    motion = sliding(scene, phase, **values)
+    acceleration = motion.absolute_acceleration.copy()
+    acceleration[np.linalg.norm(motion.velocity[:, 0], axis=1).argmax()] *= 1.5
+    return replace(motion, absolute_acceleration=acceleration)
+
+
+def test_one_instant_tells_nothing_of_the_friction() -> None:
+    model = replace(_model(**TRUE), trajectory="test_effective:jolted")
+    assert read_back((load_scene("fig3-I"), model)).friction == pytest.approx(TRUE["friction"], rel=1e-9)
 
 
 def test_in_a_lubricated_scene_friction_is_read_per_speed() -> None:

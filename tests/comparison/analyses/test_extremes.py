@@ -112,6 +112,7 @@ AGAINST_A_RULE = replace(PLAIN, scene=scene(friction=-0.1))
     ("row", "column", "verdict", "reason"),
     [
         (PLAIN, fake("honest"), "converged", "confirmed"),
+        (replace(PLAIN, settings={"tolerance": 1e-7}), fake("honest"), "converged", "confirmed"),  # by as much less
         (PLAIN, fake("at_the_rim"), "refused", "rim reached"),
         (PLAIN, fake("at_the_rim", finer="unable"), "refused", "rim reached"),
         (PLAIN, fake("unable"), "limit", "step limit"),
