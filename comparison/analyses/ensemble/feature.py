@@ -45,7 +45,7 @@ def ensemble_panels(ensemble: EnsembleResult) -> list[Panel]:
 def draw_ensemble(path: Path, ensemble: EnsembleResult) -> None:
     """Write the panels to `path`, PNG, and as PDF."""
     names = ", ".join(f"{each.title} ({each.name})" for each in ensemble.structures)
-    draw_panels(path, f"{names}, {_motions(ensemble)}", ensemble_panels(ensemble))
+    draw_panels(path, f"{names}, {_motions(ensemble)}: median, 16 % to 84 %", ensemble_panels(ensemble))
 
 
 def _motions(ensemble: EnsembleResult) -> str:
@@ -57,17 +57,19 @@ def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     for place, structure in enumerate(ensemble.structures):
         name, (unit, factor) = structure.name, unit_for_reading(quantity, structure.weight)
         motions, engine = ensemble.curves_of(name, quantity)
-        look: dict[str, Any] = {"marks": True, "line": False} if one else {"width": 0.7}
-        series += _values(motions, factor, place if one else None, name=f"{name}: one motion", color=place, **look)
+        look: dict[str, Any] = {"name": f"{name}: one motion", "color": place, "legend": False}
+        look |= {"marks": True, "line": False} if one else {"width": 0.7}
+        series += _values(motions, factor, place if one else None, **look)
         if stripes := ensemble.stripes_of(name, quantity):
             x = [place + WIDTH if one else stripe.scale for stripe in stripes]
             fractiles = zip(*(stripe.fractiles for stripe in stripes))
             series.append(_median(ensemble, place, x, fractiles, factor, band=not one, line=not one))
-        look = {"name": f"{name}: engine", "color": "ink", "marks": True, "line": False}
+        look = {"name": "engine", "color": "ink", "marks": True, "line": False}
+        look |= {"legend": False} if any(line["name"] == "engine" for line in series) else {}
         series += _values(engine, factor, place - WIDTH if one else None, **look)
     title = title_of(quantity)
-    names = [[number, structure.name] for number, structure in enumerate(ensemble.structures)]
-    strips = {"title": "", "ticks": names, "range": [-0.6, len(names) - 0.4]}
+    places = range(len(ensemble.structures))
+    strips = {"title": "", "ticks": [[place, ""] for place in places], "range": [-0.6, len(places) - 0.4]}
     scales = {"title": "scale factor of the motion", "range": [0.0, 1.04 * max(ensemble.scales)]}
     label = f"{title} {'by scene' if one else 'over the scale factor'}, {_motions(ensemble)}"
     return panel(title, label, strips if one else scales, _from_zero(f"{title}, {unit}", series), series)
@@ -78,7 +80,7 @@ def _values(curves: Sequence[Curve], factor: float, place: float | None, **look:
     series = []
     for number, curve in enumerate(curves):
         x = list(curve.scales) if place is None else [place + WIDTH * ((number + 0.5) / len(curves) - 0.5)]
-        line = {"x": x, "y": [_scaled(value, factor) for value in curve.values], "legend": number == 0, **look}
+        line = {"x": x, "y": [_scaled(value, factor) for value in curve.values], "legend": number == 0} | look
         for key, side in (("low", -1.0), ("high", 1.0)) if "line" in look else ():
             both = zip(curve.values, curve.errors)
             line[key] = [None if None in pair else factor * (pair[0] + side * pair[1]) for pair in both]  # type: ignore[operator]
@@ -97,7 +99,7 @@ def _median(
     """Median of a structure with its band, from low, median and high at every x."""
     columns = zip(("low", "y", "high"), fractiles)
     numbers = {key: [_scaled(each.value, factor) for each in column] for key, column in columns}
-    about = {"name": f"{ensemble.structures[place].name}: median, 16 % to 84 %", "color": place, "x": x}
+    about = {"name": ensemble.structures[place].name, "color": place, "x": x}
     return {**about, **numbers, "band": True, "marks": True, "width": 2.4, **look}
 
 
@@ -220,6 +222,7 @@ FEATURE = Feature(
             "ensemble_panels": ensemble_panels(report.results.of("ensemble")),
             "ensemble_rows": demand_rows(report.results.of("ensemble")),
             "target_sentence": target_sentence,
+            "title_of": title_of,
         },
     ),
 )

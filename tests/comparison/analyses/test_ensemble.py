@@ -158,10 +158,10 @@ def test_the_picture_has_the_numbers_in_the_units_of_its_axes(monkeypatch: pytes
     assert axes.get_ylabel() == "largest displacement of the isolator, mm"
     assert axes.get_ylim()[0] == 0.0
     lines = {line.get_label(): line for line in axes.get_lines()}
-    assert lines["mine: median, 16 % to 84 %"].get_ydata() == pytest.approx([5e3])
-    assert lines["mine: one motion"].get_linestyle() == "None", "motions are not joined by a line"
+    assert lines["mine"].get_ydata() == pytest.approx([5e3])
+    assert axes.get_lines()[0].get_linestyle() == "None", "motions are not joined by a line"
     assert [line.get_ydata()[0] for line in axes.get_lines()[:11]] == pytest.approx(1e3 * np.arange(11.0))
-    assert lines["mine: engine"].get_ydata() == pytest.approx([5.5e3])
+    assert lines["engine"].get_ydata() == pytest.approx([5.5e3])
     *_, band, engine_error = (bars.get_segments()[0][:, 1] for bars in axes.collections)
     assert band == pytest.approx([1.26e3, 8.74e3])
     assert engine_error == pytest.approx([5.25e3, 5.75e3])

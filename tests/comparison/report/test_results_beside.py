@@ -161,11 +161,11 @@ def test_a_panel_of_an_ensemble_is_in_the_unit_of_its_axis(beside: tuple[str, Pa
     [panel] = [each for each in ensemble_panels(results.of("ensemble")) if each["title"] == ISOLATOR]
     assert panel["plot"]["y"]["title"] == f"{ISOLATOR}, mm"
     motions, [band], [engine] = (
-        [line for line in panel["plot"]["series"] if line["name"].startswith(name)]
-        for name in ("tower: one motion", "tower: median", "tower: engine")
+        [line for line in panel["plot"]["series"] if line["name"] == name]
+        for name in ("tower: one motion", "tower", "engine")
     )
     assert [line["y"][0] for line in motions] == pytest.approx([100.0, 200.0, 300.0])
-    assert band["name"] == "tower: median, 16 % to 84 %"
+    assert [line.get("legend", True) for line in (*motions, band, engine)] == [False, False, False, True, True]
     assert [band[key][0] for key in ("low", "y", "high")] == pytest.approx([132.0, 200.0, 268.0])
     assert [engine[key] for key in ("low", "y", "high")] == [pytest.approx([x]) for x in (509.0, 510.0, 511.0)]
 
@@ -174,12 +174,14 @@ def test_the_tables_of_an_ensemble_have_every_number_in_its_column(beside: tuple
     tables = Tables(page_of(beside[1]))
     high, low = (dict(zip(*table[:2])) for table in tables.tables if "84 %" in table[0])
     assert low == {
-        "demand": ISOLATOR, "scene": "tower", "scale": "1", "mean": "210 ± 0", "16 %": "132 ± 0",
-        "50 %": "200 ± 0", "84 %": "268 ± 0", "largest": "300 ± 0", "smallest": "100 ± 0", "unit": "mm", "motions": "3",
+        "demand": f"{ISOLATOR}, mm", "mean": "210 ± 0", "16 %": "132 ± 0", "50 %": "200 ± 0", "84 %": "268 ± 0",
+        "largest": "300 ± 0", "smallest": "100 ± 0", "motions": "3",
     }  # fmt: skip
-    assert (high["scale"], high["84 %"], high["motions"], high["smallest"]) == ("2", "none", "2", "200 ± 1")
+    page = page_of(beside[1])
+    assert page.index("</span>: 3 motions at scale 2</h3>") < page.index("</span>: 3 motions at scale 1</h3>")
+    assert (high["84 %"], high["motions"], high["smallest"]) == ("none", "2", "200 ± 1")
     [engine] = tables.headed("demand", "like for like", "errors")
-    assert list(engine.values()) == ["displacement", "tower", "", "2 %", "0.01 %", "0.2 %", "1"]
+    assert list(engine.values()) == [ISOLATOR, "tower", "2 %", "0.01 %", "0.2 %", "1"]
 
 
 @pytest.mark.parametrize("name", [*FILES, TRADES])
