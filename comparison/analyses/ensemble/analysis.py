@@ -45,7 +45,7 @@ FRACTILES = (0.16, 0.5, 0.84)
 SMALLEST = ("contact_force_min", "support_force_min")  # demands of which the smallest value is the worst
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # steps of which fill an interval evenly
 REST = (0.0, 0.0)  # a record has no phases
-SECONDS_PER_KNOT = {"reference": 8e-5, "engine": 4e-3}  # of processor time, for six bodies
+SECONDS_PER_KNOT = {"reference": 8e-5, "engine": 4e-3, "spatial": 1.5e-2}  # of processor time, for six bodies
 LIMIT = 900.0  # s of processor time of one motion
 
 Quantity = tuple[str, int]  # field of `Demands`, and body from 1 or 0 for the isolator
@@ -176,7 +176,7 @@ class Ensemble(Analysis[Points]):
         return sorted(place for own in _by(numbered, "structure").values() for place in _spread(own, self.subset))
 
     def _task(self, scene: Scene, model: Model) -> Task:
-        seconds = SECONDS_PER_KNOT[model.side] * len(scene.record)
+        seconds = SECONDS_PER_KNOT["spatial" if model.is_spatial else model.side] * len(scene.record)
         arguments: Arguments = scene, model, model.tolerance(self.tolerance)
         return Task(answered, arguments, self.stage, seconds, scene, model.side == "reference", timeout=LIMIT)
 
