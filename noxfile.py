@@ -58,6 +58,14 @@ def mistakes(session: nox.Session) -> None:
 
 
 @nox.session
+def mutants(session: nox.Session) -> None:
+    """Small changes of the functions of `-- "comparison.surfaces.steps*"`: mutmut lists those that no test sees."""
+    session.install(".[test]", "mutmut>=3.8")
+    session.run("mutmut", "run", *session.posargs)
+    session.run("mutmut", "results")
+
+
+@nox.session
 def bench(session: nox.Session) -> None:
     """The benchmarks, one after the other."""
     session.install(".[test]")

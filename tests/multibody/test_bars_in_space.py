@@ -213,12 +213,11 @@ def test_three_stories_on_bars_agree_with_newton_euler() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["softened", "shortening"])
 def test_a_whole_surface_agrees_with_newton_euler_equations(name: str) -> None:
-    for phase in phase_grid(8):
+    for phase in phase_grid(8)[(phase_grid(8) < np.pi).all(axis=1)]:  # turns of each harmonic by pi give the others
         assert_agrees_with_newton_and_euler(building(name), tuple(phase), torsion=False)
 
 
 @pytest.mark.long
-@pytest.mark.xfail(strict=True, reason="the torsion is 1.04 of its stated error off, 6.5e-5 of itself")
 def test_torsion_at_every_phase_is_within_its_error() -> None:
     assert_agrees_with_newton_and_euler(building("softened"), (0.5 * np.pi, 0.75 * np.pi))
 

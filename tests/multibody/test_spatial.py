@@ -272,6 +272,7 @@ def test_a_body_on_a_narrow_ring_lifts_off_and_comes_back() -> None:
     assert len(multibody.trajectory(wide, (0.0, 0.0), model="spatial").extra["liftoff"]) == 0
 
 
+@pytest.mark.long
 def test_the_torsion_has_its_error_where_supports_open() -> None:
     """That of rigid_chain.py. Which support is hit first depends on rounding: two levels agreed by chance."""
     scene = changed(load_scene("fig3-I"), duration=2.7, isolator={"ring": 0.3})

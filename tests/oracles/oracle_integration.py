@@ -94,7 +94,7 @@ def march(
 
     def guarded(p: float, y: np.ndarray) -> np.ndarray:
         try:
-            return rhs(p, y)
+            return rhs(p, y) if np.isfinite(y).all() else np.full(len(y), np.nan)
         except RefusalError:  # perhaps only a trial stage of a step too long: let the solver reject it
             return np.full(len(y), np.nan)
 

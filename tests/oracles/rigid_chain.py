@@ -267,7 +267,7 @@ class SpatialMotion:
     instant: Array
     time: Array
     support_force: Array  # (T, K), N
-    yaw: Array  # (T,), of the platform, rad
+    yaw: Array  # (T,), of the platform, rad: the last of three angles about x, y and z, each in the axes turned so far
     drift: float  # m, largest distance of a mean gap from zero
 
 
@@ -357,7 +357,8 @@ def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolera
             peak = np.maximum(peak, size)
             times.append(float(time))
             forces.append(normals)
-            yaws.append(float(state.reshape(4, bodies, 3)[1, 0, 2]))
+            turned = _rotation(state.reshape(4, bodies, 3)[1, 0])
+            yaws.append(math.atan2(-turned[0, 1], turned[0, 0]))
         place, turn = solver.y.reshape(4, bodies, 3)[:2]
         arms = (np.column_stack([ring, np.zeros(len(ring))]) - centers[0]) @ _rotation(turn[0]).T
         away = np.column_stack([ring, np.full(len(ring), scene.radius)]) - place[0] - arms

@@ -14,10 +14,10 @@ from studies import GRID, KEYS, planted_study, scattered
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from comparison.surfaces.differences import differences
-from comparison.surfaces.headline import Cause, Headline, headline
+from comparison.surfaces.headline import Cause, Headline, cause_of, headline
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.unanswered import compared_study
-from comparison.surfaces.waterfall import waterfall
+from comparison.surfaces.waterfall import WaterfallBar, waterfall
 from reference.problem import Scene, load_scene
 
 
@@ -50,7 +50,14 @@ def test_a_mean_above_zero_says_more() -> None:
 
 def test_two_steps_of_like_size_are_both_named() -> None:
     study, surfaces = planted_study({"exact": 0.05, **dict.fromkeys(KEYS[1:4], 0.08), "spatial": 0.13})
-    assert told(study, surfaces).cause.models == ("exact", "spatial", "resolved")
+    result = told(study, surfaces)
+    assert result.cause.models == ("exact", "spatial", "resolved")
+    assert "up to 13 % more at (" in result.sentence, "the model of the mean is not named again"
+
+
+def test_a_step_within_its_error_is_no_cause_of_a_real_total() -> None:
+    bars = [WaterfallBar("exact", 0.05, 0.02), WaterfallBar("spatial", 0.06, 1e-3)]
+    assert cause_of(bars, WaterfallBar("spatial", 0.11, 0.02)).models == ("spatial",)
 
 
 def test_the_headline_has_the_largest_difference_of_any_model() -> None:

@@ -126,8 +126,9 @@ parts = {part for names in solver for part in names.values() if isinstance(part,
 assert len(parts) > 100
 for part in parts:
     for asked in part.overloads:
-        # by what a part is made for: floats or rows, and the number of columns of a block, which is a literal
-        print(part.__name__, "Row" in str(asked), *re.findall(r"Literal\\[.*?\\]\\(.*?\\)", str(asked)), sep="_")
+        # by which arguments are rows, and the number of columns of a block, which is a literal
+        rows, literals = ["Row" in str(each) for each in asked], re.findall(r"Literal\\[.*?\\]\\(.*?\\)", str(asked))
+        print(part.__name__, *rows, *literals, sep="_")
 """
 
 
