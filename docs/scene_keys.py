@@ -27,13 +27,6 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         " Each number may run over a range.",
     ),
     (
-        "`isolator.friction.heating`",
-        "Heating",
-        "isolator.friction.heating",
-        "Dry friction that its own heat lowers: `friction = {slow = 0.06, heating = {contact_radius = 0.2,"
-        " conductivity = 18.0, diffusivity = 4.4e-6}}`, at 20 degrees C ([the law](reference.md)).",
-    ),
-    (
         "`[[bodies]]`",
         "Body",
         "bodies",

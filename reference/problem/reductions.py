@@ -141,8 +141,8 @@ def untilted(scene: Scene) -> Reduction:
     if scene.friction_coefficient > 0.0:
         if scene.lubricated:
             return Reduction(False, "lubricated: the friction that shifts the supports' load has no limit")
-        if scene.dry_friction.by_load:
-            return Reduction(False, "friction that depends on load or heat: unequal loads twist the platform")
+        if scene.dry_friction.exponent != 0.0:
+            return Reduction(False, "friction that depends on the load: unequal loads twist the platform")
         shift = scene.friction_coefficient * (scene.radius + isolator.sphere_radius)
         if not LOAD_SHIFT_FACTOR * shift <= isolator.ring * math.cos(math.pi / isolator.supports):
             return Reduction(False, "a narrow ring: friction may lift the platform off a support")

@@ -19,7 +19,7 @@ from reference.problem.bar_links import BarLink, bar_links, stands_upright
 from reference.problem.beam_column import buckling_load
 from reference.problem.changed_values import put_value
 from reference.problem.constants import GRAVITY
-from reference.problem.friction import DryFriction, Heat
+from reference.problem.friction import DryFriction
 from reference.problem.html_table import html_table
 from reference.problem.measured import Measured
 from reference.problem.ranges import MAX_CYCLES, SCENE, as_float, takes
@@ -33,7 +33,6 @@ from reference.problem.tables import (
     Bars,
     Body,
     Excitation,
-    Heating,
     Isolator,
     Positive,
     Record,
@@ -399,14 +398,7 @@ class Scene(Table):
             return DryFriction(friction or 0.0, friction or 0.0, 0.0)
         fast, rate, exponent = friction.fast, friction.rate or 0.0, friction.load_exponent or 0.0
         share = (self.total_mass * GRAVITY / friction.reference_load) ** exponent if friction.reference_load else 1.0
-        table, sliders = friction.heating, 1 if self.support_places is None else len(self.support_places)
-        heat = None
-        if table is not None:
-            plate = table.conductivity, table.diffusivity, table.initial_temperature
-            heat = Heat.of(table.contact_radius, *plate, sliders)
-        return DryFriction(
-            share * friction.slow, share * (friction.slow if fast is None else fast), rate, exponent, heat
-        )
+        return DryFriction(share * friction.slow, share * (friction.slow if fast is None else fast), rate, exponent)
 
     @property
     def recorded(self) -> bool:
@@ -539,7 +531,6 @@ KEYS: dict[str, tuple[str, ...]] = {
     "isolator": tuple(Isolator.model_fields),
     "isolator.friction": tuple(VelocityFriction.model_fields),
     f"isolator.friction.{FRICTIONS[1]}": tuple(VelocityFriction.model_fields),
-    "isolator.friction.heating": tuple(Heating.model_fields),
     "bodies": tuple(Body.model_fields),
     "bodies.bars": tuple(Bars.model_fields),
     "acceptance": tuple(Acceptance.model_fields),

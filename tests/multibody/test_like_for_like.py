@@ -23,7 +23,6 @@ VERTICAL = {"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [2.0, 1.0]]}
 FLOORS = [{"mass": 2.0}, {"mass": 1.0, "period": [0.5, 0.4]}, {"mass": 0.5, "stiffness": [40.0, 60.0]}]
 RISING, FALLING = {"slow": 0.05, "fast": 0.1, "rate": 100.0}, {"slow": 0.1, "fast": 0.05, "rate": 100.0}
 PRESSED = {"slow": 0.08, "load_exponent": 0.4}
-HEATED = {"slow": 0.1, "heating": {"contact_radius": 0.02, "conductivity": 0.02, "diffusivity": 1e-3}}
 EASED = {"slow": 0.05, "fast": 0.1, "rate": 100.0, "load_exponent": -0.3, "reference_load": 25.0}
 
 
@@ -35,8 +34,6 @@ SCENES: dict[str, Scene] = {
     name: load_scene(base).with_values(values)
     for name, base, values in (
         ("pressed", "fig3-I", law(PRESSED)),  # the first, as it takes long to compile
-        ("heated", "fig3-I", law(HEATED)),
-        ("heated, eased", "fig3-I", law({**EASED, **HEATED, "slow": 0.05}) | VERTICAL),
         ("pressed, plane, vertical", "fig3-I", law(PRESSED, **PLANE, **VERTICAL)),
         ("eased", "fig3-I", law(EASED)),
         ("eased, vertical", "fig3-I", law(EASED, **VERTICAL)),

@@ -171,8 +171,6 @@ def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
     fast = speed > FASTEST * speed.max()
     ratio = across[fast] / along[fast]
     law = scene.dry_friction
-    if law.heat is not None:  # it has no one value
-        return float("nan")
     if law.exponent:  # back to the weight
         ratio /= np.maximum(along[fast] / (scene.total_mass * GRAVITY), LEAST_LOAD) ** law.exponent
     if law.varies:

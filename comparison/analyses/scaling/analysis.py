@@ -90,7 +90,5 @@ class Scaling(TrendAnalysis):
     measure, without_value = staticmethod(scene_trends), staticmethod(_without_value)
 
     def arguments(self, scene: Scene) -> list[bool]:
-        """Readings of the peak: whether the supremum is taken; none with heating, which has a scale of its own."""
-        if scene.dry_friction.heat is not None:
-            return []
+        """Readings of the peak: whether the supremum is taken."""
         return [True, False] if dry(scene) else [True]

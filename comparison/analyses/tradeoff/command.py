@@ -107,10 +107,9 @@ def _phased(name: str) -> Scene:
     if scene.recorded:
         rule = "reference solutions need phases, which a recorded motion has not: give a scene of two frequencies"
         raise SceneError(name, "excitation.record", scene.name, rule)
-    if scene.dry_friction.by_load:
-        key = "heating" if scene.dry_friction.heat else "load_exponent"
-        rule = "the solvers outside the package know no friction that depends on load or heat: remove this key"
-        raise SceneError(name, f"isolator.friction.{key}", "given", rule)
+    if scene.dry_friction.exponent:
+        rule = "the solvers outside the package know no friction that depends on the load: remove this key"
+        raise SceneError(name, "isolator.friction.load_exponent", scene.dry_friction.exponent, rule)
     return scene
 
 
