@@ -94,10 +94,7 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     ((2, 2, 2), True)
     """
     damping = checked_number("damping", damping, DAMPING)
-    rule = "must be positive numbers (P,), s"
-    period = PERIODS if periods is None else checked_array("periods", periods, rule)
-    if period.ndim != 1 or not len(period) or not (period > 0.0).all():
-        raise ValueError(f"periods: {rule}")
+    period = PERIODS if periods is None else _checked_periods(periods)
     if trajectory.status not in ANSWERED or len(trajectory.time) < 2:
         nothing = np.full((trajectory.position.shape[1], 2, len(period)), np.nan)
         return FloorSpectra(period, damping, nothing, nothing.copy())
@@ -211,10 +208,7 @@ def response_spectrum(
     array([2.])
     """
     damping = checked_number("damping", damping, DAMPING)
-    rule = "must be positive numbers (P,)"
-    period = checked_array("periods", periods, rule)
-    if period.ndim != 1 or not len(period) or not period.min() > 0.0:
-        raise ValueError(f"periods {period.shape}: {rule}")
+    period = _checked_periods(periods)
     rule = "must be rising instants (K,), s, and as many accelerations (K,) or (K, 2), m/s^2"
     instants, ground = checked_array("time", time, rule), checked_array("acceleration", acceleration, rule)
     ground = ground[:, None] if ground.ndim == 1 else ground
@@ -227,6 +221,14 @@ def response_spectrum(
     spectra = _largest_accelerations(instants, ground, period, damping, _power_series(damping))
     mean: NDArray[np.float64] = np.exp(np.log(spectra).mean(axis=0))
     return mean
+
+
+def _checked_periods(periods: ArrayLike) -> Array:
+    rule = "must be positive numbers (P,), s"
+    period = checked_array("periods", periods, rule)
+    if period.ndim != 1 or not len(period) or not (period > 0.0).all():
+        raise ValueError(f"periods: {rule}")
+    return period
 
 
 @cached_on_disk(__file__, nogil=True)

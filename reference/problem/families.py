@@ -45,7 +45,6 @@ MAX_SCENES = 1000  # scenes of one family
 MAX_BODIES_IN_ALL = 50_000  # bodies of all scenes of a family together
 MAX_KEYS = 20  # that run
 
-
 Value = float | int | str
 Files = dict[str, str]  # of a record, by direction
 Numbers = dict[str, float]  # a whole table, as that of friction

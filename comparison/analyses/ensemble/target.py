@@ -56,7 +56,7 @@ def matched(members: Sequence[Member], file: str, ends: Sequence[str] | None) ->
     found: dict[tuple[str, bytes], MatchedMotion] = {}
     scaled = []
     for member in members:
-        record = member.scene.record / [1.0, *3 * [member.scale]]
+        record = member.scene.with_values({SCALE: 1.0}).record
         time, ground = record[:, 0], record[:, 1:3][:, record[:, 1:3].any(axis=0)]
         key = member.motion, record.tobytes()
         if key not in found:

@@ -16,6 +16,7 @@ import pytest
 
 import reference
 from comparison.analyses.ensemble.analysis import (
+    SCALE,
     Ensemble,
     Member,
     Point,
@@ -27,6 +28,7 @@ from comparison.analyses.ensemble.analysis import (
 )
 from comparison.analyses.ensemble.command import FILES, main, table_text
 from comparison.analyses.ensemble.feature import draw_ensemble
+from comparison.analyses.ensemble.target import matched
 from reference.measures import Demands, Estimate
 from reference.problem import load_family, load_scene
 from reference.problem.record_suites import suite_samples
@@ -412,6 +414,15 @@ def test_motions_are_scaled_to_the_target_spectrum(folder: Path, undrawn: None) 
     assert [float(row["factor"]) for row in second] == pytest.approx([2.0, 2.0], rel=2e-3)
     peak = np.hypot(motion[:, 1], motion[:, 2]).max()
     assert [float(row["peak_ground_acceleration"]) for row in second] == pytest.approx([peak, 2.0 * peak], rel=2e-3)
+
+
+def test_a_motion_at_many_scales_is_matched_once(tmp_path: Path) -> None:
+    (tmp_path / "code.csv").write_text("period [s], acceleration [g]\n0.1, 0.5\n2.0, 0.3\n")
+    scene = load_scene("synthetic-pair")
+    members = [Member("a", "m", scale, scene.with_values({SCALE: scale})) for scale in (0.3, 0.7, 1.0, 1.3)]
+    scaled, target = matched(members, str(tmp_path / "code.csv"), None)
+    assert len(target.motions) == 1
+    assert {member.factor for member in scaled} == {target.motions[0].factor}
 
 
 TARGETS = {
