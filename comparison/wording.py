@@ -14,7 +14,7 @@ SHOWN_ERROR = 0.01  # of a size: a smaller error is not seen in two digits
 MAX_NAMES = 12  # on an axis of values that are no numbers; of more values every n-th is named
 POWERS = re.compile(r"\^(\w)")
 SUBSCRIPTS = re.compile(r"(?<=[\w>])_(\w+)")
-INDEXED = re.compile(r"\b([a-zA-Z]+)_(\w+)")
+INDEXED = re.compile(r"\b([^\W\d_]+)_(\w+)")
 SMALL = {"beta": "β", "eta": "η", "lambda": "λ", "mu": "μ", "rho": "ρ", "tau": "τ", "xi": "ξ", "zeta": "ζ"}
 GREEK = {**SMALL, "Delta": "Δ", "Phi": "Φ"}
 LETTERS = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK)})(?![a-zA-Z])")
@@ -90,10 +90,14 @@ def degrees(phase: float) -> str:
 
 def symbols(text: str) -> Markup:
     """Names such as v_reg, l^3 and rho as they are printed: with indices, powers and Greek letters."""
-    greek = LETTERS.sub(lambda found: found.group(1) + GREEK[found.group(2)], str(escape(text)))
+    greek = _with_greek(str(escape(text)))
     return Markup(SUBSCRIPTS.sub(r"<sub>\1</sub>", POWERS.sub(r"<sup>\1</sup>", greek)))
 
 
 def mathtext(text: str) -> str:
-    """Names such as v_reg for matplotlib, with indices."""
-    return INDEXED.sub(r"$\1_{\\mathrm{\2}}$", verbatim(text))
+    """Names such as v_reg and mu_1 for matplotlib, with indices and Greek letters."""
+    return INDEXED.sub(r"$\1_{\\mathrm{\2}}$", verbatim(_with_greek(text)))
+
+
+def _with_greek(text: str) -> str:
+    return LETTERS.sub(lambda found: found.group(1) + GREEK[found.group(2)], text)

@@ -112,7 +112,7 @@ def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
         _line(titles[curve.model], number, places, curve.mean, (curve.lowest, curve.highest))
         for number, curve in enumerate(curve for curve in family.curves if curve.body == body)
     ]
-    return panel(f"mu_{body}", f"mu_{body} of every model over {family.key}", axis, {"title": f"μ{body}"}, series)
+    return panel(f"mu_{body}", f"mu_{body} of every model over {family.key}", axis, {"title": f"μ_{body}"}, series)
 
 
 def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:

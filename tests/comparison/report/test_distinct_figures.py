@@ -280,7 +280,7 @@ def test_the_trade_off_has_every_curve_in_its_panel(monkeypatch: pytest.MonkeyPa
         [line] = axes.lines
         assert line.get_xdata() == pytest.approx([entry.seconds for entry in shown])
         assert line.get_ydata() == pytest.approx([entry.most[body] for entry in shown])
-        assert axes.get_title() == rf"{question.title}, $mu_{{\mathrm{{{body + 1}}}}}$"
+        assert axes.get_title() == rf"{question.title}, $μ_{{\mathrm{{{body + 1}}}}}$"
         assert (axes.get_xlabel(), axes.get_ylabel()) == ("processor time per point, s", "relative error, 95 %")
 
 

@@ -158,6 +158,11 @@ def test_a_share_below_rounding_has_no_digits() -> None:
 
 def test_figures_write_indices_and_leave_dollars_alone() -> None:
     assert mathtext("exact equations, v_reg") == r"exact equations, $v_{\mathrm{reg}}$"
+    assert (
+        mathtext("effects on mu_1 over rho")
+        == mathtext("effects on μ_1 over ρ")
+        == r"effects on $μ_{\mathrm{1}}$ over ρ"
+    )
     assert (verbatim("5 $ a_b"), mathtext("a $")) == (r"5 \$ a_b", r"a \$")
 
 
