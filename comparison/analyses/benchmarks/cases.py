@@ -254,6 +254,6 @@ def mastodon(path: Path) -> Case:
         regularization=1e-3,
         difference="their friction also falls with the temperature of the sliding surface and changes with the "
         "pressure, and theirs is elastic up to 1 mm; ours depends on the velocity alone. A planar integration of their "
-        "law gives -392 to 252 and -181 to 98 mm without heating, -434 to 335 and -197 to 150 mm with it (197 °C): "
+        "law gives -392 to 252 and -181 to 98 mm without heating, -432 to 329 and -197 to 151 mm with it (196 °C): "
         "heating is the larger part of the difference, elasticity and the geometry of the sphere are the rest",
     )

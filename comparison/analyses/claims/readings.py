@@ -20,6 +20,7 @@ from reference.problem import Scene, load_scene
 SPEED = 1e-3  # m/s, v_c of the resolved peak and v_reg of the regularized one
 EPSILON = 0.1  # the paper's: T_1, T_2 = T_c (1 -+ epsilon)
 DECAY = 0.3  # the paper's lambda_i T_i
+KEPT = 1024  # scenes of each kind: every reading asks for its own several times
 
 Peak = Literal["supremum", "resolved", "regularised", "literal (4.6)"]
 
@@ -134,9 +135,6 @@ def without_effect(reading: Reading, scene: Scene) -> Reading:
     if not has_stops(scene):
         reading = replace(reading, peak="supremum")
     return replace(reading, title="", reason="", searched=0)
-
-
-KEPT = 1024  # scenes of each kind: every reading asks for its own several times
 
 
 @lru_cache(KEPT)

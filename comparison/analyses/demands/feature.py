@@ -18,6 +18,18 @@ from comparison.result_types import UncertainNumber
 from comparison.wording import shortened
 from reference.measures.peak_demands import QUANTITIES, unit_of
 
+MILLI = 1e3
+COLUMNS = (  # of report.pdf: heading, demand, body (None: all of them, -1: the uppermost), factor
+    ("isolator, mm", "displacement", None, MILLI),
+    ("residual, mm", "residual", None, MILLI),
+    ("base shear, N", "base_shear", None, 1.0),
+    ("platform, m/s²", "acceleration", 1, 1.0),
+    ("top, m/s²", "acceleration", -1, 1.0),
+    ("drift, mm", "drift", None, MILLI),
+    ("contact force, N", "contact_force_min", None, 1.0),
+)
+HEADINGS = ("scene", "model", *(column[0] for column in COLUMNS))
+
 
 def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
     """One panel for each demand: the share of all phases at which it stays below a value, by model."""
@@ -51,33 +63,6 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
         "demand_panels": [panel for scene in results.scenes for panel in demand_panels(scene, results)],
         "demand_lines": demand_lines(results),
     }
-
-
-FEATURE = Feature(
-    "demands",
-    analysis=DemandSurfaces(),
-    scene_fields={
-        "demand_statistics": SceneField(
-            list[DemandStatistics],
-            "one per demand, body and model; empty unless demands of every phase pair were asked for",
-            lambda findings, scene: demand_statistics(findings.study, findings.found.get("demands"), scene),
-        )
-    },
-    section=Section("Demands over all phases", context=_context),
-)
-
-
-MILLI = 1e3
-COLUMNS = (  # of report.pdf: heading, demand, body (None: all of them, -1: the uppermost), factor
-    ("isolator, mm", "displacement", None, MILLI),
-    ("residual, mm", "residual", None, MILLI),
-    ("base shear, N", "base_shear", None, 1.0),
-    ("platform, m/s²", "acceleration", 1, 1.0),
-    ("top, m/s²", "acceleration", -1, 1.0),
-    ("drift, mm", "drift", None, MILLI),
-    ("contact force, N", "contact_force_min", None, 1.0),
-)
-HEADINGS = ("scene", "model", *(column[0] for column in COLUMNS))
 
 
 def demand_rows(results: Results) -> list[list[str]]:
@@ -128,3 +113,17 @@ def _cell(name: str, numbers: Sequence[PhaseExtreme | UncertainNumber], factor: 
     worst = (min if name.endswith("_min") else max)(known, key=lambda number: number.value)
     error = f" ± {factor * worst.error:.1g}" if name == "residual" and worst.error >= 0.0 else ""
     return f"{factor * worst.value:.4g}{error}"
+
+
+FEATURE = Feature(
+    "demands",
+    analysis=DemandSurfaces(),
+    scene_fields={
+        "demand_statistics": SceneField(
+            list[DemandStatistics],
+            "one per demand, body and model; empty unless demands of every phase pair were asked for",
+            lambda findings, scene: demand_statistics(findings.study, findings.found.get("demands"), scene),
+        )
+    },
+    section=Section("Demands over all phases", context=_context),
+)

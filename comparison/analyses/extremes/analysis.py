@@ -40,6 +40,11 @@ PHYSICS = {
 NUMERICS = {Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED}
 FINE = 0.1  # share of the tolerance within which a run must know the value to confirm it, if not as well as claimed
 ROUNDING = 1e-12  # relative: two runs this close are the same
+BRIEF = {"lubrication, s/m", "start at the friction limit", "outside the rules"}  # for the engine's models, too
+LIMIT = 300.0  # s of processor time for one cell with its finer runs: twice what the dearest takes on a busy machine
+SECONDS_OF_LONG_ROWS = 30.0  # in place of the column's, recorded for the equations
+FAILURES = {Outcome.TIME_LIMIT: "hangs:", Outcome.WORKER_DIED: "crashes:"}  # of processes; all else was raised
+STRICTEST = 1e-10  # relative error that a model can be asked for
 
 
 @dataclass(frozen=True)
@@ -116,13 +121,6 @@ def _value(status: str, mu: Array, error: Array, finer: Sequence[Finer], toleran
     if status == Outcome.TOLERANCE_NOT_MET:
         return Entry(Verdict.LIMIT, f"{status}: {share:.1e}", status, claimed)
     return replace(unconfirmed, error=claimed)
-
-
-BRIEF = {"lubrication, s/m", "start at the friction limit", "outside the rules"}  # for the engine's models, too
-LIMIT = 300.0  # s of processor time for one cell with its finer runs: twice what the dearest takes on a busy machine
-SECONDS_OF_LONG_ROWS = 30.0  # in place of the column's, recorded for the equations
-FAILURES = {Outcome.TIME_LIMIT: "hangs:", Outcome.WORKER_DIED: "crashes:"}  # of processes; all else was raised
-STRICTEST = 1e-10  # relative error that a model can be asked for
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ from reference.problem import Outcome, Scene, Trajectory
 
 SHARE = 0.003  # of the swing of a component: what a thinned motion may be off by
 MIN_SWING = 0.01  # of its largest value: a component that changes less is as good as constant
+SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
 
 
 def swing(values: Array) -> Array:
@@ -66,9 +67,6 @@ def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.boo
             kept[row] = True
         else:
             start = end
-
-
-SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
 
 
 @dataclass(frozen=True)

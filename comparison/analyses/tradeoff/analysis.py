@@ -34,6 +34,9 @@ from reference.problem import Amplification, Scene
 
 SEED = 20  # of the sample of phase pairs: the same in every run
 SHORT = 0.2  # s of motion, to warm up
+CHUNK = 3.0  # s of work in one task, about
+CHEAP = 0.01  # s per point of a reference solution of its own, about
+OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
 
 Function = tuple[str, Settings]  # "package:function" and its keyword arguments
 _warm: set[str] = set()  # functions that this process has called
@@ -106,11 +109,6 @@ def joined(parts: Sequence[Measured]) -> Measured:
         float(np.mean([part.step for part in parts])),
         next((part.error_message for part in parts if part.error_message), ""),
     )
-
-
-CHUNK = 3.0  # s of work in one task, about
-CHEAP = 0.01  # s per point of a reference solution of its own, about
-OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
 
 
 @dataclass(frozen=True)

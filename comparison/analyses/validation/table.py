@@ -21,6 +21,8 @@ from comparison.result_types import Array, result
 from reference.measures.demands import ANSWERED
 from reference.problem import Scene, State, Trajectory
 
+SIDES = (EQUATIONS, SMOOTHED, ENGINE)
+COVERAGE = 2.0  # standard deviations of an expanded uncertainty
 VALID, LAW, INPUT, NONE = "within u_val", "law", "input", "no answer"
 MEANING = {
     VALID: "the comparison error is within the uncertainties together",
@@ -114,10 +116,6 @@ def recorded() -> Validation:
     """The table of the published files, as the command made it; without their motions."""
     file = resources.files("comparison.analyses.validation") / "recorded.json"
     return TypeAdapter(Validation).validate_json(file.read_bytes())
-
-
-SIDES = (EQUATIONS, SMOOTHED, ENGINE)
-COVERAGE = 2.0  # standard deviations of an expanded uncertainty
 
 
 class Answer(NamedTuple):
