@@ -27,6 +27,16 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         " Each number may run over a range.",
     ),
     (
+        "`heating` of `isolator.friction`",
+        "Heating",
+        "isolator.friction.heating",
+        "`[isolator.friction.heating]`: the coefficients are those at 20 degrees C, and the heat of sliding multiplies"
+        " them by 0.79 (0.7^(0.02 T) + 0.4). T is the temperature at the center of the track, by conduction into a half"
+        " space: T0 + sqrt(D / pi) / k times the integral of q(t - s) / sqrt(s), with q the power of friction over the"
+        " area of the contact. It is heated while the slider covers it, up to a displacement of sqrt(pi) / 2 of"
+        " `contact_radius`. This is the law of FPBearingPTV in OpenSees and of MASTODON. `slow` may then stand alone.",
+    ),
+    (
         "`[[bodies]]`",
         "Body",
         "bodies",

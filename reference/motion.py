@@ -27,7 +27,7 @@ from reference.solver.error_estimate import (
     READING_ERROR_FACTOR,
     ROUNDING_ERROR,
     TOLERANCE_RATIO,
-    peaks_from,
+    recorded,
 )
 from reference.solver.samples import Samples, sampled, step_instants
 from reference.solver.system import Array, Demand, Record, System, record_of
@@ -36,7 +36,6 @@ from reference.surface import OUTCOMES, checked_demand, loads_are_finite
 SAMPLES_PER_PERIOD = 64  # of the shorter loading period, when no times are given
 STEP_SAMPLES = 8000  # of the steps, if these are few
 MAX_SAMPLES = 200_000
-FIRST_CAPACITY, STEPS_PER_KNOT = 1024, 2  # steps, to begin with: so many, and of every knot of a record
 MIN_ERROR_FRACTION = 1.0  # of the tolerance: closer agreement of two runs is accidental (measured: errors up to 0.2)
 
 
@@ -127,15 +126,9 @@ class _Run(NamedTuple):
 
 
 def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> _Run:
-    """The run from x, v with all its steps, however many."""
-    bodies = len(x)
-    capacity = FIRST_CAPACITY + STEPS_PER_KNOT * len(system.record)
-    while True:
-        record = record_of(capacity, bodies)
-        run = peaks_from(x, v, system, phase[None], demand, record)
-        if record.made.max() <= capacity:
-            return _Run(OUTCOMES[int(run.code[0])], float(run.instant[0]), record, run.value[0], run.error[0])
-        capacity = int(record.made.max())
+    """The run from x, v with all its steps."""
+    run, record = recorded(x, v, system, phase, demand)
+    return _Run(OUTCOMES[int(run.code[0])], float(run.instant[0]), record, run.value[0], run.error[0])
 
 
 def _motion(scene: Scene, phase: Array, system: System, run: _Run, asked: Array | None) -> Trajectory:

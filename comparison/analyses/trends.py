@@ -138,7 +138,5 @@ class TrendAnalysis(Analysis[list[Trend]]):
         ]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Trend] | None:
-        """The trends, in the order of the tasks; None for a study without phases."""
-        if not study.phased:
-            return None
-        return [trend for task in self.tasks(study) for trend in results.value(task, self.without_value)]
+        """The trends, in the order of the tasks; None for a study without any."""
+        return [trend for task in self.tasks(study) for trend in results.value(task, self.without_value)] or None

@@ -30,8 +30,11 @@ WAIT = 2.0 * math.pi  # units of time from the last large value to a look ahead:
 
 
 def looks_ahead(model: EngineModel, level: Level) -> bool:
-    """Whether larger steps save work: they end at the knots of a record in any case."""
-    return float(np.diff(model.ground.knots).min(initial=math.inf)) >= 2.0 * level.step
+    """Whether larger steps save work: they end at the knots of a record in any case, and heat remembers one run."""
+    return (
+        not (model.friction is not None and model.friction.law.heat)
+        and float(np.diff(model.ground.knots).min(initial=math.inf)) >= 2.0 * level.step
+    )
 
 
 def longest_steps(model: EngineModel, level: Level, whole: bool) -> Level:

@@ -37,6 +37,8 @@ def assemble(
         regularization = checked_number("regularization", regularization, REGULARIZATION)
     elif not scene.lubricated and scene.friction_coefficient > 0.0:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
+    if loading != "inertial" and scene.dry_friction.heat is not None:
+        raise ValueError(f"loading: {loading!r}: friction that heat lowers needs the inertial loading")
     built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **options)
     if scene.isolator.travel is not None:
         built = replace(built, travel=scene.isolator.travel / built.units.length)

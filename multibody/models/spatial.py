@@ -97,7 +97,7 @@ def spatial(
     _weights(mbs, nodes, masses)
     pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
     expressions = [*plate.expressions] if plate.moves else push(mbs, ground, pushed)
-    forces = contacts if contact_force or scene.dry_friction.exponent else []
+    forces = contacts if contact_force or scene.dry_friction.by_load else []
     recorders = add_recorders(mbs, [*nodes, *supports.nodes], supports.springs, contact_nodes, forces, plate.node)
     mbs.Assemble()
 

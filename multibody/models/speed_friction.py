@@ -1,8 +1,9 @@
 """
-Friction that depends on slip speed or normal force, for contacts of the engine, whose coefficient is one number.
+Friction that depends on slip speed, normal force or heat, for contacts of the engine, whose coefficient is one number.
 
 Before every step the coefficient of each contact is set to that at the slip speed and the normal force which the
-contact will have at the end of the step: the straight lines through its last two of each. Within a step the engine
+contact will have at the end of the step: the straight lines through its last two of each, and at the temperature that
+follows (surface_heat.py). Within a step the engine
 solves for constant coefficients. So the error is of second order in the step, like that of the integrator, as long as
 a step is short beside the time in which the change of friction acts back on the speed (`feedback`).
 """
@@ -17,9 +18,10 @@ from numpy.typing import NDArray
 
 from multibody.models.engine import exudyn
 from multibody.models.loading import Ground
+from multibody.models.surface_heat import SurfaceHeat
 from multibody.models.units import Units
-from reference.problem import DryFriction, Scene
-from reference.problem.friction import LEAST_LOAD
+from reference.problem import GRAVITY, DryFriction, Scene
+from reference.problem.friction import LEAST_LOAD, Heat
 
 if TYPE_CHECKING:
     from multibody.models.system import EngineState
@@ -36,7 +38,12 @@ class SpeedFriction:
         self, mbs: Any, scene: Scene, units: Units, threshold: float, contacts: list[Any], ground: Ground
     ) -> None:
         law = scene.dry_friction
-        self.law = DryFriction(law.slow, law.fast, law.rate * units.velocity, law.exponent)
+        self.law = DryFriction(law.slow, law.fast, law.rate * units.velocity, law.exponent, law.heat)
+        self._heat: SurfaceHeat | None = None
+        if law.heat is not None:
+            self._heat = SurfaceHeat(law.heat, len(contacts), scene.duration, units.time, units.length)
+            self._factor = np.ones(len(contacts))  # that heat leaves of the coefficients
+            self._watt = scene.total_mass * GRAVITY * units.velocity / len(contacts)
         self._contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
         self._slip = self._rate = self._load_rate = [0.0] * len(contacts)  # at the start of the step
@@ -52,6 +59,8 @@ class SpeedFriction:
         self._load = [1.0] * len(nothing) if state.load is None else state.load.tolist()
         self._load_rate = nothing if state.load is None or state.load_rate is None else state.load_rate.tolist()
         self._start = self._end = time
+        if self._heat is not None and not self._heat.begin(time):
+            self._heat.step_to(time, self._power(0.0), math.hypot(*state.coordinates[:2]))
         self._set(mbs, 0.0)
 
     def feedback(self, slip: Array) -> Array:
@@ -67,11 +76,13 @@ class SpeedFriction:
         if slip != self._slip:  # the step before was made; otherwise the engine tries it again with another length
             span = self._end - self._start
             self._rate = [(new - old) / span for new, old in zip(slip, self._slip, strict=True)]
-            if self.law.exponent != 0.0:
+            if self.law.by_load:
                 load = self._loads(mbs)
                 self._load_rate = [(new - old) / span for new, old in zip(load, self._load, strict=True)]
                 self._load = load
             self._slip, self._start = slip, self._end
+            if self._heat is not None:
+                self._heat.step_to(self._end, self._power(0.0), math.hypot(*mbs.systemData.GetODE2Coordinates()[:2]))
         self._end = end
         self._set(mbs, end - self._start)
         return True
@@ -85,11 +96,28 @@ class SpeedFriction:
 
     def _set(self, mbs: Any, span: float) -> None:
         """Set the coefficients at the speeds and loads that the contacts have after `span`."""
-        law = self.law
+        if self._heat is not None:
+            end = self._start + span
+            celsius = self._heat.temperature(end, self._power(span), self._heat.distance(end))
+            self._factor = Heat.factor(celsius)
+        for contact, coefficient in zip(self._contacts, self._coefficients(span), strict=True):
+            mbs.SetObjectParameter(contact, "dynamicFriction", coefficient)
+
+    def _coefficients(self, span: float) -> list[float]:
+        law, coefficients = self.law, []
         loads = zip(self._load, self._load_rate, strict=True)
-        for contact, slip, rate, (load, load_rate) in zip(self._contacts, self._slip, self._rate, loads, strict=True):
+        for slip, rate, (load, load_rate) in zip(self._slip, self._rate, loads, strict=True):
             speed = max(slip + span * rate, 0.0)
             coefficient = law.slow - (law.fast - law.slow) * math.expm1(-law.rate * speed)
             if law.exponent != 0.0:
                 coefficient *= max(load + span * load_rate, LEAST_LOAD) ** law.exponent
-            mbs.SetObjectParameter(contact, "dynamicFriction", coefficient)
+            coefficients.append(coefficient)
+        return coefficients if self._heat is None else list(self._factor * coefficients)
+
+    def _power(self, span: float) -> Array:
+        """Power of friction of each contact after `span`, W."""
+        slip, rate, load, load_rate = map(np.array, (self._slip, self._rate, self._load, self._load_rate))
+        speed, pressed = np.maximum(slip + span * rate, 0.0), np.maximum(load + span * load_rate, 0.0)
+        held = np.minimum(speed / self._threshold, 1.0)
+        power: Array = self._watt * np.array(self._coefficients(span)) * pressed * held * speed
+        return power

@@ -73,7 +73,7 @@ def translational(
     contact, contact_node = add_contact(mbs, plate, depression, friction, threshold)
     expressions = [*plate.expressions] if plate.moves else push(mbs, ground, _pushed(masses, nodes, axes))
     recorders = add_recorders(
-        mbs, [], [chain], [contact_node], [contact] if contact_force or scene.dry_friction.exponent else [], plate.node
+        mbs, [], [chain], [contact_node], [contact] if contact_force or scene.dry_friction.by_load else [], plate.node
     )
     mbs.Assemble()
 

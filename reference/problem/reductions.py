@@ -141,7 +141,7 @@ def untilted(scene: Scene) -> Reduction:
     if scene.friction_coefficient > 0.0:
         if scene.lubricated:
             return Reduction(False, "lubricated: the friction that shifts the supports' load has no limit")
-        if scene.dry_friction.exponent != 0.0:
+        if scene.dry_friction.by_load:
             return Reduction(False, "friction that depends on the load: unequal loads twist the platform")
         shift = scene.friction_coefficient * (scene.radius + isolator.sphere_radius)
         if not LOAD_SHIFT_FACTOR * shift <= isolator.ring * math.cos(math.pi / isolator.supports):

@@ -19,7 +19,7 @@ from reference.problem.bar_links import BarLink, bar_links, stands_upright
 from reference.problem.beam_column import buckling_load
 from reference.problem.changed_values import put_value
 from reference.problem.constants import GRAVITY
-from reference.problem.friction import DryFriction
+from reference.problem.friction import DryFriction, Heat
 from reference.problem.html_table import html_table
 from reference.problem.measured import Measured
 from reference.problem.ranges import MAX_CYCLES, SCENE, as_float, takes
@@ -33,6 +33,7 @@ from reference.problem.tables import (
     Bars,
     Body,
     Excitation,
+    Heating,
     Isolator,
     Positive,
     Record,
@@ -398,7 +399,13 @@ class Scene(Table):
             return DryFriction(friction or 0.0, friction or 0.0, 0.0)
         fast, rate, exponent = friction.fast, friction.rate or 0.0, friction.load_exponent or 0.0
         share = (self.total_mass * GRAVITY / friction.reference_load) ** exponent if friction.reference_load else 1.0
-        return DryFriction(share * friction.slow, share * (friction.slow if fast is None else fast), rate, exponent)
+        heat, sliders = None, 1 if self.support_places is None else len(self.support_places)
+        if friction.heating is not None:
+            stated = friction.heating
+            track = stated.contact_radius, stated.conductivity, stated.diffusivity, stated.initial_temperature
+            heat = Heat.of(*track, sliders)
+        fast = friction.slow if fast is None else fast
+        return DryFriction(share * friction.slow, share * fast, rate, exponent, heat)
 
     @property
     def recorded(self) -> bool:
@@ -531,6 +538,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "isolator": tuple(Isolator.model_fields),
     "isolator.friction": tuple(VelocityFriction.model_fields),
     f"isolator.friction.{FRICTIONS[1]}": tuple(VelocityFriction.model_fields),
+    "isolator.friction.heating": tuple(Heating.model_fields),
     "bodies": tuple(Body.model_fields),
     "bodies.bars": tuple(Bars.model_fields),
     "acceptance": tuple(Acceptance.model_fields),

@@ -141,11 +141,36 @@ def exactly_one(table: BaseModel, *keys: str) -> None:
         raise ValueError(f"give exactly one of {listed}, not {len(present)} of them")
 
 
+class Heating(Table):
+    """
+    Heating of the sliding surface, which lowers dry friction.
+
+    The coefficient is that at 20 degrees C times 0.79 (0.7^(0.02 T) + 0.40), T in degrees C.
+    """
+
+    contact_radius: Annotated[
+        Annotated[Positive, within("isolator.friction.heating.contact_radius")],
+        about("radius of the slider's round contact, of each of the supports where these are given", "m", ALL),
+    ]
+    conductivity: Annotated[
+        Annotated[Positive, within("isolator.friction.heating.conductivity")],
+        about("thermal conductivity of the plate that the slider runs on", "W/(m K)", ALL),
+    ]
+    diffusivity: Annotated[
+        Annotated[Positive, within("isolator.friction.heating.diffusivity")],
+        about("thermal diffusivity of that plate", "m^2/s", ALL),
+    ]
+    initial_temperature: Annotated[
+        Annotated[float, within("isolator.friction.heating.initial_temperature")],
+        about("temperature before the motion, degrees C", "", ALL),
+    ] = 20.0
+
+
 class VelocityFriction(Table):
     """
-    Dry friction that depends on the slip speed, the normal force, or both.
+    Dry friction that depends on the slip speed, the normal force, its own heat, or several of them.
 
-    The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n.
+    The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n times what heating leaves.
     """
 
     slow: Annotated[Positive, within("isolator.friction.slow"), about("coefficient at rest", "", ALL)]
@@ -170,12 +195,14 @@ class VelocityFriction(Table):
         ),
     ] = None
 
+    heating: Annotated[Heating | None, about("the table below; without it the surface stays cold", "", ALL)] = None
+
     @model_validator(mode="after")
     def _pairs(self) -> VelocityFriction:
         if (self.fast is None) != (self.rate is None):
             raise ValueError("give fast and rate together, or neither")
-        if self.fast is None and self.load_exponent is None:
-            raise ValueError("give fast and rate, or load_exponent, or one number in place of the table")
+        if self.fast is None and self.load_exponent is None and self.heating is None:
+            raise ValueError("give fast and rate, load_exponent or heating, or one number in place of the table")
         if self.reference_load is not None and self.load_exponent is None:
             raise ValueError("reference_load belongs to a load_exponent: state that, too, or remove this key")
         return self

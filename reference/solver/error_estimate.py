@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from reference.solver.heating import heated, mean, uniform
 from reference.solver.run import runs
 from reference.solver.step_control import MIN_SCALE_FRACTION
 from reference.solver.system import (
@@ -41,6 +42,11 @@ STEP_TOLERANCE_FACTOR = 10.0
 # Of the period (Demand.period): by which the coarser run goes beyond the peaks, since its events come earlier or later.
 EVENT_MARGIN = 0.01
 
+FIRST_CAPACITY, STEPS_PER_KNOT = 1024, 2  # steps, to begin with: so many, and of every knot of a record
+# With heating the last run changes peaks, displacement and mean k_T by less than this share of the tolerance,
+SETTLED = 0.02
+CONTRACTION, SMALLEST = 0.5, 1e-300  # or above this share of the change before: what is left is the steps' own error
+
 NOT_MET = 100  # code of a run whose error stays above the tolerance; system.py has the other codes
 
 
@@ -66,6 +72,9 @@ def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, un
     """
     rest = np.zeros((len(system.below), 2))
     demand = demand._replace(tolerance=tolerance)
+    if len(system.heat) and len(phases):
+        each = [recorded(rest, rest, system, pair, demand)[0] for pair in phases]
+        return Peaks(*map(np.concatenate, zip(*each)))
     return peaks_from(rest, rest, system, phases, demand, record_of(0, len(rest)), until)
 
 
@@ -80,6 +89,31 @@ def peaks_from(
     return Peaks(value, error, *ends)
 
 
+def recorded(x: Array, v: Array, system: System, phase: Array, demand: Demand) -> tuple[Peaks, Record]:
+    """
+    One run with all its steps, however many.
+
+    With heating, k_T in a run follows from the run before, until the two agree; the last change counts as error.
+    """
+    capacity = FIRST_CAPACITY + STEPS_PER_KNOT * len(system.record)
+    system, known, before = uniform(system) if len(system.heat) else system, np.array(np.inf), np.inf
+    while True:
+        record = record_of(capacity, len(x))
+        peaks = peaks_from(x, v, system, phase[None], demand, record)
+        if record.made.max() > capacity:
+            capacity = int(record.made.max())
+            continue
+        if not len(system.heat) or peaks.code[0] in (UNSOLVED, STEP_LIMIT) or record.made[0] == 0:
+            return peaks, record
+        following = heated(system, record, peaks.instant[0])
+        now = np.array([*peaks.value[0], peaks.reach[0], mean(following)])
+        change = np.abs(now - known)
+        known, system, worst = now, following, (change / np.maximum(now, SMALLEST)).max()
+        if not SETTLED * demand.tolerance < worst <= CONTRACTION * before:
+            return peaks._replace(error=peaks.error + change[:-2]), record
+        before = worst
+
+
 def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool = False) -> Peaks:
     """
     Peaks to the relative tolerance of `demand`, with errors.
@@ -90,8 +124,9 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
     coarser one serves the error of the peaks alone and ends behind the last of them. `whole`: all go to the end of the
     motion.
     """
-    # the rough run knows the consistent condition for rest alone
-    demand = demand._replace(early=not whole and system.rest_condition == CONSISTENT)
+    # the rough run knows the consistent condition for rest alone, and no heat
+    early = not whole and system.rest_condition == CONSISTENT and not len(system.heat)
+    demand = demand._replace(early=early)
     tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * demand.tolerance, MIN_STEP_TOLERANCE))
     after = peaks_at(system, phases, demand, tolerance)
     known = demand.early & (after.code == SOLVED)

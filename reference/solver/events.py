@@ -8,6 +8,7 @@ from reference.solver.collocation import DENSE, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.load import loaded
 from reference.solver.contact.platform import load_at_stages, rest_excess
+from reference.solver.ground import k_t_at
 from reference.solver.polynomial import expand, value_at
 from reference.solver.rows import Row, as_many, highest, put, row, where_positive
 from reference.solver.system import Load, System
@@ -42,9 +43,10 @@ def expand_level(work: Work, values: Row, target: float) -> None:
 @compiled
 def first_onset(system: System, work: Work) -> float:
     """First theta of a step at rest at which friction can no longer hold the platform; fills the reaction."""
-    excess, reaction = rest_excess(system, load_at_stages(work))
+    load = load_at_stages(work)
+    excess, reaction = rest_excess(system, load)
     put(work.stage, REACTION, reaction)
-    limit = loaded(system, reaction, system.friction * reaction)
+    limit = loaded(system, load.k_t, reaction, system.friction * reaction)
     most = highest(excess + NEAR_LIMIT * (limit * limit))
     if most < 0.0:  # only a step that comes near the limit is looked at closely
         return NEVER
@@ -72,7 +74,8 @@ def excess_at(system: System, work: Work, theta: float) -> float:
         ux = ux * theta + powers[2, k]
         uy = uy * theta + powers[3, k]
         uz = uz * theta + powers[4, k]
-    excess, _ = rest_excess(system, Load(work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, uz))
+    k_t = k_t_at(system, work.time + theta * work.elapsed[STAGES - 1])
+    excess, _ = rest_excess(system, Load(work.x[0, 0], work.x[0, 1], fx, fy, ux, uy, uz, k_t))
     return excess
 
 

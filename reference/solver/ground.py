@@ -28,28 +28,44 @@ def knot_after(record: Array, t: float) -> int:
 
 
 @compiled
-def recorded_at(record: Array, t: float) -> Ground:
+def k_t_at(system: System, t: float) -> float:
+    """k_T (load.py) at time t: the polynomial of its piece; after the last piece, its end value."""
+    table = system.k_t
+    if table.shape[0] == 0:
+        return 1.0
+    piece = max(knot_after(table, t) - 1, 0)
+    theta, value = min((t - table[piece, 0]) / table[piece, 1], 1.0), 0.0
+    for power in range(STAGES, -1, -1):
+        value = value * theta + table[piece, 2 + power]
+    return value
+
+
+@compiled
+def recorded_at(system: System, t: float) -> Ground:
     """The acceleration of a record, linear between its knots and zero behind them."""
+    record, k_t = system.record, k_t_at(system, t)
     k = knot_after(record, t)
     if k == 0:
-        return Ground(record[0, 1], record[0, 2], record[0, 3])
+        return Ground(record[0, 1], record[0, 2], record[0, 3], k_t)
     if k == record.shape[0]:
-        return Ground(0.0, 0.0, 0.0)
+        return Ground(0.0, 0.0, 0.0, k_t)
     a, b = record[k - 1], record[k]
     s = (t - a[0]) / (b[0] - a[0])
-    return Ground(a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2]), a[3] + s * (b[3] - a[3]))
+    return Ground(a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2]), a[3] + s * (b[3] - a[3]), k_t)
 
 
 @compiled
 def ground_at(system: System, work: Work, t: float) -> Ground:
-    """(xi'', eta'', zeta'') at time t, m/s^2."""
+    """(xi'', eta'', zeta''), m/s^2, and k_T at time t."""
     if system.record.shape[0] > 0:
-        return recorded_at(system.record, t)
+        return recorded_at(system, t)
     e0, e1 = system.exponents[0], system.exponents[1]
     z0 = exp(e0.real * t) * cos(e0.imag * t + work.phase[0])
     z1 = exp(e1.real * t) * cos(e1.imag * t + work.phase[1])
     a = system.amplitudes
-    return Ground(a[0, 0] * z0 + a[0, 1] * z1, a[1, 0] * z0 + a[1, 1] * z1, a[2, 0] * z0 + a[2, 1] * z1)
+    return Ground(
+        a[0, 0] * z0 + a[0, 1] * z1, a[1, 0] * z0 + a[1, 1] * z1, a[2, 0] * z0 + a[2, 1] * z1, k_t_at(system, t)
+    )  # fmt: skip
 
 
 @compiled
@@ -74,13 +90,14 @@ def start_turns(system: System, work: Work, h: float) -> None:
 def next_ground(system: System, work: Work, t: float) -> Ground:
     """The ground at t, that of `start_waves` or a step of `start_turns` after the last call."""
     if system.record.shape[0] > 0:
-        return recorded_at(system.record, t)
+        return recorded_at(system, t)
     z0, z1, a = work.waves[0], work.waves[1], system.amplitudes
     work.waves[0], work.waves[1] = z0 * work.turns[0], z1 * work.turns[1]
     return Ground(
         a[0, 0] * z0.real + a[0, 1] * z1.real,
         a[1, 0] * z0.real + a[1, 1] * z1.real,
         a[2, 0] * z0.real + a[2, 1] * z1.real,
+        k_t_at(system, t),
     )
 
 
@@ -94,6 +111,7 @@ def ground_at_stages(system: System, work: Work) -> None:
         for k in range(STAGES):
             here = ground_at(system, work, work.time + elapsed[k])
             work.ground[0, k], work.ground[1, k], work.ground[2, k] = here.x, here.y, here.z
+            work.ground[3, k] = here.k_t
         return
     terms = expand_waves(work, e0, e1)
     series, a, ground = work.series, system.amplitudes, work.ground
@@ -104,6 +122,9 @@ def ground_at_stages(system: System, work: Work) -> None:
         z1 = z1 * share + series[n, 1]
     for axis in range(3):
         put(ground, axis, a[axis, 0] * z0 + a[axis, 1] * z1)
+    if system.k_t.shape[0] > 0:
+        for k in range(STAGES):
+            ground[3, k] = k_t_at(system, work.time + elapsed[k])
 
 
 @compiled

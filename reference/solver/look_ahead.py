@@ -135,7 +135,7 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
     speed2 = sliding_speed2(system, load.px, load.py, vx, vy)
     if system.law == SET_VALUED and speed2 == 0.0:
         excess, reaction = rest_excess(system, load)
-        limit = loaded(system, reaction, system.friction * reaction)
+        limit = loaded(system, load.k_t, reaction, system.friction * reaction)
         if excess <= 0.0:
             largest = sqrt(ground.x * ground.x + ground.y * ground.y)
             nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
@@ -147,7 +147,7 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
     ax, ay, reaction, determinant = acceleration(system, load, speed2, sx, sy)
     if not (reaction >= least and determinant >= MIN_MARGIN):
         return inf, True
-    held = loaded(system, reaction, reaction)
+    held = loaded(system, load.k_t, reaction, reaction)
     gx, gy = ax + held * sx, ay + held * sy  # without friction
     free_x, free_y = vx + h * gx, vy + h * gy
     free = sqrt(free_x * free_x + free_y * free_y)

@@ -80,12 +80,13 @@ def remaining(system: System, work: Work, demand: Demand) -> float:
 
 @compiled
 def next_break(system: System, work: Work, demand: Demand) -> float:
-    """Where the loading has its next kink, s, or the run ends: a step beyond it would lose its order."""
-    if system.record.shape[0] > 0:
-        k = knot_after(system.record, work.time + negligible_time(system, demand))
-        if k < system.record.shape[0]:
-            return min(system.record[k, 0], work.end)
-    return work.end
+    """Where loading or k_T has its next kink, s, or the run ends: a step beyond it would lose its order."""
+    after, end = work.time + negligible_time(system, demand), work.end
+    for kinks in (system.record, system.kinks):
+        k = knot_after(kinks, after)
+        if k < kinks.shape[0]:
+            end = min(end, kinks[k, 0])
+    return end
 
 
 @compiled

@@ -35,7 +35,7 @@ class System(NamedTuple):
     friction: float  # mu, at rest where it depends on the velocity, or f_c in s/m
     rise: float  # of mu from rest to high speed
     rate: float  # s/m, of that rise; 0 where mu is constant
-    exponent: Any  # float, of the normal force over the weight, in mu; None where mu does not depend on it
+    exponent: Any  # float, of the normal force over the weight, in mu; None where mu has neither that nor heating
     v_reg: float  # m/s, of the regularized law
     mass_ratio: float  # m_sum / m1
     radius: float  # m
@@ -48,6 +48,9 @@ class System(NamedTuple):
     amplitudes: Array  # (3, 2), m/s^2
     exponents: Complex  # (2,), 1/s
     record: Array  # (K, 4), s and m/s^2, knots of a recorded motion, between which it is linear; (0, 4) without one
+    heat: Array  # (3,) initial temperature, degrees C, rise times m1, K s^2.5/m^2, and cover, m (Heat); (0,) without
+    k_t: Array  # (K, 3 + S): s, start and length of pieces, and coefficients of k_T; (0, 3 + S) without
+    kinks: Array  # (J, 1) s, instants from which k_T changes like a root of time
     duration: float  # s
     axes: int  # 1 for a motion in the plane of x and z: y stays exactly zero
     fastest: float  # rad/s, bound of the chain's natural frequencies and rates of decay
@@ -55,11 +58,12 @@ class System(NamedTuple):
 
 
 class Ground(NamedTuple):
-    """Acceleration of the ground at one instant, m/s^2."""
+    """What time alone decides at one instant: acceleration of the ground, m/s^2, and k_T."""
 
     x: float  # xi''
     y: float  # eta''
     z: float  # zeta''
+    k_t: float  # temperature factor of friction
 
 
 class Load(NamedTuple):
@@ -72,6 +76,7 @@ class Load(NamedTuple):
     ux: Number  # acceleration of the ground, m/s^2
     uy: Number
     uz: Number
+    k_t: Number  # temperature factor of friction (contact/load.py)
 
 
 class Record(NamedTuple):
@@ -114,6 +119,7 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
     # without friction the lubricated law with f_c = 0 says the same and has no corner
     dry = scene.dry_friction
     smooth = scene.lubricated or scene.friction_coefficient == 0.0
+    heat = None if smooth else dry.heat
     return System(
         small=small,
         law=LUBRICATED if smooth else (SET_VALUED if v_reg is None else REGULARIZED),
@@ -121,7 +127,7 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         friction=dry.slow if dry.varies else scene.friction_coefficient,
         rise=dry.fast - dry.slow if dry.varies else 0.0,
         rate=dry.rate if dry.varies else 0.0,
-        exponent=None if smooth or dry.exponent == 0.0 else dry.exponent,
+        exponent=None if smooth or (dry.exponent == 0.0 and dry.heat is None) else dry.exponent,
         v_reg=0.0 if v_reg is None else float(v_reg),
         mass_ratio=float(scene.total_mass / masses[0]),
         radius=float(scene.radius),
@@ -134,6 +140,9 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         amplitudes=np.zeros((3, 2)) if scene.recorded else scene.amplitudes,
         exponents=np.zeros(2, np.complex128) if scene.recorded else exponents(scene),
         record=scene.record,
+        heat=np.array([] if heat is None else [heat.initial, heat.rise * masses[0], heat.cover]),
+        k_t=np.zeros((0, 3 + STAGES)),
+        kinks=np.zeros((0, 1)),
         duration=float(scene.duration),
         axes=axes,
         fastest=float(np.sqrt(2.0 * (below + above).max())) + damping_rate,  # Gershgorin's bounds

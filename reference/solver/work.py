@@ -68,7 +68,7 @@ class Work:
     x1: Array  # (N, 2) at its end
     v1: Array
     a: Array  # (N, 2, L) acceleration at the stages
-    ground: Array  # (3, L) ground acceleration at the stages
+    ground: Array  # (4, L) ground acceleration and k_T at the stages
     total: Array  # (N, 3, L) absolute acceleration at the stages
     free: Array  # (2, L) driving acceleration of the platform if it kept its velocity
     feedback: Array  # (2, S, L) what its own stage accelerations add to that
@@ -121,7 +121,8 @@ def _fill(work: Work, bodies: int) -> None:
     work.x1 = np.zeros((n, 2))
     work.v1 = np.zeros((n, 2))
     work.a = np.zeros((n, 2, lanes))
-    work.ground = np.zeros((3, lanes))
+    work.ground = np.zeros((4, lanes))
+    work.ground[3] = 1.0
     work.total = np.zeros((n, 3, lanes))
     work.free = np.zeros((2, lanes))
     work.feedback = np.zeros((2, s, lanes))

@@ -172,7 +172,7 @@ MISTAKES = (
             "coefficient = law.slow - (law.fast - law.slow) * math.expm1(-law.rate * speed)",
             "coefficient = law.fast + (law.fast - law.slow) * math.expm1(-law.rate * speed)",
             "Friction falls with the speed where it should rise.", (TESTS + "test_speed_friction.py",)),
-    Mistake(MODELS + "speed_friction.py", "law.rate * units.velocity, law.exponent)", "law.rate, law.exponent)",
+    Mistake(MODELS + "speed_friction.py", "law.rate * units.velocity, law.exponent, law.heat)", "law.rate, law.exponent, law.heat)",
             "The rate of friction is not in units of the model.", (TESTS + "test_speed_friction.py",)),
     Mistake(MODELS + "recorded.py", "return self._value[axis] + self._rate[axis] * (time - self._origin)",
             "return self._value[axis] + self._rate[axis] * time", "A record is not linear between its samples.",

@@ -13,6 +13,7 @@ SPECTRA = TESTS + "test_floor_spectra.py::"
 TRAVEL = TESTS + "test_travel.py::"
 
 # fmt: off
+HEATED = TESTS + "test_heated_friction.py::test_the_friction_of_a_motion_is_what_its_heat_leaves"
 MISTAKES = (
     Mistake(SOLVER + "error_estimate.py", "peaks.code[unfinished[peaks.code[unfinished] == SOLVED]] = NOT_MET", "pass",
             "A run whose error misses the tolerance is called ok.",
@@ -214,6 +215,23 @@ MISTAKES = (
             "(1.0 - elasticity(system, reaction)) * factor * taken\n    determinant = where",
             "The inertia takes friction that eases with the load for one that grows.",
             (TESTS + "test_light_platform.py::test_friction_that_a_load_eases_takes_less_of_the_inertia",)),
+    Mistake(SOLVER + "heating.py", "powers = k_t @ MONOMIALS.T\n",
+            "powers = (2.0 * factor(system.heat[0]) - k_t) @ MONOMIALS.T\n",
+            "The heat of sliding raises friction.", (HEATED,)),
+    Mistake(SOLVER + "heating.py", "return 0.79 * (0.7 ** (0.02 * temperature) + 0.4)",
+            "return 0.7 ** (0.02 * temperature) + 0.4",
+            "Heating lacks the factor that makes it one at 20 degrees C.", (HEATED,)),
+    Mistake(SOLVER + "heating.py", "* motion.reaction * speed\n", "* motion.reaction\n",
+            "The power of friction does not depend on the speed.", (HEATED,)),
+    Mistake("reference/problem/friction.py", "area = supports * math.pi * radius**2",
+            "area = (supports * math.pi * radius**2) ** 2",
+            "The heat of friction is spread over the square of the contact's area.", (HEATED,)),
+    Mistake("reference/problem/friction.py", "math.sqrt(diffusivity / math.pi) / (conductivity",
+            "math.sqrt(diffusivity) / (conductivity",
+            "The kernel of conduction lacks the root of pi.", (HEATED,)),
+    Mistake(SOLVER + "heating.py", "past[m] = start[i] + NODES[m] * length[i], initial\n",
+            "past[m] = start[i] + NODES[m] * length[i], 0.0\n",
+            "The surface is at 0 degrees C before the motion.", (HEATED,)),
     Mistake(SOLVER + "contact/friction.py", "tz = rz - normal * nz", "tz = 0.0 * rz",
             "The force that holds the platform at rest has no vertical part.", (TESTS + "test_contact_law.py",)),
 )

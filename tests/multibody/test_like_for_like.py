@@ -24,9 +24,11 @@ FLOORS = [{"mass": 2.0}, {"mass": 1.0, "period": [0.5, 0.4]}, {"mass": 0.5, "sti
 RISING, FALLING = {"slow": 0.05, "fast": 0.1, "rate": 100.0}, {"slow": 0.1, "fast": 0.05, "rate": 100.0}
 PRESSED = {"slow": 0.08, "load_exponent": 0.4}
 EASED = {"slow": 0.05, "fast": 0.1, "rate": 100.0, "load_exponent": -0.3, "reference_load": 25.0}
+HEATING = {"contact_radius": 0.02, "conductivity": 0.02, "diffusivity": 1e-3}  # which so small a weight heats
+HEATED = {"slow": 0.1, "heating": HEATING}
 
 
-def law(friction: dict[str, float], **values: Any) -> dict[str, Any]:
+def law(friction: dict[str, Any], **values: Any) -> dict[str, Any]:
     return {"isolator.friction": friction, **values}
 
 
@@ -37,6 +39,10 @@ SCENES: dict[str, Scene] = {
         ("pressed, plane, vertical", "fig3-I", law(PRESSED, **PLANE, **VERTICAL)),
         ("eased", "fig3-I", law(EASED)),
         ("eased, vertical", "fig3-I", law(EASED, **VERTICAL)),
+        ("heated", "fig3-I", law(HEATED)),
+        ("heated, eased, vertical", "fig3-II", law({**EASED, "heating": HEATING}, **VERTICAL)),
+        ("heated, one axis", "fig3-I", law(HEATED) | {"excitation.amplitudes": [[1.0, 0.6], [0.0, 0.0]]}),
+        ("heated, plane", "fig3-I", law(HEATED, **PLANE)),
         ("fig3-I", "fig3-I", {}),
         ("fig3-II", "fig3-II", {}),
         ("fig4-dry", "fig4-dry", {}),
@@ -71,6 +77,7 @@ RECORDED: dict[str, Scene] = {
         ("triple", "synthetic-triple", {}),
         ("pair on a plane", "synthetic-pair", {**PLANE, "duration": 4.0}),
         ("pair, falling", "synthetic-pair", law(FALLING, duration=3.0)),
+        ("pair, heated", "synthetic-pair", law(HEATED, duration=3.0)),
         ("pair, locked", "synthetic-pair", {"duration": 2.0, "isolator": {"period": 2.0, "lubrication": 1e5}}),
     )
 }
@@ -123,8 +130,14 @@ LEVEL = {"bodies": [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}], "dur
 
 @pytest.mark.parametrize(
     "values",
-    [law(RISING), law(FALLING), law({"slow": 0.1, "load_exponent": 0.2}, **VERTICAL), {**PLANE, "excitation.scale": 2}],
-    ids=["rising", "falling", "pressed", "plane"],
+    [
+        law(RISING),
+        law(FALLING),
+        law({"slow": 0.1, "load_exponent": 0.2}, **VERTICAL),
+        law(HEATED),
+        {**PLANE, "excitation.scale": 2},
+    ],
+    ids=["rising", "falling", "pressed", "heated", "plane"],
 )
 def test_supports_have_the_friction_of_their_own_speed_and_load(values: dict[str, Any]) -> None:
     """A body level with its contacts does not turn: the spatial model has the motion of the translational one."""

@@ -50,7 +50,7 @@ def test_builds_of_both_variants_have_functions_of_other_names():
 @pytest.mark.parametrize(
     ("friction", "said"),
     [
-        ({"slow": 0.1}, "give fast and rate, or load_exponent"),
+        ({"slow": 0.1}, "give fast and rate, load_exponent or heating"),
         ({"slow": 0.1, "fast": 0.2}, "give fast and rate together"),
         ({"slow": 0.1, "fast": 0.2, "rate": 1.0, "reference_load": 9.0}, "belongs to a load_exponent"),
         ({"slow": 0.1, "load_exponent": 2.0}, "from -0.5 to 1"),

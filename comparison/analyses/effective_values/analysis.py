@@ -155,8 +155,8 @@ def _top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
 
 
 def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
-    """Ratio of the contact force across and along the sphere's normal: median over the instants of fast sliding."""
-    if np.isnan(radius):
+    """Median ratio of contact forces across and along the normal in fast slides; NaN where heat changes it."""
+    if np.isnan(radius) or scene.dry_friction.heat is not None:
         return float("nan")
     force = np.einsum("i,tik->tk", scene.masses, motion.absolute_acceleration)
     force[:, 2] += scene.total_mass * GRAVITY

@@ -49,7 +49,7 @@ def _softened(scene: Scene) -> Array:
 def _two_springs(scene: Scene) -> bool:
     """Whether the lowest link differs along x and y; the printed matrices have no plane and no normal force."""
     differ = len(scene.bodies) > 1 and scene.stiffness[0, 0] != scene.stiffness[0, 1]
-    return differ and not scene.flat and not scene.dry_friction.exponent
+    return differ and not scene.flat and not scene.dry_friction.by_load
 
 
 def _moving(scene: Scene) -> bool:

@@ -90,5 +90,7 @@ class Scaling(TrendAnalysis):
     measure, without_value = staticmethod(scene_trends), staticmethod(_without_value)
 
     def arguments(self, scene: Scene) -> list[bool]:
-        """Readings of the peak: whether the supremum is taken."""
+        """Readings of the peak: whether the supremum is taken; none with heat, which does not scale."""
+        if scene.dry_friction.heat is not None:
+            return []
         return [True, False] if dry(scene) else [True]

@@ -107,9 +107,11 @@ def _phased(name: str) -> Scene:
     if scene.recorded:
         rule = "reference solutions need phases, which a recorded motion has not: give a scene of two frequencies"
         raise SceneError(name, "excitation.record", scene.name, rule)
-    if scene.dry_friction.exponent:
-        rule = "the solvers outside the package know no friction that depends on the load: remove this key"
-        raise SceneError(name, "isolator.friction.load_exponent", scene.dry_friction.exponent, rule)
+    law = scene.dry_friction
+    for key, value in (("load_exponent", law.exponent), ("heating", law.heat)):
+        if value:
+            rule = "the solvers outside the package know no friction that depends on load or heat: remove this key"
+            raise SceneError(name, f"isolator.friction.{key}", value, rule)
     return scene
 
 

@@ -7,8 +7,8 @@ a slip vector s = factor * v_h with v_h the horizontal velocity:
   creeping    factor = mu / v_reg   (v < v_reg)
   lubricated  factor = f_c
 The dry coefficient may depend on the sliding speed, mu(v) = mu(0) + rise (1 - exp(-rate v)). The condition for rest and
-the directions at a stop take mu(0). Where it depends on the normal force as well, this is its value under the weight,
-and `acceleration` (platform.py) multiplies the slip vector (load.py).
+the directions at a stop take mu(0). Where it depends on the normal force or on heating as well, this is its value
+under the weight, and `acceleration` (platform.py) multiplies the slip vector (load.py).
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     tx = -load.fx - normal * nx
     ty = -load.fy - normal * ny
     tz = rz - normal * nz
-    limit = loaded(system, normal, system.friction * normal)
+    limit = loaded(system, load.k_t, normal, system.friction * normal)
     return tx * tx + ty * ty + tz * tz - limit * limit, normal
 
 
@@ -83,7 +83,7 @@ def rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     """
     px, py, radius = load.px, load.py, system.radius
     reaction = system.mass_ratio * (system.gravity + load.uz)
-    friction = loaded(system, reaction, system.friction)
+    friction = loaded(system, load.k_t, reaction, system.friction)
     gx = load.fx - reaction * px / radius
     gy = load.fy - reaction * py / radius
     a = friction * (reaction - load.ux * px / radius)
@@ -104,7 +104,7 @@ def rest_excess_printed(system: System, load: Load) -> Number:
     origin, and F_3 carries gravity and spring with the printed signs. Kept to measure what the slip costs.
     """
     reaction = system.mass_ratio * (system.gravity + load.uz)
-    friction = loaded(system, reaction, system.friction)
+    friction = loaded(system, load.k_t, reaction, system.friction)
     lx = friction * (reaction - load.ux * (load.px + load.py) / system.radius)
     ly = friction * (reaction - load.uy * (load.px + load.py) / system.radius)
     gx = -(2.0 * load.ux + load.fx) + reaction * load.px / system.radius  # spring force f + u with its sign turned

@@ -1,7 +1,8 @@
 """
-Friction whose coefficient depends on the normal force: mu (N / W)^n, with W the weight and mu the coefficient under it.
+Friction mu k_T (N / W)^n under a normal force N, with W the weight and mu the cold coefficient under it.
 
-The slip vector s of equations.py is that under the weight; its share here is phi(R) = (R / (M g))^n, R = N / m1. In the
+The temperature factor k_T is a function of time (heating.py), 1 without heating. The slip vector s of equations.py is
+that under the weight; its share here is phi(R) = k_T (R / (M g))^n, R = N / m1. In the
 exact equations R depends on friction in turn: R (1 + (M - 1) (n_h^2 - phi(R) n_h . s)) = M q, q the drive along the
 normal. Without such friction nothing of this is compiled (variants.py).
 """
@@ -23,14 +24,19 @@ MAX_MISFIT = 1e-7  # of the drive along the normal, before the last change: a la
 
 
 @compiled
-def _same(system: System, reaction: Number, number: Number) -> Number:
-    """Without dependence on the load."""
+def _same(system: System, k_t: Number, reaction: Number, number: Number) -> Number:
+    """Without dependence on load or heating."""
     return number
 
 
 @compiled
-def _with_share(system: System, reaction: Number, number: Number) -> Number:
-    return number * share(system, reaction)
+def _with_share(system: System, k_t: Number, reaction: Number, number: Number) -> Number:
+    return number * share(system, k_t, reaction)
+
+
+@compiled
+def _unchanged(system: System, reaction: Number, number: Number) -> Number:
+    return number
 
 
 @compiled
@@ -39,16 +45,16 @@ def _with_response(system: System, reaction: Number, number: Number) -> Number:
 
 
 loaded = variants("exponent", _same, _with_share)
-"""A number times the coefficient under a reaction over that under the weight."""
+"""A number times the coefficient at k_T and under a reaction, over that under the weight."""
 
-responding = variants("exponent", _same, _with_response)
+responding = variants("exponent", _unchanged, _with_response)
 """A slip vector times the relative change of the friction force over that of the reaction."""
 
 
 @compiled
-def share(system: System, reaction: Number) -> Number:
-    """Coefficient under a reaction over that under the weight."""
-    return exp(system.exponent * log(max(reaction / (system.mass_ratio * system.gravity), LEAST_LOAD)))
+def share(system: System, k_t: Number, reaction: Number) -> Number:
+    """Coefficient at k_T and under a reaction, over that under the weight."""
+    return k_t * exp(system.exponent * log(max(reaction / (system.mass_ratio * system.gravity), LEAST_LOAD)))
 
 
 @compiled
@@ -82,14 +88,14 @@ def _of_load(
     drive = system.mass_ratio * drive
     reaction, misfit = drive / plain, drive
     for _ in range(MAX_ITERATIONS):
-        factor = share(system, reaction)
+        factor = share(system, load.k_t, reaction)
         slope = plain - (1.0 + elasticity(system, reaction)) * factor * taken
         misfit = drive - reaction * (plain - factor * taken)
         change = misfit / slope
         reaction += change
         if not highest(abs(change) - LAST_CHANGE * abs(reaction)) > 0.0:
             break
-    factor = share(system, reaction)
+    factor = share(system, load.k_t, reaction)
     determinant = plain - (1.0 + elasticity(system, reaction)) * factor * taken
     determinant = where_positive(abs(misfit) - MAX_MISFIT * abs(drive), as_many(-1.0, determinant), determinant)
     sx, sy = factor * sx, factor * sy

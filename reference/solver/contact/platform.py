@@ -31,7 +31,7 @@ def load_in_state(system: System, work: Work, ground: Ground) -> Load:
         fy += system.above[0, 1] * (work.x[1, 1] - work.x[0, 1])
         fx += system.damping_above[0, 0] * (work.v[1, 0] - work.v[0, 0])
         fy += system.damping_above[0, 1] * (work.v[1, 1] - work.v[0, 1])
-    return Load(work.x[0, 0], work.x[0, 1], fx, fy, ground.x, ground.y, ground.z)
+    return Load(work.x[0, 0], work.x[0, 1], fx, fy, ground.x, ground.y, ground.z, ground.k_t)
 
 
 @compiled
@@ -40,7 +40,7 @@ def load_at_stages(work: Work) -> Load:
     stage, ground = work.stage, work.ground
     return Load(
         row(stage, POSITION), row(stage, POSITION + 1), row(stage, DRIVE), row(stage, DRIVE + 1),
-        row(ground, 0), row(ground, 1), row(ground, 2),
+        row(ground, 0), row(ground, 1), row(ground, 2), row(ground, 3),
     )  # fmt: skip
 
 
@@ -65,7 +65,8 @@ def acceleration(
         reaction = system.mass_ratio * pressure
         return small_acceleration(
             load.px, load.py, load.fx, load.fy, load.ux, load.uy, pressure,
-            loaded(system, reaction, sx), loaded(system, reaction, sy), system.mass_ratio, system.radius,
+            loaded(system, load.k_t, reaction, sx), loaded(system, load.k_t, reaction, sy),
+            system.mass_ratio, system.radius,
         )  # fmt: skip
     return exact(system, load, speed2, sx, sy)
 
@@ -101,5 +102,5 @@ def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
     if system.rest_condition == PRINTED:
         # where (4.6) lets go of a platform that friction can hold, no motion begins all the same
         excess = min(excess, rest_excess_printed(system, load))
-    limit = loaded(system, reaction, system.friction * reaction)
+    limit = loaded(system, load.k_t, reaction, system.friction * reaction)
     return excess - ROUNDING_EXCESS * (limit * limit), reaction

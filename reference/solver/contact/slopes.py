@@ -34,8 +34,8 @@ def slopes(system: System, contact: int, work: Work) -> None:
     speed2 = row(work.stage, SPEED2)
     factor = slip_factor(system, contact, speed2)
     bend = factor_slope(system, contact, factor, speed2)
-    reaction = row(work.stage, REACTION)
-    factor, bend = loaded(system, reaction, factor), loaded(system, reaction, bend)
+    reaction, k_t = row(work.stage, REACTION), row(work.ground, 3)
+    factor, bend = loaded(system, k_t, reaction, factor), loaded(system, k_t, reaction, bend)
     if system.small:
         small_slopes(system, work, factor, bend)
     else:

@@ -41,7 +41,7 @@ def onset_within(system: System, work: Work, h: float) -> tuple[float, int]:
     slope = (excess_at(system, work, onset) - excess_at(system, work, onset - width)) / (width * h)
     end = h * onset
     reaction: float = work.stage[REACTION, STAGES - 1]
-    limit = loaded(system, reaction, system.friction * reaction) ** 2  # hardly changes on the way to the onset
+    limit = loaded(system, work.ground[3, STAGES - 1], reaction, system.friction * reaction) ** 2  # hardly changes
     for _ in range(ONSET_ITERATIONS):
         rest_step(system, work, end)
         expand_drive(work)

@@ -143,7 +143,9 @@ def guess_turning_slide(system: System, work: Work, h: float) -> None:
     """
     free, ground, angle = work.free, work.ground, work.angle
     for k in range(STAGES):
-        load = Load(work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k])
+        load = Load(
+            work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k], ground[3, k]
+        )  # fmt: skip
         angle = settled_direction(system, load, angle, 0.0)
         work.a[0, 0, k], work.a[0, 1, k] = heading(angle, system.axes)
     guess_along(system, work, h, row(work.a, (0, 0)), row(work.a, (0, 1)))
@@ -162,7 +164,7 @@ def guess_along(system: System, work: Work, h: float, ex: Row, ey: Row) -> None:
     damping = rising_rate(system, start)
     fx, fy = row(work.free, 0), row(work.free, 1)
     px, py = as_many(work.x[0, 0], nodes), as_many(work.x[0, 1], nodes)
-    load = Load(px, py, fx, fy, row(ground, 0), row(ground, 1), row(ground, 2))
+    load = Load(px, py, fx, fy, row(ground, 0), row(ground, 1), row(ground, 2), row(ground, 3))
     ax, ay, _, _ = directed(system, load, as_many(start, nodes), ex, ey)
     along = max(ax * ex + ay * ey, MIN_ACCELERATION_FRACTION * (abs(fx) + abs(fy)))
     along = along / (1.0 + nodes * (h * damping))
@@ -185,8 +187,9 @@ def turns_too_far(work: Work) -> bool:
 @compiled
 def barely_slips(system: System, work: Work) -> bool:
     """Whether the drive exceeds the friction limit by so little that a slide need not begin yet."""
-    excess, reaction = rest_excess(system, load_in_state(system, work, ground_at(system, work, work.time)))
-    return excess <= BARELY_SLIPPING_EXCESS * loaded(system, reaction, system.friction * reaction) ** 2
+    load = load_in_state(system, work, ground_at(system, work, work.time))
+    excess, reaction = rest_excess(system, load)
+    return excess <= BARELY_SLIPPING_EXCESS * loaded(system, load.k_t, reaction, system.friction * reaction) ** 2
 
 
 @compiled

@@ -26,7 +26,7 @@ from comparison.analyses.benchmarks.analysis import (
     _benchmark,
     solve,
 )
-from comparison.analyses.benchmarks.cases import Case, Reading, cases, mastodon, published, shipped
+from comparison.analyses.benchmarks.cases import LIMITS, Case, Reading, cases, mastodon, published, shipped
 from comparison.analyses.benchmarks.command import main
 from comparison.analyses.benchmarks.table import STORED, Benchmarks, Verdict, page
 from reference.analytical import den_hartog
@@ -76,35 +76,49 @@ def test_the_engine_meets_all_published_numbers(within):
             within(abs(found.value - row.published) / max(found.error + row.uncertainty, 1e-300), 1.0)
 
 
-@pytest.mark.skipif(not INPUT.exists(), reason="the input motion of MASTODON's test is not shipped")
-def test_the_difference_from_mastodon_is_one_of_models():
+NO_INPUT = pytest.mark.skipif(not INPUT.exists(), reason="the input motion of MASTODON's test is not shipped")
+
+
+@NO_INPUT
+def test_both_sides_meet_mastodon_within_three_percent():
     case = mastodon(INPUT)
     table = _judged([case])
     for row in table.benchmarks[0].rows:
         equations, smoothed, engine = (row.numbers[side] for side in (EQUATIONS, SMOOTHED, ENGINE))
-        assert equations.verdict == engine.verdict == Verdict.MODEL
-        assert 0.5 < equations.value / row.published < 1.0, "heated friction is lower, so theirs slides farther"
+        assert equations.verdict == engine.verdict
+        assert equations.verdict in (Verdict.MET, Verdict.MODEL)
+        assert 0.975 < equations.value / row.published < 1.0
         assert abs(engine.value - smoothed.value) <= engine.error + smoothed.error, "both sides agree"
 
 
+@NO_INPUT
+def test_the_small_equations_with_heating_meet_mastodon():
+    """Displacements in mm, read to 3 mm; without heating they are 15 to 83 mm smaller."""
+    scene = mastodon(INPUT).scene
+    cold = scene.with_values({"isolator.friction": {"slow": 0.03, "fast": 0.06, "rate": 100.0}})
+    theirs = np.array(LIMITS)
+    heated, plain = (
+        1e3 * np.array(readings.ranges(reference.trajectory(each, (0.0, 0.0), "small", tolerance=1e-5)))
+        for each in (scene, cold)
+    )
+    assert np.abs(heated - theirs).max() < 3.1
+    assert (np.abs(plain - theirs) > 15.0).all()
+
+
 @pytest.mark.long
-@pytest.mark.skipif(not INPUT.exists(), reason="the input motion of MASTODON's test is not shipped")
-def test_heating_is_what_mastodon_adds_to_the_planar_equations():
-    """A planar integration of the published law: without heating ours, with heating theirs."""
+@NO_INPUT
+def test_mastodon_s_own_bearing_and_law_give_its_displacements():
+    """A planar integration of the published law with their elastic stiffness and restoring force."""
     case = mastodon(INPUT)
-    record = case.scene.record
-    times = np.arange(0.0, case.scene.duration, 1e-3)
-    ground = np.stack([np.interp(times, record[:, 0], record[:, axis]) for axis in (1, 2, 3)], axis=1)
-    motion = reference.trajectory(case.scene, (0.0, 0.0), "small")
-    ours = 1e3 * np.array(readings.ranges(motion))
+    scene = case.scene.with_values({"isolator.friction": {"slow": 0.03, "fast": 0.06, "rate": 100.0}})
+    times = np.arange(0.0, scene.duration, 1e-3)
+    ground = np.stack([np.interp(times, scene.record[:, 0], scene.record[:, axis]) for axis in (1, 2, 3)], axis=1)
+    ours = 1e3 * np.array(readings.ranges(reference.trajectory(scene, (0.0, 0.0), "small")))
     rigid, _ = ranges(ground, 1e-3, 20, 1e-5, False)
-    plain, _ = ranges(ground, 1e-3, 20, 1e-3, False)
     heated, temperature = ranges(ground, 1e-3, 20, 1e-3, True)
-    theirs = np.array([each.published for each in case.published])
     assert np.abs(rigid - ours).max() < 2.0, "mm: the same model"
-    assert np.abs(heated - theirs).max() < 3.0, "mm: read to 3 mm"
+    assert np.abs(heated - np.array(LIMITS)).max() < 3.0, "mm: read to 3 mm"
     assert 190.0 < temperature < 205.0
-    assert (np.abs(heated - plain) > 3.0 * np.abs(heated - theirs)).all()
 
 
 # the numbers themselves ----------------------------------------------------------------------------------------------

@@ -30,7 +30,8 @@ PLACES = {
 }
 
 
-LAW = {"slow": 0.03, "fast": 0.06, "rate": 100.0}
+HEATING = {"contact_radius": 0.2, "conductivity": 18.0, "diffusivity": 4.4e-6}
+LAW = {"slow": 0.03, "fast": 0.06, "rate": 100.0, "heating": HEATING}
 
 
 def put(scene: Scene, key: str, value: float) -> Scene:
@@ -58,10 +59,11 @@ def test_every_number_of_a_scene_has_a_range():
     plain = {key for key in KEYS[""] if key == "duration"}
     tables = {"isolator": "isolator", "bodies": "bodies", "excitation": "excitation.two frequencies"}
     tables["isolator.friction"] = "isolator.friction"
-    tables["bodies.bars"] = "bodies.bars"
+    tables |= {name: name for name in ("isolator.friction.heating", "bodies.bars")}
     tables["measured"] = "measured"
     numbers = plain | {f"{name}.{key}" for name, table in tables.items() for key in KEYS[table]}
     unbounded = {"excitation.scale", "bodies.bars", "bodies.bars.load_effect", "measured.quantity", "measured.source"}
+    unbounded |= {"isolator.friction.heating"}
     bounded = numbers - unbounded
     assert bounded == set(SCENE), "a scale is bounded by the accelerations that it makes"
 

@@ -1,0 +1,83 @@
+"""
+Heat of the contacts, for friction that it lowers: the temperature at the end of each step, before the step is made.
+
+The kernel 1 / sqrt(s) of the temperature is a sum of decays exp(-x^2 s), its integral over ln x by the trapezoidal
+rule. So all that a contact remembers is the share of each decay, and a step adds a power that is linear in time.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.problem.friction import Heat
+
+Array = NDArray[np.float64]
+
+SPACING = 0.3  # of ln x: the rule's error is exp(-pi^2 / (2 SPACING)) of the kernel, 7e-8
+SLOWEST = 1e-5  # x times the root of the duration
+FASTEST = 1e-6  # of the duration, over which the kernel is cut off: sqrt of it is missed
+
+
+class _Memory(NamedTuple):
+    """The contacts at an instant."""
+
+    time: float  # in units of time
+    shares: Array  # (K, X) of the decays, W s
+    power: Array  # (K,) of friction, W, covered or not
+    distance: float  # of the platform from the center, in units of length
+
+
+class SurfaceHeat:
+    """Temperature of `count` contacts; unit_time, s, and unit_length, m, are those of the model."""
+
+    def __init__(self, heat: Heat, count: int, duration: float, unit_time: float, unit_length: float) -> None:
+        self._initial, self._rise, self._cover = heat.initial, count * heat.rise, heat.cover / unit_length
+        self._unit_time, self._count = unit_time, count
+        low, high = math.log(SLOWEST), math.log(3.0 / math.sqrt(FASTEST * 1e-3))
+        x = np.exp(np.arange(low, high, SPACING)) / math.sqrt(duration)
+        self._rates, self._weights = x * x, 2.0 / math.sqrt(math.pi) * SPACING * x
+        self._kept: list[_Memory] = []
+
+    def begin(self, time: float) -> bool:
+        """Forget what came after `time`; whether it is known what the contacts remember there."""
+        if time == 0.0:
+            nothing = np.zeros((self._count, len(self._rates)))
+            self._kept = [_Memory(0.0, nothing, nothing[:, 0], 0.0)]
+        near = time * (1.0 + 1e-12)
+        while self._kept[-1].time > near:
+            self._kept.pop()
+        known = self._kept[-1].time >= time * (1.0 - 1e-12)
+        self._kept = self._kept[-1:]
+        return known
+
+    def step_to(self, time: float, power: Array, distance: float) -> None:
+        """Remember a step up to `time` with this power at its end."""
+        self._kept.append(self._after(time, power, distance))
+
+    def temperature(self, time: float, power: Array, distance: float) -> Array:
+        """Temperature (K,), degrees C, at the end of a step up to `time` with this power there."""
+        shares = self._after(time, power, distance).shares if time > self._kept[-1].time else self._kept[-1].shares
+        celsius: Array = self._initial + self._rise * (shares @ self._weights)
+        return celsius
+
+    def distance(self, time: float) -> float:
+        """Distance of the platform from the center at `time`, by the straight line through the last two."""
+        *before, last = self._kept[-2:]
+        if not before or last.time <= before[0].time:
+            return last.distance
+        return last.distance + (time - last.time) * (last.distance - before[0].distance) / (last.time - before[0].time)
+
+    def _after(self, time: float, power: Array, distance: float) -> _Memory:
+        last = self._kept[-1]
+        span = (time - last.time) * self._unit_time
+        nearest, way = min(last.distance, distance), abs(distance - last.distance)
+        covered = min(max((self._cover - nearest) / way, 0.0), 1.0) if way > 0.0 else float(nearest < self._cover)
+        z = self._rates * span
+        whole = -np.expm1(-z) / np.maximum(z, 1e-300)
+        rising = np.where(z < 1e-4, 0.5 - z / 6.0, (1.0 - whole) / np.maximum(z, 1e-300))
+        added = np.outer(last.power, whole - rising) + np.outer(power, rising)
+        return _Memory(time, last.shares * np.exp(-z) + covered * span * added, power, distance)

@@ -1,0 +1,184 @@
+"""
+The temperature factor k_T of friction as a function of time, from the heat that the steps of a run produce.
+
+The temperature is T0 + rise * integral of P(t - s) / sqrt(s), P the power of friction while the slider covers the
+center. In pieces of the time, which the run's steps and the instants of covering bound, P is a polynomial and the
+kernel is integrated exactly. P itself has the factor k_T: both are found together, piece by piece.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from reference.problem import DryFriction
+from reference.problem.friction import Heat
+from reference.solver.collocation import MISSED, MONOMIALS, NODES, STAGES, A
+from reference.solver.compiled import OPTIONS, cached_entry_point
+from reference.solver.samples import Samples, sampled
+from reference.solver.system import REST, Array, Record, System
+
+NEWTON_STEPS = 8  # to the instant between two nodes at which covering changes
+GRADED = np.append(0.25 ** np.arange(8), 0.0)  # of a step: pieces behind a kink of the power, where T is not smooth
+SHORTEST = 1e-10  # of the duration: pieces are no shorter
+FAR = 4.0  # of its length: from the start of a piece so far away its own nodes serve as those of a quadrature,
+VERY_FAR = 30.0  # and so far away, for blocks of pieces in lengths of the block, the moments of the heat
+SETTLED, ITERATIONS = 1e-14, 50  # change of k_T, at which the iteration within a piece ends; at most so many
+WEIGHTS = A[-1].copy()
+
+
+def uniform(system: System) -> System:
+    """The system with k_T at the initial temperature throughout."""
+    k_t = np.zeros((1, 3 + STAGES))
+    k_t[0, 1:3] = system.duration, Heat.factor(system.heat[0])
+    return system._replace(k_t=k_t)
+
+
+def heated(system: System, record: Record, end: float) -> System:
+    """The system with k_T by the heat of a run that ends at `end`, s."""
+    start = record.start[: record.made[0]]
+    bounds = np.append(start, end)
+    times = _nodes(bounds)
+    changes = np.flatnonzero(np.diff(_outside(system, sampled(record, times)) > 0.0))
+    instants = 0.5 * (times[changes] + times[changes + 1])
+    for _ in range(NEWTON_STEPS if len(changes) else 0):
+        motion = sampled(record, instants)
+        with np.errstate(divide="ignore"):
+            step = _outside(system, motion) / (2.0 * (motion.x[:, 0] * motion.v[:, 0]).sum(axis=1))
+        instants = np.clip(instants - step, times[changes], times[changes + 1])
+    starts = np.flatnonzero(np.diff(record.contact[: len(start)] == REST)) + 1
+    behind = np.append(np.diff(times)[changes], np.diff(bounds)[starts])
+    graded = np.append(instants, start[starts])[:, None] + behind[:, None] * GRADED
+    bounds = np.unique(np.concatenate([bounds, graded.ravel()]))
+    bounds = bounds[bounds <= end]
+    bounds = bounds[np.append(True, np.diff(bounds) > SHORTEST * system.duration)]
+    motion = sampled(record, _nodes(bounds))
+    covered = _outside(system, motion).reshape(-1, STAGES)[:, STAGES // 2] < 0.0
+    power = _power(system, motion).reshape(-1, STAGES) * covered[:, None]
+    length, k_t = np.diff(bounds), np.zeros((len(bounds) - 1, STAGES))
+    warm(bounds[:-1], length, power * system.heat[1], system.heat[0], k_t)
+    powers = k_t @ MONOMIALS.T
+    jump = np.append(Heat.factor(system.heat[0]), k_t[:-1, -1]) - powers[:, 0]
+    powers = np.column_stack([powers, np.zeros(len(powers))]) + jump[:, None] * MISSED[::-1]  # so that none is left
+    table = np.column_stack([bounds[:-1], length, powers])
+    return system._replace(k_t=table, kinks=np.sort(instants)[:, None])
+
+
+def mean(system: System) -> float:
+    """Mean k_T over the time."""
+    lengths, coefficients = system.k_t[:, 1], system.k_t[:, 2:]
+    return float(lengths @ coefficients @ (1.0 / np.arange(1, STAGES + 2)) / lengths.sum())
+
+
+def _nodes(bounds: Array) -> Array:
+    return (bounds[:-1, None] + np.diff(bounds)[:, None] * NODES).ravel()
+
+
+def _outside(system: System, motion: Samples) -> Array:
+    """Squared displacement less that up to which the slider covers the center, m^2."""
+    outside: Array = (motion.x[:, 0] ** 2).sum(axis=1) - system.heat[2] ** 2
+    return outside
+
+
+def _power(system: System, motion: Samples) -> Array:
+    """Power of friction over m1 where k_T is one, m^2/s^3."""
+    x, v = motion.x[:, 0], motion.v[:, 0]
+    speed2 = (v**2).sum(axis=1)
+    if not system.small:
+        speed2 += (x * v).sum(axis=1) ** 2 / (system.radius**2 - (x**2).sum(axis=1))
+    speed, weight = np.sqrt(speed2), system.mass_ratio * system.gravity
+    law = DryFriction(system.friction, system.friction + system.rise, system.rate, system.exponent)
+    power = law.at(speed, motion.reaction / weight) * motion.reaction * speed
+    return power * np.minimum(speed / system.v_reg, 1.0) if system.v_reg > 0.0 else power
+
+
+@njit(**OPTIONS)
+def after(theta: float, coefficients: Array) -> float:
+    """Integral of the polynomial in u with these coefficients over sqrt(theta - u), u from 0 to theta or to 1."""
+    beyond = np.sqrt(max(theta - 1.0, 0.0))
+    moment = 2.0 * (np.sqrt(theta) - beyond)
+    total = moment * coefficients[0]
+    for k in range(1, STAGES):
+        moment = 2.0 * (k * theta * moment - beyond) / (2.0 * k + 1.0)
+        total += moment * coefficients[k]
+    return total
+
+
+@njit(**OPTIONS)
+def long_after(theta: float, power: Array) -> float:
+    """The same, far from the piece, of the polynomial through `power` at the nodes."""
+    total = 0.0
+    for k in range(STAGES):
+        total += WEIGHTS[k] * power[k] / np.sqrt(theta - NODES[k])
+    return total
+
+
+@cached_entry_point
+def warm(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
+    """
+    Fill k_T at the nodes of pieces (K, S). power: where k_T is one, times the rise of the temperature.
+
+    Row l of the moments is of blocks of 2^l pieces each, of which a few serve for all that is long past.
+    """
+    count = start.shape[0]
+    past, heat, coefficients = np.zeros(STAGES), power.copy(), np.zeros_like(power)
+    moments = np.zeros((int(np.log2(count)) + 1, count, 3))
+    for i in range(count):
+        for m in range(STAGES):
+            time, past[m], j = start[i] + NODES[m] * length[i], initial, i
+            while j > 0:
+                level, size, first = 0, 1, j - 1
+                while j % (2 * size) == 0 and time - start[j - 2 * size] > VERY_FAR * (start[j] - start[j - 2 * size]):
+                    level, size, first = level + 1, 2 * size, j - 2 * size
+                theta = (time - start[first]) / length[first]
+                moment = moments[level, first // size]
+                if moment[0] == 0.0:
+                    pass
+                elif level > 0 or theta > VERY_FAR:
+                    distance = time - moment[1]
+                    past[m] += moment[0] * (1.0 + 0.375 * moment[2] / (distance * distance)) / np.sqrt(distance)
+                elif theta > FAR:
+                    past[m] += np.sqrt(length[first]) * long_after(theta, heat[first])
+                else:
+                    past[m] += np.sqrt(length[first]) * after(theta, coefficients[first])
+                j = first
+            k_t[i, m] = factor(past[m])
+        for _ in range(ITERATIONS):
+            change = 0.0
+            heat[i] = power[i] * k_t[i]
+            for k in range(STAGES):
+                coefficients[i, k] = 0.0
+                for m in range(STAGES):
+                    coefficients[i, k] += MONOMIALS[k, m] * heat[i, m]
+            for m in range(STAGES):
+                now = factor(past[m] + np.sqrt(length[i]) * after(NODES[m], coefficients[i]))
+                change, k_t[i, m] = max(change, abs(now - k_t[i, m])), now
+            if change < SETTLED:
+                break
+        if power[i, 0] > 0.0:
+            share = WEIGHTS * heat[i] / (WEIGHTS * heat[i]).sum()
+            center = (share * NODES).sum()
+            moments[0, i, 0] = (WEIGHTS * heat[i]).sum() * length[i]
+            moments[0, i, 1] = start[i] + center * length[i]
+            moments[0, i, 2] = (share * (NODES - center) ** 2).sum() * length[i] ** 2
+        level, done = 0, i + 1
+        while done % 2 == 0:
+            done //= 2
+            join(moments[level, 2 * done - 2], moments[level, 2 * done - 1], moments[level + 1, done - 1])
+            level += 1
+
+
+@njit(**OPTIONS)
+def join(a: Array, b: Array, both: Array) -> None:
+    """Fill heat, its mean time and variance of the two together."""
+    heat = a[0] + b[0]
+    if heat > 0.0:
+        center = (a[0] * a[1] + b[0] * b[1]) / heat
+        both[0], both[1] = heat, center
+        both[2] = (a[0] * (a[2] + (a[1] - center) ** 2) + b[0] * (b[2] + (b[1] - center) ** 2)) / heat
+
+
+@njit(**OPTIONS)
+def factor(temperature: float) -> float:
+    """As `Heat.factor`."""
+    return 0.79 * (0.7 ** (0.02 * temperature) + 0.4)
