@@ -30,7 +30,6 @@ NOISE_OF_ROUNDING = 0.5  # of the contact force, over the bound of its rounding 
 NOISE_OF_TURNING = 0.2  # likewise, of a platform that turns (measured: up to 0.10)
 # force on the platform of a flat slider over Newton's residual, from which on that does not act in full (measured: 34)
 MAX_FORCE_WITHOUT_ITERATION = 40.0
-SAFETY_OF_SHARING = 2.0  # on what two loads of warping show
 SAFETY_OF_BEARINGS = 2.0  # on what springs of real bearings change at a coarser level
 # time from the start in which stiff links swing, in square roots of the penetration (measured: peaks at 1.7)
 STARTING_TIME = 4.0
@@ -39,7 +38,6 @@ MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
 # relative change of a peak over the largest load that warping takes while all supports are closed (measured: up to
 # 0.22, where supports come to v_reg one by one)
 ERROR_PER_WARPING_LOAD = 0.25
-MIN_ERROR_PER_WARPING_LOAD = 0.005  # likewise, where the scene itself shows less
 # relative error of the first level of a motion with impacts, halved by every level on the same springs: the order of
 # impacts among the supports is decided by rounding, and two levels agree better by chance (measured: 1.1e-3 between
 # levels 1 to 4)
@@ -136,19 +134,10 @@ def widened_without_convergence(errors: Array, run: EngineRun) -> Array:
     return np.maximum(errors, peaks)
 
 
-def from_sharing(run: EngineRun, per_load: Array | None) -> Array:
+def from_sharing(run: EngineRun) -> Array:
     """Error (N,) of a run whose supports stay closed and do not quite share the load as elastic ones do."""
-    error: Array = (ERROR_PER_WARPING_LOAD if per_load is None else per_load) * run.warping_load * run.peaks.value
+    error: Array = ERROR_PER_WARPING_LOAD * run.warping_load * run.peaks.value
     return error
-
-
-def measured_per_load(run: EngineRun, stiffer: EngineRun) -> Array:
-    """Change of each peak over the load that warping takes, (N,), from a stiffer run, with safety and a floor."""
-    added = stiffer.warping_load - run.warping_load
-    if stiffer.outcome != Outcome.OK or stiffer.lifts_off or added < run.warping_load:
-        return np.full(len(run.peaks.value), ERROR_PER_WARPING_LOAD)
-    change = np.abs(run.peaks.value - stiffer.peaks.value) / run.peaks.value
-    return np.maximum(SAFETY_OF_SHARING * change / max(added, SMALLEST_CHANGE), MIN_ERROR_PER_WARPING_LOAD)
 
 
 def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:

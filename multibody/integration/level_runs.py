@@ -4,7 +4,7 @@ The runs of one phase pair at successive levels: how far each goes, and on which
 The first run shows when the last large value comes (`look_ahead`). Runs at further levels stop soon after it, as long
 as they differ from the run before by much less than what separates later values from the largest.
 
-While all supports are closed, their springs against warping give way as much as the tolerance asks for. Where one
+While all supports are closed, their springs against warping give way so far that they take no load. Where one
 opens the springs of real bearings are part of the model. Stiffer ones remain where those change no peak beyond the
 tolerance; the change is an error then.
 """
@@ -21,19 +21,18 @@ from multibody.integration.adaptive import SETTLED_FRACTION, Budget, EngineRun
 from multibody.integration.candidate import Candidate
 from multibody.integration.estimate import (
     ERROR_PER_WARPING_LOAD,
+    MIN_RELATIVE_ERROR,
     SAFETY_OF_BEARINGS,
     floor_with_impacts,
     from_contact_noise,
     from_levels,
     from_rounding,
     from_sharing,
-    measured_per_load,
     share_of_change,
     widened_by_impacts,
 )
 from multibody.integration.level import (
-    COMPLIANCE_RATIO,
-    MAX_COMPLIANCE_OF_CLOSED,
+    COMPLIANCE_OF_CLOSED,
     REAL_WARPING_COMPLIANCE,
     Level,
     for_small_peaks,
@@ -45,7 +44,8 @@ from reference.problem import Outcome
 Array = NDArray[np.float64]
 
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
-MAX_WARPING_ERROR_SHARE = 0.2  # of the tolerance, that the load of warped supports may take as an error
+# of the tolerance, that the load of warped supports may take as an error before one opens
+MAX_WARPING_ERROR_SHARE = 0.2
 MAX_FIRST_SHARE = 0.2  # of the work of a point, that its first run may take where supports may rattle
 MAX_WORK_GROWTH = 2.0  # work of a level over that of the level before
 STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
@@ -69,10 +69,10 @@ class LevelRuns:
     keep: bool  # the motions of the last two runs
     runs: list[EngineRun] = field(default_factory=list)
     stop: float = math.inf  # of the next run, where nothing later can matter
-    softest: float = MAX_COMPLIANCE_OF_CLOSED  # compliance against warping that supports may have
-    per_load: Array | None = None  # see `measured_per_load`, once it is measured
-    # change of the peaks, (N,), on springs of real bearings, once supports opened on stiffer ones
-    change_on_real: Array | None = None
+    softest: float = COMPLIANCE_OF_CLOSED  # compliance against warping that supports may have
+    # the last run on springs of real bearings that ended, and the change of the peaks, (N,), on them, once supports
+    # opened on stiffer ones
+    on_real: tuple[EngineRun, Array] | None = None
 
     def can_go_on(self) -> bool:
         """Whether there is another level, and work for it."""
@@ -80,7 +80,7 @@ class LevelRuns:
         if number == len(self.levels):
             return False
         # a run more completes the error of a contact that stays the same, another one that of stiff springs
-        runs = 1.0 + self.shares_contact(number) + (self.change_on_real is not None)
+        runs = 1.0 + self.shares_contact(number) + (self.on_real is not None)
         # one level alone has no error and is no answer: a second one is tried even if it may not end
         growth = 1.0 if number == 1 else MAX_WORK_GROWTH
         return not self.runs or self.budget.left >= runs * growth * _work_up_to(self.runs[-1], self.stop, self.pair.end)
@@ -101,7 +101,7 @@ class LevelRuns:
         if rattles or run.lifts_off:
             run = self._on_springs_for_opening(run)
         if self.levels[number].warping_compliance == REAL_WARPING_COMPLIANCE:
-            self.change_on_real = None
+            self.on_real = None
         self.runs.append(run)
         if run.outcome == Outcome.OK and run.stop == math.inf and not self.whole:
             self.stop = _settled(run, self.pair.model, self.levels[0].step)
@@ -124,21 +124,24 @@ class LevelRuns:
         errors = widened_by_impacts(errors, finished, run, alike)
         rounding -= errors
         if not run.lifts_off:
-            errors = errors + self._sharing_error(level, run, errors)
+            errors = errors + from_sharing(run)
         confirmed = True
-        if self.change_on_real is not None:
-            change = self.change_on_real
+        if self.on_real is not None:
+            _, change = self.on_real
             if (errors + change <= self.tolerance * run.peaks.value).all():
                 change, confirmed = self._repeat_on_real_bearings(change)
                 level, run = self.levels[number], self.runs[-1]
             if run.outcome != Outcome.OK:
                 return None
             errors = widened_by_impacts(errors + change, [], run, self._levels_on_the_same_springs())
-        coarser = ((self.runs[-2], share_of_change(before, model)),)
+        coarser = [(self.runs[-2], share_of_change(before, model))]
+        if self.on_real is not None:
+            coarser.append((self.on_real[0], 1.0))
         least = from_contact_noise(run, level, self.pair.scene, model)
         floor = max(level.error_floor, floor_with_impacts(self._levels_on_the_same_springs()) if run.impacts else 0.0)
+        floor = max(floor, 0.0 if run.lifts_off else run.warping_load)
         shared = self.shares_contact(number)
-        return Candidate(run, level, shared, errors, rounding, least, coarser, confirmed, floor=floor)
+        return Candidate(run, level, shared, errors, rounding, least, tuple(coarser), confirmed, floor=floor)
 
     def _levels_on_the_same_springs(self) -> int:
         """How many levels before the last one have its springs: others are another motion, and confirm nothing."""
@@ -162,13 +165,13 @@ class LevelRuns:
         level = self.levels[number]
         if level.warping_compliance == REAL_WARPING_COMPLIANCE:
             return self._at(level) if number == 0 and run.outcome == Outcome.STEP_LIMIT else run
-        if self.change_on_real is not None:
+        if self.on_real is not None:
             return run
         real, change = self._on_real_bearings(level, run)
         stiff = level.warping_compliance < REAL_WARPING_COMPLIANCE
         # stiff springs also lift supports off by the misfit of the platform alone
         if stiff and real.lifts_off and (change <= self.tolerance * run.peaks.value).all():
-            self.change_on_real = change
+            self.on_real = real, change
             return run
         self.softest = self.softest if stiff else REAL_WARPING_COMPLIANCE
         self._take_real_bearings(number)
@@ -189,7 +192,7 @@ class LevelRuns:
             return np.fmax(SAFETY_OF_BEARINGS * earlier, real.peaks.value - run.peaks.value), False
         change = np.maximum(earlier, change)
         if (change <= self.tolerance * run.peaks.value).all():
-            self.change_on_real = change
+            self.on_real = real, change
         else:
             self.runs[-1] = real
             self._take_real_bearings(number)
@@ -198,29 +201,19 @@ class LevelRuns:
     def _take_real_bearings(self, number: int) -> None:
         """Give all levels from `number` on the springs of real bearings."""
         self.levels[number:] = [_of_real_bearings(level) for level in self.levels[number:]]
-        self.stop, self.change_on_real = math.inf, None
+        self.stop, self.on_real = math.inf, None
 
     def _adapt_levels(self, run: EngineRun) -> None:
         """Supports and contact of the levels to come, as soft as `run` asks for."""
         done = len(self.runs)
         if run.lifts_off:
             self.softest = REAL_WARPING_COMPLIANCE
-        coming = [_sharing(level, run.warping_load, self.tolerance, self.softest) for level in self.levels[done:]]
+        coming = [_sharing(level, run, self.tolerance, self.softest) for level in self.levels[done:]]
         # a softer contact would let a platform that turns tilt
         if self.softens and run.outcome == Outcome.OK and self.pair.model.depressions is None:
             smallest = float(run.peaks.value.min())
             coming = [for_small_peaks(level, smallest, self.tolerance) for level in coming]
         self.levels[done:] = coming
-
-    def _sharing_error(self, level: Level, run: EngineRun, errors: Array) -> Array:
-        """Error (N,) from the load of warping, beside `errors` from levels; measured where it alone would miss."""
-        allowed = self.tolerance * run.peaks.value - errors
-        # no softer springs are left
-        capped = level.warping_compliance >= self.softest and (allowed >= 0.0).all()
-        if self.per_load is None and capped and (from_sharing(run, None) > allowed).any():
-            stiffer = replace(level, warping_compliance=level.warping_compliance / COMPLIANCE_RATIO)
-            self.per_load = measured_per_load(run, self.pair.at_level(stiffer, self.budget, run.stop))
-        return from_sharing(run, self.per_load)
 
 
 def _of_real_bearings(level: Level) -> Level:
@@ -228,10 +221,14 @@ def _of_real_bearings(level: Level) -> Level:
     return replace(level, warping_compliance=REAL_WARPING_COMPLIANCE)
 
 
-def _sharing(level: Level, load: float, tolerance: float, softest: float) -> Level:
-    """A level whose supports give way enough against warping, which took `load` of the weight in the run before."""
-    wanted = level.warping_compliance * load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance)
-    return replace(level, warping_compliance=min(max(wanted, level.warping_compliance), softest))
+def _sharing(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:
+    """A level whose supports give way enough against warping, which took a load in `run` at the level before."""
+    wanted = level.warping_compliance
+    if run.lifts_off:
+        wanted *= max(run.warping_load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance), 1.0)
+    elif run.warping_load > MIN_RELATIVE_ERROR:
+        wanted = softest
+    return replace(level, warping_compliance=min(wanted, softest))
 
 
 def _work_up_to(run: EngineRun, stop: float, end: float) -> float:

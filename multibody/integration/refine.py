@@ -127,7 +127,7 @@ def _beyond_tolerance(pair: PhasePair, finest: Candidate, complete: Candidate | 
     # the run that shows what the compliance leaves has no answer
     if complete is not None:
         answer = _answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET)
-        return replace(answer, finest=finest.run, coarser=finest.coarser[:1], floor=finest.floor)
+        return replace(answer, finest=finest.run, coarser=finest.coarser[:-1], floor=finest.floor)
     why = next((run.outcome for run, _ in finest.coarser if run.outcome in UNFINISHED), Outcome.SOLVER_FAILED)
     return _no_answer(pair.model, finest.run, why, pair.scene.duration)
 

@@ -103,18 +103,31 @@ def both_sides(
     return engine, equations
 
 
-def assert_agrees_with_newton_and_euler(scene: Scene, phase: tuple[float, float], torsion: bool = True) -> Any:
+def assert_agrees_with_newton_and_euler(scene: Scene, phase: tuple[float, float], tolerance: float = 1e-3) -> Any:
     """
-    Factors, and the torsion of the platform if asked for, are those of rigid_chain.py, whose motion is returned.
+    Factors, torsion of the platform and forces of supports are those of rigid_chain.py, whose motion is returned.
 
     The first call takes a minute of compiling.
     """
-    engine = multibody.amplification(scene, [phase], "spatial")
+    engine = multibody.amplification(scene, [phase], "spatial", tolerance=tolerance)
     independent = spatial_motion(scene, phase, 1e-3, tolerance=1e-6)
     assert engine.status[0] == Outcome.OK
     assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
-    if torsion:
-        turned = demands(multibody.trajectory(scene, phase, "spatial")).torsion
-        assert turned is not None
-        assert abs(turned[0].value - np.abs(independent.yaw).max()) <= turned[0].error
+    force = independent.support_force
+    assert_demands(scene, phase, np.abs(independent.yaw).max(), force.min(), force.max(), tolerance)
     return independent
+
+
+def assert_demands(
+    scene: Scene, phase: tuple[float, float], torsion: float, least: float, largest: float, tolerance: float = 1e-3
+) -> None:
+    """Torsion of the platform, rad, and the extreme forces of single supports, N, are these within their errors."""
+    found = demands(multibody.trajectory(scene, phase, "spatial", tolerance=tolerance))
+    assert found.torsion is not None
+    for number, expected in (
+        (found.torsion[0], torsion),
+        (found.support_force_min, least),
+        (found.support_force_max, largest),
+    ):
+        assert number is not None
+        assert abs(number.value - expected) <= number.error, (number, expected)

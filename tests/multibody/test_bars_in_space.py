@@ -214,12 +214,12 @@ def test_three_stories_on_bars_agree_with_newton_euler() -> None:
 @pytest.mark.parametrize("name", ["softened", "shortening"])
 def test_a_whole_surface_agrees_with_newton_euler_equations(name: str) -> None:
     for phase in phase_grid(8)[(phase_grid(8) < np.pi).all(axis=1)]:  # turns of each harmonic by pi give the others
-        assert_agrees_with_newton_and_euler(building(name), tuple(phase), torsion=False)
+        assert_agrees_with_newton_and_euler(building(name), tuple(phase))
 
 
 @pytest.mark.long
-def test_torsion_at_every_phase_is_within_its_error() -> None:
-    assert_agrees_with_newton_and_euler(building("softened"), (0.5 * np.pi, 0.75 * np.pi))
+def test_torsion_at_a_strict_tolerance_is_within_its_error() -> None:
+    assert_agrees_with_newton_and_euler(building("softened"), (0.5 * np.pi, 0.75 * np.pi), tolerance=1e-4)
 
 
 def test_a_peak_where_supports_stop_has_its_error() -> None:

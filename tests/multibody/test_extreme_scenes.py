@@ -15,10 +15,7 @@ from multibody.integration import candidate, one_run
 from multibody.integration.adaptive import EngineRun, run_adaptively
 from multibody.integration.constant_step import Engine
 from multibody.integration.estimate import (
-    ERROR_PER_WARPING_LOAD,
-    MIN_ERROR_PER_WARPING_LOAD,
     from_levels,
-    measured_per_load,
 )
 from multibody.integration.level import REAL_WARPING_COMPLIANCE, Level, for_small_peaks
 from multibody.integration.one_run import PhasePair
@@ -167,18 +164,6 @@ def test_rounding_counts_no_more_than_a_softer_contact_shows() -> None:
     assert (engine.mu[:, 1] < 1e-3).all()
     assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error).all()
     assert (engine.error <= 1e-3 * engine.mu).all()
-
-
-def test_what_warped_supports_do_is_proportional_to_the_load() -> None:
-    runs = []
-    for peak, load in ((1.0, 0.1), (1.003, 0.4)):
-        runs.append(EngineRun(Peaks(2, np.inf), np.inf, warping_load=load))
-        runs[-1].peaks.value[:] = peak, 2.0
-    run, stiffer = runs
-    np.testing.assert_allclose(measured_per_load(run, stiffer), [2.0 * 0.003 / 0.3, MIN_ERROR_PER_WARPING_LOAD])
-    assert measured_per_load(stiffer, run).tolist() == [ERROR_PER_WARPING_LOAD] * 2, "no load is added"
-    stiffer.last_open = 1.0
-    assert measured_per_load(run, stiffer).tolist() == [ERROR_PER_WARPING_LOAD] * 2, "another motion"
 
 
 def ring_that_opens(supports: int) -> Scene:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes_at_hand import assert_agrees_with_newton_and_euler, changed
+from scenes_at_hand import assert_agrees_with_newton_and_euler, assert_demands, changed
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
 import multibody
@@ -67,13 +67,13 @@ def test_factors_and_torsion_agree_with_newton_euler_equations(name: str, phase:
 @pytest.mark.long
 def test_a_whole_surface_agrees_with_newton_euler_equations() -> None:
     for phase in phase_grid(8):
-        assert_agrees_with_newton_and_euler(uneven("everything"), tuple(phase), torsion=False)
+        assert_agrees_with_newton_and_euler(uneven("everything"), tuple(phase))
 
 
-@pytest.mark.long
-@pytest.mark.xfail(strict=True, reason="at 5 of 64 phase pairs up to 5.9 of its stated errors off, 7e-4 of itself")
-def test_torsion_on_five_supports_is_within_its_error() -> None:
-    assert_agrees_with_newton_and_euler(uneven("everything"), (0.5 * math.pi, 1.5 * math.pi))
+def test_torsion_and_forces_on_five_supports_have_their_error() -> None:
+    """Numbers of rigid_chain.py: springs against warping that take half a percent of the load miss two of them."""
+    phase = (0.5 * math.pi, 1.5 * math.pi)
+    assert_demands(uneven("everything"), phase, 3.118257e-3, 1.1159972, 7.4586220)
 
 
 def test_closed_supports_share_the_load_of_a_turned_platform() -> None:
