@@ -28,7 +28,7 @@ TEMPLATE = "report.typ"
 def why_no_pdf() -> str:
     """Why report.pdf cannot be made and what helps, "" if it can."""
     if find_spec("typst") is None:
-        return "report.pdf needs the package typst: pip install 'phase-resonance[pdf]'"
+        return "report.pdf needs the package typst: pip install typst"
     return ""
 
 

@@ -47,7 +47,7 @@ def cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
         from distributed import Client
         from distributed.comm import connect
     except ImportError:
-        raise refusal("needs Dask: pip install 'phase-resonance[cluster]'") from None
+        raise refusal("needs Dask: pip install distributed") from None
     for name in ("asyncio", *logging.root.manager.loggerDict):
         if name.partition(".")[0] in ("asyncio", "distributed", "tornado"):
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # what goes wrong is said here, in one line

@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from reference.problem.ranges import as_float, takes
-from reference.problem.record_suites import SuiteError, suite_motions
+from reference.problem.record_suites import SuiteError, motion_names, suite_motions
 from reference.problem.scene import Scene
 from reference.problem.scene_error import SceneError
 from reference.problem.scene_file import (
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 ALL_MOTIONS = "all"
+MOTION = ("excitation", "record", "motion")
 COMBINE = ("product", "zip")
 MAX_SCENES = 1000  # scenes of one family
 MAX_BODIES_IN_ALL = 50_000  # bodies of all scenes of a family together
@@ -68,6 +69,8 @@ class Family:
         Values of the key, in the order of the scenes; of several keys as one text.
     columns : dict of str to tuple
         By each key that runs its values, in the order of the scenes.
+    labels : dict of str to tuple
+        By each key that runs its values as names show them: motions of a folder by their files.
     """
 
     name: str
@@ -75,6 +78,7 @@ class Family:
     key: str = ""
     values: tuple[Value, ...] = ()
     columns: Mapping[str, tuple[Value, ...]] = field(default_factory=dict)
+    labels: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def bodies(self) -> int:
@@ -169,7 +173,8 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
     if len(places) > MAX_KEYS:
         path, table = places[-1]
         raise SceneError(label, ".".join(map(str, path)), table, f"at most {MAX_KEYS} keys may run")
-    running = [_Key(label, path, table) for path, table in places]
+    motions = _motion_names(data, label)
+    running = [_Key(label, path, table, motions) for path, table in places]
     _check_combine(label, combine, running)
     if not running:
         scene = validated_scene(data, label, name)
@@ -193,19 +198,24 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
         ", ".join(columns),
         columns[running[0].name] if len(running) == 1 else tuple(values),
         columns,
+        {key.name: tuple(key.labels[row[n]] for row in rows) for n, key in enumerate(running)},
     )
 
 
 class _Key:
     """A key that runs: where it is, its values, and how they stand in names."""
 
-    def __init__(self, label: str, path: tuple[str | int, ...], table: dict[str, Any]) -> None:
+    def __init__(
+        self, label: str, path: tuple[str | int, ...], table: dict[str, Any], motions: Sequence[str] = ()
+    ) -> None:
         self.path, self.table = path, table
         self.name = ".".join(map(str, path))
         self.short = self.name if any(isinstance(part, int) for part in path) else str(path[-1])
         self.listed = _values(label, self.name, table)
         self.values: list[Value] = [_named(value) if isinstance(value, dict) else value for value in self.listed]
         self.texts = _texts(label, self.name, self.listed)
+        named = path == MOTION and all(isinstance(value, int) and 0 < value <= len(motions) for value in self.listed)
+        self.labels = [motions[int(value) - 1] for value in self.values] if named else self.texts
 
 
 def _check_combine(label: str, combine: Any, running: Sequence[_Key]) -> None:
@@ -246,7 +256,15 @@ def _all_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
         motions = suite_motions(record["suite"], Path(label).parent)
     except SuiteError as error:
         raise SceneError(label, f"excitation.record.{error.key}", record["suite"], error.rule) from None
-    return _with(data, ("excitation", "record", "motion"), {"values": motions})
+    return _with(data, MOTION, {"values": motions})
+
+
+def _motion_names(data: dict[str, Any], label: str) -> list[str]:
+    """Names of the motions of the suite in a folder, by their files; none of another suite."""
+    try:
+        return motion_names(data["excitation"]["record"]["suite"], Path(label).parent)
+    except (KeyError, TypeError, SuiteError):
+        return []
 
 
 def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files | Numbers]:

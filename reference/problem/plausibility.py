@@ -10,6 +10,7 @@ from reference.problem.scene import Scene
 
 LONGEST_PERIOD = 100.0  # s
 LARGEST_RADIUS = 100.0  # m
+LARGEST_FRICTION = 1.0
 MASS_RATIO = 1e6
 
 
@@ -26,6 +27,8 @@ def implausible_values(scene: Scene) -> list[str]:
         lines.append(f"a natural period is {longest:.4g} s: units of mass and stiffness?")
     if LARGEST_RADIUS < scene.radius < math.inf and scene.isolator.radius is not None:
         lines.append(f"the radius of the isolator is {scene.radius:.4g} m: mm?")
+    if not scene.isolator.lubrication and (friction := scene.dry_friction.fast) > LARGEST_FRICTION:
+        lines.append(f"the friction coefficient is {friction:.4g}: percent?")
     spread = float(scene.masses.max() / scene.masses.min())
     if spread >= MASS_RATIO:
         lines.append(f"masses differ by a factor of {spread:.2g}: kg in one place and t in another?")

@@ -37,6 +37,7 @@ UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)
 UNIT_OF_G = re.compile(r"UNITS ?(?:OF|ARE|:|=)? ?(?:G|\(G\)|\[G\]) ?(?:\.(?: .*)?)?", re.IGNORECASE)
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:e[+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
 NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
+PLAIN = {*"0123456789+-.eE \t"}
 MAX_COUNT_DIGITS = 9  # of NPTS
 MAX_ACCELERATION = 1e300  # finite in any unit
 MIN_INTERVAL = 1e-9  # s, between samples
@@ -109,12 +110,32 @@ def _at2(axis: str, text: str) -> tuple[float, Array]:
     spacing = _number(counts[0] + 1, step)
     if spacing <= 0.0:
         raise RecordError(f"{axis}: DT = {step} s: must be greater than 0")
-    values = [
-        _number(number, cell) for number, line in enumerate(lines, 1) if number > last + 1 for cell in line.split()
-    ]
+    values = _plain(lines[last + 1 :])
+    if values is None:
+        try:
+            values = [
+                _number(number, cell)
+                for number, line in enumerate(lines[last + 1 :], last + 2)
+                for cell in line.split()
+            ]
+        except RecordError as error:
+            raise RecordError(f"{axis}: {error}") from None
     if len(values) != int(count):
         raise RecordError(f"{axis}: {len(values)} values: the header says NPTS = {count}")
     return spacing, np.array(values)
+
+
+def _plain(lines: list[str]) -> list[float] | None:
+    """The numbers of the lines, of which most files have nothing else; None where each must be looked at."""
+    text = " ".join(lines)
+    cells = text.split()
+    if not set(text) <= PLAIN or max(map(len, cells), default=0) > MAX_CELL:
+        return None
+    try:
+        values = list(map(float, cells))
+    except ValueError:
+        return None
+    return values if max(map(abs, values), default=0.0) <= MAX_ACCELERATION else None
 
 
 def _check_unit(axis: str, header: list[str]) -> None:

@@ -45,6 +45,14 @@ def suite_motions(suite: Any, folder: Path) -> list[int]:
     return list(range(1, len(suite_files(suite, folder)) + 1))
 
 
+def motion_names(suite: Any, folder: Path) -> list[str]:
+    """Names of the motions in a directory: of their CSV files, or what their .AT2 files have in common."""
+    if _record_set(suite) is not None:
+        return []
+    firsts = [next(iter(files.items())) for files in suite_files(suite, folder)]
+    return [COMPONENT.fullmatch(file.stem)[1].rstrip("-_ ") if axis else file.stem for axis, file in firsts]  # type: ignore[index]
+
+
 def suite_samples(suite: Any, motion: Any, normalized: Any, folder: Path) -> Array:
     """Samples (K, 4) of one motion of a suite, s and m/s^2; normalized: as FEMA P695 does. Raises SuiteError."""
     motions = suite_motions(suite, folder)
@@ -58,7 +66,7 @@ def suite_samples(suite: Any, motion: Any, normalized: Any, folder: Path) -> Arr
     if normalized:
         raise SuiteError("normalized", f"only the sets of {PACKAGE} are normalized: remove this key")
     files = suite_files(suite, folder)[motion - 1]
-    names = ", ".join(file.name for file in files.values())
+    names = ", ".join(f"{axis} = {file.name}" if axis else file.name for axis, file in files.items())
     try:
         texts = {axis: read_file(file, LARGEST).decode("utf-8-sig") for axis, file in files.items()}
         return csv_samples(texts[""]) if "" in texts else at2_samples(texts)

@@ -262,7 +262,7 @@ class Trajectory:
         rows = [
             (body, digits(1e3 * far, 4), digits(peak, 5)) for body, (far, peak) in enumerate(zip(moved, self.peak), 1)
         ]
-        heads = "body", "largest displacement against the plate, mm", "largest absolute acceleration, m/s²"
+        heads = "body", "largest displacement from the ground, mm", "largest absolute acceleration, m/s²"
         return html_table(repr(self), heads, rows)
 
     @property

@@ -248,7 +248,7 @@ class Scene(Table):
         heads = "body", "mass, kg", "stiffness of the link below, x, y, N/m", "its damping, x, y, N s/m"
         largest = f"{self.friction_coefficient:g}"
         law = f"lubrication {largest} s/m" if self.lubricated else f"friction coefficient at most {largest}"
-        return html_table(f"{self!r}: {self.title}; {law}", heads, rows)
+        return html_table(f"{repr(self).strip('<>')}: {self.title}; {law}", heads, rows)
 
     def with_values(self, values: Mapping[str, Any]) -> Scene:
         """

@@ -89,7 +89,7 @@ def first_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence
         return unknown_key(file, key, error["input"], keys_of(table, keys))
     if error["type"] == "missing":
         return SceneError(file, key, None, "this key is required")
-    rule = error["msg"].removeprefix("Value error, ")
+    rule = error["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     if error["type"] == "list_type" and (form := ALONG_AXES.get(str(place[-1]))):
         rule = f"must be {form}"
     return SceneError(file, key, error["input"], rule)

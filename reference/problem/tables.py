@@ -135,10 +135,8 @@ class Table(BaseModel):
 
 def exactly_one(table: BaseModel, *keys: str) -> None:
     """Raise ValueError, one line, unless exactly one of the keys of a table has a value."""
-    present = [key for key in keys if getattr(table, key) is not None]
-    if len(present) != 1:
-        listed = f"{', '.join(keys[:-1])} and {keys[-1]}"
-        raise ValueError(f"give exactly one of {listed}, not {len(present)} of them")
+    if sum(getattr(table, key) is not None for key in keys) != 1:
+        raise ValueError(f"give exactly one of {', '.join(keys[:-1])} and {keys[-1]}")
 
 
 class Heating(Table):

@@ -42,6 +42,7 @@ from reference.problem import GRAVITY, Family, Scene, SceneError
 SCALE = "excitation.scale"
 RECORD = "excitation.record"
 FRACTILES = (0.16, 0.5, 0.84)
+MEDIAN = FRACTILES.index(0.5)
 SMALLEST = ("contact_force_min", "support_force_min")  # demands of which the smallest value is the worst
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # steps of which fill an interval evenly
 REST = (0.0, 0.0)  # a record has no phases
@@ -147,11 +148,11 @@ class Ensemble(Analysis[Points]):
         rows = [stripe for each in both for stripe in stripes(each)]
         scales = sorted({point.member.scale for point in points.equations})
         asked = "displacement", EXACT.key, scales[-1]
-        means = {row.structure: row.mean.value for row in rows if (row.quantity, row.model, row.scale) == asked}
+        moved = {row.structure: row for row in rows if (row.quantity, row.model, row.scale) == asked}
         statuses = Counter(sorted(point.status for point in points.equations))
         return EnsembleResult(
             schema=SCHEMA,
-            structures=structures_of(self.members, means),
+            structures=structures_of(self.members, moved),
             scales=scales,
             motions=len({point.member.motion for point in points.equations}),
             outcomes=dict(statuses.most_common()),
@@ -160,7 +161,10 @@ class Ensemble(Analysis[Points]):
             spectra=list(spectrum_bands(points.equations)),
             engine=Engine(
                 self.model.key,
-                [{"scene": point.member.scene.name, "status": point.status} for point in points.engine],
+                [
+                    {"scene": point.member.scene.name, "motion": point.member.motion, "status": point.status}
+                    for point in points.engine
+                ],
                 list(bounds(points.equations, points.engine, points.alike)),
             ),
             run=run,
@@ -210,7 +214,7 @@ def members_of(families: Sequence[Family]) -> tuple[Member, ...]:
                 rule = "an ensemble needs recorded motions: give --suite, or a record in the scene"
                 raise SceneError(family.name, "excitation", scene.name, rule)
             values = ", ".join(f"{key.rpartition('.')[2]}={family.columns[key][n]}" for key in inner)
-            motion = ", ".join(f"{key.rpartition('.')[2]} {family.columns[key][n]}" for key in outer)
+            motion = ", ".join(family.labels[key][n] for key in outer)
             structure = f"{family.name}[{values}]" if values else family.name
             members.append(Member(structure, motion, float(scene.excitation.scale or 1.0), scene))
     return tuple(members)
@@ -224,14 +228,17 @@ def refuse_unfit(members: Sequence[Member], model: Model) -> None:
             raise SceneError(scene.name, "--model", "spatial", rule)
 
 
-def structures_of(members: Sequence[Member], means: Mapping[str, float | None]) -> list[Structure]:
-    """The structures in their order. means: of their largest isolator displacements, m."""
+def structures_of(members: Sequence[Member], moved: Mapping[str, Stripe]) -> list[Structure]:
+    """The structures in their order. moved: their isolator displacements at the largest scale."""
     found = []
     for name, own in _by(members, "structure").items():
-        scene, mean, isolator = own[0].scene, means.get(name), None
-        if mean and not scene.flat and scene.dry_friction.fast:
-            at = effective_isolator(scene, mean)
-            isolator = Isolator(mean, float(at.period), float(at.damping), float(at.restoring))
+        scene, isolator, stripe = own[0].scene, None, moved.get(name)
+        at = {} if stripe is None else {"mean": stripe.mean.value, "median": stripe.fractiles[MEDIAN].value}
+        statistic, displacement = next(((key, value) for key, value in at.items() if value), ("", 0.0))
+        if displacement and not scene.flat and scene.dry_friction.fast:
+            linear = effective_isolator(scene, displacement)
+            period, damping, restoring = map(float, (linear.period, linear.damping, linear.restoring))
+            isolator = Isolator(displacement, period, damping, restoring, statistic)
         found.append(Structure(name, scene.title, len(scene.bodies), scene.total_mass * GRAVITY, isolator))
     return found
 

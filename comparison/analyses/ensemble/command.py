@@ -18,7 +18,14 @@ from typing import Any
 from rich.console import Console
 
 from comparison.analyses.ensemble.analysis import FRACTILES, SCALE, Ensemble, Points, as_rows, members_of, refuse_unfit
-from comparison.analyses.ensemble.feature import demand_rows, draw_ensemble, target_sentence, title_of
+from comparison.analyses.ensemble.feature import (
+    agreement_sentence,
+    demand_rows,
+    draw_ensemble,
+    isolator_sentence,
+    largest_differences,
+    target_sentence,
+)
 from comparison.analyses.ensemble.result import PICTURE, STORED, EnsembleResult
 from comparison.analyses.ensemble.target import matched
 from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
@@ -42,7 +49,7 @@ MODELS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # what the workers ask
 SUBSET = 2  # motions of every scene that the engine computes, unless the command says otherwise
 ENGINES = {model.key: model for model in (TRANSLATIONAL, SPATIAL)}
 MAX_SCALES = 100
-NAMED = 12  # motions of the engine that are named one by one
+NAMED = 12  # motions that are named one by one
 
 
 @command
@@ -149,46 +156,50 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
         console.print(table)
     rows = [row for row in demand_rows(result) if row["scale"] == top]
     for structure in result.structures:
-        title = f"{structure.title} ({structure.name}): {motions} {'motion' if motions == 1 else 'motions'}"
-        console.print(f"{title}, at scale {top:g}:", soft_wrap=True, markup=False)
+        own = [row for row in rows if row["scene"] == structure.name]
+        at = f", at scale {top:g}" if len(result.scales) > 1 or top != 1.0 else ""
+        title = f"{structure.title} ({structure.name}): {motions} {'motion' if motions == 1 else 'motions'}{at}:"
+        console.print(title, soft_wrap=True, markup=False)
         shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
         table = new_table("quantity", "unit", "mean", *shares, "largest", "motions")
-        for row in rows:
-            if row["scene"] == structure.name:
-                mean, *others, _ = row["cells"]
-                values = [cell.partition(" ±")[0] for cell in others]
-                table.add_row(row["name"], row["unit"], mean, *values, str(row["stripe"].answered))
+        for row in own:
+            mean, *others, _ = row["cells"]
+            values = [cell.partition(" ±")[0] for cell in others]
+            table.add_row(row["name"], row["unit"], mean, *values, str(row["stripe"].answered))
         console.print(table)
-        if at := structure.isolator:
-            console.print(
-                f"Effective isolator at the mean displacement, {1e3 * at.displacement:.4g} mm: period {at.period:.3g} "
-                f"s, damping {percent(at.damping)}, re-centering ratio {at.restoring:.3g}.",
-                soft_wrap=True,
-            )
-    lacking: dict[str, list[str]] = {}
-    for row in rows:
-        for reason, count in row["stripe"].reasons.items():
-            lacking.setdefault(f"{count} {reason}", []).append(row["name"])
-    for what, names in lacking.items():
-        console.print(f"Without a value: {', '.join(dict.fromkeys(names))}: {what}.", soft_wrap=True)
+        for line in (*missing_sentences(own, result, structure.name), isolator_sentence(structure)):
+            if line:
+                console.print(line, soft_wrap=True, markup=False)
     ended = ", ".join(f"{count} {name}" for name, count in result.outcomes.items())
     count = sum(result.outcomes.values())
     console.print(f"{count} motions by the equations: {ended}. {seconds:.0f} s of compute.", soft_wrap=True)
-    if asked := result.engine.points:
-        where = ", ".join(f"{point['scene']} ({point['status']})" for point in asked)
-        ran = where if len(asked) <= NAMED else f"{len(asked)} motions"
-        console.print(f"The {ENGINES[result.engine.model].title} ran {ran}.", soft_wrap=True, markup=False)
-        table = new_table("quantity", "scene", "difference", "like for like", "errors")
-        for each in filter(lambda each: each.points, result.engine.differences):
-            sizes = (percent(math.nan if n is None else n) for n in (each.largest, each.like_for_like, each.errors))
-            table.add_row(title_of(each.quantity, each.body), each.structure, *sizes)
+    if result.engine.points:
+        table = new_table("quantity", "largest difference", "like for like", "errors")
+        for name, *sizes in largest_differences(result):
+            table.add_row(name, *(percent(math.nan if size is None else size) for size in sizes))
         console.print(table)
         console.print(
-            "Largest difference from the equations of the ensemble, largest difference from the equations with the "
-            "engine's friction law, and the errors of both codes. The error of its residual displacement includes the "
-            "creep of regularized friction.",
+            "Difference: from the equations above. Like for like: from the equations with the engine's friction law. "
+            "Errors: those of both codes; that of the residual displacement includes creep.",
             soft_wrap=True,
         )
+        console.print(agreement_sentence(result), soft_wrap=True, markup=False)
+
+
+def missing_sentences(rows: Sequence[dict[str, Any]], result: EnsembleResult, structure: str) -> list[str]:
+    """Which motions of a structure lack which demands at the largest scale, and why."""
+    lacking: dict[tuple[str, int], list[str]] = {}
+    for row in rows:
+        for reason in row["stripe"].reasons.items():
+            lacking.setdefault(reason, []).append(row["name"])
+    ended = [curve.motion for curve in result.curves_of(structure, "displacement")[0] if curve.values[-1] is None]
+    lines = []
+    for (reason, count), names in lacking.items():
+        every = len(names) == len(rows)
+        which = f" ({', '.join(ended)})" if every and count == len(ended) <= NAMED else ""
+        what = "every demand" if every else ", ".join(names)
+        lines.append(f"Without a value for {count} {'motion' if count == 1 else 'motions'}{which}: {what}: {reason}.")
+    return lines
 
 
 def _parser() -> CommandParser:

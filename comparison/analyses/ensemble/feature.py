@@ -8,16 +8,27 @@ from typing import Any
 
 import numpy as np
 
-from comparison.analyses.ensemble.result import STORED, Curve, EnsembleResult, Statistic, Stripe, Target
+from comparison.analyses.ensemble.result import (
+    STORED,
+    Curve,
+    Difference,
+    EnsembleResult,
+    Statistic,
+    Stripe,
+    Structure,
+    Target,
+)
 from comparison.analyses.panels import draw_panels, panel
 from comparison.report.plots import Panel
 from comparison.report.section import Feature, Section
 from comparison.study.models import EXACT
+from comparison.wording import percent
 from reference.measures.peak_demands import QUANTITIES, unit_of
 from reference.problem import GRAVITY
 
 SHOWN = ("displacement", "residual", "base_shear", "uplift", "support_force_max")
 OF_BODY = {"acceleration": "acceleration of body {}", "drift": "drift below body {}", "torsion": "rotation of body {}"}
+NAMED = 6  # motions of the engine that are named one by one
 WIDTH = 0.3  # of a strip, in steps from one structure to the next
 READ = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "J": ("kJ", 1e-3), "rad": ("mrad", 1e3), "m/s^2": ("g", 1.0 / GRAVITY)}
 
@@ -146,6 +157,45 @@ def target_sentence(target: Target) -> str:
     return f"Scale 1 is that of the target spectrum: least squares over periods {between}."
 
 
+def isolator_sentence(structure: Structure) -> str:
+    """The effective isolator of a structure; "" without one."""
+    if (at := structure.isolator) is None:
+        return ""
+    return (
+        f"Effective isolator of design codes at the {at.statistic} displacement, {1e3 * at.displacement:.4g} mm: "
+        f"period {at.period:.3g} s, damping {percent(at.damping)}, re-centering ratio {at.restoring:.3g}."
+    )
+
+
+def largest_differences(ensemble: EnsembleResult) -> list[tuple[str, float | None, float | None, float | None]]:
+    """Every demand with its largest difference over the structures, that like for like, and its error."""
+    found: dict[str, list[Difference]] = {}
+    for each in ensemble.engine.differences:
+        if each.points:
+            found.setdefault(title_of(each.quantity, each.body), []).append(each)
+    rows = []
+    for name, own in found.items():
+        worst = max(own, key=lambda each: each.like_for_like or 0.0)
+        largest = max((each.largest for each in own if each.largest is not None), default=None)
+        rows.append((name, largest, worst.like_for_like, worst.errors))
+    return rows
+
+
+def agreement_sentence(ensemble: EnsembleResult) -> str:
+    """How closely both codes agree under the same friction law."""
+    engine = ensemble.engine
+    ran = ", ".join(
+        dict.fromkeys(f"{point.get('motion', point['scene'])} ({point['status']})" for point in engine.points[:NAMED])
+    )
+    more = f" and {len(engine.points) - NAMED} more" if len(engine.points) > NAMED else ""
+    known = [(size, name) for name, _, size, _ in largest_differences(ensemble) if size is not None]
+    title = f"The {engine.model} engine computed {len(engine.points)} of the motions: {ran}{more}."
+    if not known:
+        return title
+    size, name = max(known)
+    return f"{title} Given the same friction law, the two codes agree to {percent(size)} or better (worst: {name})."
+
+
 def _matched(ensemble: EnsembleResult) -> list[Panel]:
     """Response spectra of the motions with their factors, at scale 1, and the target."""
     if (target := ensemble.target) is None:
@@ -221,6 +271,8 @@ FEATURE = Feature(
         lambda report, figures: {
             "ensemble_panels": ensemble_panels(report.results.of("ensemble")),
             "ensemble_rows": demand_rows(report.results.of("ensemble")),
+            "agreement_sentence": agreement_sentence,
+            "isolator_sentence": isolator_sentence,
             "target_sentence": target_sentence,
             "title_of": title_of,
         },

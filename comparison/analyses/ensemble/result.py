@@ -37,13 +37,15 @@ class Isolator:
     """The linear isolator that design codes put in the place of the bearing; see `reference.effective_isolator`."""
 
     displacement: float
-    """mean of the largest isolator displacements at the largest scale, by the equations, m"""
+    """mean of the largest isolator displacements at the largest scale, or their median, by the equations, m"""
     period: float
     """effective period at that displacement, s"""
     damping: float
     """effective damping ratio at that displacement"""
     restoring: float
     """re-centering ratio: restoring force over friction force at that displacement"""
+    statistic: str = "mean"
+    """mean, or median where a motion without a value leaves no mean"""
 
 
 @result
@@ -59,7 +61,7 @@ class Structure:
     weight: float
     """N"""
     isolator: Isolator | None = None
-    """null without dry friction, on a plane, and where the mean displacement is not known"""
+    """null without dry friction, on a plane, and where neither mean nor median of the displacement is known"""
 
 
 @result
@@ -162,7 +164,7 @@ class Engine:
     model: str
     """key of the model"""
     points: Sequence[Mapping[str, str]]
-    """scene and status of every motion"""
+    """scene, motion and status of every motion"""
     differences: Sequence[Difference]
     """one for each demand"""
 

@@ -196,7 +196,7 @@ def test_the_command_writes_the_demands_of_every_motion(folder: Path) -> None:
         {"excitation": {"record": {"suite": "suite", "motion": 2}, "scale": 1.0}, "duration": 1.95}
     )
     numbers = reference.demands(reference.trajectory(scene, (0.0, 0.0)))
-    (row,) = (row for row in rows if (row["motion"], row["scale"], row["model"]) == ("motion 2", "1.0", "exact"))
+    (row,) = (row for row in rows if (row["motion"], row["scale"], row["model"]) == ("m2", "1.0", "exact"))
     assert float(row["displacement"]) == numbers.displacement.value
     assert float(row["drift_2"]) == numbers.drift[0].value
     assert float(row["acceleration_1_error"]) == numbers.acceleration[0].error
@@ -304,6 +304,7 @@ def test_several_scenes_have_statistics_of_their_own(folder: Path, undrawn: None
         stiffness = 1.0 / 0.25 + friction / means[0]  # over the weight
         expected = {"displacement": means[0], "period": 2 * math.pi / math.sqrt(9.81 * stiffness)}
         expected |= {"damping": 2 / math.pi * friction / means[0] / stiffness, "restoring": means[0] / 0.25 / friction}
+        assert each["isolator"].pop("statistic") == "mean"
         assert each["isolator"] == pytest.approx(expected, rel=1e-9)
 
 
@@ -409,7 +410,7 @@ def test_motions_are_scaled_to_the_target_spectrum(folder: Path, undrawn: None) 
     assert (target["low"], target["high"]) == (0.2, 1.5)
     assert target["motions"][1]["factor"] == pytest.approx(2.0, rel=2e-3)
     np.testing.assert_allclose(target["motions"][1]["acceleration"], target["acceleration"], rtol=2e-2)
-    second = [row for row in table if row["motion"] == "motion 2"]
+    second = [row for row in table if row["motion"] == "m2"]
     assert [float(row["scale"]) for row in second] == [0.5, 1.0]
     assert [float(row["factor"]) for row in second] == pytest.approx([2.0, 2.0], rel=2e-3)
     peak = np.hypot(motion[:, 1], motion[:, 2]).max()
@@ -448,3 +449,21 @@ def test_a_target_that_is_no_spectrum_is_one_line(
 def test_periods_without_a_target_are_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["mine.toml", "--suite", "suite", "--periods", "0.2", "1"]) == 2
     assert "needs --target" in capsys.readouterr().err
+
+
+def test_the_terminal_names_motions_without_value(
+    folder: Path, undrawn: None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A travel that one motion exceeds: it is named by its file, and the median takes the place of the mean."""
+    assert run("mine.toml", "--suite", "suite", "--engine", "0") == 0
+    reached = sorted(curve["values"][0] for curve in content()["curves"] if curve["quantity"] == "displacement")
+    text = (
+        Path("mine.toml").read_text().replace("friction = 0.05", f"friction = 0.05, travel = {0.5 * sum(reached[1:])}")
+    )
+    Path("mine.toml").write_text(text)
+    capsys.readouterr()
+    assert run("mine.toml", "--suite", "suite", "--engine", "0") == 0
+    said = " ".join(capsys.readouterr().out.split())
+    (name,) = (c["motion"] for c in content()["curves"] if c["quantity"] == "displacement" and None in c["values"])
+    assert f"Without a value for 1 motion ({name}): every demand: travel reached." in said
+    assert f"at the median displacement, {1e3 * reached[1]:.4g} mm" in said

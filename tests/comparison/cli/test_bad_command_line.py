@@ -49,7 +49,7 @@ SCENES = {
     "unknown key": ("title = 'a'\nduration = 3.0\nduratoin = 3.0\n", "duratoin = 3.0: unknown key"),
     "missing key": ("title = 'a'\n", "duration = None: this key is required"),
     "not toml": ("title = \n", "file = "),
-    "negative": ("title = 'a'\nduration = -1.0\n", "duration = -1.0: Input should be greater than 0"),
+    "negative": ("title = 'a'\nduration = -1.0\n", "duration = -1.0: must be greater than 0"),
 }
 
 

@@ -100,9 +100,9 @@ def test_without_the_package_one_line_says_how_to_get_it(
     run = command("fig3-I", "--grid", "2", hierarchy=fake_hierarchy())
     assert run.code == 0
     assert not (run.report / "report.pdf").exists()
-    line = "pip install 'phase-resonance[pdf]'"
+    line = "pip install typst"
     assert run.out.count(line) == 1
-    assert "phase-resonance[pdf]" in page_of(run.report)
+    assert "pip install typst" in page_of(run.report)
     assert run.err == ""
 
 

@@ -104,7 +104,7 @@ WRONG = [  # what runs, and the line behind isolator.friction
     ("{range = [0.2, true], steps = 3}", ".range = [0.2, True]: must be two finite numbers"),
     ("{range = [0.1, 0.2], steps = 1}", ".steps = 1: must be a whole number from 2 to 1000"),
     ("{range = [0.1, 0.2], steps = 2.5}", ".steps = 2.5: must be a whole number"),
-    ("{range = [-0.1, 0.2], steps = 4}", " = -0.1: Input should be greater than"),
+    ("{range = [-0.1, 0.2], steps = 4}", " = -0.1: must be greater than"),
     ("{values = []}", ".values = []: must be a list of 1 to 1000 finite numbers"),
     ("{values = [1, 'a']}", ".values = [1, 'a']: must be a list of 1 to 1000 finite"),
     ("{values = [0.1, 0.1]}", " = 0.1: is there twice"),

@@ -54,7 +54,7 @@ def test_measured_peaks_change_no_digest():
         ({"body": None}, "mu needs the number of a body, 1 or more"),
         ({"quantity": "drift", "body": 1}, "drift needs the number of a body, 2 or more"),
         ({"body": 3}, "measured.0.body = 3: the scene has 2 bodies, the platform is 1"),
-        ({"uncertainty": -0.1}, "measured.0.uncertainty = -0.1: Input should be greater than or equal to 0"),
+        ({"uncertainty": -0.1}, "measured.0.uncertainty = -0.1: must be greater than or equal to 0"),
         ({"uncertainty": None}, "measured.0.uncertainty = None: this key is required"),
         ({"value": float("nan")}, "measured.0.value = nan"),
         ({"phases": None}, "measured.0.phases = None: give the phases of the test, [alpha1, alpha2]"),
