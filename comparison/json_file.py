@@ -1,7 +1,5 @@
 """JSON files of results: written by one command, and read by another that finds them beside the report."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Mapping, Sequence

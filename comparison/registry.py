@@ -1,7 +1,5 @@
 """The features of a study, in the order of the page: what is run, planned, reported, and selected by key."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 from typing import Any

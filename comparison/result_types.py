@@ -5,12 +5,10 @@ Three types hold what JSON cannot: `Number` writes NaN as null, `Radius` writes 
 replaces what UTF-8 does not know.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, fields, is_dataclass
 from types import MappingProxyType
-from typing import Annotated, Any, Literal, TypeVar, dataclass_transform
+from typing import Annotated, Any, Literal, TypeVar, dataclass_transform, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +68,8 @@ def result(cls: type[Class]) -> type[Class]:
     """
     A frozen dataclass that summary.json or a file of its own holds as it is; unknown keys of a file are refused.
 
-    The text below a field is its meaning, with the unit. What a property adds to the file is a `computed_field`.
+    The text beside the type of a field, or below the field, is its meaning, with the unit. What a property adds to the
+    file is a `computed_field`.
     """
     for base in filter(is_dataclass, cls.__bases__):
         properties = TypeAdapter(base).json_schema()["properties"]
@@ -78,4 +77,10 @@ def result(cls: type[Class]) -> type[Class]:
             field.metadata = MappingProxyType({"description": properties[field.name]["description"]})
     computed = any(hasattr(value, "decorator_info") for value in vars(cls).values())  # which a file has, too
     cls.__pydantic_config__ = {**RESULT, "extra": "ignore" if computed else "forbid"}  # type: ignore[attr-defined]
-    return dataclass(frozen=True)(cls)
+    made = dataclass(frozen=True)(cls)
+    kinds = get_type_hints(made, include_extras=True)
+    for field in fields(made):  # type: ignore[arg-type]
+        texts = [text for text in getattr(kinds[field.name], "__metadata__", ()) if isinstance(text, str)]
+        if texts:
+            field.metadata = MappingProxyType({"description": texts[0]})
+    return made

@@ -11,22 +11,21 @@ number of the signal, 130 for Ctrl-C; 141 whoever read the output closed it. Aft
 goes on where it stopped.
 """
 
-from __future__ import annotations
-
 if __name__ == "__main__":
     from comparison.cli.start import start
 
     start("comparison.run")  # does not return: the module is loaded once, under its own name
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 
 from rich.console import Console
 
-from comparison.cli.arguments import EndedEarlyError, command
+from comparison.cli.arguments import EndedEarlyError, changed, command, command_line, resume_hint
 from comparison.cli.closing import print_check, print_closing, print_faults, print_level
 from comparison.cli.computing import workers
 from comparison.cli.options import Options, parsed
@@ -36,18 +35,16 @@ from comparison.cli.terminal import print_models_left_out, print_plan, print_sto
 from comparison.cli.user_models import Engines, as_words
 from comparison.registry import chosen_analyses, first_tasks, levels
 from comparison.runner.cache import Cache, store_beside
-from comparison.runner.deadline import Deadline, TimeUpError
 from comparison.runner.executors import Pool
 from comparison.runner.output import clear_dead
 from comparison.runner.processes import process_pool
-from comparison.runner.progress import progress, wide_console
-from comparison.runner.resume import changed, command_line, resume_hint
+from comparison.runner.progress import Deadline, TimeUpError, progress, wide_console
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.costs import WRITING, seconds_of_analysis, seconds_of_model
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
 from comparison.study.study import Study
-from comparison.surfaces.tasks import surface_tasks
+from comparison.surfaces.surfaces import surface_tasks
 from reference.command import stoppable
 
 import_module("multibody.models.engine")  # workers load it again: where that fails, the command ends here in one line
@@ -112,68 +109,51 @@ def _ended(study: Study, options: Options, console: Console, words: Sequence[str
     """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
     store = Cache(store_beside(options.out))
     models = {model.amplification for model in study.hierarchy}
-
-    def hint(rest: Sequence[str]) -> str:
-        return resume_hint(store, rest, batches=len(study.batches()))
-
-    with workers(options.jobs, options.scheduler, models, executor, words, hint) as (width, pool):
-        return _run(study, options, width, console, words, pool, store, began, hint)
-
-
-def _run(
-    study: Study,
-    options: Options,
-    jobs: int,
-    console: Console,
-    words: Sequence[str],
-    pool: Pool,
-    store: Cache,
-    began: Clock,
-    hint: Callable[[Sequence[str]], str],
-) -> int:
-    clear_dead(options.out)
-    analyses = chosen_analyses(study)
-    first = first_tasks(study, analyses)
-    surfaces = surface_tasks(study)
-    keys = [task.key for task in surfaces]
-    store.trim(keys)
-    if options.fresh:  # gone before anything is computed: what an interrupted run left is new
-        store.remove([*keys, *(task.key for task in first)])
-    results = TaskResults(store, options.fresh)
-    print_stored(console, results, surfaces, first)
-    stages = {analysis.stage: seconds_of_analysis(study, analysis.key, analysis.stage) for analysis in analyses}
-    total = WRITING + sum(stages.values()) + sum(seconds_of_model(study, model) for model in study.hierarchy)
-    reports = Reports(options, jobs, words, began)
-    complete: Complete | None = None
-    stopped: KeyboardInterrupt | None = None
-    with progress(console, total, jobs) as display, Deadline(began.wall, options.budget) as deadline:
-        runner = Runner(results, jobs, pool, display, stages)
-        try:
-            planned = levels(study)
-            for level in planned if results.missing(surfaces) else planned[-1:]:
-                complete = computed_level(level, runner)
-                if level.last or reports.is_due(complete, runner):
-                    before = reports.results
-                    said = reports.write(complete, runner)
-                    deadline.keep_free(reports.seconds)
-                    if not level.last:
-                        print_level(console, said, before, level, reports.place)
-        except TimeUpError:
-            deadline.keep_free(0.0)
-            with suppress(TimeUpError):  # then the report before stays
+    hint = partial(resume_hint, store, batches=len(study.batches()))
+    with workers(options.jobs, options.scheduler, models, executor, words, hint) as (jobs, pool):
+        clear_dead(options.out)
+        analyses = chosen_analyses(study)
+        first = first_tasks(study, analyses)
+        surfaces = surface_tasks(study)
+        keys = [task.key for task in surfaces]
+        store.trim(keys)
+        if options.fresh:  # gone before anything is computed: what an interrupted run left is new
+            store.remove([*keys, *(task.key for task in first)])
+        results = TaskResults(store, options.fresh)
+        print_stored(console, results, surfaces, first)
+        stages = {analysis.stage: seconds_of_analysis(study, analysis.key, analysis.stage) for analysis in analyses}
+        total = WRITING + sum(stages.values()) + sum(seconds_of_model(study, model) for model in study.hierarchy)
+        reports = Reports(options, jobs, words, began)
+        complete: Complete | None = None
+        stopped: KeyboardInterrupt | None = None
+        with progress(console, total, jobs) as display, Deadline(began.wall, options.budget) as deadline:
+            runner = Runner(results, jobs, pool, display, stages)
+            try:
+                planned = levels(study)
+                for level in planned if results.missing(surfaces) else planned[-1:]:
+                    complete = computed_level(level, runner)
+                    if level.last or reports.is_due(complete, runner):
+                        before = reports.results
+                        said = reports.write(complete, runner)
+                        deadline.keep_free(reports.seconds)
+                        if not level.last:
+                            print_level(console, said, before, level, reports.place)
+            except TimeUpError:
+                deadline.keep_free(0.0)
+                with suppress(TimeUpError):  # then the report before stays
+                    reports.write_stopped(complete, runner)
+            except KeyboardInterrupt as stop:
                 reports.write_stopped(complete, runner)
-        except KeyboardInterrupt as stop:
-            reports.write_stopped(complete, runner)
-            stopped = stop
-    found = reports.results
-    if found is not None:
-        print_faults(found)
-        print_closing(console, found, replace(options, jobs=jobs), words, reports.place)
-        if options.check:
-            print_check(found)
-    if stopped is not None:
-        raise stopped
-    if found is None:
-        rule = "no level of the study was complete by then"
-        raise EndedEarlyError(3, f"command line: --budget = {options.budget:g}: {rule}: {hint(words)}")
-    return 1 if options.check and found.broken else 0
+                stopped = stop
+        found = reports.results
+        if found is not None:
+            print_faults(found)
+            print_closing(console, found, replace(options, jobs=jobs), words, reports.place)
+            if options.check:
+                print_check(found)
+        if stopped is not None:
+            raise stopped
+        if found is None:
+            rule = "no level of the study was complete by then"
+            raise EndedEarlyError(3, f"command line: --budget = {options.budget:g}: {rule}: {hint(words)}")
+        return 1 if options.check and found.broken else 0

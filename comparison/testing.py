@@ -1,7 +1,5 @@
 """A gate for the tests of users: do the equations and the engine agree about a scene?"""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -12,7 +10,7 @@ import xarray as xr
 from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_softened_bars
 from comparison.study.study import Study
-from comparison.study.user_models import user_model
+from comparison.study.user_models import LAWS, user_model
 from comparison.surfaces.differences import pair_step
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.unanswered import unanswered
@@ -20,7 +18,6 @@ from reference.problem import Scene, load_scene
 from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_whole_number
 
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
-LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]
 ENGINE = "engine"  # key and title of the user's engine
 
 

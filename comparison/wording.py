@@ -1,7 +1,5 @@
 """How numbers and symbols are written in the report."""
 
-from __future__ import annotations
-
 import math
 import re
 

@@ -30,10 +30,9 @@ from comparison.json_file import json_text
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.executors import cores
 from comparison.runner.processes import process_pool
-from comparison.runner.runner import Runner
+from comparison.runner.runner import Runner, compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.runner.warm_up import compiling_task
 from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene
 

@@ -126,10 +126,13 @@ def _code(main: Callable[[], int]) -> int:
     """The exit code of `main`, whatever it does."""
     try:
         for word in sys.argv[1:]:
-            if not _is_text(word):
+            if any("\ud800" <= letter <= "\udfff" for letter in word):
                 _say(f"command line: {word!r}: is not text in UTF-8: rename the file, or give another")
                 return 2
-        code = main()
+        try:
+            code = main()
+        except SystemExit as end:  # of argparse
+            code = end.code if isinstance(end.code, int) else 0 if end.code is None else UNEXPECTED
         sys.stdout.flush()
         return code
     except SceneError as error:
@@ -141,22 +144,10 @@ def _code(main: Callable[[], int]) -> int:
     except OutputError as error:
         _say(f"standard output cannot be written: {error}: the command ended early")
         return CLOSED if error.closed else UNEXPECTED
-    except SystemExit as end:  # of argparse
-        return _after_exit(end)
     except Exception as error:
         what = " ".join(f"{type(error).__name__}: {error}".split())
         _say(f"unexpected error: {what[:500]}; {_details()}")
         return UNEXPECTED
-
-
-def _after_exit(end: SystemExit) -> int:
-    """The code of a parser that ends the process by itself, when what it printed is out."""
-    try:
-        sys.stdout.flush()
-    except OutputError as error:
-        _say(f"standard output cannot be written: {error}")
-        return CLOSED if error.closed else UNEXPECTED
-    return end.code if isinstance(end.code, int) else 0 if end.code is None else UNEXPECTED
 
 
 def _details() -> str:
@@ -174,14 +165,6 @@ def _details() -> str:
 def _say(line: str) -> None:
     with suppress(Exception):  # nobody listens
         print(line, file=sys.stderr, flush=True)
-
-
-def _is_text(word: str) -> bool:
-    try:
-        word.encode()
-    except UnicodeError:
-        return False
-    return True
 
 
 def _flush_at_last(output: TextIO) -> None:

@@ -1,21 +1,22 @@
 """
-What all commands share: the options with one meaning, the checks of their values, and the exit codes.
+What all commands share: the options with one meaning, the checks of their values, the exit codes, and the command that
+goes on where one was ended.
 
 A wrong option ends every command with exit code 2 and one line that names the option, its value and the rule.
 """
 
-from __future__ import annotations
-
 import argparse
+import shlex
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
 
+from comparison.runner.cache import Cache
 from comparison.runner.executors import cores
-from comparison.runner.resume import invocation
+from comparison.runner.task import BATCH, RESULT
 from reference.command import OneLineParser, UsageError
 from reference.problem import SceneError
 
@@ -114,3 +115,49 @@ def command(main: Callable[Concatenate[Sequence[str], Rest], int]) -> Callable[.
             return error.code
 
     return ended
+
+
+def invocation(command: str) -> list[str]:
+    """The words that start a command: those of the console script where it was started by that."""
+    script = ["phase-resonance", command]
+    return script if sys.argv[0] == " ".join(script) else ["python", "-m", f"comparison.{command}"]
+
+
+def command_line(words: Sequence[str], command: str = "run") -> str:
+    """A command as it is typed: its name, and the words after it."""
+    return shlex.join([*invocation(command), *words])
+
+
+def changed(
+    words: Sequence[str], added: Sequence[str] = (), flags: Collection[str] = (), options: Collection[str] = ()
+) -> list[str]:
+    """
+    The words of a command line with other options. What stands behind "--" is no option and stays.
+
+    flags, options: names to leave out, of options without a value and with one.
+
+    Examples
+    --------
+    >>> changed(["--grid", "4", "--fresh", "--", "-a.toml"], ["--plan"], flags=["--fresh"], options=["--grid"])
+    ['--plan', '--', '-a.toml']
+    """
+    end = words.index("--") if "--" in words else len(words)
+    kept, before = [], list(words[:end])
+    while before:
+        word = before.pop(0)
+        if word in options:
+            before = before[1:]
+        elif word not in flags and word.partition("=")[0] not in options:
+            kept.append(word)
+    return [*kept, *added, *words[end:]]
+
+
+def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
+    """How much is kept where, and the command for the rest; batches: number of those of a study."""
+    rest = changed(words, flags=["--fresh"])
+    tasks = cache.kept[RESULT]
+    if batches is None:
+        kept = f"{tasks} results are"
+    else:
+        kept = f"{cache.kept[BATCH]} of {batches} batches{f' and {tasks} analyses' if tasks else ''} are"
+    return f"{kept} kept in {str(cache.folder)!r}; go on with: {command_line(rest, command)}"

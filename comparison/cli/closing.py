@@ -1,7 +1,5 @@
 """What the terminal says after a run: one table, what to beware of, the sentences of the page, what to do next."""
 
-from __future__ import annotations
-
 import math
 import shlex
 import sys
@@ -10,11 +8,11 @@ from pathlib import Path
 
 from rich.console import Console
 
+from comparison.cli.arguments import changed, command_line
 from comparison.cli.options import Options
 from comparison.cli.terminal import new_table
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
-from comparison.runner.resume import changed, command_line
 from comparison.study.levels import Level
 from comparison.surfaces.headline import Headline
 from comparison.wording import percent, signed

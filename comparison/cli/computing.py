@@ -5,31 +5,28 @@ Every result is stored as it arrives, in DIR.tiles beside `--out DIR`, so that t
 stopped.
 """
 
-from __future__ import annotations
-
 import argparse
 import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from typing import Any
 
 from rich.console import Console
 
-from comparison.cli.arguments import EndedEarlyError, jobs
+from comparison.cli.arguments import EndedEarlyError, changed, command_line, jobs, resume_hint
 from comparison.runner.cache import Cache, StoreError, refuse_foreign_store, store_beside
 from comparison.runner.dask import cluster
+from comparison.runner.environment import provenance
 from comparison.runner.executors import ExecutorLostError, Pool
 from comparison.runner.output import destination
 from comparison.runner.processes import process_pool
 from comparison.runner.progress import progress
-from comparison.runner.provenance import provenance
-from comparison.runner.resume import changed, command_line, resume_hint
-from comparison.runner.runner import Runner
+from comparison.runner.runner import Runner, compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.runner.warm_up import compiling_task
 
 
 def run_facts(command: str, options: argparse.Namespace, words: Sequence[str], begin: float) -> dict[str, Any]:
@@ -65,10 +62,7 @@ def computed(
     if stored := len(tasks) - len(missing):
         line = f"{stored} of {len(tasks)} tasks are in {cache.folder}: only the others are computed."
         console.print(line, soft_wrap=True)  # a path is copied whole
-
-    def hint(rest: Sequence[str]) -> str:
-        return resume_hint(cache, rest, command)
-
+    hint = partial(resume_hint, cache, command=command)
     with (
         workers(width, options.scheduler, models, executor, words, hint) as (count, pool),
         progress(console, sum(task.seconds for task in missing), count) as display,

@@ -4,11 +4,10 @@
 The directory appears whole or not at all, and never in the place of what somebody else wrote.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 
@@ -96,15 +95,15 @@ def _move_entries(source: Path, target: Path) -> None:
 
 def _free(path: Path) -> Path:
     """The directory that is meant. Raises SceneError, one line, if it cannot be made or has something in it."""
+    refusal = partial(SceneError, "command line", PLACE, str(path))
     if not str(path).isprintable():
-        raise SceneError("command line", PLACE, str(path), "must be a name of printable characters")
+        raise refusal("must be a name of printable characters")
     place = destination(path, PLACE)
     try:
         taken = sorted({*os.listdir(place)} - {".git"}) if place.exists() else []
     except OSError as error:
-        raise SceneError("command line", PLACE, str(path), f"cannot be read: {error.strerror}") from None
+        raise refusal(f"cannot be read: {error.strerror}") from None
     if taken:
-        rule = f"holds {taken[0]!r}: give a new directory, or one that is empty"
-        raise SceneError("command line", PLACE, str(path), rule)
+        raise refusal(f"holds {taken[0]!r}: give a new directory, or one that is empty")
     refuse_unwritable(place, place, PLACE)
     return place

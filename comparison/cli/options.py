@@ -1,7 +1,5 @@
 """The command line, checked before anything is computed."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """The reports of a run: one after each level, each in the place of the one before."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -11,25 +9,22 @@ from typing import Any
 
 import xarray as xr
 
-from comparison.cli.arguments import writing
+from comparison.cli.arguments import command_line, writing
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
 from comparison.registry import EARLIER, chosen_analyses, first_tasks, report_of
 from comparison.report.pdf import why_no_pdf
 from comparison.report.results import Results
 from comparison.report.section import Feature, Report
+from comparison.runner.environment import provenance
 from comparison.runner.output import on_stderr, replace_report
-from comparison.runner.provenance import provenance
-from comparison.runner.resume import command_line
-from comparison.runner.runner import Runner
+from comparison.runner.runner import Runner, compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.runner.warm_up import compiling_task
 from comparison.study.levels import Level
 from comparison.study.study import Study
 from comparison.surfaces.alerts import Alert
-from comparison.surfaces.surfaces import labeled_surfaces
-from comparison.surfaces.tasks import batch_results, surface_tasks
+from comparison.surfaces.surfaces import batch_results, labeled_surfaces, surface_tasks
 from comparison.surfaces.unanswered import compared_study
 
 WITH_THE_LAST = "it comes with the last level of a run"

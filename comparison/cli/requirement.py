@@ -1,7 +1,5 @@
 """Where pip finds the very version that runs here, for machines that have not installed it."""
 
-from __future__ import annotations
-
 import json
 import re
 import subprocess
@@ -11,7 +9,7 @@ from typing import Any
 from urllib.parse import urlsplit, urlunsplit
 from urllib.request import url2pathname
 
-from comparison.runner.provenance import git
+from comparison.runner.environment import git
 from reference.problem.version import __version__
 
 NAME = "phase-resonance"

@@ -1,7 +1,5 @@
 """What the terminal says before a run: what would be computed, and roughly how long it would take."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from rich.box import SIMPLE_HEAD
@@ -18,7 +16,7 @@ from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_anal
 from comparison.study.models import models_of, why_not_spatial
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
-from comparison.surfaces.tasks import surface_tasks
+from comparison.surfaces.surfaces import surface_tasks
 from reference.problem import Scene
 from reference.problem.plausibility import implausible_values
 

@@ -5,8 +5,6 @@ The function is imported and looked at in a process of its own, so that one that
 refused in one line before anything is computed.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import sys
@@ -21,7 +19,7 @@ from comparison.runner.environment import engine_fingerprint
 from comparison.runner.executors import TimeLimitError, WorkerDiedError
 from comparison.runner.processes import Workers
 from comparison.study.models import MODEL_HIERARCHY, Model
-from comparison.study.user_models import LIKE, TIME_LIMIT, names_of, note_line, silent, user_function, user_model
+from comparison.study.user_models import LAWS, LIKE, TIME_LIMIT, names_of, note_line, silent, user_function, user_model
 from comparison.wording import exception_line
 from reference.problem import SceneError
 from reference.problem.acceptance import ENGINE_NAME, Acceptance
@@ -30,11 +28,11 @@ OPTION, LIMIT_OPTION = "--model", "--model-limit"
 FORM = "NAME=module:function[@KEY]"
 DOTTED = r"[^\W\d]\w*(?:\.[^\W\d]\w*)*"
 SPEC = re.compile(rf"(?P<name>[^=]*)=(?P<function>{DOTTED}:{DOTTED})(?:@(?P<like>.*))?")
-LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]
 TAKEN = {*(model.key for model in MODEL_HIERARCHY), "like-for-like", *Acceptance.model_fields}
 IMPORTING = 60.0  # s of processor time that importing an engine may take
 
 Engines = Mapping[str, str | Callable[..., Any]]
+_refusal = partial(SceneError, "command line", OPTION)
 
 
 def add_models(parser: CommandParser) -> None:
@@ -58,17 +56,14 @@ def user_models(specs: Sequence[str], limit: str | None = None, scheduler: str |
     """The models that `--model` enters, none with a cluster, whose workers cannot import them. Raises SceneError."""
     seconds = TIME_LIMIT if limit is None else number(LIMIT_OPTION, limit, 1.0, 1e6, "s of processor time")
     if specs and scheduler is not None:
-        rule = "is a function of this machine, --scheduler computes on others: give one of the two"
-        raise SceneError("command line", OPTION, specs[0], rule)
+        raise _refusal(specs[0], "is a function of this machine, --scheduler computes on others: give one of the two")
     parts = [_parts(spec) for spec in specs]
     names = [name for name, _, _ in parts]
     for spec, name in zip(specs, names):
         if name in TAKEN:
-            raise SceneError(
-                "command line", OPTION, spec, f"{name} names a model, a difference or a limit: choose another name"
-            )
+            raise _refusal(spec, f"{name} names a model, a difference or a limit: choose another name")
         if names.count(name) > 1:
-            raise SceneError("command line", OPTION, spec, f"{name} is there twice: every engine needs a name")
+            raise _refusal(spec, f"{name} is there twice: every engine needs a name")
     if specs and (folder := os.getcwd()) not in sys.path and "" not in sys.path:
         sys.path.append(folder)  # behind all else: a file of the user hides no module of the project
     return tuple(
@@ -96,13 +91,12 @@ def _parts(spec: str) -> tuple[str, str, str]:
     """Name, place of the function and key of the model with the same law."""
     match = SPEC.fullmatch(spec)
     if match is None:
-        raise SceneError("command line", OPTION, spec, f"must be {FORM}, as mine=my_engine:amplification")
+        raise _refusal(spec, f"must be {FORM}, as mine=my_engine:amplification")
     name, function, like = match["name"], match["function"], match["like"] or LIKE
     if not ENGINE_NAME.fullmatch(name):
-        rule = "NAME must begin with a letter and have at most 30 letters, digits and -"
-        raise SceneError("command line", OPTION, spec, rule)
+        raise _refusal(spec, "NAME must begin with a letter and have at most 30 letters, digits and -")
     if like not in LAWS:
-        raise SceneError("command line", OPTION, spec, f"KEY must be one of {', '.join(LAWS)}")
+        raise _refusal(spec, f"KEY must be one of {', '.join(LAWS)}")
     return name, function, like
 
 
@@ -118,7 +112,7 @@ def _looked_at(spec: str, path: str) -> dict[str, Any]:
     finally:
         workers.abandon()
     if fault:
-        raise SceneError("command line", OPTION, spec, fault)
+        raise _refusal(spec, fault)
     return {"function": path, **about}
 
 

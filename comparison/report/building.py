@@ -1,7 +1,5 @@
 """What a run found, built into the one `Report` that page, files and terminal are made from."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 

@@ -1,7 +1,5 @@
 """Drawings of a report: made by the workers, kept like every result, and drawn here if that failed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Words of the field that a reader of the first screen may not know, explained at the pointer and the keyboard."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable
 

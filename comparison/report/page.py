@@ -1,10 +1,7 @@
 """The pages of a report: shell and first screen."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
-import math
 from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib import resources
@@ -18,13 +15,10 @@ from comparison.analyses.motions.page_data import packed, packed_motions
 from comparison.report.glossary import emphasized, term
 from comparison.report.page_data import page_data
 from comparison.report.results import VALIDATED, Results
-from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report
 from comparison.report.surface_sections import applied_models
-from comparison.study.study import Study
 from comparison.surfaces.alerts import Alert
-from comparison.surfaces.waterfall import Waterfall
-from comparison.surfaces.waterfall_chart import Scale, charts, scales
+from comparison.surfaces.waterfall_chart import bars_of, scale_of
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
 
 SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
@@ -33,14 +27,16 @@ SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions
 def pages(figures: Path, report: Report) -> dict[str, str]:
     """index.html, which answers the question, and verification.html, which verifies the tool, each whole by itself."""
     study, results = report.study, report.results
-    axes = scales([waterfall for scene in results.scenes for waterfall in scene.waterfalls])
+    waterfalls = [waterfall for scene in results.scenes for waterfall in scene.waterfalls]
     answers = {
         "alerts": _alert_groups(results),
         "has_engine": any(model.side == "engine" for model in applied_models(study)),
-        "question": _question(study),
         "validated": VALIDATED,
-        "cards": [_card(scene, axes) for scene in results.scenes],
-        "scales": axes,
+        "bars_of": bars_of,
+        "scales": {
+            "mean": scale_of((each.bars, each.total) for each in waterfalls),
+            "largest": scale_of((each.largest.bars, each.largest.total) for each in waterfalls),
+        },
         "effects": {model.key: model.effect or model.title for model in study.hierarchy},
         "data": packed(page_data(report).encode()),
         "motions": packed_motions(report),
@@ -115,14 +111,6 @@ def _environment() -> jinja2.Environment:
     return environment
 
 
-def _question(study: Study) -> str:
-    """Over what the page shows the amplification factors: phases, records, or both."""
-    phases = f"over {study.grid} × {study.grid} initial phases of the two-frequency loading"
-    if not study.phased:
-        return "under a recorded motion" if len(study.scenes) == 1 else "under recorded motions"
-    return phases if len(study.phased) == len(study.scenes) else f"{phases}, or under a recorded motion"
-
-
 ALERTS = {
     "refused": ("model without any usable value", "models without any usable value"),
     "limit": ("acceptance limit broken", "acceptance limits broken"),
@@ -147,32 +135,3 @@ def _alert_groups(results: Results) -> list[dict[str, Any]]:
         }
         for (level, kind, help_text), alerts in groups.items()
     ]
-
-
-def _card(scene: SceneResult, axes: dict[str, Scale]) -> dict[str, Any]:
-    """One scene on the first screen."""
-    bodies = [
-        {
-            "sentence": headline.statement,
-            "bars": charts(waterfall, axes),
-            "mean_caption": f"mu_{waterfall.body}, {_phases_of(waterfall, scene)}",
-            "largest_caption": f"mu_{waterfall.body}, {_place_of(waterfall)}",
-        }
-        for headline, waterfall in zip(scene.headlines, scene.waterfalls)
-    ]
-    return {"scene": scene, "bodies": bodies}
-
-
-def _phases_of(waterfall: Waterfall, scene: SceneResult) -> str:
-    """Over which phase pairs the means are."""
-    if scene.recorded:
-        return "under the record"
-    pairs = "phase pair" if waterfall.points == 1 else "phase pairs"
-    over = f"mean over {waterfall.points} {pairs}, {waterfall.independent} of them independent"
-    return f"{over}; standard deviation of the total {percent(waterfall.spread)}"
-
-
-def _place_of(waterfall: Waterfall) -> str:
-    """Where the largest difference is."""
-    first, second = waterfall.largest.phases
-    return f"at ({degrees(first)}, {degrees(second)})" if math.isfinite(first) else "no difference is known"

@@ -1,9 +1,6 @@
 """What the page's script draws: surfaces, where their difference is as large as its uncertainty, motions."""
 
-from __future__ import annotations
-
 import json
-from collections.abc import Mapping
 from typing import Any
 
 import contourpy
@@ -51,7 +48,7 @@ def page_data(report: Report) -> str:
                 "recorded": scene.recorded,
                 "flat": scene.flat,
                 "pairs": [_pair(report, scene, pair) for pair in study.pairs(scene)],
-                "models": _models(report, scene),
+                "models": {model.key: _model(report, scene, model) for model in models_of(scene, study.hierarchy)},
                 "contact": contact_geometry(scene),
                 "places": list(places(report, scene, starts)),
                 "spectra": spectrum_axis(report, scene),
@@ -91,14 +88,7 @@ def _surface(report: Report, scene: Scene, model: Model) -> bool:
     return model.side != "user" and not incomplete
 
 
-def _models(report: Report, scene: Scene) -> dict[str, Any]:
-    completed = {(each.model, each.body): each for each in report.completions if each.scene == scene.name}
-    return {model.key: _model(report, scene, completed, model) for model in models_of(scene, report.study.hierarchy)}
-
-
-def _model(
-    report: Report, scene: Scene, completed: Mapping[tuple[str, int], Completion], model: Model
-) -> dict[str, Any]:
+def _model(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     """
     One model of a scene.
 
@@ -111,6 +101,8 @@ def _model(
     """
     bodies = range(1, len(scene.bodies) + 1)
     surface = not scene.recorded and _surface(report, scene, model)
+    place = scene.name, model.key
+    completed = {each.body: each for each in report.completions if (each.scene, each.model) == place}
 
     def listed(name: str, digits: int) -> list[Rows]:
         values = values_of(report.surfaces, name, scene.name, model)
@@ -123,7 +115,7 @@ def _model(
         "mu": listed("mu", DIGITS),
         "error": None if surface else listed("error", ERROR_DIGITS),
         "worst": [_worst(report, scene, model, body) for body in bodies],
-        "completed": [_completed(completed.get((model.key, body))) for body in bodies],
+        "completed": [_completed(completed.get(body)) for body in bodies],
     }
 
 

@@ -1,7 +1,5 @@
 """report.pdf: two to four pages for a client or a supplement, typeset by typst, which is an optional extra."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import tempfile

@@ -1,9 +1,8 @@
 """What report.pdf shows, as texts and numbers for its template; as much as fits on four pages."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 from comparison.analyses.assumptions.validity import ASSUMPTIONS
@@ -111,15 +110,7 @@ def _waterfalls(results: Results, shown: Sequence[Headline]) -> tuple[list[dict[
             "title": f"{shortened(waterfall.scene, MAX_NAME)}, {names[waterfall.scene, waterfall.body]}",
             "note": "under the record" if waterfall.scene in recorded else _points(waterfall),
             "bars": [
-                {
-                    "label": effects[bar.model],
-                    "left": bar.left,
-                    "width": bar.width,
-                    "kind": bar.kind,
-                    "error": list(bar.error),
-                    "text": bar.text,
-                }
-                for bar in bars_of(waterfall.bars, waterfall.total, scale)
+                {"label": effects[bar.model], **asdict(bar)} for bar in bars_of(waterfall.bars, waterfall.total, scale)
             ],
         }
         for waterfall in kept

@@ -1,7 +1,5 @@
 """What the plots of the page's sections share, as plot.js draws them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

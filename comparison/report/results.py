@@ -5,8 +5,6 @@ The page, summary.md, JUnit and summary.json are made from one `Results` object.
 summary.json: its JSON schema is generated from them and written beside it. Relative sizes are fractions, not percent.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any, Literal
 
@@ -33,39 +31,26 @@ VALIDATED = (
 class WorkPart(Part):
     """One kind of work beside the surfaces."""
 
-    tasks: int
-    """number of tasks"""
-    stored_before: int
-    """of these, taken from an earlier run"""
-    seconds: float
-    """processor time of all of them when they were computed, s"""
+    tasks: int = Field(description="number of tasks")
+    stored_before: int = Field(description="of these, taken from an earlier run")
+    seconds: float = Field(description="processor time of all of them when they were computed, s")
 
 
 class Run(Part):
     """How the report was made."""
 
-    command: Text
-    """the command line"""
-    began: str
-    """date and time, UTC"""
-    wall_seconds: float
-    """wall time from the start of the command until the report was written, s"""
+    command: Text = Field(description="the command line")
+    began: str = Field(description="date and time, UTC")
+    wall_seconds: float = Field(description="wall time from the start of the command until the report was written, s")
     processor_seconds: float
     """processor time of the command and its worker processes until then, s; workers of a cluster are not counted"""
-    tiles: int
-    """number of batches"""
-    tiles_stored_before: int
-    """of these, taken from an earlier run"""
-    parts: dict[str, WorkPart]
-    """work beside the surfaces, by its name"""
-    jobs: int
-    """worker processes"""
-    provenance: dict[str, Text]
-    """versions, machine, commit"""
-    level: int
-    """level of the study that the report holds"""
-    levels: int
-    """levels of the study: a report of an earlier one is replaced as the run goes on"""
+    tiles: int = Field(description="number of batches")
+    tiles_stored_before: int = Field(description="of these, taken from an earlier run")
+    parts: dict[str, WorkPart] = Field(description="work beside the surfaces, by its name")
+    jobs: int = Field(description="worker processes")
+    provenance: dict[str, Text] = Field(description="versions, machine, commit")
+    level: int = Field(description="level of the study that the report holds")
+    levels: int = Field(description="levels of the study: a report of an earlier one is replaced as the run goes on")
 
     @property
     def took(self) -> str:
@@ -79,16 +64,11 @@ class Run(Part):
 class ModelDescription(Part):
     """One model of the hierarchy."""
 
-    key: str
-    """its name everywhere in this file"""
-    title: str
-    """its name for readers"""
-    adds: str
-    """what it adds to the model before it"""
-    effect: str
-    """the same in two or three words, as the cause of a difference"""
-    settings: dict[str, Any]
-    """keyword arguments of its functions"""
+    key: str = Field(description="its name everywhere in this file")
+    title: str = Field(description="its name for readers")
+    adds: str = Field(description="what it adds to the model before it")
+    effect: str = Field(description="the same in two or three words, as the cause of a difference")
+    settings: dict[str, Any] = Field(description="keyword arguments of its functions")
 
 
 class Results(Part):
@@ -100,26 +80,16 @@ class Results(Part):
     """what this file is"""
     version: Literal[5] = VERSION
     """grows when a key changes its meaning or goes; new keys may come without"""
-    run: Run
-    """how the report was made"""
-    grid: int
-    """phases per axis"""
-    tolerance: float
-    """relative error asked of every mu"""
-    models: list[ModelDescription]
-    """the model hierarchy, in order"""
-    scenes: list[SceneResult]
-    """in the order of the command"""
-    absent: dict[str, str]
-    """analyses that were made of no scene, with the reason"""
-    unanswered: list[Unanswered]
-    """models without a value at some or all phase pairs of a scene"""
-    alerts: list[Alert]
-    """what a reader must know before trusting a number, the most serious first"""
-    faults: list[Text]
-    """error messages of the solvers"""
-    no_pdf: Text
-    """why there is no report.pdf and what helps; empty where there is one"""
+    run: Run = Field(description="how the report was made")
+    grid: int = Field(description="phases per axis")
+    tolerance: float = Field(description="relative error asked of every mu")
+    models: list[ModelDescription] = Field(description="the model hierarchy, in order")
+    scenes: list[SceneResult] = Field(description="in the order of the command")
+    absent: dict[str, str] = Field(description="analyses that were made of no scene, with the reason")
+    unanswered: list[Unanswered] = Field(description="models without a value at some or all phase pairs of a scene")
+    alerts: list[Alert] = Field(description="what a reader must know before trusting a number, the most serious first")
+    faults: list[Text] = Field(description="error messages of the solvers")
+    no_pdf: Text = Field(description="why there is no report.pdf and what helps; empty where there is one")
 
     def of(self, key: str) -> Any:
         """What a feature found; None where it found nothing."""

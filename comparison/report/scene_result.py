@@ -1,8 +1,8 @@
 """The results of one scene; the registry adds the fields of its features."""
 
-from __future__ import annotations
+from typing import Annotated, Any
 
-from typing import Any
+from pydantic import Field
 
 from comparison.result_types import Number, Part, Text, result
 from comparison.surfaces.acceptance import Limit
@@ -18,79 +18,52 @@ from reference.problem.acceptance import Acceptance
 class ModelOutcome(Part):
     """What one model did in one scene."""
 
-    phases_per_axis: int
-    """values of alpha1, and of alpha2"""
-    points: int
-    """phase pairs that the model was asked for"""
-    computed: int
-    """of these, computed; the others are their mirror images"""
+    phases_per_axis: int = Field(description="values of alpha1, and of alpha2")
+    points: int = Field(description="phase pairs that the model was asked for")
+    computed: int = Field(description="of these, computed; the others are their mirror images")
     outcomes: dict[str, int]
     """how many phase pairs ended in each named outcome, most frequent first"""
-    advice: dict[str, Text]
-    """by outcome that is not ok: what it means and what to try"""
+    advice: dict[str, Text] = Field(description="by outcome that is not ok: what it means and what to try")
     cap_share: Number
     """largest horizontal displacement of the platform over rho; null without an answer"""
-    travel_share: Number
-    """the same over the isolator's travel; null without a travel"""
-    cost: float
-    """compute time, s"""
+    travel_share: Number = Field(description="the same over the isolator's travel; null without a travel")
+    cost: float = Field(description="compute time, s")
 
 
 @result
 class RecordValue:
     """mu of one model and body under a recorded motion."""
 
-    model: str
-    """key of the model"""
-    body: int
-    """number of the body; 1 is the platform"""
-    mu: Number
-    """value; null without an answer"""
-    error: Number
-    """estimated absolute error of it"""
-    status: str
-    """named outcome"""
+    model: Annotated[str, "key of the model"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    mu: Annotated[Number, "value; null without an answer"]
+    error: Annotated[Number, "estimated absolute error of it"]
+    status: Annotated[str, "named outcome"]
 
 
 class SceneResult(Part):
     """One scene."""
 
-    name: Text
-    """file stem or built-in name"""
-    title: Text
-    """as the scene states it"""
-    digest: str
-    """hash of the scene"""
-    bodies: int
-    """number of bodies"""
-    duration: float
-    """duration of the motion, s"""
-    recorded: bool
-    """whether the scene has a recorded motion and so no phases"""
-    analyses: list[str]
-    """names of the analyses that the report has of the scene"""
-    acceptance: Acceptance
-    """limits stated by the scene for --check; null where none"""
-    models: dict[str, ModelOutcome]
-    """by key of the model"""
-    differences: list[Difference]
-    """one per body and pair"""
-    budget: list[BudgetEntry]
-    """one per body and step, then the total"""
-    headlines: list[Headline]
-    """one per body"""
-    waterfalls: list[Waterfall]
-    """one per body"""
-    completions: list[Completion]
-    """one per body of every model that lacks phases of the study"""
+    name: Text = Field(description="file stem or built-in name")
+    title: Text = Field(description="as the scene states it")
+    digest: str = Field(description="hash of the scene")
+    bodies: int = Field(description="number of bodies")
+    duration: float = Field(description="duration of the motion, s")
+    recorded: bool = Field(description="whether the scene has a recorded motion and so no phases")
+    analyses: list[str] = Field(description="names of the analyses that the report has of the scene")
+    acceptance: Acceptance = Field(description="limits stated by the scene for --check; null where none")
+    models: dict[str, ModelOutcome] = Field(description="by key of the model")
+    differences: list[Difference] = Field(description="one per body and pair")
+    budget: list[BudgetEntry] = Field(description="one per body and step, then the total")
+    headlines: list[Headline] = Field(description="one per body")
+    waterfalls: list[Waterfall] = Field(description="one per body")
+    completions: list[Completion] = Field(description="one per body of every model that lacks phases of the study")
     distributions: list[Distribution]
     """mu over uniform phases by model and body; empty under a record"""
-    grid_maxima: list[GridMaximum]
-    """one per model and body"""
+    grid_maxima: list[GridMaximum] = Field(description="one per model and body")
     values: list[RecordValue]
     """one per model and body under a recorded motion; empty for a scene with phases"""
-    limits: list[Limit]
-    """every acceptance limit that the scene states"""
+    limits: list[Limit] = Field(description="every acceptance limit that the scene states")
 
     def of(self, key: str) -> Any:
         """What a feature found of the scene."""

@@ -38,10 +38,6 @@ class Report:
     drawings: Mapping[Key, Any] = field(default_factory=dict)
 
 
-def _nothing(report: Report, figures: Path) -> Mapping[str, Any]:
-    return {}
-
-
 @dataclass(frozen=True)
 class Section:
     """
@@ -58,7 +54,7 @@ class Section:
 
     title: str
     absent: str = ""
-    context: Callable[[Report, Path], Mapping[str, Any]] = _nothing
+    context: Callable[[Report, Path], Mapping[str, Any]] = lambda report, figures: {}
     tasks: Callable[[Report], list[Task]] | None = None
     draw: Callable[[Path, Report], None] | None = None
     title_recorded: str = ""

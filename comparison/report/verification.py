@@ -4,8 +4,6 @@ Tests of each code alone, before the two are compared. The report prints it; the
 Agreement of two codes proves little if either could be wrong by itself in the same way.
 """
 
-from __future__ import annotations
-
 import re
 from typing import NamedTuple
 

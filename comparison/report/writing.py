@@ -3,8 +3,6 @@ Writes the report: index.html and verification.html, which need none of the othe
 summary.json with its schema and summary.md; junit.xml; figures/.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from comparison.analyses.demands.analysis import with_demands

@@ -1,7 +1,5 @@
 """The one shape of everything that is computed beside the surfaces."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from typing import ClassVar, Protocol, TypeVar
 

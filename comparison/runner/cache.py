@@ -4,11 +4,10 @@ Every finished result of a study on disk, so that a run that was ended goes on w
 One directory per group of results, named by a hash of all that they depend on in common; in it one file per result. A
 file begins with MAGIC and a checksum of its name and of all that follows: what the result depends on in words and the
 result as JSON, then its arrays. One that is torn, damaged or of another form is computed again, which also covers a
-power cut without waiting for the disk at every result. Nothing is unpickled. Only files that begin with MAGIC are ever
+power cut without waiting for the disk at every result. A value is written by what it is, and read as the type that the
+function declares which computes it: nothing is unpickled or imported. Only files that begin with MAGIC are ever
 removed, and directories that are empty then.
 """
-
-from __future__ import annotations
 
 import hashlib
 import json
@@ -16,21 +15,28 @@ import os
 import re
 import time
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
-from functools import cache
+from dataclasses import dataclass, fields, is_dataclass
+from enum import Enum
+from functools import cache, cached_property
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from comparison.runner.encoding import packed, unpacked
+import numpy as np
+from numpy.lib import format as npy
+from pydantic import ConfigDict, TypeAdapter
+
 from reference.problem import SceneError
 from reference.problem.files import TEMPORARY, read_file, write_atomically
 
 MAGIC = b"phase-resonance result 1\n"
+DIGEST = 32  # bytes of a checksum
 LIMIT = 2**30  # bytes: above this, groups that the present study does not need are dropped, least recently used first
 STALE = 3600.0  # s: a temporary file older than this was left by a killed run; a writing takes milliseconds
 GROUP = re.compile("[0-9a-f]{24}")
+ARRAY, BYTES = "\0array", "\0bytes"  # keys of what stands behind the JSON, by its number
 
 
 class StoreError(OSError):
@@ -48,10 +54,10 @@ class Key:
     item: str
     kind: str
 
-    @property
+    @cached_property
     def group(self) -> str:
         """Name of the directory."""
-        return _short_hash(self.about)
+        return hashlib.sha256(self.about.encode()).hexdigest()[:24]
 
     @property
     def name(self) -> str:
@@ -69,7 +75,11 @@ class Cache:
     def get(self, key: Key, declared: Any) -> Any | None:
         """The stored result to the last bit, of type `declared`; None if there is none that is whole and fits."""
         try:
-            value = _unpacked(read_file(self.folder / key.name, LIMIT), key, declared)
+            file = read_file(self.folder / key.name, LIMIT)
+            digest, content = file[len(MAGIC) : len(MAGIC) + DIGEST], file[len(MAGIC) + DIGEST :]
+            if not file.startswith(MAGIC) or _checksum(key, content) != digest:
+                return None  # damaged, or of another question
+            value = _unpacked(content, declared)
         except Exception:  # whatever is wrong with a file, the result is computed again
             return None
         self.kept[key.kind] += 1
@@ -88,7 +98,7 @@ class Cache:
         place = self.folder / key.name
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
-            content = packed(json.loads(key.about), value)
+            content = _packed(json.loads(key.about), value)
             write_atomically(place, MAGIC + _checksum(key, content) + content)
         except OSError as error:
             raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {error.strerror}") from None
@@ -147,20 +157,6 @@ def faulty(result: Any) -> bool:
     return bool(getattr(result, "error_message", ""))
 
 
-@cache
-def _short_hash(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:24]
-
-
-def _unpacked(file: bytes, key: Key, declared: Any) -> Any:
-    """The result in a file. Raises an exception if that is not what it holds."""
-    start = len(MAGIC) + 32
-    digest, content = file[len(MAGIC) : start], file[start:]
-    if not file.startswith(MAGIC) or _checksum(key, content) != digest:
-        raise ValueError("damaged, or of another question")
-    return unpacked(content, declared)
-
-
 def _checksum(key: Key, content: bytes) -> bytes:
     return hashlib.sha256(key.name.encode() + b"\0" + content).digest()
 
@@ -202,3 +198,49 @@ def _size(group: Path) -> int:
         else:
             total += max(512 * getattr(state, "st_blocks", 0), state.st_size)
     return total
+
+
+def _packed(about: Any, value: Any) -> bytes:
+    """A line of JSON, and the arrays that it refers to; about: what the value depends on. Raises TypeError."""
+    arrays = BytesIO()
+    count = 0
+
+    def beside_json(part: Any) -> Any:
+        nonlocal count
+        if isinstance(part, bytes | np.ndarray):
+            array = np.frombuffer(part, np.uint8) if isinstance(part, bytes) else part
+            npy.write_array(arrays, array, allow_pickle=False)
+            count += 1
+            return {BYTES if isinstance(part, bytes) else ARRAY: count - 1}
+        if isinstance(part, np.generic):
+            return part.item()
+        if isinstance(part, Enum):
+            return part.value
+        if isinstance(part, Mapping):
+            return dict(part)
+        if is_dataclass(part):
+            return {each.name: getattr(part, each.name) for each in fields(part)}
+        raise TypeError(f"{type(part).__name__} cannot be stored")
+
+    text = json.dumps({"about": about, "value": value}, default=beside_json)
+    return text.encode() + b"\n" + arrays.getvalue()
+
+
+def _unpacked(content: bytes, declared: Any) -> Any:
+    """The value of type `declared` that `_packed` has written. Raises an exception for anything else."""
+    text, _, rest = content.partition(b"\n")
+    arrays, stream = [], BytesIO(rest)
+    while stream.tell() < len(rest):
+        arrays.append(npy.read_array(stream, allow_pickle=False))
+
+    def with_arrays(part: dict[str, Any]) -> Any:
+        if ARRAY in part:
+            return arrays[part[ARRAY]]
+        return arrays[part[BYTES]].tobytes() if BYTES in part else part
+
+    return _reader(declared).validate_python([json.loads(text, object_hook=with_arrays)["value"]])[0]
+
+
+@cache
+def _reader(declared: Any) -> TypeAdapter[tuple[Any]]:
+    return TypeAdapter(tuple[declared], config=ConfigDict(arbitrary_types_allowed=True))  # a dataclass takes no config

@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Executor, Future
 from contextlib import contextmanager, suppress
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any
 
 import numba
@@ -39,10 +39,7 @@ _ONE = threading.Lock()
 @contextmanager
 def cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
     """An executor on a cluster, which is left as it was. Raises SceneError if none answers or has other code."""
-
-    def refusal(rule: str) -> SceneError:
-        return SceneError("command line", "--scheduler", address, rule)
-
+    refusal = partial(SceneError, "command line", "--scheduler", address)
     try:
         from distributed import Client
         from distributed.comm import connect

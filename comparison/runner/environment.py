@@ -1,22 +1,25 @@
-"""What a computed number depends on besides the question: code and versions, as text that is hashed or compared."""
-
-from __future__ import annotations
+"""What a computed number depends on besides the question: code and versions; and what a report says of them."""
 
 import ast
 import hashlib
 import os
 import platform
+import subprocess
 import sys
 from collections.abc import Iterable
 from functools import cache
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, packages_distributions, version
 from importlib.util import find_spec
 from pathlib import Path
+
+from reference.problem.version import __version__
 
 PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")
 OURS = ("reference", "multibody", "comparison")
 USER_MODELS = "comparison.study.user_models"  # calls them; their source is in the settings
 SHARED = ("reference.problem", "comparison.study.batches")  # what every model is asked through
+SHOWN = ("exudyn", "numba", "numpy", "scipy", "xarray", "h5netcdf", "matplotlib")  # versions in a report
 DRAWING = ("matplotlib", "pillow", "xarray")
 ANSWERING = ("reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording")
 
@@ -92,3 +95,44 @@ def _version(name: str) -> str:
         return version(name)
     except PackageNotFoundError:
         return "absent"
+
+
+def provenance() -> dict[str, str]:
+    """Versions, machine and commit, in the order a report shows them."""
+    return {
+        "phase-resonance": __version__,
+        "commit": _commit(),
+        "python": platform.python_version(),
+        **{name: version(name) for name in SHOWN},
+        "exudyn module": import_module("multibody.models.engine").MODULE,
+        "system": f"{platform.system()} {platform.release()} {platform.machine()}",
+        "processor": _processor(),
+        "processors": str(os.cpu_count()),
+    }
+
+
+def _commit() -> str:
+    """Commit of the checkout this package runs from; says so if it has changes, or if there is no checkout."""
+    folder = Path(__file__).resolve().parents[2]
+    try:
+        if Path(git(folder, "rev-parse", "--show-toplevel")).resolve() != folder:
+            return "installed, not a checkout"
+        changed = git(folder, "status", "--porcelain", "--untracked-files=no")
+        return git(folder, "rev-parse", "HEAD") + (" with uncommitted changes" if changed else "")
+    except (OSError, subprocess.CalledProcessError):
+        return "installed, not a checkout"
+
+
+def git(folder: Path, *arguments: str) -> str:
+    """What git says about a folder. Raises OSError or CalledProcessError."""
+    done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, check=True)
+    return done.stdout.strip()
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()

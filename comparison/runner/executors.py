@@ -6,8 +6,6 @@ of processor time. `WorkerDiedError` and `TimeLimitError` from a future: the cal
 was harmed. `ExecutorLostError`: there is no going on. `abandon`: end at once.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -59,10 +60,7 @@ class Own:
 
 def destination(path: Path, option: str = "--out") -> Path:
     """The folder that a path means, without symbolic links and "..". Raises SceneError where none can be made."""
-
-    def refusal(rule: str) -> SceneError:
-        return SceneError("command line", option, str(path), rule)
-
+    refusal = partial(SceneError, "command line", option, str(path))
     if path.name == ".." and set(path.parts) != {".."}:
         raise refusal("ends in '..': give the directory by its name")
     try:
@@ -91,10 +89,7 @@ def destination(path: Path, option: str = "--out") -> Path:
 
 def refuse_foreign_report(out: Path) -> None:
     """Raise SceneError, one line, if a report cannot take the place of what is at `out`, a `destination`."""
-
-    def refusal(rule: str) -> SceneError:
-        return SceneError("command line", "--out", str(out), rule)
-
+    refusal = partial(SceneError, "command line", "--out", str(out))
     place = out.resolve()
     if place.exists():
         if Path.cwd().resolve().is_relative_to(place):

@@ -1,11 +1,14 @@
-"""One bar for a whole command, or plain lines where there is no terminal: what is done, and the time left."""
+"""One bar for a whole command, or plain lines where there is no terminal, with the time left; and its deadline."""
 
 from __future__ import annotations
 
+import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from types import FrameType
+from typing import NoReturn
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
@@ -13,6 +16,8 @@ from rich.progress import BarColumn, Progress, TextColumn
 EVERY = 15.0  # s between plain lines
 TRUSTED = 0.1  # share of the work, that the rough costs count beside the work done
 PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
+EARLY = 0.3  # s: the process takes so long to end
+SOON = 1e-3  # s
 
 
 def wide_console() -> Console:
@@ -80,3 +85,34 @@ def progress(console: Console, total: float, jobs: int) -> Iterator[Display]:
             console.print(f"{now - display.begin:6.0f} s  {display.text}", style=None)
 
     yield Display(total, jobs, line)
+
+
+class TimeUpError(BaseException):
+    """The deadline has come. No Exception: what a task raises must not be taken for it."""
+
+
+class Deadline:
+    """Raises TimeUpError in the block `seconds`, if any, after `begin`, by `time.monotonic()`."""
+
+    def __init__(self, begin: float, seconds: float | None) -> None:
+        self._end = None if seconds is None else begin + seconds - EARLY
+
+    def __enter__(self) -> Deadline:
+        if self._end is not None:
+            self._before = signal.signal(signal.SIGALRM, _up)
+            self.keep_free(0.0)
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        if self._end is not None:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.signal(signal.SIGALRM, self._before)
+
+    def keep_free(self, seconds: float) -> None:
+        """From now on the time is up so much before the end, for what has to follow."""
+        if self._end is not None:
+            signal.setitimer(signal.ITIMER_REAL, max(self._end - seconds - time.monotonic(), SOON))
+
+
+def _up(number: int, frame: FrameType | None) -> NoReturn:
+    raise TimeUpError

@@ -1,23 +1,50 @@
-"""The one way in which anything is computed: a task whose result is stored is looked up, any other is executed."""
+"""
+The one way in which anything is computed: a task whose result is stored is looked up, any other is executed.
+
+No task is lost: one that raises, hangs or ends its worker is answered for.
+"""
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 from dataclasses import dataclass, field
+from functools import partial
 
-from comparison.runner.executors import Pool, executing
+import numpy as np
+
+import reference
+from comparison.runner.executors import ExecutorLostError, Pool, TimeLimitError, WorkerDiedError, executing
 from comparison.runner.progress import Display
-from comparison.runner.sweep import Sweep
-from comparison.runner.task import GIVEN_UP, GIVEN_UP_AFTER, Task, TaskResult, unfinished
+from comparison.runner.task import GIVEN_UP, GIVEN_UP_AFTER, Task, TaskResult, execute, unfinished
 from comparison.runner.task_results import TaskResults
-from reference.problem import Outcome
+from reference.problem import Outcome, Scene, load_scene
+
+LOOK = 1.0  # s: how often an executor is asked for its width while no result arrives
+LOST = BrokenExecutor, ExecutorLostError, CancelledError
+DURATION = 0.5  # s of the motion that compiles the reference: enough to reach every function
+
+
+@dataclass(eq=False)  # found in the queue by what it is, not by comparing scenes and arrays
+class _Work:
+    """A task, or a half of the task of `parent`."""
+
+    task: Task
+    parent: _Work | None = None
+    deaths: int = 0
+    halves: Sequence[_Work] = ()
+    result: TaskResult | None = None
 
 
 @dataclass
 class Runner:
     """
     Runs tasks on `executor`, or on what it makes for `jobs` workers, and stores every result as it arrives.
+
+    A task that raises has the outcome SOLVER_FAILED, and one that takes longer than its `timeout` TIME_LIMIT. One whose
+    worker dies is tried once more, then cut in halves, until a part that cannot be cut has killed two workers: that one
+    alone has the outcome WORKER_DIED, and the task is joined again.
 
     display: what is told of finished work. stages: rough s of processor time of the stages of tasks; a stage that is
     not listed takes what its tasks weigh.
@@ -28,7 +55,7 @@ class Runner:
     executor: Pool
     display: Display = field(default_factory=lambda: Display(0.0, 1))
     stages: Mapping[str, float] = field(default_factory=dict)
-    lost: Counter[str] = field(default_factory=Counter)  # batches that hung or ended their process, by worker group
+    hung: Counter[str] = field(default_factory=Counter)  # batches that hung or ended their process, by worker group
     compiled: bool = False  # whether a worker has compiled the reference
 
     def run(self, tasks: Sequence[Task], compiling: Callable[[], Task] | None = None) -> None:
@@ -38,60 +65,135 @@ class Runner:
         compiling: makes a short task that compiles the reference; the tasks that need it wait for that one.
         Raises StoreError or ExecutorLostError if the cache cannot be written, or the executor cannot go on.
         """
-        weights = self._weights(tasks)
+        sums: Counter[str] = Counter()
+        for task in tasks:
+            sums[task.stage] += task.seconds  # type: ignore[assignment]
+        self._weights = {  # rough s of processor time
+            id(task): task.seconds * self.stages.get(task.stage, sums[task.stage]) / sums[task.stage] for task in tasks
+        }
         new = [task for task in tasks if task not in self.results]
         missing = self.results.missing(new)
-        self.display.skip(sum(weights[id(task)] for task in new) - sum(weights[id(task)] for task in missing))
+        self.display.skip(
+            sum(self._weights[id(task)] for task in new) - sum(self._weights[id(task)] for task in missing)
+        )
         if not missing:
             return
         missing.sort(key=lambda task: (task.batch is None, 0.0 if task.batch else -task.seconds))
         needed = not self.compiled and any(task.needs_compiled_reference for task in missing)
-        first = compiling() if compiling and needed else None
-        self._sweep(missing, weights, first)
-        self.compiled = self.compiled or first is not None
+        self._first = compiling() if compiling and needed else None  # None again when it is done
+        self._queue = deque(map(_Work, [self._first, *missing] if self._first else missing))
+        self._at_work: dict[Future[TaskResult], _Work] = {}
+        self._so_far: Counter[str] = Counter()
+        self._total: Counter[str] = Counter()
+        for work in self._queue:
+            self._total[work.task.stage] += work.task.points
+        with executing(self.executor, min(self.jobs, len(self._queue))) as executor:
+            self._sweep(executor)
 
-    def _weights(self, tasks: Sequence[Task]) -> dict[int, float]:
-        """Rough s of processor time of the tasks, from what their stages take."""
-        sums: Counter[str] = Counter()
-        for task in tasks:
-            sums[task.stage] += task.seconds  # type: ignore[assignment]
-        return {
-            id(task): task.seconds * self.stages.get(task.stage, sums[task.stage]) / sums[task.stage] for task in tasks
-        }
+    def _sweep(self, executor: Executor) -> None:
+        try:
+            while self._queue or self._at_work:
+                self._fill(executor)
+                finished = wait(self._at_work, LOOK, return_when=FIRST_COMPLETED).done
+                arrived = [(self._at_work.pop(future), future) for future in finished]
+                try:
+                    self._fill(executor, arriving=True)  # workers go on while results are stored
+                finally:
+                    for work, future in sorted(arrived, key=lambda pair: isinstance(_error(pair[1]), LOST)):
+                        self._take(work, future)
+        except BaseException:
+            for future in self._at_work:
+                future.cancel()
+            if hasattr(executor, "abandon"):
+                executor.abandon()
+            raise
 
-    def _sweep(self, missing: Sequence[Task], weights: Mapping[int, float], first: Task | None) -> None:
-        """Run the tasks; `first`, whose result is not kept, before those that need the compiled reference."""
-        tasks = [*([first] if first else []), *missing]
-        waiting = first is not None
-        total: Counter[str] = Counter()
-        for task in tasks:
-            total[task.stage] += task.points
-        so_far: Counter[str] = Counter()
-        with executing(self.executor, min(self.jobs, len(tasks))) as executor:
+    def _fill(self, executor: Executor, arriving: bool = False) -> None:
+        """As many tasks at work as there are workers; arriving: results that may make tasks ready are not told yet."""
+        while len(self._at_work) < getattr(executor, "width", self.jobs):
+            candidates = list(self._queue)[:1] if arriving else self._queue
+            ready = (work for work in candidates if not (self._first and work.task.needs_compiled_reference))
+            if (work := next(ready, None)) is None:
+                return
+            self._queue.remove(work)
+            if work.task.batch and self.hung[work.task.group] >= GIVEN_UP_AFTER:
+                self._keep(work, unfinished(Outcome.TIME_LIMIT, GIVEN_UP))
+            else:
+                self._at_work[_started(work.task, executor)] = work
 
-            def done(task: Task, result: TaskResult) -> None:
-                nonlocal waiting
-                if task is first:
-                    waiting = False
-                else:
-                    self._keep(task, result)
-                so_far[task.stage] += task.points
-                unit = "phase pairs" if task.batch else "tasks"
-                count = f"{so_far[task.stage]} of {total[task.stage]} {unit}"
-                self.display.advance(task.stage, count, weights.get(id(task), 0.0))
+    def _take(self, work: _Work, future: Future[TaskResult]) -> None:
+        error = _error(future)
+        if error is None:
+            self._keep(work, future.result())
+        elif isinstance(error, WorkerDiedError):
+            self._died(work, error)
+        elif isinstance(error, TimeLimitError):
+            self._keep(work, unfinished(Outcome.TIME_LIMIT, str(error)))
+        elif isinstance(error, ExecutorLostError):
+            raise error
+        elif isinstance(error, LOST):
+            raise ExecutorLostError(f"the executor is broken: {error}")
+        else:
+            self._keep(work, unfinished(Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}"))
 
-            def ready(task: Task) -> bool:
-                return not (waiting and task.needs_compiled_reference)
+    def _died(self, work: _Work, error: WorkerDiedError) -> None:
+        work.deaths += error.times
+        halves = work.task.halves()
+        if work.deaths < 2 and (work.parent is None or not halves):
+            self._queue.appendleft(work)
+        elif halves:
+            work.halves = [_Work(half, work) for half in halves]
+            self._queue.extendleft(reversed(work.halves))
+        else:
+            ending = "" if error.exit_code is None else f" (exit code {error.exit_code})"
+            self._keep(work, unfinished(Outcome.WORKER_DIED, f"the worker process died {work.deaths} times{ending}"))
 
-            Sweep(tasks, executor, self.jobs, done, ready, self._given_up).run()
+    def _keep(self, work: _Work, result: TaskResult) -> None:
+        """Store a result; that of a half when the other is there, too."""
+        work.result, parent, task = result, work.parent, work.task
+        if parent is not None:
+            results = [half.result for half in parent.halves if half.result is not None]
+            if len(results) == len(parent.halves):
+                self._keep(parent, parent.task.join(results))
+            return
+        if task is self._first:
+            self._first, self.compiled = None, True
+        else:
+            if task.batch and task.group and result.outcome in (Outcome.TIME_LIMIT, Outcome.WORKER_DIED):
+                self.hung[task.group] += 1
+            self.results.put(task, result)
+        self._so_far[task.stage] += task.points
+        count = f"{self._so_far[task.stage]} of {self._total[task.stage]} {'phase pairs' if task.batch else 'tasks'}"
+        self.display.advance(task.stage, count, self._weights.get(id(task), 0.0))
 
-    def _keep(self, task: Task, result: TaskResult) -> None:
-        if task.batch and task.group and result.outcome in (Outcome.TIME_LIMIT, Outcome.WORKER_DIED):
-            self.lost[task.group] += 1
-        self.results.put(task, result)
 
-    def _given_up(self, task: Task) -> TaskResult | None:
-        """The result of a batch whose engine is not asked any more."""
-        if task.batch and self.lost[task.group] >= GIVEN_UP_AFTER:
-            return unfinished(Outcome.TIME_LIMIT, GIVEN_UP)
-        return None
+def _started(task: Task, executor: Executor) -> Future[TaskResult]:
+    start: Callable[..., Future[TaskResult]] | None = getattr(executor, "start", None)
+    try:
+        if start is None:  # such as threads: they keep no limit of time
+            return executor.submit(execute, task)
+        return start(partial(execute, task), task.timeout, task.group)
+    except BrokenExecutor as error:
+        raise ExecutorLostError(f"the executor is broken: {error}") from None
+
+
+def _error(future: Future[TaskResult]) -> BaseException | None:
+    """What the task raised, None if nothing."""
+    try:
+        return future.exception()
+    except CancelledError as cancelled:
+        return cancelled
+
+
+def compiling_task() -> Task:
+    """
+    One phase pair of a built-in scene, which compiles the reference and keeps it on disk, once on a machine.
+
+    One worker does that while the others are busy with the engine, so that no two of them compile the same code.
+    """
+    scene = load_scene("fig3-I").with_values({"duration": DURATION})
+    return Task(_first_call, scene, "compiling the reference, once", 0.0, needs_compiled_reference=False)
+
+
+def _first_call(scene: Scene) -> None:
+    reference.amplification(scene, np.zeros((1, 2)), equations="exact")

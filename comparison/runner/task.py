@@ -9,43 +9,20 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from enum import Enum
 from functools import cached_property
-from typing import Any, Protocol, Self, runtime_checkable
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from comparison.runner.cache import Key
 from comparison.runner.environment import environment_fingerprint, task_environment_fingerprint
+from comparison.study.batches import Batch
 from comparison.study.models import Model
 from reference.problem import Outcome, Scene
 
 BATCH, RESULT = "batch", "result"  # kinds of stored results: of phase pairs, and all others
 GIVEN_UP_AFTER = 2  # batches of one group that hang or end their process: the engine is not asked again
 GIVEN_UP = f"{GIVEN_UP_AFTER} calls hung or ended their process: not asked for the other phase pairs"
-
-
-@runtime_checkable
-class Divisible(Protocol):
-    """An argument of several points, which is cut in two where a worker dies of it."""
-
-    @property
-    def points(self) -> int:
-        """How many it has."""
-
-    def halves(self) -> Sequence[Self]:
-        """Arguments of the first and the other points; none of a single point."""
-
-    def join(self, values: Sequence[Any]) -> Any:
-        """The value of the whole from those of its halves."""
-
-    def without_result(self, outcome: Outcome, error_message: str) -> Any:
-        """The value where none was computed."""
-
-    def accepts(self, value: Any) -> bool:
-        """Whether a stored value is one of these points."""
-
-    def identity(self) -> Any:
-        """All that its value depends on."""
 
 
 @dataclass(frozen=True)
@@ -78,9 +55,9 @@ class Task:
         return Key(json.dumps(about, indent=1, sort_keys=True), digest, BATCH if self.batch else RESULT)
 
     @cached_property
-    def batch(self) -> Divisible | None:
-        """Its argument, if that is divisible."""
-        return self.argument if isinstance(self.argument, Divisible) else None
+    def batch(self) -> Batch | None:
+        """Its argument, if that is some phase pairs, which are cut in two where a worker dies of them."""
+        return self.argument if isinstance(self.argument, Batch) else None
 
     @property
     def points(self) -> int:

@@ -1,7 +1,5 @@
 """The results of tasks, looked up by task: in memory, and in the cache of earlier runs."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass

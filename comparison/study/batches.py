@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any
 
@@ -67,8 +67,9 @@ class Batch:
 
     def without_result(self, outcome: Outcome, error_message: str) -> BatchResult:
         """NaN for every point, and why."""
-        nothing, instant = np.full((self.points, len(self.scene.bodies)), np.nan), np.full(self.points, np.nan)
-        return BatchResult(nothing, nothing.copy(), [outcome.value] * self.points, instant, 0.0, error_message)
+        nothing, none = np.full((self.points, len(self.scene.bodies)), np.nan), np.full(self.points, np.nan)
+        status = [outcome.value] * self.points
+        return BatchResult(nothing, nothing.copy(), status, none, 0.0, error_message, none.copy())
 
     def accepts(self, result: BatchResult) -> bool:
         """Whether a result fits the phase pairs and bodies, with numbers wherever it is ok."""
@@ -95,12 +96,8 @@ class BatchResult:
     status: list[str]
     instant: Array
     cost: float
-    error_message: str = ""
-    displacement: Array = field(default_factory=lambda: np.empty(0))
-
-    def __post_init__(self) -> None:
-        if not len(self.displacement):
-            object.__setattr__(self, "displacement", np.full(len(self.mu), np.nan))
+    error_message: str
+    displacement: Array
 
 
 def imported(path: str) -> Any:

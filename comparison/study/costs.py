@@ -4,8 +4,6 @@ Rough costs, one number for each model and analysis: what `--plan` and the bar o
 Recorded with version 1.0 on one core of a 2-core AMD EPYC virtual machine; they are within a factor of two or three.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from comparison.study.models import SOFTENED, Model

@@ -1,14 +1,11 @@
 """The levels of a study: the same question on coarser grids first, so that a whole report is there early."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import gcd
 
 from comparison.study.models import Model
-from comparison.study.nesting import nested_grids
-from comparison.study.study import Study
+from comparison.study.study import Study, nested_grids
 
 # phases per axis at the first two levels; the third is the whole study
 MOST: tuple[Mapping[str, float], ...] = (

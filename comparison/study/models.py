@@ -5,8 +5,6 @@ A model names the function that answers for it ("package:function", the contract
 `multibody.amplification`), so that a worker process can import it by itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
@@ -33,11 +31,6 @@ def any_scene(scene: Scene) -> bool:
 def never(scene: Scene) -> bool:
     """Whether mirrored phases give mirrored motions, for a model of which that is not known."""
     return False
-
-
-def with_mirrored_supports(scene: Scene) -> bool:
-    """Whether mirrored phases give mirrored motions by a model with supports."""
-    return mirror_symmetric(scene).allowed
 
 
 def _spatial_data(scene: Scene) -> dict[str, object]:
@@ -102,7 +95,7 @@ class Model:
     assumptions: Mapping[str, str]
     batch: int  # phase pairs solved in one call: about a second of work
     most: int | None = None
-    symmetric: Callable[[Scene], bool] = field(default=never)
+    symmetric: Callable[[Scene], object] = field(default=never)  # true or false
     applies: Callable[[Scene], bool] = field(default=any_scene)
     refusal: str | None = None
     effect: str = ""
@@ -288,7 +281,7 @@ SPATIAL = _next(
     batch=1,
     applies=has_spatial_data,
     most=16,
-    symmetric=with_mirrored_supports,
+    symmetric=mirror_symmetric,
 )
 
 MODEL_HIERARCHY: tuple[Model, ...] = (SMALL, EXACT, RESOLVED, REGULARIZED, TRANSLATIONAL, SPATIAL)

@@ -1,7 +1,5 @@
 """What a study leaves out because its scenes do not require it, as rows for `--plan`: each reason once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 

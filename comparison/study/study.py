@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
+from itertools import accumulate
+from operator import mul
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +14,6 @@ from numpy.typing import NDArray
 from comparison.study.analyses import ANALYSES, EVERYTHING, Selection
 from comparison.study.batches import Batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, steps_of
-from comparison.study.nesting import levels
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.symmetry import sources
 
@@ -25,6 +26,35 @@ def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
             rule = f"same name as {seen[name]}, which names its surfaces: give each scene once, rename a file"
             raise SceneError(source, "scene", name, rule)
         seen[name] = source
+
+
+@cache
+def nested_grids(grid: int) -> tuple[int, ...]:
+    """
+    Grids from coarse to fine, each a part of the next, the last one with `grid` phases per axis: halvings come first.
+
+    >>> nested_grids(48), nested_grids(96), nested_grids(7)
+    ((2, 4, 8, 16, 48), (2, 4, 8, 16, 32, 96), (7,))
+    """
+    factors, rest = [], grid
+    for prime in range(2, grid + 1):
+        while rest % prime == 0:
+            factors.append(prime)
+            rest //= prime
+    return tuple(accumulate(factors, mul)) or (1,)
+
+
+def levels(grid: int) -> NDArray[np.intp]:
+    """
+    Which of `nested_grids` is the first with each phase of an axis.
+
+    >>> levels(8).tolist()
+    [0, 2, 1, 2, 0, 2, 1, 2]
+    """
+    level = np.zeros(grid, dtype=np.intp)
+    for coarse in nested_grids(grid)[:-1]:
+        level[np.arange(grid) % (grid // coarse) != 0] += 1
+    return level
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,6 @@ Every call goes through `amplification` here, in a worker process of its own kin
 dropped, and what it returns is read into the arrays of `reference.problem.Amplification` or refused with a reason.
 """
 
-from __future__ import annotations
-
 import ctypes
 import inspect
 import multiprocessing
@@ -30,6 +28,7 @@ Array = NDArray[np.float64]
 
 CALLED_THROUGH = "comparison.study.user_models:amplification"
 LIKE = "regularised"  # key of the reference's model that an engine is compared with unless it names another
+LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]  # that an engine may be compared with
 MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call costs is unknown
 TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
 ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it

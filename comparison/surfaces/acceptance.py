@@ -1,9 +1,8 @@
 """The limits that a scene states before the run, compared with what was found."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from math import isnan
+from typing import Annotated
 
 import xarray as xr
 from pydantic import computed_field
@@ -21,26 +20,19 @@ from reference.problem import Scene
 class Breach:
     """Where an acceptance limit is broken."""
 
-    body: int
-    """number of the body; 0 where the limit is of the scene"""
-    found: Number
-    """value that exceeds the limit; null without one"""
-    reason: Text = ""
-    """why there is no value, or what was counted; empty otherwise"""
+    body: Annotated[int, "number of the body; 0 where the limit is of the scene"]
+    found: Annotated[Number, "value that exceeds the limit; null without one"]
+    reason: Annotated[Text, "why there is no value, or what was counted; empty otherwise"] = ""
 
 
 @result
 class Limit:
     """An acceptance limit that the scene states, compared with the results."""
 
-    scene: Text
-    """name of the scene"""
-    key: str
-    """as written below acceptance"""
-    allowed: float
-    """largest value that holds it"""
-    breaches: tuple[Breach, ...]
-    """where it is broken; empty if it holds"""
+    scene: Annotated[Text, "name of the scene"]
+    key: Annotated[str, "as written below acceptance"]
+    allowed: Annotated[float, "largest value that holds it"]
+    breaches: Annotated[tuple[Breach, ...], "where it is broken; empty if it holds"]
 
     @property
     def broken_texts(self) -> list[str]:

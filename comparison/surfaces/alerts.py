@@ -1,11 +1,10 @@
 """What a reader must know before trusting a number: refusals, broken limits, gaps, faults, wide swings. One place."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Literal
 
 import xarray as xr
+from pydantic import Field
 
 from comparison.result_types import Part, Text
 from comparison.study.models import models_of
@@ -26,12 +25,9 @@ class Alert(Part):
     kind: Literal["refused", "limit", "lacking", "fault", "swing", "travel"]
     """model without any value, broken acceptance limit, phase pairs without a value, error message of a solver, wide
     swing of the platform"""
-    scene: Text
-    """name of the scene"""
-    text: Text
-    """what is the matter"""
-    help: Text
-    """what helps; empty where nothing is known to"""
+    scene: Text = Field(description="name of the scene")
+    text: Text = Field(description="what is the matter")
+    help: Text = Field(description="what helps; empty where nothing is known to")
 
     @property
     def line(self) -> str:

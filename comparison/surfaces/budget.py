@@ -5,11 +5,9 @@ Steps are taken between neighboring models that apply to the scene, so that they
 All are relative to mu of the first model: their sum is then the relative total.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
@@ -30,24 +28,15 @@ TOTAL = "total"
 class Sizes:
     """How large the difference of two models is in one body, over the phase pairs where both have a value."""
 
-    scene: Text
-    """name of the scene"""
-    body: int
-    """number of the body; 1 is the platform"""
-    first: str
-    """key of the first model"""
-    second: str
-    """key of the second model"""
-    median: Number
-    """median of the absolute size"""
-    percentile95: Number
-    """95 % of the absolute sizes are below this"""
-    maximum: Number
-    """largest absolute size"""
-    phases: Phases
-    """(alpha1, alpha2) of the largest, rad"""
-    asked: int
-    """phase pairs that both models were asked for"""
+    scene: Annotated[Text, "name of the scene"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    first: Annotated[str, "key of the first model"]
+    second: Annotated[str, "key of the second model"]
+    median: Annotated[Number, "median of the absolute size"]
+    percentile95: Annotated[Number, "95 % of the absolute sizes are below this"]
+    maximum: Annotated[Number, "largest absolute size"]
+    phases: Annotated[Phases, "(alpha1, alpha2) of the largest, rad"]
+    asked: Annotated[int, "phase pairs that both models were asked for"]
 
 
 @result
@@ -58,22 +47,14 @@ class BudgetEntry(Sizes):
     Its signed mean is the bar in `waterfalls`.
     """
 
-    step: str
-    """key of the model that the step leads to, or total"""
-    rms: Number
-    """root mean square of the size"""
-    real: Number
-    """fraction of the points where |D| > 5 u_D"""
-    unresolved: Number
-    """fraction of the points where u_D < |D| <= 5 u_D"""
-    error_estimate: Number
-    """median of u_D"""
-    peak_moves: Number
-    """how far the highest point of the surface moves at least on the periodic square, rad"""
-    correlation: Number
-    """Pearson's correlation of the two surfaces"""
-    points: int
-    """phase pairs where both models have a value"""
+    step: Annotated[str, "key of the model that the step leads to, or total"]
+    rms: Annotated[Number, "root mean square of the size"]
+    real: Annotated[Number, "fraction of the points where |D| > 5 u_D"]
+    unresolved: Annotated[Number, "fraction of the points where u_D < |D| <= 5 u_D"]
+    error_estimate: Annotated[Number, "median of u_D"]
+    peak_moves: Annotated[Number, "how far the highest point of the surface moves at least on the periodic square, rad"]
+    correlation: Annotated[Number, "Pearson's correlation of the two surfaces"]
+    points: Annotated[int, "phase pairs where both models have a value"]
 
 
 def steps(study: Study, surfaces: xr.Dataset, scene: str, body: int) -> list[Step]:
@@ -144,7 +125,8 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> BudgetEntry:
         [np.where(known, values_of(surfaces, name, scene, *pair)[step.body - 1], np.nan) for pair in pairs]
         for name in ("mu", "error")
     )
-    highest = [_phases_at(step, mu + error >= np.nanmax(mu - error)) for mu, error in zip(both, errors)]
+    places = [np.argwhere(mu + error >= np.nanmax(mu - error)) for mu, error in zip(both, errors)]
+    highest = [[(step.alpha1[row], step.alpha2[column]) for row, column in place] for place in places]
     return BudgetEntry(
         **about,
         rms=float(np.sqrt((step.size[known] ** 2).mean())),
@@ -156,10 +138,6 @@ def _entry(surfaces: xr.Dataset, scene: str, step: Step) -> BudgetEntry:
         else min(torus_distance(first, second) for first in highest[0] for second in highest[1]),
         correlation=_correlation(both[0][known], both[1][known]),
     )
-
-
-def _phases_at(step: Step, where: NDArray[np.bool_]) -> list[tuple[float, float]]:
-    return [(float(step.alpha1[row]), float(step.alpha2[column])) for row, column in np.argwhere(where)]
 
 
 def _correlation(first: Array, second: Array) -> float:

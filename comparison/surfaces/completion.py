@@ -8,8 +8,6 @@ model, and never used in the interpolation. If more than a share s of the phase 
 probability that n held-out ones all stay within E would be at most (1 - s)^n.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -71,32 +69,22 @@ class Completion:
     of surfaces.nc.
     """
 
-    scene: Text
-    """name of the scene"""
-    model: str
-    """key of the model that is completed"""
-    through: str
-    """key of the finer model; empty without one"""
-    body: int
-    """number of the body; 1 is the platform"""
-    computed: int
-    """phase pairs where both models have a value"""
+    scene: Annotated[Text, "name of the scene"]
+    model: Annotated[str, "key of the model that is completed"]
+    through: Annotated[str, "key of the finer model; empty without one"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    computed: Annotated[int, "phase pairs where both models have a value"]
     held_out: int
     """phase pairs with a value that were chosen at random, computed and not used; 0 where nothing was interpolated"""
     error: Number
     """largest error at the held-out phase pairs, relative to the model's own mu; null where nothing was interpolated"""
-    model_error: Number
-    """largest error estimate of the model itself at these, relative"""
-    share: float
-    """at most so many of the phase pairs that were not computed are off by more than the error"""
-    confidence: float
-    """of this statement"""
-    asked: float
-    """largest error with which the surface may be drawn: the tolerance asked of the model"""
+    model_error: Annotated[Number, "largest error estimate of the model itself at these, relative"]
+    share: Annotated[float, "at most so many of the phase pairs that were not computed are off by more than the error"]
+    confidence: Annotated[float, "of this statement"]
+    asked: Annotated[float, "largest error with which the surface may be drawn: the tolerance asked of the model"]
     difference: Number
     """95 % of the absolute differences of the completed surface from the first model are below this, relative to it"""
-    reason: Text
-    """why the surface may not be drawn; empty where it may"""
+    reason: Annotated[Text, "why the surface may not be drawn; empty where it may"]
     mu: Annotated[Any, Field(exclude=True)] = None
     """(K, K) completed; NaN everywhere where it may not be drawn, and where the finer model has no value"""
 

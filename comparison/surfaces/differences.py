@@ -1,6 +1,6 @@
 """How far two models' surfaces lie apart, in numbers: one row per scene, pair of models and body."""
 
-from __future__ import annotations
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
@@ -21,20 +21,14 @@ Array = NDArray[np.float64]
 class Difference(Sizes):
     """The difference of two models in one body: second minus first, relative to the first."""
 
-    pair: str
-    """key of the pair: total, translational, like-for-like"""
-    mean: Number
-    """mean of the signed size over the phase pairs where every compared model has a value"""
-    spread: Number
-    """standard deviation of the signed size over the same phase pairs"""
+    pair: Annotated[str, "key of the pair: total, translational, like-for-like"]
+    mean: Annotated[Number, "mean of the signed size over the phase pairs where every compared model has a value"]
+    spread: Annotated[Number, "standard deviation of the signed size over the same phase pairs"]
     beyond_error: Number
     """fraction of the phase pairs where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error estimates together"""
-    ratio: Number
-    """largest absolute size in units of u_D"""
-    not_ok: int
-    """phase pairs where either outcome is not ok"""
-    unanswered: int
-    """phase pairs where either has no value"""
+    ratio: Annotated[Number, "largest absolute size in units of u_D"]
+    not_ok: Annotated[int, "phase pairs where either outcome is not ok"]
+    unanswered: Annotated[int, "phase pairs where either has no value"]
 
 
 def pair_step(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Step:

@@ -1,8 +1,7 @@
 """mu of every model as a random variable over uniform phases, and its highest point, on the phases computed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
@@ -26,48 +25,33 @@ CURVE = np.linspace(0.01, 0.99, 50)  # probabilities of the drawn curve
 class Fractile:
     """The value that mu stays below with a probability."""
 
-    probability: float
-    """probability"""
-    value: Number
-    """fractile of mu"""
-    error: Number
-    """estimated absolute error, sampling included; null where it is not known"""
+    probability: Annotated[float, "probability"]
+    value: Annotated[Number, "fractile of mu"]
+    error: Annotated[Number, "estimated absolute error, sampling included; null where it is not known"]
 
 
 @result
 class Distribution:
     """mu of one model and body over phases that are independent and uniform."""
 
-    model: str
-    """key of the model"""
-    body: int
-    """number of the body; 1 is the platform"""
-    points: int
-    """phase pairs that it was taken from"""
-    unknown: float
-    """share of them without an answer"""
-    mean: UncertainNumber
-    """mean over all phases; its error includes that of sampling"""
-    fractiles: tuple[Fractile, ...]
-    """by rising probability"""
-    curve: tuple[Number, ...]
-    """mu at 50 probabilities from 0.01 to 0.99"""
+    model: Annotated[str, "key of the model"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    points: Annotated[int, "phase pairs that it was taken from"]
+    unknown: Annotated[float, "share of them without an answer"]
+    mean: Annotated[UncertainNumber, "mean over all phases; its error includes that of sampling"]
+    fractiles: Annotated[tuple[Fractile, ...], "by rising probability"]
+    curve: Annotated[tuple[Number, ...], "mu at 50 probabilities from 0.01 to 0.99"]
 
 
 @result
 class GridMaximum:
     """The largest value of one surface on the phases that were computed."""
 
-    model: str
-    """key of the model"""
-    body: int
-    """number of the body; 1 is the platform"""
-    mu: Number
-    """largest value; null without any"""
-    error: Number
-    """estimated absolute error of it"""
-    phases: Phases
-    """(alpha1, alpha2), rad; null under a record"""
+    model: Annotated[str, "key of the model"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    mu: Annotated[Number, "largest value; null without any"]
+    error: Annotated[Number, "estimated absolute error of it"]
+    phases: Annotated[Phases, "(alpha1, alpha2), rad; null under a record"]
 
 
 def distributions(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[Distribution]:

@@ -1,10 +1,9 @@
 """One plain sentence for every body of a scene: how far the engine and the paper's equations differ, and why."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Annotated
 
 import xarray as xr
 
@@ -29,58 +28,40 @@ class Cause:
 
     models: tuple[str, ...] = ()
     """keys of the models whose real steps have the sign of the difference, largest first; empty where it is not real"""
-    offset: tuple[str, ...] = ()
-    """keys of the models whose real steps offset these, largest first"""
+    offset: Annotated[tuple[str, ...], "keys of the models whose real steps offset these, largest first"] = ()
 
 
 @result
 class Headline:
     """The total difference of one body in numbers and in a plain sentence; relative to mu of the first model."""
 
-    scene: Text
-    """name of the scene"""
-    body: int
-    """number of the body; 1 is the platform"""
-    name: str
-    """name of the body"""
-    first: str
-    """key of the first model"""
-    second: str
-    """key of the last model"""
+    scene: Annotated[Text, "name of the scene"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    name: Annotated[str, "name of the body"]
+    first: Annotated[str, "key of the first model"]
+    second: Annotated[str, "key of the last model"]
     mean: Number
     """mean of the signed difference over the phase pairs where every compared model has a value: the total of the
     waterfall"""
-    mean_error: Number
-    """error estimate of the mean"""
-    spread: Number
-    """standard deviation of the signed difference over the same phase pairs"""
+    mean_error: Annotated[Number, "error estimate of the mean"]
+    spread: Annotated[Number, "standard deviation of the signed difference over the same phase pairs"]
     phases_per_axis: int
     """of the grid of phase pairs that every compared model was asked for; 1 under a record"""
-    points: int
-    """phase pairs of this grid where every compared model has a value"""
-    independent: int
-    """of these, not related by a symmetry of the scene"""
-    real: Number
-    """fraction of these where the difference exceeds five times its error estimate"""
+    points: Annotated[int, "phase pairs of this grid where every compared model has a value"]
+    independent: Annotated[int, "of these, not related by a symmetry of the scene"]
+    real: Annotated[Number, "fraction of these where the difference exceeds five times its error estimate"]
     maximum: Number
     """signed; the largest absolute difference of the first and any engine model, at any phase pair where both have a
     value"""
-    maximum_error: Number
-    """error estimate of the maximum"""
-    maximum_phases: Phases
-    """(alpha1, alpha2) of the maximum, rad; null under a record"""
-    maximum_model: str
-    """key of the engine model that has the maximum"""
-    maximum_phases_per_axis: int
-    """of the grid of phase pairs that this model and the first were asked for"""
-    cause: Cause
-    """of the mean, from the bars of the means"""
-    maximum_cause: Cause
-    """of the maximum, from the bars at its phase pair"""
+    maximum_error: Annotated[Number, "error estimate of the maximum"]
+    maximum_phases: Annotated[Phases, "(alpha1, alpha2) of the maximum, rad; null under a record"]
+    maximum_model: Annotated[str, "key of the engine model that has the maximum"]
+    maximum_phases_per_axis: Annotated[int, "of the grid of phase pairs that this model and the first were asked for"]
+    cause: Annotated[Cause, "of the mean, from the bars of the means"]
+    maximum_cause: Annotated[Cause, "of the maximum, from the bars at its phase pair"]
     like_for_like: Number
     """largest absolute difference of the two codes given the same equations and friction law"""
-    sentence: Text
-    """all that in words"""
+    sentence: Annotated[Text, "all that in words"]
 
     @property
     def statement(self) -> str:

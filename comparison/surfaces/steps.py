@@ -1,7 +1,5 @@
 """The difference of two models' surfaces with its uncertainty, point by point: of it tables and figures are made."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

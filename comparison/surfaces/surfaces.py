@@ -1,6 +1,4 @@
-"""The surfaces mu_i(alpha1, alpha2) of every scene and model, labeled, as one xarray data set."""
-
-from __future__ import annotations
+"""The surfaces mu_i(alpha1, alpha2) of every scene and model: the tasks that they take, and one xarray data set."""
 
 import math
 from collections import Counter
@@ -11,7 +9,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.study.batches import Batch, BatchResult
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import Batch, BatchResult, execute_batch
+from comparison.study.costs import seconds_per_point
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from reference.problem import Scene, phase_axis
@@ -26,6 +27,33 @@ MEANING = {  # unit and meaning of the variables
     "status": {"long_name": "named outcome of the point"},
 }
 NOT_ASKED = "not asked"  # status of the phases between those of a model that computes every k-th
+
+
+def surface_tasks(study: Study) -> list[Task]:
+    """A task for every batch of the study, in the same order."""
+    models = {model.key: model for model in study.hierarchy}
+    return [
+        Task(
+            execute_batch,
+            batch,
+            models[batch.model].title,
+            batch.points * seconds_per_point(batch.scene, models[batch.model]),
+            batch.question,
+            needs_compiled_reference=batch.amplification.startswith("reference:"),
+            timeout=batch.timeout,
+            group=batch.group,
+            model=batch.amplification,
+        )
+        for batch in study.batches()
+    ]
+
+
+def batch_results(tasks: Sequence[Task], results: TaskResults) -> list[BatchResult]:
+    """What the models answered to the batches; NaN with the reason where a task ended without a result."""
+    return [
+        results.value(task, lambda batch, failed: batch.without_result(failed.outcome, failed.error_message))
+        for task in tasks
+    ]
 
 
 def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult]) -> xr.Dataset:

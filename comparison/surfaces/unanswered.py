@@ -1,9 +1,8 @@
 """Models without a usable value at some or at every phase pair of a scene: which, why, and what helps."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
@@ -23,34 +22,23 @@ from reference.problem import ADVICE, Outcome, Scene
 class OutcomeNote:
     """One outcome of a model that is not ok."""
 
-    outcome: str
-    """name of the outcome"""
-    count: int
-    """phase pairs that ended so"""
-    advice: Text
-    """what it means and what to try"""
+    outcome: Annotated[str, "name of the outcome"]
+    count: Annotated[int, "phase pairs that ended so"]
+    advice: Annotated[Text, "what it means and what to try"]
 
 
 @result
 class Unanswered:
     """A model without a usable value at some or all phase pairs of a scene."""
 
-    scene: Text
-    """name of the scene"""
-    model: str
-    """key of the model"""
-    title: str
-    """title of the model"""
-    points: int
-    """phase pairs without a value"""
-    unusable: int
-    """further phase pairs, with a value whose error is above half of it"""
-    asked: int
-    """phase pairs that the model was asked for"""
-    used: bool
-    """whether comparisons use the values that it has"""
-    outcomes: tuple[OutcomeNote, ...]
-    """its outcomes that are not ok"""
+    scene: Annotated[Text, "name of the scene"]
+    model: Annotated[str, "key of the model"]
+    title: Annotated[str, "title of the model"]
+    points: Annotated[int, "phase pairs without a value"]
+    unusable: Annotated[int, "further phase pairs, with a value whose error is above half of it"]
+    asked: Annotated[int, "phase pairs that the model was asked for"]
+    used: Annotated[bool, "whether comparisons use the values that it has"]
+    outcomes: Annotated[tuple[OutcomeNote, ...], "its outcomes that are not ok"]
 
     @computed_field  # type: ignore[prop-decorator]
     @property

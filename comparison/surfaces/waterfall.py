@@ -5,11 +5,10 @@ The bars are means over the phase pairs where every compared model has a value, 
 The mean of a sum is the sum of the means, so that the bars end at the total; medians would not.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
@@ -31,12 +30,9 @@ NAN = float("nan")
 class WaterfallBar:
     """One step of the model hierarchy, or the total; relative to mu of the first model."""
 
-    model: str
-    """key of the model that the step leads to"""
-    size: Number
-    """signed size; null where a model has no value"""
-    error: Number
-    """error estimate of the size"""
+    model: Annotated[str, "key of the model that the step leads to"]
+    size: Annotated[Number, "signed size; null where a model has no value"]
+    error: Annotated[Number, "error estimate of the size"]
 
     @computed_field  # type: ignore[prop-decorator]
     @property
@@ -51,10 +47,8 @@ class LargestDifference:
 
     bars: tuple[WaterfallBar, ...]
     """one per step, up to the model that has the difference; they add up to the total"""
-    total: WaterfallBar
-    """the difference itself"""
-    phases: Phases
-    """(alpha1, alpha2), rad; null under a record"""
+    total: Annotated[WaterfallBar, "the difference itself"]
+    phases: Annotated[Phases, "(alpha1, alpha2), rad; null under a record"]
     phases_per_axis: int
     """of the grid of phase pairs that both models were asked for; 1 under a record, 0 without a difference"""
 
@@ -63,22 +57,15 @@ class LargestDifference:
 class Waterfall:
     """The total difference of one body as signed bars that add up."""
 
-    scene: Text
-    """name of the scene"""
-    body: int
-    """number of the body; 1 is the platform"""
+    scene: Annotated[Text, "name of the scene"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
     bars: tuple[WaterfallBar, ...]
     """one per step: means over the phase pairs where every compared model has a value"""
-    total: WaterfallBar
-    """mean of the total difference over the same phase pairs: the sum of the bars"""
-    spread: Number
-    """standard deviation of the total difference over the same phase pairs"""
-    points: int
-    """number of these phase pairs"""
-    independent: int
-    """of these, not related by a symmetry of the scene"""
-    largest: LargestDifference
-    """the same at the phase pair of the largest difference"""
+    total: Annotated[WaterfallBar, "mean of the total difference over the same phase pairs: the sum of the bars"]
+    spread: Annotated[Number, "standard deviation of the total difference over the same phase pairs"]
+    points: Annotated[int, "number of these phase pairs"]
+    independent: Annotated[int, "of these, not related by a symmetry of the scene"]
+    largest: Annotated[LargestDifference, "the same at the phase pair of the largest difference"]
 
 
 def waterfall(study: Study, surfaces: xr.Dataset, scene: Scene, body: int) -> Waterfall:

@@ -1,13 +1,11 @@
 """Waterfalls of the page's first screen as bars in percent of a width, all on one scale."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite
 
-from comparison.surfaces.waterfall import Waterfall, WaterfallBar
+from comparison.surfaces.waterfall import WaterfallBar
 from comparison.wording import difference
 
 MARGIN = 0.03  # of the scale, beyond the longest bar
@@ -55,23 +53,6 @@ def scale_of(waterfalls: Iterable[tuple[Sequence[WaterfallBar], WaterfallBar]]) 
     room = MARGIN * (high - low)
     low, high = low - room, high + room
     return Scale(low, high, tuple(_ticks(low, high)))
-
-
-def scales(every: Sequence[Waterfall]) -> dict[str, Scale]:
-    """The axes of the means and of the largest differences, each one for all scenes and bodies."""
-    return {
-        "mean": scale_of((waterfall.bars, waterfall.total) for waterfall in every),
-        "largest": scale_of((waterfall.largest.bars, waterfall.largest.total) for waterfall in every),
-    }
-
-
-def charts(waterfall: Waterfall, scales: dict[str, Scale]) -> dict[str, list[Bar]]:
-    """The bars of the means and those at the largest difference."""
-    largest = waterfall.largest
-    return {
-        "mean": bars_of(waterfall.bars, waterfall.total, scales["mean"]),
-        "largest": bars_of(largest.bars, largest.total, scales["largest"]),
-    }
 
 
 @dataclass(frozen=True)

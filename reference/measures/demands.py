@@ -214,24 +214,15 @@ class _Samples(NamedTuple):
 
     @staticmethod
     def of(motion: Trajectory) -> _Samples:
-        place, velocity, support = motion.position[:, :, :2], motion.velocity[:, :, :2], motion.support_force
+        moving = motion.time, motion.position[:, :, :2], motion.velocity[:, :, :2]
+        support = motion.support_force
         uplift = motion.extra.get("uplift", np.zeros_like(support))
-        return _Samples(
-            motion.time,
-            place,
-            velocity,
-            motion.isolator_force,
-            motion.contact_force,
-            support,
-            motion.vertical_rotation,
-            uplift,
-        )
+        return _Samples(*moving, motion.isolator_force, motion.contact_force, support, motion.vertical_rotation, uplift)
 
     def decimated(self) -> list[_Samples]:
         """One of DECIMATION samples, from the first, the second, ... on."""
-        return [
-            _Samples(*(part[first::DECIMATION] for part in self)) for first in range(min(DECIMATION, len(self.time)))
-        ]
+        firsts = range(min(DECIMATION, len(self.time)))
+        return [_Samples(*(part[first::DECIMATION] for part in self)) for first in firsts]
 
     def largest(self, place: Array, velocity: Array) -> float:
         """Largest length of a displacement (T, 2)."""
@@ -258,7 +249,8 @@ class _Reading:
         self.answered = motion.status in ANSWERED and len(motion.time) > 0
         self.samples = _Samples.of(motion)
         self.decimated = self.samples.decimated()
-        self.coarser = [_Samples.of(other) for other in self.accuracy.coarser] if self.accuracy else []
+        self.others = self.accuracy.coarser if self.accuracy else ()
+        self.coarser = [_Samples.of(other) for other in self.others]
 
     def extreme(self, read: Read) -> Estimate:
         """A number that is read from samples."""
@@ -281,8 +273,7 @@ class _Reading:
         value, creep = self.samples.at_rest(stick)
         decimated = (samples.at_rest(stick) for samples in self.decimated if samples.time[-1] >= stick[-1][0])
         sampling = max(abs(place - value) + abs(way - creep) for place, way in decimated)
-        coarser = self.accuracy.coarser if self.accuracy else ()
-        others = [samples.at_rest(motion.stick)[0] for samples, motion in zip(self.coarser, coarser)]
+        others = [samples.at_rest(motion.stick)[0] for samples, motion in zip(self.coarser, self.others)]
         return Estimate(value, creep + sampling + self._of_solution(value, others))
 
     def energy(self, read: Callable[[Energy], float]) -> Estimate:
@@ -298,8 +289,7 @@ class _Reading:
     @cached_property
     def _energies(self) -> tuple[list[Energy], list[Energy]]:
         """Energy of the motion and of the runs beside it, and of the motion's decimated samples."""
-        others = self.accuracy.coarser if self.accuracy else ()
-        energies = [energy_of(motion) for motion in (self.motion, *others)]
+        energies = [energy_of(motion) for motion in (self.motion, *self.others)]
         return energies, energies[0].decimated(DECIMATION)
 
     def count(self, read: Callable[[Trajectory], float]) -> Estimate:
@@ -307,8 +297,7 @@ class _Reading:
         if not self.answered:
             return UNKNOWN
         value = read(self.motion)
-        others = self.accuracy.coarser if self.accuracy else ()
-        return Estimate(value, max((abs(value - read(other)) for other in others), default=math.nan))
+        return Estimate(value, max((abs(value - read(other)) for other in self.others), default=math.nan))
 
     def peaks(self) -> tuple[Estimate, ...]:
         """Largest accelerations."""

@@ -30,7 +30,7 @@ from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
-from comparison.surfaces.tasks import batch_results, surface_tasks
+from comparison.surfaces.surfaces import batch_results, surface_tasks
 from reference.problem import Amplification, Scene, load_scene
 
 DURATION = 0.5  # s a batch takes; the study's take about one

@@ -1,7 +1,5 @@
 """Runs of the command line with models of known answer."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor

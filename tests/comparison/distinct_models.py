@@ -5,8 +5,6 @@ mu of the first model and the relative differences of the others are closed form
 which make every statistic of them with NumPy alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache

@@ -1,7 +1,5 @@
 """Models that fail at an extreme in every way that must be found, and two that do not. Workers import them by name."""
 
-from __future__ import annotations
-
 import os
 import time
 

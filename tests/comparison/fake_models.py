@@ -3,8 +3,6 @@
 `full` asks a model for all that a scene does not require: these leave nothing out.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 import time

@@ -7,8 +7,6 @@ T = 20 + sqrt(D / pi) / k * integral of q(t - s) / sqrt(s), as MASTODON sums it.
 elastic with a constant stiffness. Heated, it has MASTODON's restoring force N y / sqrt(R^2 - y^2), otherwise N y / R.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray

@@ -1,7 +1,5 @@
 """Known answers in place of what a study finds beside its surfaces, and the answers of one analysis alone."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Known results of extremes and of a trade-off, and columns whose models fail in known ways."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from comparison.analyses.extremes.matrix import Entry, Extreme, Matrix

@@ -1,7 +1,5 @@
 """Tasks of worker processes, in a module that imports next to nothing: a worker that runs them starts quickly."""
 
-from __future__ import annotations
-
 import itertools
 import os
 import signal

@@ -1,7 +1,5 @@
 """A Dask scheduler and worker processes on the loopback address, as separate programs that can be killed."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -1,7 +1,5 @@
 """Mistakes in the real programs: a scene that is read wrongly, or a step and tolerances that are too coarse."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Folders of the project."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 HELPERS = Path(__file__).parent

@@ -1,7 +1,5 @@
 """The parts of a report, read back."""
 
-from __future__ import annotations
-
 import base64
 import gzip
 import json

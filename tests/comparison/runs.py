@@ -1,7 +1,5 @@
 """What a run of the command line leaves, and pictures in its report that take no time."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Studies that are solved here, batch after batch, and surfaces with a planted difference."""
 
-from __future__ import annotations
-
 import numpy as np
 import xarray as xr
 from fake_models import errors_in

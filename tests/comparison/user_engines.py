@@ -1,7 +1,5 @@
 """Engines of a user: good ones and bad ones. Workers import them by name."""
 
-from __future__ import annotations
-
 import os
 import sys
 import time

@@ -1,7 +1,5 @@
 """A run of batches and of tasks beside and after them, which other processes repeat, and one that ends itself."""
 
-from __future__ import annotations
-
 import itertools
 import os
 import signal
@@ -21,7 +19,7 @@ from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult
 from comparison.study.study import Study
-from comparison.surfaces.tasks import surface_tasks
+from comparison.surfaces.surfaces import surface_tasks
 from reference.problem import load_scene
 
 

@@ -19,9 +19,9 @@ from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE, 
 from comparison.analyses.validation.table import MEANING, NONE, STORED, Validation, joined, recorded
 from comparison.cli.arguments import CommandParser, command, writing
 from comparison.cli.terminal import new_table
+from comparison.runner.environment import provenance
 from comparison.runner.output import destination, publish, refuse_foreign_files
 from comparison.runner.progress import wide_console
-from comparison.runner.provenance import provenance
 
 
 @command

@@ -1,7 +1,5 @@
 """One map per step of the budget: how much each model of the hierarchy adds to mu_i, and where that is real."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How files of figures are called: the one place where names of scenes become names of files."""
 
-from __future__ import annotations
-
 import hashlib
 from pathlib import Path
 

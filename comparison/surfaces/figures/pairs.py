@@ -1,7 +1,5 @@
 """Static figures in the paper's manner: mu_i over [0, 2 pi]^2 from two models, and their signed difference."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -85,15 +83,22 @@ def closed_surface(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) 
     return closed(phase, values_of(surfaces, "mu", scene.name, model)[body - 1])
 
 
-def _surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float) -> None:
+def draw_in_space(
+    axes: Axes3D, phase: Array, height: Array, limits: tuple[float, float], aspect: float, zoom: float, **style: Any
+) -> None:
+    """A surface over the phases; aspect: of the height to either side."""
     alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
-    colors = {"cmap": HEIGHT_COLORS, "vmin": low, "vmax": high, "linewidth": 0.2, "edgecolor": (0, 0, 0, 0.35)}
-    axes.plot_surface(alpha1, alpha2, height, rcount=200, ccount=200, antialiased=True, **colors)
-    axes.set_zlim(low, high)
-    axes.set_box_aspect((1.0, 1.0, 0.62), zoom=0.88)
+    axes.plot_surface(alpha1, alpha2, height, rcount=200, ccount=200, antialiased=True, **style)
+    axes.set_zlim(*limits)
+    axes.set_box_aspect((1.0, 1.0, aspect), zoom=zoom)
     axes.view_init(elev=28.0, azim=-125.0)
     axes.set_xticks(*QUARTER_TICKS)
     axes.set_yticks(*QUARTER_TICKS)
+
+
+def _surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float) -> None:
+    colors = {"cmap": HEIGHT_COLORS, "vmin": low, "vmax": high, "linewidth": 0.2, "edgecolor": (0, 0, 0, 0.35)}
+    draw_in_space(axes, phase, height, (low, high), 0.62, 0.88, **colors)
     axes.tick_params(labelsize=8, pad=0)
     axes.set_xlabel(r"$\alpha_1$, rad", labelpad=2)
     axes.set_ylabel(r"$\alpha_2$, rad", labelpad=2)

@@ -1,7 +1,5 @@
 """Figures for a manuscript, in the paper's own manner: gray surfaces mu_i over [0, 2 pi]^2, one row per body."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +12,7 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import with_ending
-from comparison.surfaces.figures.pairs import PNG, QUARTER_TICKS, closed_surface, limits_of
+from comparison.surfaces.figures.pairs import PNG, closed_surface, draw_in_space, limits_of
 from comparison.wording import mathtext
 from reference.problem import Scene
 
@@ -53,18 +51,12 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
 def draw_surface(axes: Axes, phase: np.ndarray, height: np.ndarray, limits: tuple[float, float], name: str) -> None:
     """One gray surface in the manner of the paper; phase: rad, with both ends; name: of the height."""
     assert isinstance(axes, Axes3D)
-    alpha1, alpha2 = np.meshgrid(phase, phase, indexing="ij")
-    lines = {"color": "white", "edgecolor": "black", "linewidth": 0.4, "shade": False, "antialiased": True}
-    axes.plot_surface(alpha1, alpha2, height, rcount=200, ccount=200, **lines)
-    axes.set_zlim(*limits)
-    axes.set_box_aspect((1.0, 1.0, 0.66), zoom=1.02)
-    axes.view_init(elev=28.0, azim=-125.0)
+    lines = {"color": "white", "edgecolor": "black", "linewidth": 0.4, "shade": False}
+    draw_in_space(axes, phase, height, limits, 0.66, 1.02, **lines)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
         axis.set_rotate_label(False)
         axis.set_pane_color((1.0, 1.0, 1.0, 0.0))
         axis._axinfo["grid"].update(color="0.8", linewidth=0.3)
-    axes.set_xticks(*QUARTER_TICKS)
-    axes.set_yticks(*QUARTER_TICKS)
     axes.tick_params(pad=-2)
     axes.set_xlabel(r"$\alpha_1$", labelpad=-4)
     axes.set_ylabel(r"$\alpha_2$", labelpad=-4)

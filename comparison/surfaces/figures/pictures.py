@@ -1,13 +1,10 @@
 """All pictures of a study's surfaces, each drawn by whoever has time, and handed back as files."""
 
-from __future__ import annotations
-
 import base64
 import tempfile
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
-from typing import Literal
 
 import xarray as xr
 
@@ -18,45 +15,13 @@ from comparison.study.analyses import EVERYTHING
 from comparison.study.models import Pair
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import figure_file
-from reference.problem import Scene
 
 SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
 
 
-@dataclass(frozen=True)
-class Picture:
-    """One picture of a scene, with the study and the surfaces of that scene alone."""
-
-    kind: Literal["pair", "budget", "paper"]
-    study: Study
-    surfaces: xr.Dataset
-    body: int = 0
-    pair: Pair | None = None
-
-    @property
-    def scene(self) -> Scene:
-        """The scene that is drawn."""
-        return self.study.scenes[0]
-
-
 Files = tuple[tuple[str, bytes], ...]  # names and contents
-
-
-def pictures(study: Study, surfaces: xr.Dataset) -> list[Picture]:
-    """Every picture of the selected sections: a scene without phases has no surfaces."""
-    listed = []
-    for scene in study.phased:
-        alone = replace(study, scenes=(scene,), selection=EVERYTHING)
-        shown = surfaces[SHOWN].sel(scene=[scene.name])
-        with_surfaces, with_budget = (study.selection.has(section, scene.name) for section in ("surfaces", "budget"))
-        if with_surfaces:
-            listed.append(Picture("paper", alone, shown))
-        for body in range(1, len(scene.bodies) + 1):
-            if with_surfaces:
-                listed += [Picture("pair", alone, shown, body, pair) for pair in study.pairs(scene)]
-            if with_budget:
-                listed.append(Picture("budget", alone, shown, body))
-    return listed
+# kind ("pair", "budget", "paper"), the study and the surfaces of one scene alone, body, pair of models
+Picture = tuple[str, Study, xr.Dataset, int, Pair | None]
 
 
 class Pictures(Analysis[dict[str, bytes]]):
@@ -65,20 +30,28 @@ class Pictures(Analysis[dict[str, bytes]]):
     key, stage, needs_surfaces = "pictures", "pictures", True
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """One task for each picture."""
+        """One task for each picture of the selected sections: a scene without phases has no surfaces."""
         assert surfaces is not None, "they are what is drawn"
-        about = {scene.name: fingerprint(surfaces[SHOWN].sel(scene=[scene.name])) for scene in study.scenes}
-        return [
-            Task(drawn, picture, self.stage, about=about[picture.scene.name], needs_compiled_reference=False)
-            for picture in pictures(study, surfaces)
-        ]
+        tasks = []
+        for scene in study.phased:
+            alone = replace(study, scenes=(scene,), selection=EVERYTHING)
+            shown = surfaces[SHOWN].sel(scene=[scene.name])
+            bodies = range(1, len(scene.bodies) + 1)
+            pictures: list[Picture] = []
+            if study.selection.has("surfaces", scene.name):
+                pictures.append(("paper", alone, shown, 0, None))
+                pictures += [("pair", alone, shown, body, pair) for body in bodies for pair in study.pairs(scene)]
+            if study.selection.has("budget", scene.name):
+                pictures += [("budget", alone, shown, body, None) for body in bodies]
+            about = fingerprint(shown)
+            tasks += [Task(drawn, each, self.stage, about=about, needs_compiled_reference=False) for each in pictures]
+        return tasks
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> dict[str, bytes]:
         """The files; a picture that no worker could draw is drawn here, for the page refers to it."""
-        tasks = self.tasks(study, surfaces)
         return {
             name: content
-            for task in tasks
+            for task in self.tasks(study, surfaces)
             for name, content in results.value(task, lambda picture, *failure: drawn(picture))
         }
 
@@ -87,17 +60,16 @@ def drawn(picture: Picture) -> Files:
     """The files of one picture. Runs inside a worker process."""
     from comparison.surfaces.figures import budget, pairs, paper  # plotting: not needed to list what is drawn
 
-    study, surfaces, scene, body = picture.study, picture.surfaces, picture.scene, picture.body
+    kind, study, surfaces, body, pair = picture
+    (scene,) = study.scenes
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        if picture.kind == "paper":
+        if kind == "paper":
             paper.draw_paper_figure(folder / figure_file(scene.name, "paper"), study, surfaces, scene)
-        elif picture.kind == "budget":
+        elif pair is None:
             budget.draw_budget(folder / figure_file(scene.name, f"body{body}", "budget"), study, surfaces, scene, body)
         else:
-            assert picture.pair is not None
-            path = folder / figure_file(scene.name, f"body{body}", picture.pair.key)
-            pairs.draw_pair(path, surfaces, scene, body, picture.pair)
+            pairs.draw_pair(folder / figure_file(scene.name, f"body{body}", pair.key), surfaces, scene, body, pair)
         return tuple((file.name, file.read_bytes()) for file in sorted(folder.iterdir()))
 
 

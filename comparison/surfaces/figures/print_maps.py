@@ -1,7 +1,5 @@
 """Maps of the surfaces for print: the paper's equations, the engine, their difference; two bodies in a row."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from io import BytesIO
 from typing import Any

@@ -1,7 +1,5 @@
 """A wrong command ends with exit code 2 and one line that names file, key, value and rule; nothing is written."""
 
-from __future__ import annotations
-
 import os
 import stat
 from collections.abc import Callable
@@ -98,20 +96,12 @@ def test_out_never_destroys_what_is_not_a_report(
     assert (foreign / "chapter1.txt").read_text(encoding="utf-8") == "years of work"
 
 
-def test_out_refuses_a_file_and_the_working_directory(
+def test_out_refuses_the_working_directory(
     command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    file = tmp_path / "report.html"
-    file.write_text("mine", encoding="utf-8")
-    for out, rule in ((file, "is a file: give a directory"), (file / "below", "cannot be written: Not a directory")):
-        run = command("--out", str(out), hierarchy=fake_hierarchy("forbidden"))
-        assert run.code == 2
-        assert rule in run.err
-    assert file.read_text(encoding="utf-8") == "mine"
-    empty = tmp_path / "here"
-    empty.mkdir()
-    monkeypatch.chdir(empty)
-    for place in (".", str(empty), ".."):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    for place in (".", str(tmp_path / "here"), ".."):
         run = command("--out", place)
         assert run.code == 2
         assert "is the directory you work in" in run.err

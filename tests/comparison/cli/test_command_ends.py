@@ -1,7 +1,5 @@
 """However a command ends, it ends with its exit code and one line at most: never with a traceback on the terminal."""
 
-from __future__ import annotations
-
 import gc
 import os
 import runpy

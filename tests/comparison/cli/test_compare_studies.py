@@ -1,7 +1,5 @@
 """The comparison of two reports finds one changed bit, one changed number, and nothing else."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

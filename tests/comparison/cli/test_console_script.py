@@ -1,7 +1,5 @@
 """The console script does what the modules do, and a user's own reference.py beside it is never imported."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """What ends a command early is one line; what is finished is kept, and the line says how to go on."""
 
-from __future__ import annotations
-
 import os
 import re
 import signal

@@ -1,7 +1,5 @@
 """The README is short, gives one command line for the study and one for the tests, and what it points to is there."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 

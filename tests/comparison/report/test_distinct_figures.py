@@ -1,7 +1,5 @@
 """Figures, statistics and tables of a study of pairwise different numbers: a swap of any two fails."""
 
-from __future__ import annotations
-
 import re
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path

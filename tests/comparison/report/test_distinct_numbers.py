@@ -1,11 +1,10 @@
 """A study of pairwise different numbers, read back from page, texts, terminal and figures: each stands in its place."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from html import unescape
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -217,6 +216,7 @@ def test_every_place_has_the_one_mean_of_the_total(
     ]
     assert row["mean"] == in_percent(mean, "+")
     statement = headline["sentence"].removeprefix("fig3-I, ")
+    assert statement in unescape(re.sub("<.*?>", "", page_of(report)))
     assert statement in (report / "summary.md").read_text(encoding="utf-8").replace("\\", "")
     assert statement in str(ElementTree.parse(report / "junit.xml").getroot().findtext("testsuite/system-out"))
     assert flat(statement) in flat(text_of(report / "report.pdf")[1])

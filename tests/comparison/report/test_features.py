@@ -1,7 +1,5 @@
 """A feature is one folder and its entry in the registry: one is added to a copy of the package, another deleted."""
 
-from __future__ import annotations
-
 import json
 import os
 import shutil

@@ -1,7 +1,5 @@
 """A flat slider in a study: its radius is infinite, and nothing that is written breaks on it."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Callable

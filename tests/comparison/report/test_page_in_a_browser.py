@@ -1,7 +1,5 @@
 """The page in a browser."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor

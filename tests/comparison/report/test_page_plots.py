@@ -1,7 +1,5 @@
 """Plots of the folded sections and the words of the trade-off say what the results hold."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """report.pdf has two to four pages with the sentences of the page, whatever is studied, and its absence is one line."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace

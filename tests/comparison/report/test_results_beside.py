@@ -1,7 +1,5 @@
 """What other commands leave beside a report is part of the next one, and no run loses it."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable, Mapping

@@ -1,7 +1,5 @@
 """Texts of scenes are printed as they are, and numbers as the house writes them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree

@@ -1,7 +1,5 @@
 """A result comes back to the last bit, for its own question and no other; the cache stays bounded."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import time
@@ -14,26 +12,22 @@ from typing import Any
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy
-from known_analyses import collected
 from light_tasks import dies, doubled, raises
 from runs import no_executor
 
 import multibody.models.engine
 from comparison.analyses.claims.table import paper_complete
-from comparison.analyses.effective_values.analysis import Effective
-from comparison.analyses.errata import analysis as errata
 from comparison.analyses.errata.analysis import Effect
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.registry import ANALYSES, first_tasks
 from comparison.runner.cache import MAGIC, Cache, Key
-from comparison.runner.environment import source_digest
+from comparison.runner.environment import provenance, source_digest
 from comparison.runner.processes import process_pool
-from comparison.runner.provenance import provenance
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task, TaskResult, execute, fingerprint
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
-from comparison.surfaces.tasks import surface_tasks
+from comparison.surfaces.surfaces import surface_tasks
 from reference.problem import Outcome, builtin_scenes, load_scene
 
 
@@ -224,20 +218,6 @@ def test_a_task_that_fails_has_its_reason_and_costs_no_other(tmp_path: Path) -> 
     assert results.parts["errata"].tasks == 3
 
 
-def test_collecting_computes_nothing_and_looks_every_result_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each function is called once, by the runner."""
-    calls.clear()
-
-    def counted(task: tuple[Any, int]) -> Effect:
-        calls.append(task)
-        return Effect(task[0].name, task[1])
-
-    monkeypatch.setattr(errata, "measured", counted)
-    study = Study((load_scene("fig3-I"),), 4, 1e-3)
-    found = [effect for each in collected(errata.Errata(), study) for effect in each.effects]
-    assert len(found) == len(calls) == len(errata.Errata().tasks(study))
-
-
 def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
     study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3)
     tasks = first_tasks(study, ANALYSES)
@@ -247,14 +227,6 @@ def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
         "effective values", "errata", "scaling test", "convergence", "claims", "assumptions",
     }  # fmt: skip
     assert not paper_complete(Study(study.scenes[:1], 6, 1e-3))
-
-
-def test_effective_values_without_a_motion_are_not_kept_for_good(tmp_path: Path) -> None:
-    results = TaskResults(Cache(tmp_path))
-    results.put(
-        Task(broken, 1, "effective values", 0.1), TaskResult(Effective("s", "small", error_message="it ended"), 0.1)
-    )
-    assert not list(tmp_path.glob("*/*"))
 
 
 def test_the_cost_of_a_task_is_its_own_processor_time() -> None:

@@ -1,7 +1,5 @@
 """A Dask cluster gives the numbers of this machine, loses none when a worker dies, and can be done without."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -22,7 +20,7 @@ from comparison.runner.task import BATCH, Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult
 from comparison.study.study import Study
-from comparison.surfaces.tasks import batch_results, surface_tasks
+from comparison.surfaces.surfaces import batch_results, surface_tasks
 from reference.problem import Outcome, load_scene
 
 

@@ -1,7 +1,5 @@
 """Killed at any moment, or with a full disk, a run goes on from what is stored, and its numbers are the same bytes."""
 
-from __future__ import annotations
-
 import errno
 import io
 import json
@@ -22,7 +20,7 @@ from whole_runs import whole_run
 from comparison.runner.cache import store_beside
 from comparison.study.batches import BatchResult
 from comparison.study.study import Study
-from comparison.surfaces.tasks import surface_tasks
+from comparison.surfaces.surfaces import surface_tasks
 from reference.problem import load_scene
 
 INSTANTS = 24

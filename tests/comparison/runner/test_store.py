@@ -1,7 +1,5 @@
 """A report is written aside and takes the place of the old one only when it is complete."""
 
-from __future__ import annotations
-
 import signal
 import subprocess
 import sys

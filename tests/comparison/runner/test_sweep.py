@@ -1,7 +1,5 @@
 """Every task has its result: one that kills or hangs its worker costs its own points, in any order of the others."""
 
-from __future__ import annotations
-
 import gc
 import signal
 import threading
@@ -22,14 +20,12 @@ from comparison.runner.cache import Cache
 from comparison.runner.executors import ExecutorLostError, Pool, TimeLimitError, executing
 from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
-from comparison.runner.sweep import Sweep
 from comparison.runner.task import GIVEN_UP, Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from comparison.study.user_models import user_model
-from comparison.surfaces.surfaces import labeled_surfaces
-from comparison.surfaces.tasks import batch_results, surface_tasks
+from comparison.surfaces.surfaces import batch_results, labeled_surfaces, surface_tasks
 from reference.problem import Outcome, load_scene
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="SIGKILL")
@@ -96,14 +92,16 @@ def test_halves_of_a_batch_are_its_points_in_order() -> None:
     assert together.cost == pytest.approx(whole.cost, rel=1e-12)  # a sum in another order
 
 
-def test_a_lent_executor_states_its_width_and_stays_open(tmp_path: Path) -> None:
+def test_a_lent_executor_states_its_width_and_stays_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     class Three(ThreadPoolExecutor):
         width = 3
 
     together, places = Barrier(3), []
     with Three(3) as lent:
         tasks = [Task(together.wait, 60.0, "test")] * 3
-        Sweep(tasks, lent, 1, lambda task, result: places.append(result.value)).run()
+        results = TaskResults()
+        monkeypatch.setattr(results, "put", lambda task, result: places.append(result.value))
+        Runner(results, 1, lent).run(tasks)
         assert sorted(places) == [0, 1, 2], "each waited for the other two"
         assert [result.value for result in _run(_tasks(tmp_path, "one"), lent)] == ["one"]
         assert lent.submit(str.upper, "c").result() == "C"
@@ -136,18 +134,19 @@ def test_an_executor_ends_with_the_block_that_it_was_made_for() -> None:
     assert ended == [(True, False), (False, True)], "without waiting after an exception"
 
 
-def test_a_run_that_is_stopped_abandons_its_workers() -> None:
+def test_a_run_that_is_stopped_abandons_its_workers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     abandoned = []
 
     class Told(ThreadPoolExecutor):
         def abandon(self) -> None:
             abandoned.append(True)
 
-    def stopped(task: Task, result: TaskResult) -> None:
+    def stopped(*task_and_result: object) -> None:
         raise KeyboardInterrupt
 
+    monkeypatch.setattr(TaskResults, "put", stopped)
     with Told(1) as workers, pytest.raises(KeyboardInterrupt):
-        Sweep([Task(len, "abc", "test")], workers, 1, stopped).run()
+        Runner(TaskResults(), 1, workers).run(_tasks(tmp_path, "one"))
     assert abandoned == [True]
 
 
@@ -304,11 +303,3 @@ def test_what_needs_the_reference_waits_for_it_while_others_pass() -> None:
     assert BEGAN[:3] == ["compile", "engine 1", "engine 2"]
     assert sorted(BEGAN[3:]) == ["reference 1", "reference 2"]
     assert [results[task].value for task in tasks] == [task.argument for task in tasks]
-
-
-def test_what_is_never_ready_runs_when_nothing_else_is_left() -> None:
-    done: list[str] = []
-    with ThreadPoolExecutor(2) as threads:
-        tasks = [Task(str.upper, name, "test") for name in "ab"]
-        Sweep(tasks, threads, 2, lambda task, result: done.append(result.value), lambda task: task is tasks[0]).run()
-    assert done == ["A", "B"]

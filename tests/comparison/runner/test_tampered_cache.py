@@ -1,7 +1,5 @@
 """Whatever stands in the cache, it costs a recomputation at most: nothing is unpickled, imported or believed unseen."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import pickle
@@ -18,14 +16,12 @@ import pytest
 from fake_models import fake_hierarchy
 from numpy.typing import NDArray
 
-from comparison.analyses.claims.evidence import Evidence
-from comparison.analyses.claims.smoothness import Bend
 from comparison.runner.cache import MAGIC, Cache, Key
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult, execute_batch
 from comparison.study.study import Study
-from comparison.surfaces.tasks import surface_tasks
+from comparison.surfaces.surfaces import surface_tasks
 from reference.problem import load_scene
 
 KEY = Key('{"a": 1}', "0" * 64, "result")
@@ -172,9 +168,3 @@ def test_what_is_no_regular_file_is_no_result(tmp_path: Path) -> None:
     (tmp_path / KEY.name).unlink()
     (tmp_path / KEY.name).symlink_to("/dev/zero")
     assert cache.get(KEY, Outer) is None
-
-
-def test_evidence_of_the_claims_is_read_back(tmp_path: Path) -> None:
-    evidence = Evidence(np.ones((2, 2, 1)), 0.1, ("ok",), (Bend(2.0, (0.1, 0.2)),), (0.5,), 0.25)
-    Cache(tmp_path).put(KEY, (evidence, 1.5))
-    assert pickle.dumps(Cache(tmp_path).get(KEY, tuple[Evidence, float])) == pickle.dumps((evidence, 1.5))

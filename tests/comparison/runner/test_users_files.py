@@ -1,7 +1,5 @@
 """What the study did not write is never deleted, replaced or run: it stays, and the study's own files go beside it."""
 
-from __future__ import annotations
-
 import hashlib
 import itertools
 import os
@@ -310,6 +308,8 @@ PLACES: Mapping[str, tuple[str, str]] = {
     "a link that leads back": ("loop", "leads back to itself"),
     "a link with another's store beside what it means": ("link", "beside it is not a store of results"),
     "a store that is a link": ("linked-store", "beside it is not the folder that keeps results"),
+    "a file": ("page.html", "is a file: give a directory"),
+    "below a file": ("page.html/below", "cannot be written: Not a directory"),
     "a mount point": ("mount", "is a mount point, which cannot be replaced"),
     "the root": ("/", "is the root directory: give a directory inside it"),
     "two slashes": ("//", "is the root directory: give a directory inside it"),
@@ -321,6 +321,7 @@ def test_an_odd_place_is_refused_at_the_start_in_one_line(
     command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, rule: str
 ) -> None:
     (tmp_path / "mount").mkdir()
+    (tmp_path / "page.html").write_text("mine", encoding="utf-8")
     (tmp_path / "loop").symlink_to(tmp_path / "loop")
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "elsewhere")

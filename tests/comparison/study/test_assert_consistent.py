@@ -1,7 +1,5 @@
 """The gate for users: what it lets pass, what it reports, and what it refuses."""
 
-from __future__ import annotations
-
 import re
 from fractions import Fraction
 
@@ -109,7 +107,8 @@ def test_the_spatial_model_is_computed_for_the_total_only(monkeypatch: pytest.Mo
 
         computed.append(batch.model)
         shape = (len(batch.phases), 2)
-        return BatchResult(np.full(shape, 2.0), np.full(shape, 1e-6), ["ok"] * shape[0], np.full(shape[0], np.nan), 0.0)
+        never = np.full(shape[0], np.nan)
+        return BatchResult(np.full(shape, 2.0), np.full(shape, 1e-6), ["ok"] * shape[0], never, 0.0, "", never)
 
     monkeypatch.setattr("comparison.testing.execute_batch", execute)
     assert_consistent("fig3-I", like_for_like=1e-3)

@@ -1,7 +1,5 @@
 """Every engine of examples/engines gives mu of the equations as closely as its page says; where it is installed."""
 
-from __future__ import annotations
-
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType

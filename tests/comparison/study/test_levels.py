@@ -1,7 +1,5 @@
 """Every level of a study is part of the next and has a whole report; grids are nested."""
 
-from __future__ import annotations
-
 import itertools
 import math
 import threading
@@ -24,16 +22,14 @@ from comparison import registry
 from comparison import run as command_module
 from comparison.cli import reports
 from comparison.runner.cache import Cache
-from comparison.runner.deadline import Deadline, TimeUpError
-from comparison.runner.progress import Display
+from comparison.runner.progress import Deadline, Display, TimeUpError
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.levels import levels_of
 from comparison.study.models import MODEL_HIERARCHY
-from comparison.study.nesting import levels, nested_grids
-from comparison.study.study import Study
-from comparison.surfaces.tasks import surface_tasks
+from comparison.study.study import Study, levels, nested_grids
+from comparison.surfaces.surfaces import surface_tasks
 from reference.command import StoppedError
 from reference.problem import load_scene, phase_axis, phase_grid
 
@@ -201,8 +197,8 @@ def test_finished_analyses_are_in_the_report_of_a_stopped_run(
 
 def test_the_time_is_up_at_the_deadline_less_what_is_kept_free(monkeypatch: pytest.MonkeyPatch) -> None:
     armed: list[float] = []
-    monkeypatch.setattr("comparison.runner.deadline.signal.setitimer", lambda which, seconds: armed.append(seconds))
-    monkeypatch.setattr("comparison.runner.deadline.time.monotonic", lambda: 100.0)
+    monkeypatch.setattr("comparison.runner.progress.signal.setitimer", lambda which, seconds: armed.append(seconds))
+    monkeypatch.setattr("comparison.runner.progress.time.monotonic", lambda: 100.0)
     with Deadline(90.0, 30.0) as deadline:
         deadline.keep_free(4.0)
     assert armed == pytest.approx([19.7, 15.7, 0.0])

@@ -1,7 +1,5 @@
 """Records, real models and softened bars in a study."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -86,12 +84,6 @@ def test_a_mixed_study_is_planned_computed_and_checked(command: Callable[..., Ru
     names = sorted(file.name for file in (run.report / "figures").iterdir())
     assert names
     assert not [name for name in names if name.startswith("synthetic")]
-
-
-def test_a_broken_limit_of_a_record_is_told(command: Callable[..., Run]) -> None:
-    run = command("synthetic-pair", "--check", hierarchy=fake_hierarchy(gap=0.01))
-    assert run.code == 1
-    assert "synthetic-pair" in run.err
 
 
 @pytest.mark.long

@@ -1,7 +1,5 @@
 """A study computes mirrored phases once, where and only where the scene's symmetry is exact."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

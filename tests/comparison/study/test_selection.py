@@ -1,7 +1,5 @@
 """Analyses are selected on the command line and in a scene; what was not asked for is absent and not computed."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -18,7 +16,7 @@ from comparison.cli.options import parsed
 from comparison.registry import FEATURES, chosen_analyses, first_tasks
 from comparison.study.analyses import ANALYSES, Selection, selected
 from comparison.study.study import Study
-from comparison.surfaces.figures.pictures import Pictures, pictures
+from comparison.surfaces.figures.pictures import Pictures
 from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import load_scene
 
@@ -57,7 +55,7 @@ def test_a_study_of_surfaces_alone_computes_their_pictures() -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3)
     study = replace(study, selection=Selection.of(study.scenes, ["surfaces"], None))
     assert first_tasks(study, chosen_analyses(study)) == []
-    assert len(pictures(study, labeled_surfaces(study, [], []))) == 1 + 2 * len(study.pairs(study.scenes[0]))
+    assert len(Pictures().tasks(study, labeled_surfaces(study, [], []))) == 1 + 2 * len(study.pairs(study.scenes[0]))
 
 
 def test_a_selection_changes_the_key_of_no_picture(finished: Path) -> None:
@@ -108,11 +106,6 @@ def test_the_command_line_selects_before_the_scene(command: Callable[..., Run], 
     assert '<option value="0">' not in page
     options = parsed([mine, "--only", "budget", "--out", str(tmp_path / "other")])
     assert options.selection.by_scene == {"mine": ("budget",)}
-
-
-def test_a_selection_changes_no_number_and_no_stored_result(command: Callable[..., Run], tmp_path: Path) -> None:
-    file = scene_file(tmp_path, 'only = ["budget"]')
-    assert load_scene(file).digest() == load_scene("fig3-I").digest()
 
 
 WRONG = {

@@ -1,7 +1,5 @@
 """Whatever a reader must know before trusting a number is an alert, and nothing else is."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,7 +11,6 @@ from fake_models import errors_in, fake_hierarchy
 from report_texts import page_of, summary_of
 from runs import Run
 
-import multibody
 import reference
 from comparison.runner.cache import Cache
 from comparison.runner.task import TaskResult
@@ -22,8 +19,7 @@ from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.alerts import alerts
-from comparison.surfaces.surfaces import labeled_surfaces, largest_cap_share
-from comparison.surfaces.tasks import surface_tasks
+from comparison.surfaces.surfaces import labeled_surfaces, largest_cap_share, surface_tasks
 from reference import amplification
 from reference.problem import Outcome, Scene, load_scene, phase_grid
 from reference.problem.scene_file import scene_text
@@ -100,14 +96,6 @@ def test_the_share_of_the_equations_is_that_of_a_dense_motion(scene, equations, 
     np.testing.assert_allclose(found.cap_share, expected, rtol=2e-4)
 
 
-@pytest.mark.parametrize("model", ["translational", pytest.param("spatial", marks=pytest.mark.long)])
-def test_the_share_of_the_engine_is_that_of_the_equations(model):
-    scene = strong().with_values({"duration": 3.0})
-    engine = multibody.amplification(scene, PHASES[:1], model)
-    equations = reference.amplification(scene, PHASES[:1], regularization=1e-3)
-    np.testing.assert_allclose(engine.cap_share, equations.cap_share, rtol=1e-3 if model == "translational" else 0.05)
-
-
 def test_a_motion_close_to_the_rim_is_seen():
     scene = load_scene("fig3-I").with_values({"isolator.friction": 0.0, "duration": 3.0})
     shares = [reference.amplification(scene.with_amplitude(a), PHASES[:1]).cap_share[0] for a in (4.0, 5.0)]
@@ -140,19 +128,3 @@ def test_the_share_is_stored_joined_labeled_and_said(tmp_path: Path) -> None:
     swings = [alert for alert in alerts(study, surfaces, [], [], []) if alert.kind == "swing"]
     assert [alert.level for alert in swings] == ["amber"]
     assert f"{100.0 * largest:.1f} % of rho" in swings[0].text
-
-
-@pytest.mark.parametrize("scene", [load_scene("fig3-I"), load_scene("synthetic-pair")], ids=["phases", "record"])
-def test_a_trajectory_carries_the_peak_that_its_samples_miss(scene: Scene) -> None:
-    run = reference.trajectory(scene, PHASES[0], tolerance=1e-8)
-    found = reference.amplification(scene, PHASES[:1])
-    ground = reference.problem.ground_peak(scene, PHASES[:1])[0]
-    np.testing.assert_allclose(run.peak, found.mu[0] * ground, rtol=1e-5)
-    highest = np.sqrt((run.absolute_acceleration**2).sum(axis=-1)).max(axis=0)
-    assert (highest <= run.peak * (1.0 + 1e-9)).all()
-    short = scene.with_values({"duration": 2.0})
-    engine, asked = multibody.trajectory(short, PHASES[0]), multibody.amplification(short, PHASES[:1])
-    np.testing.assert_allclose(
-        engine.peak, asked.mu[0] * reference.problem.ground_peak(short, PHASES[:1])[0],
-        atol=float(2.0 * asked.error.max() * ground),
-    )  # fmt: skip

@@ -1,7 +1,5 @@
 """The budget of the four scenes of the paper, by the real models: it closes, and so does the like-for-like gap."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

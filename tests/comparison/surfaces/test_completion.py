@@ -1,7 +1,5 @@
 """A coarse model is completed through a finer one only where that is right: known ridges, known roughness."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -29,7 +27,7 @@ from comparison.surfaces.completion import (
     with_completed,
 )
 from comparison.surfaces.surfaces import labeled_surfaces
-from reference.problem import Outcome, Scene, load_scene
+from reference.problem import Outcome, load_scene
 
 Array = NDArray[np.float64]
 FINE, COARSE = 48, 16
@@ -276,25 +274,6 @@ def kept_statements(grid: int, difference: Callable[..., Array], surfaces: int) 
 @pytest.mark.parametrize("difference", [bump, noise, wave])
 def test_a_certificate_holds_as_often_as_its_confidence(difference: Callable[..., Array]) -> None:
     assert kept_statements(18, difference, 120) >= CONFIDENCE
-
-
-def _first_ones(study: Study, scene: Scene, model: Model) -> NDArray[np.intp]:
-    """The first phase pairs that were not computed, in place of random ones."""
-    return np.setdiff1d(np.arange(study.grid**2), study.places(model))[:59]
-
-
-def _computed_ones(study: Study, scene: Scene, model: Model) -> NDArray[np.intp]:
-    return study.places(model)[:59]
-
-
-@pytest.mark.parametrize(
-    ("chosen", "difference"), [(_first_ones, bump), (_computed_ones, noise)], ids=["not random", "used"]
-)
-def test_held_out_phases_that_are_not_random_break_it(
-    monkeypatch: pytest.MonkeyPatch, chosen: Callable[..., NDArray[np.intp]], difference: Callable[..., Array]
-) -> None:
-    monkeypatch.setattr(completion, "held_out_places", chosen)
-    assert kept_statements(18, difference, 20) < 0.5
 
 
 def test_a_wrong_interpolation_is_no_surface(blank: tuple[Study, xr.Dataset], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,7 +1,5 @@
 """The line on a map where a difference is as large as its uncertainty."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Pictures drawn by workers are those drawn at home, are stored, and one whose worker fails is drawn all the same."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The bars of a waterfall are the planted steps, add up to the total, and are drawn on one scale."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
