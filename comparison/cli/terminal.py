@@ -44,7 +44,10 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     }
     console.print(f"Analyses (tasks): {', '.join(f'{name} ({count})' for name, count in counted.items()) or 'none'}.")
     for level in levels(study) if study.phased else ():
-        console.print(f"{level.title.capitalize()}: {_grids(level.study)}.")
+        of_level = level.study
+        kinds = {"equations" if m.side == "reference" else m.title: len(of_level.axis(m)) for m in of_level.hierarchy}
+        grids = ", ".join(f"{kind} {count} x {count} phases" for kind, count in kinds.items())
+        console.print(f"{level.title.capitalize()}: {grids}.")
     _print_reductions(console, study)
     if study.absent:
         reasons = ", ".join(f"{analysis} ({reason})" for analysis, reason in study.absent.items())
@@ -59,14 +62,6 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     first = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
     console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{first}; nothing was computed.")
     console.print(f"The report would go to {options.out}.", soft_wrap=True)
-
-
-def _grids(study: Study) -> str:
-    """The grids of a level: of the equations, and of the engine's models."""
-    grids = {
-        "equations" if model.side == "reference" else model.title: len(study.axis(model)) for model in study.hierarchy
-    }
-    return ", ".join(f"{kind} {count} x {count} phases" for kind, count in grids.items())
 
 
 def _listed(names: Sequence[str]) -> str:

@@ -171,7 +171,7 @@ def demands(trajectory: Trajectory) -> Demands:
         support_force_min=read.extreme(lambda samples: float(samples.support.min())) if supported else None,
         support_force_max=read.extreme(lambda samples: float(samples.support.max())) if supported else None,
         torsion=tuple(map(read.extreme, map(_torsion_of, bodies))) if read.samples.rotation.shape[1] else None,
-        stops=read.count(_stops),
+        stops=read.count(lambda motion: float(sum(start > 0.0 for start, _ in motion.stick))),  # not that at the start
         support_displacement=read.extreme(_support_displacement_of(scene)) if supported and turning else None,
         uplift=read.extreme(lambda samples: float(samples.uplift.max())) if supported else None,
         friction_energy=read.energy(Energy.dissipated),
@@ -333,8 +333,3 @@ def _support_displacement_of(scene: Scene) -> Read:
         return float(np.abs(place + (turn - 1.0) * arms).max())
 
     return largest
-
-
-def _stops(motion: Trajectory) -> float:
-    """Intervals of rest, without the one at the start."""
-    return float(sum(start > 0.0 for start, _ in motion.stick))
