@@ -25,9 +25,8 @@ from numpy.typing import NDArray
 from scipy.linalg import eig, eigh_tridiagonal
 
 from reference.problem import GRAVITY, Scene
+from reference.problem.result import Array
 from reference.problem.scene import takes_scene
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,17 +9,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference.measures.local_maxima import GRID, local_maxima
 from reference.measures.local_search import LocalSearch, Surface, follow_jump, kind_of, merged, search_round
 from reference.problem import Scene, checked_phases
 from reference.problem.ranges import checked_choice
+from reference.problem.result import Array
 from reference.problem.scene import takes_scene
 from reference.problem.symmetry import distinct, half_turns
 from reference.surface import amplification
-
-Array = NDArray[np.float64]
 
 QUANTITIES = ("amplification", "displacement")
 GRID_TOLERANCE = 1e-4  # relative error of mu there

@@ -5,18 +5,17 @@ from typing import Any
 
 import contourpy
 import numpy as np
-from numpy.typing import NDArray
 
 from comparison.analyses.motions.page_data import contact_geometry, places, spectrum_axis, starts_of
 from comparison.analyses.worst_phases.analysis import nearest_search
 from comparison.report.section import Report
+from comparison.result_types import Array
 from comparison.study.models import Model, Pair, models_of
 from comparison.surfaces.completion import Completion
 from comparison.surfaces.differences import pair_step
 from comparison.surfaces.surfaces import values_of
 from reference.problem import Scene
 
-Array = NDArray[np.float64]
 Rows = list[list[float | None]]
 
 DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error

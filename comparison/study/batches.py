@@ -8,13 +8,11 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from comparison.result_types import Array
 from comparison.study.models import Model
 from comparison.wording import exception_line
 from reference.problem import Outcome, Scene
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -19,12 +19,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from comparison.result_types import Array
 from comparison.study.models import MODEL_HIERARCHY, Model
 from reference.problem import Amplification, Outcome, Scene
-
-Array = NDArray[np.float64]
 
 CALLED_THROUGH = "comparison.study.user_models:amplification"
 LIKE = "regularised"  # key of the reference's model that an engine is compared with unless it names another

@@ -13,13 +13,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.result_types import Number, Phases, Text, result
+from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.study.study import Study
 from comparison.surfaces.steps import Step, step
 from comparison.surfaces.surfaces import values_of
 from reference.measures.distribution import fractile
-
-Array = NDArray[np.float64]
 
 TOTAL = "total"
 

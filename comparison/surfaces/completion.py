@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from pydantic import Field, computed_field
 from scipy.interpolate import RBFInterpolator
 
-from comparison.result_types import Number, Text, result
+from comparison.result_types import Array, Number, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
@@ -31,7 +31,6 @@ from reference.measures.distribution import fractile
 from reference.problem import Scene, phase_axis, phase_grid
 from reference.problem.symmetry import sources
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 MIN_SPATIAL_PER_AXIS = 9  # phases per axis: fewer of the spatial model are drawn as points

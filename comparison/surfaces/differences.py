@@ -4,7 +4,6 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
 from comparison.result_types import Number, result
 from comparison.study.models import Pair
@@ -13,8 +12,6 @@ from comparison.surfaces.budget import Sizes, known_to_all, sizes, steps
 from comparison.surfaces.steps import Step, step
 from comparison.surfaces.surfaces import values_of
 from reference.problem import Outcome
-
-Array = NDArray[np.float64]
 
 
 @result

@@ -5,9 +5,8 @@ from typing import Annotated
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
 
-from comparison.result_types import Number, Phases, UncertainNumber, result
+from comparison.result_types import Array, Number, Phases, UncertainNumber, result
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.steps import known_mu
@@ -15,8 +14,6 @@ from comparison.surfaces.surfaces import values_of
 from reference.measures import phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
 from reference.problem import Scene
-
-Array = NDArray[np.float64]
 
 CURVE = np.linspace(0.01, 0.99, 50)  # probabilities of the drawn curve
 

@@ -7,10 +7,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.result_types import Array
 from comparison.study.models import Model
 from comparison.surfaces.surfaces import stride_of, values_of
-
-Array = NDArray[np.float64]
 
 WORTHLESS = 0.5  # of a value: an error estimate above it means that the value says nothing
 RESOLVED = 5.0  # times u_D: a difference that large is known to a fifth of itself or better

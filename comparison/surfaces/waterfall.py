@@ -22,7 +22,6 @@ from comparison.surfaces.budget import known_to_all, steps
 from comparison.surfaces.steps import RESOLVED, Step, step
 from reference.problem import Scene
 
-Array = NDArray[np.float64]
 NAN = float("nan")
 
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference.measures.demands import Estimate
 from reference.problem.ranges import checked_array
-
-Array = NDArray[np.float64]
 
 FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)
 # Sampling error over the largest difference to a grid of twice the spacing. Measured with the paper's scenes, 8 to 64

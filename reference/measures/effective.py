@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from reference.problem.constants import GRAVITY
+from reference.problem.result import Array
 from reference.problem.scene import Scene, takes_scene
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

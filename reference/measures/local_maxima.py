@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from reference.problem.phases import phase_grid
+from reference.problem.result import Array
 from reference.problem.scene import Scene
 from reference.problem.symmetry import sources
-
-Array = NDArray[np.float64]
 
 GRID = 48  # phases per axis on which the local maxima are found
 MAX_STARTS = 12  # those that may rise highest

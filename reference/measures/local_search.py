@@ -18,14 +18,11 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
 from reference.problem.definition import ground_peak
 from reference.problem.outcome import Outcome
-from reference.problem.result import Amplification
+from reference.problem.result import Amplification, Array
 from reference.problem.scene import Scene
-
-Array = NDArray[np.float64]
 
 DISPLACEMENT_ERROR = 1e-3  # relative, of `Amplification.displacement`
 # Places along each axis of the square at which the quotient is read: at first, and beside the largest of them

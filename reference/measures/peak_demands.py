@@ -14,13 +14,12 @@ from reference.measures.demands import Demands, Estimate, demands
 from reference.problem.definition import ground_peak
 from reference.problem.outcome import Outcome
 from reference.problem.phases import flat_phases, phase_coordinates
-from reference.problem.result import Trajectory
+from reference.problem.result import Array, Trajectory
 from reference.problem.scene import Scene
 
 if TYPE_CHECKING:
     import xarray as xr
 
-Array = NDArray[np.float64]
 
 PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # demands of bodies: index of the body that comes first
 QUANTITIES = {  # fields of `Demands` in words, and their units

@@ -17,9 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.build_cache import cached_on_disk
 from reference.measures.demands import ANSWERED
 from reference.problem.ranges import Range, checked_array, checked_number
-from reference.problem.result import Trajectory, takes_motion
-
-Array = NDArray[np.float64]
+from reference.problem.result import Array, Trajectory, takes_motion
 
 PERIODS = np.geomspace(0.02, 5.0, 49)  # s, where no others are asked for
 DAMPING = Range(0.0, 1.0, "of critical")

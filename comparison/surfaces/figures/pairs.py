@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
-from numpy.typing import NDArray
 
+from comparison.result_types import Array
 from comparison.study.models import Model, Pair
 from comparison.surfaces.differences import pair_step
 from comparison.surfaces.figures.file_names import with_ending
@@ -20,8 +20,6 @@ from comparison.surfaces.surfaces import stride_of, values_of
 from comparison.wording import mathtext
 from reference.drawing import verbatim
 from reference.problem import Scene
-
-Array = NDArray[np.float64]
 
 HEIGHT_COLORS = "cividis"  # read alike with and without color vision deficiency, and in print
 SIGN_COLORS = "RdBu_r"

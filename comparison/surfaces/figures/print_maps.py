@@ -9,16 +9,14 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from comparison.result_types import Array
 from comparison.study.models import Model
 from comparison.surfaces.completion import Completion
 from comparison.surfaces.figures.pairs import HEIGHT_COLORS, SIGN_COLORS, draw_map, limits_of
 from comparison.surfaces.steps import known_mu
 from comparison.wording import mathtext
 from reference.problem import Scene
-
-Array = NDArray[np.float64]
 
 RESOLUTION = 300  # dots per inch of the maps; letters and lines are vectors
 WIDTH, HEIGHT = 7.0, 1.52  # inches
