@@ -44,6 +44,18 @@ def _means(study: Study, surfaces: xr.Dataset, body: int = 1) -> dict[str, float
     return {bar.model: bar.size for bar in bars.bars} | {TOTAL: bars.total.size}
 
 
+def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
+    """Errors 0.03 and 0.04 make u_D = 0.05; 1.0 to 0.9 is twice that, and 1.43 times their sum. The sign has no say."""
+    study, surfaces = _solved(fake_hierarchy())
+    first, second = {"model": "regularised"}, {"model": "translational"}
+    for name, one, other in (("mu", 1.0, 0.9), ("error", 0.03, 0.04)):
+        surfaces[name].loc[first], surfaces[name].loc[second] = one, other
+    (row,) = (row for row in differences(study, surfaces) if (row.pair, row.body) == ("like-for-like", 1))
+    assert row.ratio == pytest.approx(2.0)
+    assert row.beyond_error == 1.0
+    assert row.median == pytest.approx(0.1)
+
+
 def test_a_budget_without_a_step_does_not_close() -> None:
     study, surfaces = _solved(errors_in({"exact": 0.02, "resolved": 0.02}))
     steps_and_total = steps(study, surfaces, "fig3-I", 1)
