@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -43,28 +43,18 @@ class Slope(NamedTuple):
 class Trend:
     """How a difference falls with what causes it."""
 
-    scene: Text
-    """name of the scene"""
-    body: int
-    """number of the body; 1 is the platform"""
-    what: str
-    """the two things that differ"""
-    parameter: tuple[float, ...]
-    """values of the parameter, falling"""
-    medians: tuple[Number, ...]
-    """median absolute relative difference over the phase pairs, for every value"""
+    scene: Annotated[Text, "name of the scene"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    what: Annotated[str, "the two things that differ"]
+    parameter: Annotated[tuple[float, ...], "values of the parameter, falling"]
+    medians: Annotated[tuple[Number, ...], "median absolute relative difference over the phase pairs, for every value"]
     exponent: Number
     """exponent of the power law fitted to the differences above their errors; null without enough of them"""
-    uncertainty: Number
-    """of the exponent"""
-    points: int
-    """differences in the fit"""
-    pairs: int
-    """phase pairs that they are of"""
-    expected: float | None
-    """exponent that theory gives, or null"""
-    verdict: Text
-    """what the fit allows to say"""
+    uncertainty: Annotated[Number, "of the exponent"]
+    points: Annotated[int, "differences in the fit"]
+    pairs: Annotated[int, "phase pairs that they are of"]
+    expected: Annotated[float | None, "exponent that theory gives, or null"]
+    verdict: Annotated[Text, "what the fit allows to say"]
 
 
 def fitted(parameter: Sequence[float], sizes: Array, errors: Array) -> Slope:

@@ -6,7 +6,7 @@ import itertools
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, get_args
+from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
@@ -32,16 +32,12 @@ CLOSE_ENOUGH = 0.2 * WITHIN[0]  # relative error of mu_i that says whether it st
 class Variation:
     """The scene with another ring of supports and other heights, uneven, or on loaded bars."""
 
-    ring: float = 1.0
-    """radius of the ring, as a multiple of the stated one"""
-    height: float = 1.0
-    """heights of the bodies, as multiples of the stated ones"""
-    supports: int | None = None
-    """number of supports; null for the stated one"""
+    ring: Annotated[float, "radius of the ring, as a multiple of the stated one"] = 1.0
+    height: Annotated[float, "heights of the bodies, as multiples of the stated ones"] = 1.0
+    supports: Annotated[int | None, "number of supports; null for the stated one"] = None
     offset: float = 0.0
     """by which centers of mass above the platform are moved along x and along y, over the radius of the ring"""
-    yaw: float = 0.0
-    """by which bodies above the platform and their links are turned about the vertical, rad"""
+    yaw: Annotated[float, "by which bodies above the platform and their links are turned about the vertical, rad"] = 0.0
     bars: Literal["softening", "shortening"] | None = None
     """what the weight above does to bars that give way: softening or shortening; null as stated"""
 
@@ -94,20 +90,13 @@ UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # of s
 class AssumptionCell:
     """The spatial model of one variation against the translational model."""
 
-    scene: Text
-    """name of the scene"""
-    variation: Variation
-    """what is varied"""
-    change: tuple[tuple[Number, ...], ...]
-    """relative change of mu by phase pair and body"""
-    uncertainty: tuple[tuple[Number, ...], ...]
-    """of the change, the two error estimates together"""
-    status: tuple[str, ...]
-    """outcome of each phase pair"""
-    error_message: Text = ""
-    """what went wrong, or empty"""
-    cost: float = 0.0
-    """compute time of the spatial model, s"""
+    scene: Annotated[Text, "name of the scene"]
+    variation: Annotated[Variation, "what is varied"]
+    change: Annotated[tuple[tuple[Number, ...], ...], "relative change of mu by phase pair and body"]
+    uncertainty: Annotated[tuple[tuple[Number, ...], ...], "of the change, the two error estimates together"]
+    status: Annotated[tuple[str, ...], "outcome of each phase pair"]
+    error_message: Annotated[Text, "what went wrong, or empty"] = ""
+    cost: Annotated[float, "compute time of the spatial model, s"] = 0.0
     torsion: tuple[tuple[Number, ...], ...] = ()
     """largest rotation about the vertical by phase pair and body, rad, of an uneven variation; else empty"""
 
@@ -131,18 +120,13 @@ Axis = Literal["ring", "height", "offset", "yaw"]
 class ValidityRange:
     """Where mu of one body stays within a fraction of the translational result, on one line of variations."""
 
-    scene: Text
-    """name of the scene"""
-    body: int
-    """number of the body; 1 is the platform"""
-    share: float
-    """largest relative change"""
+    scene: Annotated[Text, "name of the scene"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    share: Annotated[float, "largest relative change"]
     key: Axis
     """what varies: ring, m; height, as a multiple of the stated one; offset, m along x and y; or yaw, rad"""
-    holds: float | None
-    """last value up to which every value tried stays within; null if none does"""
-    fails: float | None
-    """first value tried that does not; null if all do"""
+    holds: Annotated[float | None, "last value up to which every value tried stays within; null if none does"]
+    fails: Annotated[float | None, "first value tried that does not; null if all do"]
 
 
 Arguments = tuple[Scene, Model, Variation | None, float]
@@ -266,14 +250,10 @@ def _bracket(line: Sequence[tuple[float, AssumptionCell]], body: int, share: flo
 class Assumption:
     """One of the paper's assumptions (i) to (vi)."""
 
-    number: str
-    """of the paper"""
-    statement: str
-    """what the paper assumes"""
-    engine: str
-    """what the engine's models do with it"""
-    relaxed: Literal["yes", "partly", "no"]
-    """whether the engine's models drop it"""
+    number: Annotated[str, "of the paper"]
+    statement: Annotated[str, "what the paper assumes"]
+    engine: Annotated[str, "what the engine's models do with it"]
+    relaxed: Annotated[Literal["yes", "partly", "no"], "whether the engine's models drop it"]
 
 
 ASSUMPTIONS = (
@@ -331,16 +311,11 @@ ASSUMPTIONS = (
 class Validity:
     """How far the paper's assumptions hold."""
 
-    assumptions: tuple[Assumption, ...]
-    """what the paper assumes"""
-    phases: tuple[Phases, ...]
-    """phase pairs (alpha1, alpha2), rad"""
-    duration: float
-    """duration of the motion, s"""
-    cells: tuple[AssumptionCell, ...]
-    """one per scene and variation"""
-    ranges: tuple[ValidityRange, ...]
-    """what the cells allow to say"""
+    assumptions: Annotated[tuple[Assumption, ...], "what the paper assumes"]
+    phases: Annotated[tuple[Phases, ...], "phase pairs (alpha1, alpha2), rad"]
+    duration: Annotated[float, "duration of the motion, s"]
+    cells: Annotated[tuple[AssumptionCell, ...], "one per scene and variation"]
+    ranges: Annotated[tuple[ValidityRange, ...], "what the cells allow to say"]
 
 
 def uneven_lines(scene: Scene, cells: Sequence[AssumptionCell]) -> list[str]:

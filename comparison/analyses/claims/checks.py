@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from enum import StrEnum
+from typing import Annotated
 
 import numpy as np
 
@@ -53,10 +54,8 @@ class Finding(StrEnum):
 class Verdict:
     """What the surfaces of one reading say about a claim."""
 
-    finding: Finding
-    """reproduced, as drawn, not reproduced, cannot hold, or no answer"""
-    found: Text
-    """numbers behind it"""
+    finding: Annotated[Finding, "reproduced, as drawn, not reproduced, cannot hold, or no answer"]
+    found: Annotated[Text, "numbers behind it"]
 
 
 Check = Callable[..., Verdict]  # of the evidence of each case of a claim

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import xarray as xr
 
@@ -27,18 +27,12 @@ from reference.problem import builtin_scenes
 class CheckedClaim:
     """One statement of the paper about its figures."""
 
-    figure: str
-    """figure of the paper"""
-    says: str
-    """what the paper says"""
-    rule: str
-    """how it is decided"""
-    weaker: bool
-    """whether it is a weaker form of a claim, which is not counted"""
-    proof: str
-    """why it cannot hold; empty where it can"""
-    verdicts: tuple[Verdict, ...]
-    """one per reading"""
+    figure: Annotated[str, "figure of the paper"]
+    says: Annotated[str, "what the paper says"]
+    rule: Annotated[str, "how it is decided"]
+    weaker: Annotated[bool, "whether it is a weaker form of a claim, which is not counted"]
+    proof: Annotated[str, "why it cannot hold; empty where it can"]
+    verdicts: Annotated[tuple[Verdict, ...], "one per reading"]
 
     @property
     def found(self) -> dict[Verdict, list[int]]:
@@ -53,20 +47,13 @@ class CheckedClaim:
 class ClaimTable:
     """The paper's statements about its figures, compared with readings of the scenes."""
 
-    grid: int
-    """phases per axis"""
-    readings: tuple[str, ...]
-    """names of the readings"""
-    origins: tuple[str, ...]
-    """why anyone would read the paper so, and by what selection each was found"""
-    reproduced: tuple[int, ...]
-    """how many claims each reading reproduces"""
-    best: tuple[str, ...]
-    """readings that reproduce most"""
-    never: tuple[str, ...]
-    """claims that no reading reproduces"""
-    claims: tuple[CheckedClaim, ...]
-    """one per statement"""
+    grid: Annotated[int, "phases per axis"]
+    readings: Annotated[tuple[str, ...], "names of the readings"]
+    origins: Annotated[tuple[str, ...], "why anyone would read the paper so, and by what selection each was found"]
+    reproduced: Annotated[tuple[int, ...], "how many claims each reading reproduces"]
+    best: Annotated[tuple[str, ...], "readings that reproduce most"]
+    never: Annotated[tuple[str, ...], "claims that no reading reproduces"]
+    claims: Annotated[tuple[CheckedClaim, ...], "one per statement"]
 
     @property
     def stated(self) -> int:

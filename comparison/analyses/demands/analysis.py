@@ -8,7 +8,7 @@ study makes this analysis where it is asked for by name.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
@@ -40,38 +40,25 @@ Batch = tuple[dict[str, Estimates], list[str]]  # demands and statuses of some p
 class PhaseExtreme:
     """The largest or smallest value on the phases that were computed."""
 
-    value: Number
-    """largest or smallest value, in the unit of the demand"""
-    error: Number
-    """estimated absolute error; null where it is not known"""
-    phases: Phases
-    """(alpha1, alpha2), rad; null under a record"""
+    value: Annotated[Number, "largest or smallest value, in the unit of the demand"]
+    error: Annotated[Number, "estimated absolute error; null where it is not known"]
+    phases: Annotated[Phases, "(alpha1, alpha2), rad; null under a record"]
 
 
 @result
 class DemandStatistics:
     """One demand of one model over phases that are independent and uniform; under a record its one value."""
 
-    model: str
-    """key of the model"""
-    quantity: str
-    """key in `demands`, with the unit stated there"""
-    body: int
-    """number of the body; 0 where the demand is of the isolator"""
-    points: int
-    """phase pairs that it was taken from"""
-    unknown: float
-    """share of them without an answer"""
-    mean: UncertainNumber
-    """mean over all phases; its error includes that of sampling"""
-    fractiles: tuple[Fractile, ...]
-    """by rising probability"""
-    lowest: PhaseExtreme
-    """smallest value"""
-    highest: PhaseExtreme
-    """largest value"""
-    curve: tuple[Number, ...]
-    """the demand at 50 probabilities from 0.01 to 0.99"""
+    model: Annotated[str, "key of the model"]
+    quantity: Annotated[str, "key in `demands`, with the unit stated there"]
+    body: Annotated[int, "number of the body; 0 where the demand is of the isolator"]
+    points: Annotated[int, "phase pairs that it was taken from"]
+    unknown: Annotated[float, "share of them without an answer"]
+    mean: Annotated[UncertainNumber, "mean over all phases; its error includes that of sampling"]
+    fractiles: Annotated[tuple[Fractile, ...], "by rising probability"]
+    lowest: Annotated[PhaseExtreme, "smallest value"]
+    highest: Annotated[PhaseExtreme, "largest value"]
+    curve: Annotated[tuple[Number, ...], "the demand at 50 probabilities from 0.01 to 0.99"]
 
     def fractile(self, probability: float) -> float:
         """The value at one of FRACTILES."""

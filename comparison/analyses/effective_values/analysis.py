@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
@@ -29,26 +29,18 @@ FASTEST = 0.9  # friction is measured where the platform slides faster than this
 class Effective:
     """Values read back from one motion of a model, or as the scene states them; null where the motion does not tell."""
 
-    scene: Text
-    """name of the scene"""
-    model: str
-    """key of the model, or scene"""
-    radius: Radius = float("nan")
-    """radius of the sphere that the platform moves on, m; "inf" on a plane"""
-    friction: Number = float("nan")
-    """coefficient of friction, or s/m in a lubricated scene"""
-    contact: Number = float("nan")
-    """contact force at t = 0, N"""
-    mass: Number = float("nan")
-    """total mass, kg"""
-    acceleration: Number = float("nan")
-    """absolute acceleration of the platform at t = 0, m/s^2"""
+    scene: Annotated[Text, "name of the scene"]
+    model: Annotated[str, "key of the model, or scene"]
+    radius: Annotated[Radius, 'radius of the sphere that the platform moves on, m; "inf" on a plane'] = float("nan")
+    friction: Annotated[Number, "coefficient of friction, or s/m in a lubricated scene"] = float("nan")
+    contact: Annotated[Number, "contact force at t = 0, N"] = float("nan")
+    mass: Annotated[Number, "total mass, kg"] = float("nan")
+    acceleration: Annotated[Number, "absolute acceleration of the platform at t = 0, m/s^2"] = float("nan")
     damping: Number = float("nan")
     """coefficient of the damper of the top link along x, N s/m; null without dampers, and where bodies turn"""
     stiffness: Number = float("nan")
     """stiffness of the top link along x, N/m; null where it is not given by bars"""
-    error_message: Text = ""
-    """why there are no values, or empty"""
+    error_message: Annotated[Text, "why there are no values, or empty"] = ""
 
 
 def stated(scene: Scene) -> Effective:
@@ -188,18 +180,12 @@ AXES = "x", "y"
 class ForcedRatio:
     """Amplitude of a body over that of the platform under one harmonic, by (4.4) alone."""
 
-    body: int
-    """from 2"""
-    harmonic: int
-    """1 or 2"""
-    axis: str
-    """x or y"""
-    period: float
-    """period of the harmonic, s"""
-    ratio: Radius
-    """with the decay of the loading"""
-    steady: Radius
-    """without it; "inf" at resonance"""
+    body: Annotated[int, "from 2"]
+    harmonic: Annotated[int, "1 or 2"]
+    axis: Annotated[str, "x or y"]
+    period: Annotated[float, "period of the harmonic, s"]
+    ratio: Annotated[Radius, "with the decay of the loading"]
+    steady: Annotated[Radius, 'without it; "inf" at resonance']
 
 
 def forced_ratios(scene: Scene) -> list[ForcedRatio]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import field
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from comparison.json_file import StoredFile
 from comparison.result_types import result
@@ -18,18 +18,15 @@ SCHEMA: Literal["phase-resonance/ensemble/2"] = "phase-resonance/ensemble/2"
 class Statistic:
     """A statistic of a demand over the motions."""
 
-    value: float | None
-    """in the unit of the demand; null where it rests on a motion without an answer"""
-    error: float | None
-    """largest change within the errors of the motions"""
+    value: Annotated[float | None, "in the unit of the demand; null where it rests on a motion without an answer"]
+    error: Annotated[float | None, "largest change within the errors of the motions"]
 
 
 @result
 class Fractile(Statistic):
     """A fractile of a demand over the motions."""
 
-    share: float = 0.5
-    """part of the motions below it"""
+    share: Annotated[float, "part of the motions below it"] = 0.5
 
 
 @result
@@ -38,28 +35,20 @@ class Isolator:
 
     displacement: float
     """mean of the largest isolator displacements at the largest scale, or their median, by the equations, m"""
-    period: float
-    """effective period at that displacement, s"""
-    damping: float
-    """effective damping ratio at that displacement"""
-    restoring: float
-    """re-centering ratio: restoring force over friction force at that displacement"""
-    statistic: str = "mean"
-    """mean, or median where a motion without a value leaves no mean"""
+    period: Annotated[float, "effective period at that displacement, s"]
+    damping: Annotated[float, "effective damping ratio at that displacement"]
+    restoring: Annotated[float, "re-centering ratio: restoring force over friction force at that displacement"]
+    statistic: Annotated[str, "mean, or median where a motion without a value leaves no mean"] = "mean"
 
 
 @result
 class Structure:
     """What the statistics are of: a file, or one of the values that run in it beside motion and scale."""
 
-    name: str
-    """name"""
-    title: str
-    """title of its scenes"""
-    bodies: int
-    """number of bodies"""
-    weight: float
-    """N"""
+    name: Annotated[str, "name"]
+    title: Annotated[str, "title of its scenes"]
+    bodies: Annotated[int, "number of bodies"]
+    weight: Annotated[float, "N"]
     isolator: Isolator | None = None
     """null without dry friction, on a plane, and where neither mean nor median of the displacement is known"""
 
@@ -68,56 +57,37 @@ class Structure:
 class Spectrum:
     """Floor spectrum of a body over all motions at the largest scale, by the equations; the larger of x and y."""
 
-    structure: str
-    """name"""
-    body: int
-    """from 1"""
-    scale: float
-    """factor of the motions"""
-    damping: float
-    """damping ratio of the oscillators"""
-    period: Sequence[float]
-    """s"""
-    mean: Sequence[Statistic]
-    """pseudo-acceleration at every period, m/s^2"""
-    fractiles: Sequence[Sequence[Statistic]]
-    """16, 50 and 84 % at every period, m/s^2"""
-    largest: Sequence[Statistic]
-    """at every period, m/s^2"""
+    structure: Annotated[str, "name"]
+    body: Annotated[int, "from 1"]
+    scale: Annotated[float, "factor of the motions"]
+    damping: Annotated[float, "damping ratio of the oscillators"]
+    period: Annotated[Sequence[float], "s"]
+    mean: Annotated[Sequence[Statistic], "pseudo-acceleration at every period, m/s^2"]
+    fractiles: Annotated[Sequence[Sequence[Statistic]], "16, 50 and 84 % at every period, m/s^2"]
+    largest: Annotated[Sequence[Statistic], "at every period, m/s^2"]
 
 
 @result
 class Demand:
     """What every number of an ensemble is of."""
 
-    structure: str
-    """name"""
-    quantity: str
-    """demand"""
-    body: int | None
-    """from 1, counted from the platform; null for the isolator"""
+    structure: Annotated[str, "name"]
+    quantity: Annotated[str, "demand"]
+    body: Annotated[int | None, "from 1, counted from the platform; null for the isolator"]
 
 
 @result
 class Stripe(Demand):
     """A demand at one scale over all motions by one model."""
 
-    model: str
-    """key of the model"""
-    unit: str
-    """SI; empty for a pure number"""
-    scale: float
-    """factor of the motions"""
-    answered: int
-    """motions that have the demand"""
-    mean: Statistic
-    """mean over the motions"""
-    fractiles: Sequence[Fractile]
-    """from small to large shares"""
-    largest: Statistic
-    """largest over the motions"""
-    smallest: Statistic
-    """smallest over the motions"""
+    model: Annotated[str, "key of the model"]
+    unit: Annotated[str, "SI; empty for a pure number"]
+    scale: Annotated[float, "factor of the motions"]
+    answered: Annotated[int, "motions that have the demand"]
+    mean: Annotated[Statistic, "mean over the motions"]
+    fractiles: Annotated[Sequence[Fractile], "from small to large shares"]
+    largest: Annotated[Statistic, "largest over the motions"]
+    smallest: Annotated[Statistic, "smallest over the motions"]
     reasons: Mapping[str, int] = field(default_factory=dict)
     """why the other motions do not have it, and how many each"""
 
@@ -131,16 +101,11 @@ class Stripe(Demand):
 class Curve(Demand):
     """A demand of one motion over its scale factors."""
 
-    model: str
-    """key of the model"""
-    motion: str
-    """what runs beside the scale"""
-    scales: Sequence[float]
-    """factors of the motion"""
-    values: Sequence[float | None]
-    """in the unit of the demand; null without an answer"""
-    errors: Sequence[float | None]
-    """error estimates of the values"""
+    model: Annotated[str, "key of the model"]
+    motion: Annotated[str, "what runs beside the scale"]
+    scales: Annotated[Sequence[float], "factors of the motion"]
+    values: Annotated[Sequence[float | None], "in the unit of the demand; null without an answer"]
+    errors: Annotated[Sequence[float | None], "error estimates of the values"]
 
 
 @result
@@ -149,34 +114,26 @@ class Difference(Demand):
 
     largest: float | None
     """relative difference from the equations of the ensemble; null without a common point"""
-    like_for_like: float | None
-    """relative difference from the equations with the engine's friction law"""
-    errors: float | None
-    """the two error estimates together, relative"""
-    points: int
-    """motions that both sides have"""
+    like_for_like: Annotated[float | None, "relative difference from the equations with the engine's friction law"]
+    errors: Annotated[float | None, "the two error estimates together, relative"]
+    points: Annotated[int, "motions that both sides have"]
 
 
 @result
 class Engine:
     """The engine at its subset."""
 
-    model: str
-    """key of the model"""
-    points: Sequence[Mapping[str, str]]
-    """scene, motion and status of every motion"""
-    differences: Sequence[Difference]
-    """one for each demand"""
+    model: Annotated[str, "key of the model"]
+    points: Annotated[Sequence[Mapping[str, str]], "scene, motion and status of every motion"]
+    differences: Annotated[Sequence[Difference], "one for each demand"]
 
 
 @result
 class MatchedMotion:
     """A motion with its factor to the target spectrum."""
 
-    motion: str
-    """what runs beside the scale"""
-    factor: float
-    """of the motion as it was recorded, at scale 1"""
+    motion: Annotated[str, "what runs beside the scale"]
+    factor: Annotated[float, "of the motion as it was recorded, at scale 1"]
     acceleration: Sequence[float]
     """pseudo-acceleration with that factor at every period of the target, m/s^2; geometric mean of x and y"""
 
@@ -185,44 +142,29 @@ class MatchedMotion:
 class Target:
     """A target spectrum, 5 % damping."""
 
-    low: float
-    """shortest period of the least squares, s"""
-    high: float
-    """longest period of the least squares, s"""
-    period: Sequence[float]
-    """s"""
-    acceleration: Sequence[float]
-    """pseudo-acceleration at every period, m/s^2"""
-    motions: Sequence[MatchedMotion]
-    """in their order"""
+    low: Annotated[float, "shortest period of the least squares, s"]
+    high: Annotated[float, "longest period of the least squares, s"]
+    period: Annotated[Sequence[float], "s"]
+    acceleration: Annotated[Sequence[float], "pseudo-acceleration at every period, m/s^2"]
+    motions: Annotated[Sequence[MatchedMotion], "in their order"]
 
 
 @result
 class EnsembleResult:
     """Content of the file."""
 
-    schema: Literal["phase-resonance/ensemble/2"]
-    """what the file is"""
-    structures: Sequence[Structure]
-    """what the statistics are of"""
-    scales: Sequence[float]
-    """scale factors"""
-    motions: int
-    """number of motions"""
-    outcomes: Mapping[str, int]
-    """motions by the equations with every status"""
+    schema: Annotated[Literal["phase-resonance/ensemble/2"], "what the file is"]
+    structures: Annotated[Sequence[Structure], "what the statistics are of"]
+    scales: Annotated[Sequence[float], "scale factors"]
+    motions: Annotated[int, "number of motions"]
+    outcomes: Annotated[Mapping[str, int], "motions by the equations with every status"]
     stripes: Sequence[Stripe]
     """by structure, demand and scale; by the equations, then by the engine over its subset"""
-    curves: Sequence[Curve]
-    """by structure, demand, model and motion"""
-    spectra: Sequence[Spectrum]
-    """by structure and body"""
-    engine: Engine
-    """the engine's subset"""
-    run: Mapping[str, Any]
-    """command, times, provenance"""
-    target: Target | None = None
-    """spectrum to which the motions are scaled; null without --target"""
+    curves: Annotated[Sequence[Curve], "by structure, demand, model and motion"]
+    spectra: Annotated[Sequence[Spectrum], "by structure and body"]
+    engine: Annotated[Engine, "the engine's subset"]
+    run: Annotated[Mapping[str, Any], "command, times, provenance"]
+    target: Annotated[Target | None, "spectrum to which the motions are scaled; null without --target"] = None
 
     def stripes_of(self, structure: str, quantity: str) -> list[Stripe]:
         """Of one demand of the isolator over the scales, by the equations, or else by the engine."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
@@ -82,32 +82,23 @@ def _small(scene: Scene) -> dict[str, Any]:
 class Effect:
     """What the printed form of an erratum does to mu in one scene."""
 
-    scene: Text
-    """name of the scene"""
-    erratum: int
-    """number of the erratum, from 0"""
+    scene: Annotated[Text, "name of the scene"]
+    erratum: Annotated[int, "number of the erratum, from 0"]
     change: tuple[tuple[Number, ...], ...] = ()
     """relative change of mu by phase pair and body; null where the printed form has no answer; empty if untouched"""
-    error_message: Text = ""
-    """what went wrong, or empty"""
+    error_message: Annotated[Text, "what went wrong, or empty"] = ""
 
 
 @result
 class MeasuredErratum:
     """One erratum of the print."""
 
-    where: str
-    """place in the paper"""
-    printed: str
-    """what is printed"""
-    corrected: str
-    """what it should be"""
-    why: str
-    """reason"""
-    none: str = ""
-    """why it has no measurable effect, or empty"""
-    effects: tuple[Effect, ...] = ()
-    """one per scene with phases"""
+    where: Annotated[str, "place in the paper"]
+    printed: Annotated[str, "what is printed"]
+    corrected: Annotated[str, "what it should be"]
+    why: Annotated[str, "reason"]
+    none: Annotated[str, "why it has no measurable effect, or empty"] = ""
+    effects: Annotated[tuple[Effect, ...], "one per scene with phases"] = ()
 
 
 _NAME = "a name or an index; no number depends on it"

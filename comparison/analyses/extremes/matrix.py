@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from itertools import groupby
-from typing import Any
+from typing import Annotated, Any
 
 from comparison.json_file import StoredFile
 from comparison.result_types import result
@@ -38,27 +38,21 @@ class Entry:
     verdict: Verdict
     """converged: error confirmed by a finer run; refused: against a rule or outside the model; limit: the model says
     that it cannot; FAILED: all else"""
-    reason: str
-    """in a few words"""
+    reason: Annotated[str, "in a few words"]
     status: str = ""
     """outcome that decides the verdict, in the words of `reference.problem.Outcome`; empty for an input against a rule
     and for an error that was raised"""
-    error: float | None = None
-    """largest relative error estimate; null without a value"""
-    seconds: float | None = None
-    """processor time of the model's answer, s; null without an answer"""
-    total: float | None = None
-    """processor time of the cell with its finer runs, s; null without an answer"""
+    error: Annotated[float | None, "largest relative error estimate; null without a value"] = None
+    seconds: Annotated[float | None, "processor time of the model's answer, s; null without an answer"] = None
+    total: Annotated[float | None, "processor time of the cell with its finer runs, s; null without an answer"] = None
 
 
 @result
 class Extreme:
     """One row of the matrix: one extreme."""
 
-    group: str
-    """the quantity"""
-    title: str
-    """its extreme value"""
+    group: Annotated[str, "the quantity"]
+    title: Annotated[str, "its extreme value"]
     entries: Mapping[str, Entry]
     """what came of it, by key of the model; none for a model that the extreme does not concern"""
 
@@ -67,12 +61,9 @@ class Extreme:
 class Matrix:
     """Every model at the extremes of every quantity, judged by finer runs."""
 
-    columns: Mapping[str, str]
-    """titles of the models by key"""
-    rows: Sequence[Extreme]
-    """one per extreme"""
-    run: Mapping[str, Any]
-    """command, times, provenance, and whether it is the reduced form"""
+    columns: Annotated[Mapping[str, str], "titles of the models by key"]
+    rows: Annotated[Sequence[Extreme], "one per extreme"]
+    run: Annotated[Mapping[str, Any], "command, times, provenance, and whether it is the reduced form"]
 
     def counts(self) -> dict[str, int]:
         """Number of cells of each verdict, from the best to the worst, zeros included."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
+from typing import Annotated
 
 import numpy as np
 import xarray as xr
@@ -26,34 +27,24 @@ from reference.problem import Family, Scene
 class FamilyCurve:
     """mu of one model and body over the value that runs; null where it has no value."""
 
-    model: str
-    """key of the model"""
-    body: int
-    """number of the body; 1 is the platform"""
+    model: Annotated[str, "key of the model"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
     mean: tuple[Number, ...]
     """mean over the phase pairs that have a value, or the value under the record, one for each scene"""
-    lowest: tuple[Number, ...]
-    """smallest over the phase pairs"""
-    highest: tuple[Number, ...]
-    """largest over the phase pairs"""
-    error: tuple[Number, ...]
-    """mean of the estimated absolute errors"""
+    lowest: Annotated[tuple[Number, ...], "smallest over the phase pairs"]
+    highest: Annotated[tuple[Number, ...], "largest over the phase pairs"]
+    error: Annotated[tuple[Number, ...], "mean of the estimated absolute errors"]
 
 
 @result
 class FamilyStep:
     """A bar of the waterfalls of one body over the value that runs; relative to mu of the first model."""
 
-    model: str
-    """key of the model that the step leads to, or total"""
-    body: int
-    """number of the body; 1 is the platform"""
-    size: tuple[Number, ...]
-    """signed size, one for each scene"""
-    error: tuple[Number, ...]
-    """error estimate of it"""
-    real: tuple[bool, ...]
-    """whether the size exceeds five times its error estimate"""
+    model: Annotated[str, "key of the model that the step leads to, or total"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    size: Annotated[tuple[Number, ...], "signed size, one for each scene"]
+    error: Annotated[tuple[Number, ...], "error estimate of it"]
+    real: Annotated[tuple[bool, ...], "whether the size exceeds five times its error estimate"]
 
 
 def family_curves(study: Study, surfaces: xr.Dataset, family: Family) -> list[FamilyCurve]:
@@ -84,20 +75,14 @@ def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) 
 class FamilyDemand:
     """One demand of the motions of a model over the value that runs, with its band."""
 
-    model: str
-    """key of the model"""
-    quantity: str
-    """key in `demands` of a scene, with the unit stated there"""
-    body: int
-    """number of the body; 0 where the demand is of the isolator"""
+    model: Annotated[str, "key of the model"]
+    quantity: Annotated[str, "key in `demands` of a scene, with the unit stated there"]
+    body: Annotated[int, "number of the body; 0 where the demand is of the isolator"]
     median: tuple[Number, ...]
     """median over the motions that have the demand, one for each scene; null without any"""
-    lowest: tuple[Number, ...]
-    """smallest of them"""
-    highest: tuple[Number, ...]
-    """largest of them"""
-    motions: tuple[int, ...]
-    """how many motions have the demand"""
+    lowest: Annotated[tuple[Number, ...], "smallest of them"]
+    highest: Annotated[tuple[Number, ...], "largest of them"]
+    motions: Annotated[tuple[int, ...], "how many motions have the demand"]
 
 
 def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[FamilyDemand]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Annotated, Any
 
 import xarray as xr
 
@@ -35,40 +35,27 @@ Peak = tuple[float, float, str]  # value and error, NaN without an answer; why t
 class ComputedPeak:
     """A measured peak by one model."""
 
-    model: str
-    """key of the model"""
-    value: Number
-    """in the unit of the quantity; null without an answer"""
-    error: Number
-    """estimated absolute error"""
-    difference: Number
-    """computed less measured value"""
+    model: Annotated[str, "key of the model"]
+    value: Annotated[Number, "in the unit of the quantity; null without an answer"]
+    error: Annotated[Number, "estimated absolute error"]
+    difference: Annotated[Number, "computed less measured value"]
     exceeds: bool | None
     """whether its size exceeds the uncertainty and the error together; null where it is not known"""
-    status: str
-    """how the motion ended, or why it lacks this value"""
+    status: Annotated[str, "how the motion ended, or why it lacks this value"]
 
 
 @result
 class MeasuredPeak:
     """A peak that an experiment measured, beside the models."""
 
-    scene: Text
-    """name of the scene"""
-    quantity: str
-    """mu, or a key in `demands` with the unit stated there"""
-    body: int
-    """number of the body, 1 is the platform; 0 where the quantity is of the isolator"""
-    phases: Phases
-    """(alpha1, alpha2), rad; null under a record"""
-    value: float
-    """measured value"""
-    uncertainty: float
-    """its absolute uncertainty, as the scene states it"""
-    source: Text
-    """where it is from, as the scene states it"""
-    computed: Sequence[ComputedPeak]
-    """one per model that has the quantity"""
+    scene: Annotated[Text, "name of the scene"]
+    quantity: Annotated[str, "mu, or a key in `demands` with the unit stated there"]
+    body: Annotated[int, "number of the body, 1 is the platform; 0 where the quantity is of the isolator"]
+    phases: Annotated[Phases, "(alpha1, alpha2), rad; null under a record"]
+    value: Annotated[float, "measured value"]
+    uncertainty: Annotated[float, "its absolute uncertainty, as the scene states it"]
+    source: Annotated[Text, "where it is from, as the scene states it"]
+    computed: Annotated[Sequence[ComputedPeak], "one per model that has the quantity"]
 
 
 class MeasuredPeaks(Analysis[list[MeasuredPeak]]):

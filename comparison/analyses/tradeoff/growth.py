@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -76,37 +76,27 @@ QUANTITIES = (
 class Series:
     """What one model costs over the values of one quantity."""
 
-    quantity: str
-    """what grows"""
-    unit: str
-    """its unit; empty for a pure number"""
-    model: str
-    """title of the model"""
-    values: Sequence[float]
-    """of the quantity"""
+    quantity: Annotated[str, "what grows"]
+    unit: Annotated[str, "its unit; empty for a pure number"]
+    model: Annotated[str, "title of the model"]
+    values: Annotated[Sequence[float], "of the quantity"]
     seconds: Sequence[float | None]
     """processor time of a phase pair, over phase pairs and workers of a call; null above the limit, or without an
     answer"""
     slope: float | None
     """exponent of the larger half of the values before the first null; null for fewer than three"""
-    uncertainty: float | None
-    """standard error of the slope"""
+    uncertainty: Annotated[float | None, "standard error of the slope"]
 
 
 @result
 class MeasuredGrowth:
     """Content of the file."""
 
-    schema: Literal["phase-resonance/growth"]
-    """what the file is"""
-    scene: str
-    """name of the scene that grows"""
-    title: str
-    """title of the scene"""
-    series: Sequence[Series]
-    """one per quantity and model"""
-    run: Mapping[str, Any]
-    """command, times, provenance"""
+    schema: Annotated[Literal["phase-resonance/growth"], "what the file is"]
+    scene: Annotated[str, "name of the scene that grows"]
+    title: Annotated[str, "title of the scene"]
+    series: Annotated[Sequence[Series], "one per quantity and model"]
+    run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
 
 STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "python -m comparison.tradeoff --growth")

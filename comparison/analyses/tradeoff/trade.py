@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -27,20 +27,13 @@ MEANINGS = {
 class Stated:
     """What is known of a setting before it is measured."""
 
-    question: str
-    """key of the question that it answers"""
-    method: str
-    """the curve that it belongs to"""
-    parameter: str
-    """what varies along the curve"""
-    unit: str
-    """unit of the value; empty for a pure number"""
-    value: float
-    """value of the parameter"""
-    controlled: bool
-    """whether an error estimate comes with it"""
-    model_error: bool
-    """whether its error is that of another model, not of numerics"""
+    question: Annotated[str, "key of the question that it answers"]
+    method: Annotated[str, "the curve that it belongs to"]
+    parameter: Annotated[str, "what varies along the curve"]
+    unit: Annotated[str, "unit of the value; empty for a pure number"]
+    value: Annotated[float, "value of the parameter"]
+    controlled: Annotated[bool, "whether an error estimate comes with it"]
+    model_error: Annotated[bool, "whether its error is that of another model, not of numerics"]
 
     @property
     def setting(self) -> str:
@@ -52,24 +45,19 @@ class Stated:
 class Entry(Stated):
     """One setting of a method, measured."""
 
-    points: int
-    """phase pairs asked for"""
-    answered: int
-    """phase pairs with a value"""
-    seconds: float
-    """processor time per point, s"""
+    points: Annotated[int, "phase pairs asked for"]
+    answered: Annotated[int, "phase pairs with a value"]
+    seconds: Annotated[float, "processor time per point, s"]
     median: Sequence[float | None]
     """median relative error of each mu against the reference solution; null without a value"""
     most: Sequence[float | None]
     """relative error of each mu that 95 % of the points meet; null without a value"""
     error_estimate: Sequence[float | None]
     """relative error estimate of each mu that 95 % of the points meet; null without estimates"""
-    step: float | None = None
-    """mean step, s; null where the method does not tell it"""
+    step: Annotated[float | None, "mean step, s; null where the method does not tell it"] = None
     pareto_front: Sequence[bool] = ()
     """for each mu, whether no other method is as accurate (95 %) in less time"""
-    error_message: str = ""
-    """what went wrong, or empty"""
+    error_message: Annotated[str, "what went wrong, or empty"] = ""
 
     @property
     def complete(self) -> bool:
@@ -81,38 +69,25 @@ class Entry(Stated):
 class Answered:
     """One question with its reference solution."""
 
-    key: str
-    """key of the question"""
-    title: str
-    """equations and law of friction"""
-    points: int
-    """phase pairs of the sample"""
-    reference_solution: str
-    """what the errors are against"""
-    error: float
-    """largest relative error estimate of the reference solution"""
-    checks: Sequence[str]
-    """how the reference solution was checked"""
+    key: Annotated[str, "key of the question"]
+    title: Annotated[str, "equations and law of friction"]
+    points: Annotated[int, "phase pairs of the sample"]
+    reference_solution: Annotated[str, "what the errors are against"]
+    error: Annotated[float, "largest relative error estimate of the reference solution"]
+    checks: Annotated[Sequence[str], "how the reference solution was checked"]
 
 
 @result
 class Trade:
     """The measured trade of one scene."""
 
-    scene: str
-    """name of the scene"""
-    title: str
-    """title of the scene"""
-    digest: str
-    """hash of the scene"""
-    bodies: int
-    """number of bodies"""
-    questions: Sequence[Answered]
-    """one per panel of the diagram"""
-    entries: Sequence[Entry]
-    """one per setting"""
-    run: Mapping[str, Any]
-    """command, times, provenance"""
+    scene: Annotated[str, "name of the scene"]
+    title: Annotated[str, "title of the scene"]
+    digest: Annotated[str, "hash of the scene"]
+    bodies: Annotated[int, "number of bodies"]
+    questions: Annotated[Sequence[Answered], "one per panel of the diagram"]
+    entries: Annotated[Sequence[Entry], "one per setting"]
+    run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
     def of(self, question: str) -> list[Entry]:
         """The entries of one question, in the order in which they were listed."""
@@ -157,10 +132,8 @@ def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
 class TradeFile:
     """Content of the file."""
 
-    schema: Literal["phase-resonance/tradeoff"]
-    """what the file is"""
-    trades: list[Trade]
-    """one per scene"""
+    schema: Annotated[Literal["phase-resonance/tradeoff"], "what the file is"]
+    trades: Annotated[list[Trade], "one per scene"]
 
 
 STORED = StoredFile(FILE, TradeFile, "a measured trade", "python -m comparison.tradeoff")

@@ -6,7 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,38 +36,25 @@ MEANING = {
 class Comparison:
     """One quantity by one side."""
 
-    value: float | None
-    """S; null without an answer"""
-    error: float | None
-    """E = S - D"""
-    numerical: float | None
-    """u_num, as the side states it"""
-    validation: float | None
-    """u_val, root of u_num^2 + u_input^2 + u_D^2"""
-    verdict: str
-    """within u_val, law, input, no answer"""
+    value: Annotated[float | None, "S; null without an answer"]
+    error: Annotated[float | None, "E = S - D"]
+    numerical: Annotated[float | None, "u_num, as the side states it"]
+    validation: Annotated[float | None, "u_val, root of u_num^2 + u_input^2 + u_D^2"]
+    verdict: Annotated[str, "within u_val, law, input, no answer"]
 
 
 @result
 class Quantity:
     """One measured quantity."""
 
-    experiment: str
-    """frame or pendulum, and the run"""
-    name: str
-    """what it is"""
-    unit: str
-    """of all its numbers"""
-    use: str
-    """calibrated: an input was fitted to it or to its run; predicted: blind"""
-    measured: float
-    """D"""
-    data: float
-    """u_D"""
-    inputs: float
-    """u_input"""
-    cause: str
-    """what is behind an E beyond u_val; empty where there is none"""
+    experiment: Annotated[str, "frame or pendulum, and the run"]
+    name: Annotated[str, "what it is"]
+    unit: Annotated[str, "of all its numbers"]
+    use: Annotated[str, "calibrated: an input was fitted to it or to its run; predicted: blind"]
+    measured: Annotated[float, "D"]
+    data: Annotated[float, "u_D"]
+    inputs: Annotated[float, "u_input"]
+    cause: Annotated[str, "what is behind an E beyond u_val; empty where there is none"]
     sides: Mapping[str, Comparison]
     """by side: equations, smoothed (the equations with the engine's friction law), engine"""
 
@@ -76,32 +63,24 @@ class Quantity:
 class Curve:
     """One line of a plot; empty in the table that the package holds."""
 
-    panel: str
-    """title of its plot"""
-    axes: tuple[str, str]
-    """titles of the axes, with units"""
-    name: str
-    """measured, equations or engine"""
-    x: Sequence[float]
-    """along the first axis"""
-    y: Sequence[float]
-    """along the second axis"""
+    panel: Annotated[str, "title of its plot"]
+    axes: Annotated[tuple[str, str], "titles of the axes, with units"]
+    name: Annotated[str, "measured, equations or engine"]
+    x: Annotated[Sequence[float], "along the first axis"]
+    y: Annotated[Sequence[float], "along the second axis"]
 
 
 @result
 class Validation:
     """All measured quantities. Every uncertainty is expanded, about 95 %."""
 
-    quantities: Sequence[Quantity]
-    """in the order of the experiments"""
-    inputs: Sequence[str]
-    """of the computations, in sentences: value, uncertainty, unit, and who states them"""
+    quantities: Annotated[Sequence[Quantity], "in the order of the experiments"]
+    inputs: Annotated[Sequence[str], "of the computations, in sentences: value, uncertainty, unit, and who states them"]
     facts: Sequence[str]
     """what else was found, in sentences: ratio of every run, small-vibration equations at large angles"""
     curves: Sequence[Curve]
     """of the plots; from the measured files, so only in the file of a user who has these"""
-    run: Mapping[str, Any]
-    """command, provenance"""
+    run: Annotated[Mapping[str, Any], "command, provenance"]
 
     def counts(self) -> dict[str, int]:
         """Quantities of the equations and of the engine by verdict."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -46,38 +46,24 @@ Quantity = Literal["amplification", "displacement"]
 class Worst:
     """The largest value of one model over all phases."""
 
-    scene: str
-    """name of the scene"""
-    model: str
-    """key of the model"""
-    quantity: Quantity
-    """mu of the body, or the displacement of the platform, m"""
-    body: int
-    """number of the body; 1 is the platform"""
-    value: Number = math.nan
-    """largest value; null without an answer"""
-    error: Number = math.nan
-    """estimated absolute error of it"""
-    phases: Phases = NOWHERE
-    """(alpha1, alpha2), rad"""
+    scene: Annotated[str, "name of the scene"]
+    model: Annotated[str, "key of the model"]
+    quantity: Annotated[Quantity, "mu of the body, or the displacement of the platform, m"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    value: Annotated[Number, "largest value; null without an answer"] = math.nan
+    error: Annotated[Number, "estimated absolute error of it"] = math.nan
+    phases: Annotated[Phases, "(alpha1, alpha2), rad"] = NOWHERE
     kind: Literal["smooth", "kink", "jump", "nearby", ""] = ""
     """what the surface has there; "nearby": the largest of an engine beside the worst phases of the equations"""
     side: Phases = NOWHERE
     """direction in the plane of phases from a jump to the large values beside it; null otherwise"""
-    runner_up: Number = math.nan
-    """the highest other value at which a climb ended"""
-    climbs: int = 0
-    """hills from which a climb started"""
-    reached: int = 0
-    """climbs that ended at the maximum"""
-    evaluations: int = 0
-    """phase pairs that were computed"""
-    at_start: Number = math.nan
-    """an engine's value at the worst phases of the equations"""
-    start_error: Number = math.nan
-    """estimated absolute error of it"""
-    reason: Text = ""
-    """why there is no value, or empty"""
+    runner_up: Annotated[Number, "the highest other value at which a climb ended"] = math.nan
+    climbs: Annotated[int, "hills from which a climb started"] = 0
+    reached: Annotated[int, "climbs that ended at the maximum"] = 0
+    evaluations: Annotated[int, "phase pairs that were computed"] = 0
+    at_start: Annotated[Number, "an engine's value at the worst phases of the equations"] = math.nan
+    start_error: Annotated[Number, "estimated absolute error of it"] = math.nan
+    reason: Annotated[Text, "why there is no value, or empty"] = ""
 
 
 # scene, model, engine, quantity, body, tolerance of the engine, starts of the climbs (K, 2) or None
