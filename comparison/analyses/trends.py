@@ -10,18 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Any, ClassVar, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from comparison.result_types import Array, Number, Text, result
-from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task
-from comparison.runner.task_results import TaskResults
-from comparison.study.study import Study
 from comparison.surfaces.steps import RESOLVED
-from reference.problem import Scene
 
 NONE: Array = np.empty((0, 1))  # sizes and errors where nothing has a value
 KNOWN = 1.0 / RESOLVED  # largest error of a value that enters the fit, as its fraction
@@ -107,26 +101,3 @@ def _verdict(slope: Slope, expected: float | None) -> str:
         return "hardly falls: not converged at any value in use" if slope.exponent < SLOW else "falls"
     agrees = abs(slope.exponent - expected) <= max(AGREES, slope.uncertainty)
     return f"like the power {expected:g}" if agrees else f"not like the power {expected:g}"
-
-
-class TrendAnalysis(Analysis[list[Trend]]):
-    """Trends of the scenes with phases. measure: in a worker; without_value: in place of what a task did not return."""
-
-    measure: ClassVar[Any]
-    without_value: ClassVar[Any]
-
-    def arguments(self, scene: Scene) -> list[Any]:
-        """What `measure` is asked of a scene."""
-        raise NotImplementedError
-
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """One task for each scene and trend."""
-        return [
-            Task(self.measure, (scene, argument), self.stage, about=scene)
-            for scene in study.phased
-            for argument in self.arguments(scene)
-        ]
-
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Trend] | None:
-        """The trends, in the order of the tasks; None for a study without any."""
-        return [trend for task in self.tasks(study) for trend in results.value(task, self.without_value)] or None

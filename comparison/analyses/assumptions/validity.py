@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
 import xarray as xr
 
+from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Phases, Text, result
-from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task, TaskResult
+from comparison.runner.task import TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, models_of
@@ -149,24 +149,6 @@ class Solved:
             raise ValueError(f"mu {self.mu.shape}, error {self.error.shape}, {len(self.status)} statuses")
 
 
-def arguments(study: Study, variations: Sequence[Variation]) -> list[Arguments]:
-    """
-    The translational model and every variation of the spatial one, of every scene with phases that has both.
-
-    UNDER_LOAD is added where bars give way. Returns scene, model, variation (None: the scene itself), tolerance.
-    """
-    asked: list[Arguments] = []
-    for scene in study.phased:
-        models = models_of(scene, study.hierarchy)
-        engines = [model for model in models if model.side == "engine" and "softened" not in model.settings]
-        if len(engines) == 2:
-            loaded = UNDER_LOAD if any(link is not None for link in scene.bar_links) else ()
-            for model, each in zip(engines, ((None,), (*variations, *loaded))):
-                tolerance = max(model.tolerance(study.tolerance), CLOSE_ENOUGH)
-                asked += [(scene, model, variation, tolerance) for variation in each]
-    return asked
-
-
 def varied(task: Arguments) -> Solved:
     """One variation at PHASES. Runs inside a worker process."""
     scene, model, variation, tolerance = task
@@ -201,20 +183,9 @@ def _moved(scene: Scene, model: Model, tolerance: float) -> Solved:
     return Solved(peaks, errors, status, "", cost, turns)
 
 
-def without_value(task: Arguments, failed: TaskResult) -> Solved:
-    """In place of what a task did not return."""
+def _without_value(task: Arguments, failed: TaskResult) -> Solved:
     nothing = np.full((len(PHASES), len(task[0].bodies)), np.nan)
     return Solved(nothing, nothing, (failed.outcome.value,) * len(PHASES), failed.error_message, 0.0)
-
-
-def cell_of(scene: Scene, variation: Variation, spatial: Solved, plain: Solved) -> AssumptionCell:
-    """A variation of the spatial model against the translational model."""
-    shares = spatial.mu / plain.mu - 1.0, np.hypot(spatial.error, plain.error) / plain.mu
-    change, uncertainty = (tuple(map(tuple, share.tolist())) for share in shares)
-    why = spatial.error_message or plain.error_message
-    return AssumptionCell(
-        scene.name, variation, change, uncertainty, spatial.status, why, spatial.cost, spatial.torsion
-    )
 
 
 def ranges(scene: Scene, cells: Sequence[AssumptionCell]) -> list[ValidityRange]:
@@ -325,33 +296,43 @@ def uneven_lines(scene: Scene, cells: Sequence[AssumptionCell]) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Assumptions(Analysis[Validity]):
+class Assumptions(MappedAnalysis[Validity]):
     """How far the assumptions hold in the scenes of a study: a few variations, or as many as a command asks for."""
 
-    key, stage = "assumptions", "assumptions"
+    key, stage, needs_compiled_reference = "assumptions", "assumptions", False
+    function, without_value = staticmethod(varied), staticmethod(_without_value)
     variations: Sequence[Variation] = FEW
 
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """The translational model and every variation of the spatial one, for every scene to which both apply."""
-        return [
-            Task(varied, argument, self.stage, about=argument[0], needs_compiled_reference=False)
-            for argument in arguments(study, self.variations)
-        ]
+    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
+        """
+        The translational model and every variation of the spatial one, of every scene with phases that has both.
+
+        UNDER_LOAD is added where bars give way. Yields scene, model, variation (None: the scene itself), tolerance.
+        """
+        for scene in study.phased:
+            models = models_of(scene, study.hierarchy)
+            engines = [model for model in models if model.side == "engine" and "softened" not in model.settings]
+            loaded = UNDER_LOAD if any(link is not None for link in scene.bar_links) else ()
+            for model, variations in zip(engines, ((None,), (*self.variations, *loaded))) if len(engines) == 2 else ():
+                for variation in variations:
+                    yield scene, model, variation, max(model.tolerance(study.tolerance), CLOSE_ENOUGH)
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Validity | None:
         """The cells; None if no scene has both models of the engine."""
-        solved = [(task.argument, results.value(task, without_value)) for task in self.tasks(study)]
-        plain = {scene.name: of_scene for (scene, _, variation, _), of_scene in solved if variation is None}
-        cells = tuple(
-            cell_of(scene, variation, spatial, plain[scene.name])
-            for (scene, _, variation, _), spatial in solved
-            if variation is not None
-        )
+        cells: list[AssumptionCell] = []
+        for (scene, _, variation, _), solved in zip(self.arguments(study), self.values(study, surfaces, results)):
+            if variation is None:  # before the variations of its scene
+                plain = solved
+                continue
+            shares = solved.mu / plain.mu - 1.0, np.hypot(solved.error, plain.error) / plain.mu
+            change, uncertainty = (tuple(map(tuple, share.tolist())) for share in shares)
+            rest = solved.status, solved.error_message or plain.error_message, solved.cost, solved.torsion
+            cells.append(AssumptionCell(scene.name, variation, change, uncertainty, *rest))
         if not cells:
             return None
         phases = tuple((float(first), float(second)) for first, second in PHASES)
         within = tuple(validity for scene in study.scenes for validity in ranges(scene, cells))
-        return Validity(ASSUMPTIONS, phases, DURATION, cells, within)
+        return Validity(ASSUMPTIONS, phases, DURATION, tuple(cells), within)
 
 
 # of a line of variations: where nothing holds; what holds; what does not; where all that was tried holds

@@ -18,16 +18,18 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 import multibody
 import reference
-from comparison.analyses.trends import NONE, Trend, TrendAnalysis, trend
+from comparison.analyses.mapped import MappedAnalysis
+from comparison.analyses.trends import NONE, Trend, trend
 from comparison.result_types import Array
 from comparison.runner.task import TaskResult
 from comparison.study.models import dry, has_spatial_data
+from comparison.study.study import Study
 from reference.problem import Amplification, Outcome, Scene, exponents, ground_peak, loading_period
 
 Values = tuple[Array, Array]  # relative sizes and their errors, (P, S, N)
@@ -167,12 +169,14 @@ def _trends(task: Arguments, sizes: Iterable[Array], errors: Iterable[Array], er
     ]
 
 
-class Convergence(TrendAnalysis):
+class Convergence(MappedAnalysis[list[Trend]]):
     """Every limit in every scene that has it, for each body."""
 
     key, stage = "convergence", "convergence"
-    measure, without_value = staticmethod(limit_trends), staticmethod(_without_value)
+    function, without_value = staticmethod(limit_trends), staticmethod(_without_value)
 
-    def arguments(self, scene: Scene) -> list[int]:
-        """The numbers of its limits."""
-        return [number for number, limit in enumerate(LIMITS) if limit.applies(scene)]
+    def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
+        """Every scene with phases, and the numbers of its limits."""
+        return [
+            (scene, number) for scene in study.phased for number, limit in enumerate(LIMITS) if limit.applies(scene)
+        ]

@@ -14,9 +14,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Phases, UncertainNumber, result
-from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, steps_of
@@ -65,20 +64,26 @@ class DemandStatistics:
         return self.fractiles[FRACTILES.index(probability)].value
 
 
-class DemandSurfaces(Analysis[xr.Dataset]):
+def moved_demands(task: Arguments) -> Batch:
+    """Demands of the motions of one task. Runs inside a worker process."""
+    scene, model, tolerance, phases = task
+    trajectory, settings = imported(model.trajectory), dict(model.settings)
+    demands = demands_of_motions(scene, phases, lambda phase: trajectory(scene, phase, tolerance=tolerance, **settings))
+    return dict(demands), [str(status) for status in demands.status]
+
+
+class DemandSurfaces(MappedAnalysis[xr.Dataset]):
     """Demands at every phase pair of every model's surface."""
 
     key, stage, level = "demands", "demands", 2
+    function = staticmethod(moved_demands)
+    without_value = staticmethod(lambda task, failed: ({}, [failed.outcome.value] * len(task[3])))
 
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """Motions of about two seconds each."""
         phases = phase_grid(study.grid)
-        return [
-            Task(
-                moved_demands, (scene, model, model.tolerance(study.tolerance), phases[places]), self.stage, about=scene
-            )
-            for scene, model, places in _batches(study)
-        ]
+        for scene, model, places in _batches(study):
+            yield scene, model, model.tolerance(study.tolerance), phases[places]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> xr.Dataset | None:
         """
@@ -91,8 +96,8 @@ class DemandSurfaces(Analysis[xr.Dataset]):
         bodies, grid = max(len(scene.bodies) for scene in study.scenes), study.grid
         status = np.full((len(names), len(models), grid**2), NOT_ASKED, dtype=object)
         numbers: dict[str, Array] = {}
-        for (scene, model, places), task in zip(_batches(study), self.tasks(study), strict=True):
-            estimated, outcomes = results.value(task, _without_value)
+        values = self.values(study, surfaces, results)
+        for (scene, model, places), (estimated, outcomes) in zip(_batches(study), values, strict=True):
             where = names.index(scene.name), models.index(model.key)
             status[where][places] = outcomes
             for name, estimates in estimated.items():
@@ -135,18 +140,6 @@ def _batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:
             places, size = study.solved(scene, model), BATCH[model.side]
             for first in range(0, len(places), size):
                 yield scene, model, places[first : first + size]
-
-
-def moved_demands(task: Arguments) -> Batch:
-    """Demands of the motions of one task. Runs inside a worker process."""
-    scene, model, tolerance, phases = task
-    trajectory, settings = imported(model.trajectory), dict(model.settings)
-    demands = demands_of_motions(scene, phases, lambda phase: trajectory(scene, phase, tolerance=tolerance, **settings))
-    return dict(demands), [str(status) for status in demands.status]
-
-
-def _without_value(task: Arguments, failed: TaskResult) -> Batch:
-    return {}, [failed.outcome.value] * len(task[3])
 
 
 def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset:

@@ -8,9 +8,8 @@ from typing import Annotated, Any
 import numpy as np
 import xarray as xr
 
+from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Radius, Text, result
-from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, steps_of
@@ -59,27 +58,6 @@ def stated(scene: Scene) -> Effective:
     )
 
 
-class EffectiveValues(Analysis[list[Effective]]):
-    """For every scene what it states, then what the motion of each model shows."""
-
-    key, stage, level = "effective", "effective values", 2
-
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """Every model of every scene."""
-        return [task for scene in study.scenes for task in self._of(study, scene)]
-
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effective]:
-        """In the order scene, model; what the scene states comes first."""
-        return [
-            value
-            for scene in study.scenes
-            for value in (stated(scene), *(results.value(task, _without_value) for task in self._of(study, scene)))
-        ]
-
-    def _of(self, study: Study, scene: Scene) -> list[Task]:
-        return [Task(read_back, (scene, model), self.stage, about=scene) for model in steps_of(scene, study.hierarchy)]
-
-
 def read_back(task: tuple[Scene, Model]) -> Effective:
     """The values of one model. What goes wrong is said in `error_message`; a value is never made up."""
     scene, model = task
@@ -95,9 +73,22 @@ def read_back(task: tuple[Scene, Model]) -> Effective:
         return replace(nothing, error_message=f"{type(error).__name__}: {error}")
 
 
-def _without_value(task: tuple[Scene, Model], failed: TaskResult) -> Effective:
-    scene, model = task
-    return Effective(scene.name, model.key, error_message=failed.reason)
+class EffectiveValues(MappedAnalysis[list[Effective]]):
+    """For every scene what it states, then what the motion of each model shows."""
+
+    key, stage, level = "effective", "effective values", 2
+    function = staticmethod(read_back)
+    without_value = staticmethod(lambda task, failed: Effective(task[0].name, task[1].key, error_message=failed.reason))
+
+    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[tuple[Scene, Model]]:
+        """Every model of every scene."""
+        return [(scene, model) for scene in study.scenes for model in steps_of(scene, study.hierarchy)]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effective]:
+        """In the order scene, model; what the scene states comes first."""
+        read = self.values(study, surfaces, results)
+        of_scenes = ([stated(scene), *(each for each in read if each.scene == scene.name)] for scene in study.scenes)
+        return [value for values in of_scenes for value in values]
 
 
 def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:

@@ -17,9 +17,8 @@ import xarray as xr
 import reference
 from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING
 from comparison.analyses.errata.printed_matrices import printed_amplification as _printed
+from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Text, result
-from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import V_REG, any_scene
 from comparison.study.study import Study
@@ -189,30 +188,6 @@ MEASURES: dict[int, tuple[Callable[[Scene], bool], Mu, Mu]] = {
 }
 
 
-class Errata(Analysis[list[MeasuredErratum]]):
-    """Every erratum, measured in every scene where it can be."""
-
-    key, stage, level = "errata", "errata", 2
-
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """One task for each effect."""
-        return [
-            Task(measured, (scene, number), self.stage, about=scene) for scene in study.phased for number in MEASURES
-        ]
-
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredErratum]:
-        """Every erratum with its effects, in the order of the paper."""
-        return with_effects([results.value(task, _without_value) for task in self.tasks(study)])
-
-
-def with_effects(effects: Sequence[Effect]) -> list[MeasuredErratum]:
-    """Every erratum with its effects."""
-    return [
-        replace(erratum, effects=tuple(effect for effect in effects if effect.erratum == number))
-        for number, erratum in enumerate(ERRATA)
-    ]
-
-
 def measured(task: tuple[Scene, int]) -> Effect:
     """The effect of one erratum in one scene."""
     scene, number = task
@@ -225,5 +200,25 @@ def measured(task: tuple[Scene, int]) -> Effect:
     return Effect(scene.name, number, tuple(tuple(map(float, row)) for row in change))
 
 
-def _without_value(task: tuple[Scene, int], failed: TaskResult) -> Effect:
-    return Effect(task[0].name, task[1], error_message=failed.reason)
+class Errata(MappedAnalysis[list[MeasuredErratum]]):
+    """Every erratum, measured in every scene where it can be."""
+
+    key, stage, level = "errata", "errata", 2
+    function = staticmethod(measured)
+    without_value = staticmethod(lambda task, failed: Effect(task[0].name, task[1], error_message=failed.reason))
+
+    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[tuple[Scene, int]]:
+        """Every scene with phases, with the number of every erratum that is measured."""
+        return [(scene, number) for scene in study.phased for number in MEASURES]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredErratum]:
+        """Every erratum with its effects, in the order of the paper."""
+        return with_effects(self.values(study, surfaces, results))
+
+
+def with_effects(effects: Sequence[Effect]) -> list[MeasuredErratum]:
+    """Every erratum with its effects."""
+    return [
+        replace(erratum, effects=tuple(effect for effect in effects if effect.erratum == number))
+        for number, erratum in enumerate(ERRATA)
+    ]

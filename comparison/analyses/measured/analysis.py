@@ -13,9 +13,8 @@ from typing import Annotated, Any
 
 import xarray as xr
 
+from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Number, Phases, Text, result
-from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, steps_of
@@ -58,48 +57,9 @@ class MeasuredPeak:
     computed: Annotated[Sequence[ComputedPeak], "one per model that has the quantity"]
 
 
-class MeasuredPeaks(Analysis[list[MeasuredPeak]]):
-    """Every measured peak of every scene by every model that has its quantity."""
-
-    key, stage, level = "measured", "measured", 2
-
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """One task for each scene, phase pair of a test, and model."""
-        return [self._task(study, *point) for point in _points(study)]
-
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredPeak] | None:
-        """In the order of the scene files; None where no scene has measured peaks."""
-        known: dict[tuple[str, tuple[float, float]], list[tuple[str, Mapping[Asked, Peak]]]] = {}
-        for scene, phases, model in _points(study):
-            peaks = results.value(
-                self._task(study, scene, phases, model),
-                lambda task, failed: [(math.nan, math.nan, failed.outcome.value)] * len(task[4]),
-            )
-            found = dict(zip(_asked(scene, phases, model), peaks, strict=True))
-            known.setdefault((scene.name, phases), []).append((model.key, found))
-        listed = [
-            _beside(scene, peak, known[scene.name, phases_of(peak)])
-            for scene in study.scenes
-            for peak in scene.measured or ()
-        ]
-        return listed or None
-
-    def _task(self, study: Study, scene: Scene, phases: tuple[float, float], model: Model) -> Task:
-        arguments = scene, model, model.tolerance(study.tolerance), phases, _asked(scene, phases, model)
-        return Task(peaks_at, arguments, self.stage, about=scene)
-
-
 def phases_of(peak: Measured) -> tuple[float, float]:
     """Phases at which a model is asked, rad; a record has none, and any do."""
     return (0.0, 0.0) if peak.phases is None else (peak.phases[0], peak.phases[1])
-
-
-def _points(study: Study) -> Iterator[tuple[Scene, tuple[float, float], Model]]:
-    """Scene, phases and model of every task that has something to compute."""
-    for scene in study.scenes:
-        for phases in dict.fromkeys(map(phases_of, scene.measured or ())):
-            for model in steps_of(scene, study.hierarchy):
-                yield scene, phases, model
 
 
 def _asked(scene: Scene, phases: tuple[float, float], model: Model) -> list[Asked]:
@@ -127,6 +87,30 @@ def peaks_at(task: Arguments) -> list[Peak]:
     listed = ((known[name], body - OF_BODIES.get(name, 0)) for name, body in asked)
     numbers = [(each[place] if isinstance(each, tuple) else each) or LACKING for each, place in listed]
     return [(number.value, number.error, number.reason or status) for number in numbers]
+
+
+class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
+    """Every measured peak of every scene by every model that has its quantity."""
+
+    key, stage, level = "measured", "measured", 2
+    function = staticmethod(peaks_at)
+    without_value = staticmethod(lambda task, failed: [(math.nan, math.nan, failed.outcome.value)] * len(task[4]))
+
+    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
+        """One for each scene, phase pair of a test, and model."""
+        for scene in study.scenes:
+            for phases in dict.fromkeys(map(phases_of, scene.measured or ())):
+                for model in steps_of(scene, study.hierarchy):
+                    yield scene, model, model.tolerance(study.tolerance), phases, _asked(scene, phases, model)
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredPeak] | None:
+        """In the order of the scene files; None where no scene has measured peaks."""
+        known: dict[tuple[str, tuple[float, float]], list[tuple[str, Mapping[Asked, Peak]]]] = {}
+        values = self.values(study, surfaces, results)
+        for (scene, model, _, phases, asked), peaks in zip(self.arguments(study), values, strict=True):
+            known.setdefault((scene.name, phases), []).append((model.key, dict(zip(asked, peaks, strict=True))))
+        scenes = [(scene, peak) for scene in study.scenes for peak in scene.measured or ()]
+        return [_beside(scene, peak, known[scene.name, phases_of(peak)]) for scene, peak in scenes] or None
 
 
 def _beside(scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[Asked, Peak]]]) -> MeasuredPeak:

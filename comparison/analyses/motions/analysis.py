@@ -8,10 +8,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array
-from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task, TaskResult
-from comparison.runner.task_results import TaskResults
+from comparison.runner.task import TaskResult
 from comparison.study.batches import imported
 from comparison.study.models import Model
 from comparison.study.study import Study
@@ -148,36 +147,6 @@ def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Plac
     return {Place(scene.name, *place, why): moving for place, (why, moving) in places.items()}
 
 
-def motion_arguments(study: Study, surfaces: xr.Dataset) -> list[Arguments]:
-    """Every place with every model that moves there, in the order scene, place, model."""
-    axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])
-    return [
-        (scene, model, model.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
-        for scene in study.scenes
-        for place, engines in chosen_places(study, surfaces, scene).items()
-        for model in shown_models(study, scene)
-        if (model.side != "engine" or model.key in engines)
-        and place.row % study.stride(model, scene) == place.column % study.stride(model, scene) == 0
-    ]
-
-
-class Motions(Analysis[list[StoredMotion]]):
-    """Motions kept for the report, at phases that the surfaces choose."""
-
-    key, stage, needs_surfaces = "motions", "motions", True
-
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """One task for each motion, in the order of `motion_arguments`."""
-        assert surfaces is not None, "the places are chosen by the surfaces"
-        return [
-            Task(moved, arguments, self.stage, about=arguments[0]) for arguments in motion_arguments(study, surfaces)
-        ]
-
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[StoredMotion]:
-        """The motions, in the order of the tasks."""
-        return [results.value(task, _without_value) for task in self.tasks(study, surfaces)]
-
-
 def shown_models(study: Study, scene: Scene) -> list[Model]:
     """The models whose surfaces the page shows, each once; those that have motions."""
     shown = {model.key: model for pair in study.pairs(scene) for model in (pair.first, pair.second)}
@@ -234,3 +203,23 @@ def _nothing(place: Place, model: str, outcome: Outcome, error_message: str) -> 
 
 def _without_value(task: Arguments, failed: TaskResult) -> StoredMotion:
     return _nothing(task[3], task[1].key, failed.outcome, failed.error_message)
+
+
+class Motions(MappedAnalysis[list[StoredMotion]]):
+    """Motions kept for the report, at phases that the surfaces choose."""
+
+    key, stage, needs_surfaces = "motions", "motions", True
+    function, without_value, collect = staticmethod(moved), staticmethod(_without_value), MappedAnalysis.values
+
+    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Arguments]:
+        """Every place with every model that moves there, in the order scene, place, model."""
+        assert surfaces is not None, "the places are chosen by the surfaces"
+        axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])
+        return [
+            (scene, model, model.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
+            for scene in study.scenes
+            for place, engines in chosen_places(study, surfaces, scene).items()
+            for model in shown_models(study, scene)
+            if (model.side != "engine" or model.key in engines)
+            and place.row % study.stride(model, scene) == place.column % study.stride(model, scene) == 0
+        ]

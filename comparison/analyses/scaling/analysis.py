@@ -15,10 +15,12 @@ from typing import Any
 import numpy as np
 
 import reference
-from comparison.analyses.trends import NONE, Trend, TrendAnalysis, trend
+from comparison.analyses.mapped import MappedAnalysis
+from comparison.analyses.trends import NONE, Trend, trend
 from comparison.result_types import Array
 from comparison.runner.task import TaskResult
 from comparison.study.models import dry
+from comparison.study.study import Study
 from reference.problem import Scene
 
 SCALES = (1.0, 0.5, 0.25, 0.125)
@@ -83,14 +85,13 @@ def _peak(scene: Scene, supremum: bool) -> str:
     return "peak" if not dry(scene) else "supremum" if supremum else "resolved peak"
 
 
-class Scaling(TrendAnalysis):
+class Scaling(MappedAnalysis[list[Trend]]):
     """The trends of every scene and body, for the supremum and, where that differs, the resolved peak."""
 
     key, stage, level = "scaling", "scaling test", 2
-    measure, without_value = staticmethod(scene_trends), staticmethod(_without_value)
+    function, without_value = staticmethod(scene_trends), staticmethod(_without_value)
 
-    def arguments(self, scene: Scene) -> list[bool]:
-        """Readings of the peak: whether the supremum is taken; none with heat, which does not scale."""
-        if scene.dry_friction.heat is not None:
-            return []
-        return [True, False] if dry(scene) else [True]
+    def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
+        """Every scene with phases and without heat, which does not scale, and whether the supremum is taken."""
+        scenes = [scene for scene in study.phased if scene.dry_friction.heat is None]
+        return [(scene, supremum) for scene in scenes for supremum in ([True, False] if dry(scene) else [True])]

@@ -10,7 +10,7 @@ surfaces, if these are as fine as the search's own grid.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, Literal
 
@@ -18,10 +18,9 @@ import numpy as np
 import xarray as xr
 
 import reference
+from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Phases, Text, result
-from comparison.runner.analysis import Analysis
-from comparison.runner.task import Task, TaskResult
-from comparison.runner.task_results import TaskResults
+from comparison.runner.task import TaskResult
 from comparison.study.batches import imported
 from comparison.study.models import Model, models_of, pairs_of
 from comparison.study.study import Study
@@ -68,28 +67,6 @@ class Worst:
 
 # scene, model, engine, quantity, body, tolerance of the engine, starts of the climbs (K, 2) or None
 Arguments = tuple[Scene, Model, Model | None, Quantity, int, float, Array | None]
-
-
-class WorstPhases(Analysis[list[Worst]]):
-    """Searches of every scene and body; one more for the displacement."""
-
-    key, stage, needs_surfaces = "worst_phases", "worst phases", True
-
-    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """One task for each search, of the engine with that of its counterpart."""
-        tasks = []
-        for scene in study.phased:
-            for model, engine, quantity, body in _searches(study, scene):
-                starts = _starts(study, surfaces, scene, model, quantity, body)
-                argument = (scene, model, engine, quantity, body, study.tolerance, starts)
-                tasks.append(Task(worst_of, argument, self.stage, about=scene))
-        return tasks
-
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Worst] | None:
-        """In the order of the tasks; None for a study without phases."""
-        if not study.phased:
-            return None
-        return [worst for task in self.tasks(study, surfaces) for worst in results.value(task, _without_value)]
 
 
 def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
@@ -142,6 +119,20 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[Worst]:
     scene, model, engine, quantity, body, *_ = task
     models = [model] if engine is None else [model, engine]
     return [Worst(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
+
+
+class WorstPhases(MappedAnalysis[list[Worst]]):
+    """Searches of every scene and body; one more for the displacement."""
+
+    key, stage, needs_surfaces = "worst_phases", "worst phases", True
+    function, without_value = staticmethod(worst_of), staticmethod(_without_value)
+
+    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
+        """One for each search, of the engine with that of its counterpart."""
+        for scene in study.phased:
+            for model, engine, quantity, body in _searches(study, scene):
+                starts = _starts(study, surfaces, scene, model, quantity, body)
+                yield scene, model, engine, quantity, body, study.tolerance, starts
 
 
 def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolerance: float) -> Worst:

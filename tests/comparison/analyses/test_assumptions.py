@@ -23,7 +23,6 @@ from comparison.analyses.assumptions.validity import (
     Assumptions,
     Validity,
     Variation,
-    arguments,
     describe,
     ranges,
     uneven_lines,
@@ -182,7 +181,7 @@ def test_bars_under_load_are_varied_only_where_they_give_way() -> None:
     for bars, expected in ((BARS, UNDER_LOAD), (rigid, ())):
         scene = STATED.with_values({"bodies.1.period": None, "bodies.1.bars": bars})
         study = Study((scene,), 1, 1e-3, MODEL_HIERARCHY)
-        asked = [variation for _, _, variation, _ in arguments(study, ())]
+        asked = [variation for _, _, variation, _ in Assumptions(()).arguments(study)]
         assert asked == [None, *expected]
     softening, shortening = (
         variation.of(STATED.with_values({"bodies.1.period": None, "bodies.1.bars": BARS})) for variation in UNDER_LOAD

@@ -28,7 +28,6 @@ from comparison.analyses.motions.analysis import (
     Place,
     StoredMotion,
     chosen_places,
-    motion_arguments,
     moved,
     shown_models,
     swing,
@@ -275,7 +274,7 @@ def test_at_the_largest_difference_its_own_model_moves() -> None:
     for model, row, column in (("spatial", 3, 9), ("translational", 6, 0)):
         place = {"alpha1": surfaces["alpha1"][row], "alpha2": surfaces["alpha2"][column]}
         surfaces["mu"].loc[{"model": model, **place}] *= 2.0
-    moving = {(model.key, place.row, place.column) for _, model, _, place, _ in motion_arguments(study, surfaces)}
+    moving = {(model.key, place.row, place.column) for _, model, _, place, _ in Motions().arguments(study, surfaces)}
     assert {("spatial", 3, 9), ("translational", 6, 0), ("translational", 0, 0), ("spatial", 0, 0)} <= moving
     assert not {("translational", 3, 9), ("spatial", 6, 0)} & moving
     assert {("small", 3, 9), ("small", 6, 0)} <= moving, "the equations move everywhere"
@@ -298,7 +297,7 @@ def test_a_model_with_a_coarse_grid_moves_at_its_own_phases_only(monkeypatch: py
         asked.append((task[1].key, task[3].row, task[3].column))
         return analysis._nothing(task[3], task[1].key, "ok", "")  # type: ignore[arg-type]
 
-    monkeypatch.setattr(analysis, "moved", noted)
+    monkeypatch.setattr(Motions, "function", staticmethod(noted))
     motions = collected(Motions(), study, surfaces)
     stride = study.strides["spatial"]
     assert stride > 1

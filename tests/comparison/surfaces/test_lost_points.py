@@ -13,7 +13,7 @@ from report_texts import Tables, page_of, summary_of
 from runs import Run
 from studies import solved
 
-from comparison.analyses.motions.analysis import motion_arguments, moved
+from comparison.analyses.motions.analysis import Motions, moved
 from comparison.study.study import Study
 from comparison.surfaces.budget import TOTAL, closure, steps
 from comparison.surfaces.unanswered import compared_study, unanswered
@@ -210,7 +210,7 @@ def test_a_wrong_limit_is_one_line_with_the_nearest_key(
 def test_a_motion_that_was_never_begun_has_a_status_and_no_error() -> None:
     study = _solved("spatial")
     surfaces = solved(study)
-    task = next(task for task in motion_arguments(study, surfaces) if task[1].key == "spatial")
+    task = next(task for task in Motions().arguments(study, surfaces) if task[1].key == "spatial")
     motion = moved(task)
     assert (motion.status, motion.error_message, len(motion.time)) == ("step limit", "", 0)
 
