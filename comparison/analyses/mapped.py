@@ -1,7 +1,5 @@
 """Analyses that map one function over arguments, each in a task of its own."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any, ClassVar
 

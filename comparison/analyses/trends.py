@@ -6,8 +6,6 @@ pairs of a surface share one exponent and have a size of their own. Its uncertai
 scatter about the line and of the error bars together.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Annotated, NamedTuple

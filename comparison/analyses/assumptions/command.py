@@ -4,8 +4,6 @@ How far the paper's assumptions hold: `python -m comparison.assumptions [SCENE .
 Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """How far the assumptions of the paper carry: in the report."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """How far mu_i of the spatial model is from the translational one, over ring and heights, as one map per body."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

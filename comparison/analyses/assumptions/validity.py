@@ -1,7 +1,5 @@
 """The paper's assumptions (i)-(vi): what the engine's models do with each, and how far they carry."""
 
-from __future__ import annotations
-
 import itertools
 import time
 from collections.abc import Callable, Iterator, Sequence

@@ -1,7 +1,5 @@
 """Checks of what the paper says about its surfaces: each sees the evidence of its cases and computes its answer."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from enum import StrEnum
 from typing import Annotated

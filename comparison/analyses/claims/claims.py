@@ -1,7 +1,5 @@
 """What section 5 of the paper says about its Figures 3 and 4: every statement, and the check that answers for it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """The claims of section 5 against readings of the paper: `python -m comparison.claims [--grid N] [--all]`."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from rich.console import Console

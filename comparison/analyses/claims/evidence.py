@@ -1,7 +1,5 @@
 """What one case shows under one reading of the paper: its surfaces, how smooth they are, and facts about its motion."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 

@@ -1,7 +1,5 @@
 """The claims of the paper: in the report."""
 
-from __future__ import annotations
-
 from comparison.analyses.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
 from comparison.analyses.claims.table import SIGNS, Claims, ClaimTable
 from comparison.report.section import Feature, Section

@@ -8,8 +8,6 @@ comes back through the opposite one and counts once. `drawn` counts on one perio
 its edges, where the same ridge is cut in two. `profiled` counts on the mean along the diagonals alpha1 - alpha2.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache

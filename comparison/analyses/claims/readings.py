@@ -6,8 +6,6 @@ whether the maximum in (5.1) is the supremum or what a numerical integration rea
 parameters or equations than those printed: such a reading states the keys that it changes, and why.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial

@@ -6,8 +6,6 @@ one with a fold like h, and of one with a jump not at all. The zoom starts at th
 halves the step again and again, every time around the point of the three that bends most.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The claims of section 5 against readings of what the paper leaves open: units, duration and f_c."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -12,8 +12,6 @@ v_reg ten times smaller than the smallest one: unequal support forces keep the s
 its peaks converge where those of the translational model climb towards the supremum.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial

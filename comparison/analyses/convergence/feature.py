@@ -1,7 +1,5 @@
 """Convergence of friction law and contact: in the report."""
 
-from __future__ import annotations
-
 from comparison.analyses.convergence.analysis import Convergence
 from comparison.analyses.panels import trend_panels
 from comparison.analyses.trends import Trend

@@ -5,8 +5,6 @@ Every model moves at the phases of its own surface. Motions go to their end, whi
 study makes this analysis where it is asked for by name.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Annotated, Any
 

@@ -1,7 +1,5 @@
 """Demands over all phases: in the report."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path

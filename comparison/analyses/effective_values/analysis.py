@@ -1,7 +1,5 @@
 """What each model really computed with, read back from one of its motions and not from its inputs."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Annotated, Any
 

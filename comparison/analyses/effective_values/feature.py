@@ -1,7 +1,5 @@
 """Effective values: in the report."""
 
-from __future__ import annotations
-
 from comparison.analyses.effective_values.analysis import PHASES, Effective, EffectiveValues, ForcedRatio, forced_ratios
 from comparison.report.section import Feature, SceneField, Section
 

@@ -1,7 +1,5 @@
 """Demands of structures under many motions at many intensities (incremental dynamic analysis), by both sides."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Hashable, Iterator, Mapping, Sequence

@@ -4,8 +4,6 @@ Demands under a suite: `python -m comparison.ensemble SCENE [SCENE ...] --suite 
 Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import io

@@ -1,7 +1,5 @@
 """Demands under many motions as engineers read them: in the report, on the terminal and as a picture."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The file in which an ensemble is kept beside a report: fractiles, the curve of every motion, the engine's subset."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 from typing import Annotated, Any, Literal

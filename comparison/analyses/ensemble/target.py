@@ -1,7 +1,5 @@
 """A target spectrum, and the factor that brings each motion of an ensemble closest to it."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Sequence
 from dataclasses import replace

@@ -5,8 +5,6 @@ The effect is measured on a few phase pairs of every scene to which it applies, 
 in which the loading is strongest: mu_i with the erratum over mu_i without it, minus one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Annotated, Any

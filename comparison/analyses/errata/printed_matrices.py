@@ -6,8 +6,6 @@ Friction grows linearly with the speed below V_REG (a lubricated contact needs n
 integrator can follow it; this is for the size of an effect, not for surfaces.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Collection
 from typing import NamedTuple

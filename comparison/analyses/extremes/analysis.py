@@ -1,7 +1,5 @@
 """The matrix of extremes as an analysis: each model's answer, the same asked more strictly, and the verdict."""
 
-from __future__ import annotations
-
 import time
 import warnings
 from collections.abc import Mapping, Sequence

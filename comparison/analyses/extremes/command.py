@@ -5,8 +5,6 @@ Exit codes: 0 no cell failed; 1 some did; 2 a wrong option; 3 the files could no
 `run_command`.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from collections.abc import Sequence

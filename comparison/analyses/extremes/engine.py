@@ -5,8 +5,6 @@ The engine of the study chooses both by itself. Here its levels of accuracy star
 shows whether the error estimate covers a bad choice, and whether the levels find the way from it to an answer.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Stability at the extremes: in the report."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from comparison.analyses.extremes.matrix import MEANING, PICTURE, STORED, Matrix, Verdict, describe

@@ -1,7 +1,5 @@
 """The matrix of extremes as a picture: one colored field per extreme and model."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 

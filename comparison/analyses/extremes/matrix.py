@@ -1,7 +1,5 @@
 """The matrix of extremes as data: what every model made of every extreme, as a file and as the report needs it."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from enum import StrEnum

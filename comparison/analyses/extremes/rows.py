@@ -5,8 +5,6 @@ Scenes are written as in a scene file and read where a cell is solved, so that a
 few seconds, during which the platform rests, slides and stops, unless the duration itself is the extreme.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """A family of scenes in which one value runs: mu of every model, and every bar of the waterfalls, over that value."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields

@@ -1,7 +1,5 @@
 """Families of scenes: in the report and in summary.json."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

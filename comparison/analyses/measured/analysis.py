@@ -5,8 +5,6 @@ The difference of a model from a measurement is known to exceed their uncertaint
 measurement, e of the computation. That of the input (motion, masses, stiffness, friction) is not in either.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any

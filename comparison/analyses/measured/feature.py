@@ -1,7 +1,5 @@
 """Measured peaks: in the report."""
 
-from __future__ import annotations
-
 from comparison.analyses.measured.analysis import MeasuredPeak, MeasuredPeaks
 from comparison.report.section import Feature, Section
 from reference.measures.peak_demands import QUANTITIES, unit_of

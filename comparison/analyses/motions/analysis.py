@@ -1,7 +1,5 @@
 """Motions kept for the report: a few phase pairs of every scene, by the models of its two differences, thinned."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Motions at chosen phase pairs: in the report."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import fields

@@ -34,8 +34,6 @@ support k, at (X, Y) from the center of mass of body 1, begins at the sphere's t
 A column is rounded to at most ROUNDING of its swing, less than thinning leaves, so that it compresses well.
 """
 
-from __future__ import annotations
-
 import base64
 import gzip
 from collections.abc import Iterator, Sequence

@@ -8,8 +8,6 @@ scales by itself. The printed small equations are not quite invariant either: th
 shrink like s^2 too, which the second trend shows.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Scaling test: in the report."""
 
-from __future__ import annotations
-
 from comparison.analyses.panels import trend_panels
 from comparison.analyses.scaling.analysis import Scaling
 from comparison.analyses.trends import Trend

@@ -1,7 +1,5 @@
 """The trade-off as an analysis: a task for every few seconds of a function's phase pairs, and the diagram of them."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields

@@ -4,8 +4,6 @@ Speed for accuracy: `python -m comparison.tradeoff [SCENE ...] [--quick | --grow
 Exit codes: 0 done; 2 a wrong scene or option; 3 the files could not be written; others as in `run_command`.
 """
 
-from __future__ import annotations
-
 import argparse
 import time
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """How the cost of a phase pair grows with bodies and duration, and that of a call with its phase pairs and workers."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor

@@ -3,8 +3,6 @@ The outside measure: solvers of SciPy on the exact equations with friction linea
 compiled by numba. They know nothing of rest, stops or corners.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

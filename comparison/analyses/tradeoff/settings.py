@@ -4,8 +4,6 @@ What is measured: questions, each with a reference solution, and the settings of
 A reference solution is a run at a tolerance at least 100 times tighter than any setting that is compared with it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

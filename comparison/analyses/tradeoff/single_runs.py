@@ -1,7 +1,5 @@
 """One run of either side with a numerical parameter at a given value: no second run, hence no error estimate."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any

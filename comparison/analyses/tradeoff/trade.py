@@ -1,7 +1,5 @@
 """What was measured, as data: errors and compute time of every setting, the fronts, and the files they are kept in."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -5,8 +5,6 @@ Exit codes: 0 done; 1 a side has no value for a quantity; 2 wrong input; 3 the f
 `run_command`.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Measured motions: in the report."""
 
-from __future__ import annotations
-
 from itertools import groupby
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The measured files, as their authors publish them, read where the user has them."""
 
-from __future__ import annotations
-
 import io
 import re
 from pathlib import Path

@@ -11,8 +11,6 @@ heavy on a link so soft that it does nothing lends its weight: the sphere is the
 as a parabola, as a spring is.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import NamedTuple

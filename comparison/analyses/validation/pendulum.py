@@ -5,8 +5,6 @@ A pendulum with half period h at small angles is the platform on a sphere of rad
 the same angle from every half swing, twice the friction coefficient.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Measured quantities beside what both sides compute, as data: a file, and what the report needs of it."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence

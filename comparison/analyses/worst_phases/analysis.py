@@ -7,8 +7,6 @@ its ratio to the equations, which hardly changes there, says where that is. The 
 surfaces, if these are as fine as the search's own grid.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace

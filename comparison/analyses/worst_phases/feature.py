@@ -1,7 +1,5 @@
 """The largest values over all phases: in the report."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from pathlib import Path

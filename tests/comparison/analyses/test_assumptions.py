@@ -1,8 +1,6 @@
 """How far the assumptions hold: variations vary what they say, nothing is claimed without a value, ranges stop at the
 first variation that fails, and the real models show that turning fades with the heights over the ring."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import replace

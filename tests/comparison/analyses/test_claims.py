@@ -1,7 +1,5 @@
 """Every claim is computed, under readings that change what they say: on surfaces that show it and that violate it."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor

@@ -1,7 +1,5 @@
 """The verdicts of the claims follow from a second, independent integration of the same readings, too."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 from typing import Any

@@ -1,7 +1,5 @@
 """Demands of every phase pair in a study: the surfaces, their symmetry, statistics, gaps, and the report."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import fields, replace
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Effective values come from the motion: a model that computes with other values than it was given is seen."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 

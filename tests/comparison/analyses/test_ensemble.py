@@ -1,7 +1,5 @@
 """Demands under a suite of motions at many intensities: fractiles, the engine's subset, the command and its files."""
 
-from __future__ import annotations
-
 import csv
 import io
 import json

@@ -1,7 +1,5 @@
 """Errata of the paper: every one has its row, and the effect of the printed form is what was measured."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 

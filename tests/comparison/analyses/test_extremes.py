@@ -1,7 +1,5 @@
 """The matrix of extremes: what is wrong is found, what is right passes, and the equations fail nowhere."""
 
-from __future__ import annotations
-
 import re
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace

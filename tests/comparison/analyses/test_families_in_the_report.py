@@ -1,7 +1,5 @@
 """A range in a scene file, or many files, is one study; its budget is drawn against the value that runs."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path

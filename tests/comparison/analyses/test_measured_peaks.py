@@ -1,7 +1,5 @@
 """Measured peaks beside the models: synthetic data made by one model, and what fails."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor

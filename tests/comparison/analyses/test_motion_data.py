@@ -1,7 +1,5 @@
 """The motions of the report: where and of which models, thinned as little as is said, and packed as the layout says."""
 
-from __future__ import annotations
-
 import base64
 import gzip
 import json

@@ -1,7 +1,5 @@
 """Known surfaces: peaks by prominence, curvatures, folds and jumps by a zoom, symmetric ones from a part of them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The measured trade and how the cost grows: fronts, errors along every parameter, checked solutions, known slopes."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace

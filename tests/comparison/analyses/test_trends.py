@@ -1,7 +1,5 @@
 """Fitted exponents, and the trends over scaled loading, ever smaller v_reg and ever stiffer contacts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Measured motions: files by an independent integration of the frame, closed forms, the real files, and wrong ones."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable

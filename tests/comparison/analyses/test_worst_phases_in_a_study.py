@@ -1,7 +1,5 @@
 """The worst phases in a study: what is searched, what the engine has there, and what a failed search leaves."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
