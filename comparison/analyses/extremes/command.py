@@ -30,7 +30,19 @@ MODELS = {EQUATIONS, ENGINE, STATED}  # what the workers ask
 @command
 def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Judge the cells that the command line asks for; the exit code."""
-    options = _parser().parse_args(argv)
+    parser = CommandParser(
+        "extremes", "Every model at the extremes of every quantity, judged by finer runs, as a matrix."
+    )
+    parser.add_out(f"where {FILE} goes")
+    parser.add_computing()
+    parser.add_argument("--limit", metavar="SECONDS", help=f"most processor time of one cell (default {LIMIT:g})")
+    parser.add_argument("--rows", default="", metavar="TEXT", help="the extremes whose name contains this")
+    parser.add_argument("--only", help=argparse.SUPPRESS)  # answered with the name of the option that is meant
+    keys = [column.key for column in COLUMNS]
+    parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")
+    add_models(parser)
+    parser.add_argument("--reduced", action="store_true", help="what takes little: mostly the equations alone")
+    options = parser.parse_args(argv)
     extremes = _chosen(options)
     out = destination(options.out)
     refuse_foreign_files(out, [FILE, PICTURE])
@@ -85,19 +97,3 @@ def _chosen(options: argparse.Namespace) -> Extremes:
     if not cells(kept, columns):
         raise SceneError("command line", "--rows", options.rows, "no cell is left: take part of a row's name")
     return Extremes(kept, columns, limit)
-
-
-def _parser() -> CommandParser:
-    parser = CommandParser(
-        "extremes", "Every model at the extremes of every quantity, judged by finer runs, as a matrix."
-    )
-    parser.add_out(f"where {FILE} goes")
-    parser.add_computing()
-    parser.add_argument("--limit", metavar="SECONDS", help=f"most processor time of one cell (default {LIMIT:g})")
-    parser.add_argument("--rows", default="", metavar="TEXT", help="the extremes whose name contains this")
-    parser.add_argument("--only", help=argparse.SUPPRESS)  # answered with the name of the option that is meant
-    keys = [column.key for column in COLUMNS]
-    parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")
-    add_models(parser)
-    parser.add_argument("--reduced", action="store_true", help="what takes little: mostly the equations alone")
-    return parser

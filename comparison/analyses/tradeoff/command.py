@@ -43,7 +43,20 @@ TOLERANCE = 1e-3  # of a study; every setting has one of its own
 @command
 def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Measure the scenes of the command line; the exit code."""
-    options = _parser().parse_args(argv)
+    parser = CommandParser(
+        "tradeoff", "Error of mu_i against compute time for every model and every numerical parameter."
+    )
+    parser.add_scenes(DEFAULT)
+    parser.add_out("where the files go")
+    parser.add_computing()
+    parser.add_argument(
+        "--growth",
+        action="store_true",
+        help="instead: cost against bodies, duration, phase pairs and workers, with slopes",
+    )
+    add_models(parser)
+    parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
+    options = parser.parse_args(argv)
     jobs(options)  # refused before anything else is looked at
     scenes = [_phased(name) for name in options.scenes or [DEFAULT]]
     refuse_same_names((scene.name, scene.name) for scene in scenes)
@@ -169,20 +182,3 @@ def print_trade(console: Console, trade: Trade) -> None:
                 value = f"{entry.value:.0e} {entry.unit}".strip()
                 table.add_row(entry.method, value, f"{entry.seconds:.4f}", *sizes)
         console.print(table)
-
-
-def _parser() -> CommandParser:
-    parser = CommandParser(
-        "tradeoff", "Error of mu_i against compute time for every model and every numerical parameter."
-    )
-    parser.add_scenes(DEFAULT)
-    parser.add_out("where the files go")
-    parser.add_computing()
-    parser.add_argument(
-        "--growth",
-        action="store_true",
-        help="instead: cost against bodies, duration, phase pairs and workers, with slopes",
-    )
-    add_models(parser)
-    parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
-    return parser

@@ -25,7 +25,16 @@ from comparison.runner.progress import wide_console
 @command
 def main(argv: Sequence[str]) -> int:
     """Compare with the measured files that the command line names, or print what is recorded; the exit code."""
-    options = _parser().parse_args(argv)
+    parser = CommandParser("validation", "Measured motions beside what the equations and the engine compute of them.")
+    parser.add_argument(
+        "folder",
+        nargs="?",
+        type=Path,
+        metavar="FOLDER",
+        help="folder with the measured files; recorded results without",
+    )
+    parser.add_out(f"where {STORED.name} goes")
+    options = parser.parse_args(argv)
     console = wide_console()
     if options.folder is None:
         print_validation(console, recorded())
@@ -73,16 +82,3 @@ def print_validation(console: Console, table: Validation) -> None:
         console.print(f"{text[0].upper()}{text[1:]}.", soft_wrap=True)
     counts = "; ".join(f"{count} {verdict} ({MEANING[verdict]})" for verdict, count in table.counts().items())
     console.print(f"{2 * len(table.quantities)} comparisons: {counts}.", soft_wrap=True)
-
-
-def _parser() -> CommandParser:
-    parser = CommandParser("validation", "Measured motions beside what the equations and the engine compute of them.")
-    parser.add_argument(
-        "folder",
-        nargs="?",
-        type=Path,
-        metavar="FOLDER",
-        help="folder with the measured files; recorded results without",
-    )
-    parser.add_out(f"where {STORED.name} goes")
-    return parser
