@@ -9,18 +9,8 @@ from pathlib import Path
 
 from rich.console import Console
 
+from comparison.analyses.assumptions import validity
 from comparison.analyses.assumptions.feature import draw_assumption_figure
-from comparison.analyses.assumptions.validity import (
-    CLOSE_ENOUGH,
-    DURATION,
-    MANY,
-    PHASES,
-    AssumptionCell,
-    Assumptions,
-    describe,
-    ranges,
-    uneven_lines,
-)
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
 from comparison.cli.terminal import new_table
@@ -56,14 +46,14 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         pictures = [figure_file(s.name, "assumptions", ending=end) for s in scenes for end in (".png", ".pdf")]
         refuse_foreign_files(figures, pictures, "--figures")
     console = wide_console()
-    about = f"{len(MANY)} variations at {len(PHASES)} phase pairs over {DURATION:g} s of motion"
-    console.print(f"{about}: minutes for each scene.")
-    assumptions, study = Assumptions(MANY), Study(tuple(scenes), 1, CLOSE_ENOUGH)
+    about = f"{len(validity.MANY)} variations at {len(validity.PHASES)} phase pairs over {validity.DURATION:g} s"
+    console.print(f"{about} of motion: minutes for each scene.")
+    assumptions, study = validity.Assumptions(validity.MANY), Study(tuple(scenes), 1, validity.CLOSE_ENOUGH)
     results = computed("assumptions", options, argv, assumptions.tasks(study), {ENGINE}, console, executor)
-    validity = assumptions.collect(study, None, results)
-    assert validity is not None, "every scene has both models of the engine"
+    found = assumptions.collect(study, None, results)
+    assert found is not None, "every scene has both models of the engine"
     for scene in scenes:
-        cells = [cell for cell in validity.cells if cell.scene == scene.name]
+        cells = [cell for cell in found.cells if cell.scene == scene.name]
         _print(console, scene, cells)
         if figures:
             with writing(figures, "--figures"):
@@ -82,7 +72,7 @@ def _spatial(name: str) -> Scene:
     return scene
 
 
-def _print(console: Console, scene: Scene, cells: Sequence[AssumptionCell]) -> None:
+def _print(console: Console, scene: Scene, cells: Sequence[validity.AssumptionCell]) -> None:
     console.print(f"{scene.title} ({scene.name}): largest change of mu_i against the translational model, per body")
     table = new_table("ring, m", "heights x", "supports", "offset, m", "yaw, rad", "change, %", "u_D, %", "outcomes")
     bodies, radius = range(1, len(scene.bodies) + 1), scene.support_radius or 0.0
@@ -100,5 +90,5 @@ def _print(console: Console, scene: Scene, cells: Sequence[AssumptionCell]) -> N
         )
     console.print(table)
     console.print(f"{sum(cell.cost for cell in cells):.0f} s of compute")
-    for line in [*map(describe, ranges(scene, cells)), *uneven_lines(scene, cells)]:
+    for line in [*map(validity.describe, validity.ranges(scene, cells)), *validity.uneven_lines(scene, cells)]:
         console.print(line)

@@ -10,20 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from comparison.analyses.ensemble.result import (
-    SCHEMA,
-    Curve,
-    Difference,
-    Engine,
-    EnsembleResult,
-    Fractile,
-    Isolator,
-    Spectrum,
-    Statistic,
-    Stripe,
-    Structure,
-    Target,
-)
+from comparison.analyses.ensemble import result
 from comparison.analyses.families.analysis import listed_demands
 from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
@@ -111,7 +98,7 @@ class Ensemble(Analysis[Points]):
     subset: int | None = 2
     model: Model = TRANSLATIONAL
     tolerance: float = 1e-3
-    target: Target | None = None
+    target: result.Target | None = None
 
     def tasks(self, study: Study | None = None, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One for each scene, then those of the engine."""
@@ -140,7 +127,7 @@ class Ensemble(Analysis[Points]):
             [point(member, _alike(member.scene)) for member in asked],
         )
 
-    def result(self, points: Points, run: Mapping[str, Any]) -> EnsembleResult:
+    def result(self, points: Points, run: Mapping[str, Any]) -> result.EnsembleResult:
         """The statistics of the points, the curves of the motions and the engine's bound."""
         both = points.equations, points.engine
         rows = [stripe for each in both for stripe in stripes(each)]
@@ -148,8 +135,12 @@ class Ensemble(Analysis[Points]):
         asked = "displacement", EXACT.key, scales[-1]
         moved = {row.structure: row for row in rows if (row.quantity, row.model, row.scale) == asked}
         statuses = Counter(sorted(point.status for point in points.equations))
-        return EnsembleResult(
-            schema=SCHEMA,
+        ran = [
+            {"scene": point.member.scene.name, "motion": point.member.motion, "status": point.status}
+            for point in points.engine
+        ]
+        return result.EnsembleResult(
+            schema=result.SCHEMA,
             structures=structures_of(self.members, moved),
             scales=scales,
             motions=len({point.member.motion for point in points.equations}),
@@ -157,14 +148,7 @@ class Ensemble(Analysis[Points]):
             stripes=rows,
             curves=list(curves(*both)),
             spectra=list(spectrum_bands(points.equations)),
-            engine=Engine(
-                self.model.key,
-                [
-                    {"scene": point.member.scene.name, "motion": point.member.motion, "status": point.status}
-                    for point in points.engine
-                ],
-                list(bounds(points.equations, points.engine, points.alike)),
-            ),
+            engine=result.Engine(self.model.key, ran, list(bounds(points.equations, points.engine, points.alike))),
             run=run,
             target=self.target,
         )
@@ -173,8 +157,7 @@ class Ensemble(Analysis[Points]):
         """Places of the engine's members: of every structure, the motions and the scales each spread evenly."""
         if self.subset is None:
             return list(range(len(self.members)))
-        places = enumerate(self.members)
-        numbered = [replace(member, place=place) for place, member in places]
+        numbered = [replace(member, place=place) for place, member in enumerate(self.members)]
         return sorted(place for own in _by(numbered, "structure").values() for place in _spread(own, self.subset))
 
     def _task(self, scene: Scene, model: Model) -> Task:
@@ -226,18 +209,18 @@ def refuse_unfit(members: Sequence[Member], model: Model) -> None:
             raise SceneError(scene.name, "--model", "spatial", rule)
 
 
-def structures_of(members: Sequence[Member], moved: Mapping[str, Stripe]) -> list[Structure]:
+def structures_of(members: Sequence[Member], moved: Mapping[str, result.Stripe]) -> list[result.Structure]:
     """The structures in their order. moved: their isolator displacements at the largest scale."""
     found = []
     for name, own in _by(members, "structure").items():
         scene, isolator, stripe = own[0].scene, None, moved.get(name)
-        at = {} if stripe is None else {"mean": stripe.mean.value, "median": stripe.fractiles[MEDIAN].value}
+        at = {} if stripe is None else {"mean": stripe.mean.value, "median": stripe.fractiles[result.MEDIAN].value}
         statistic, displacement = next(((key, value) for key, value in at.items() if value), ("", 0.0))
         if displacement and not scene.flat and scene.dry_friction.fast:
             linear = effective_isolator(scene, displacement)
             period, damping, restoring = map(float, (linear.period, linear.damping, linear.restoring))
-            isolator = Isolator(displacement, period, damping, restoring, statistic)
-        found.append(Structure(name, scene.title, len(scene.bodies), scene.total_mass * GRAVITY, isolator))
+            isolator = result.Isolator(displacement, period, damping, restoring, statistic)
+        found.append(result.Structure(name, scene.title, len(scene.bodies), scene.total_mass * GRAVITY, isolator))
     return found
 
 
@@ -257,7 +240,7 @@ def answered(task: Arguments) -> Answer:
     return demands(motion), floor_spectra(motion) if model == EXACT else None
 
 
-def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
+def stripes(points: Sequence[Point]) -> Iterator[result.Stripe]:
     """Statistics of every demand at every scale; a motion without an answer counts as worse than all others."""
     for name, own in _by(points, "member.structure").items():
         for quantity in quantities(own):
@@ -265,33 +248,30 @@ def stripes(points: Sequence[Point]) -> Iterator[Stripe]:
                 numbers = [point.estimate(quantity) for point in at_scale]
                 worst = -math.inf if quantity[0] in SMALLEST else math.inf
                 mean, *shares, largest, smallest = statistics(numbers, (*FRACTILES, 1.0, 0.0), worst)
-                fractiles = [Fractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)]
-                lacking = Counter(
-                    number.reason or point.status
-                    for number, point in zip(numbers, at_scale)
-                    if not math.isfinite(number.value)
-                )
+                fractiles = [result.Fractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)]
+                lost = [pair for pair in zip(numbers, at_scale) if not math.isfinite(pair[0].value)]
+                lacking = Counter(number.reason or point.status for number, point in lost)
                 about = name, *_named(quantity), own[0].model, unit_of(quantity[0]), scale
                 answered = len(numbers) - lacking.total()
-                yield Stripe(*about, answered, mean, fractiles, largest, smallest, dict(lacking))
+                yield result.Stripe(*about, answered, mean, fractiles, largest, smallest, dict(lacking))
 
 
 def _named(quantity: Quantity) -> tuple[str, int | None]:
     return quantity[0], quantity[1] or None
 
 
-def _statistic(number: Estimate) -> Statistic:
-    return Statistic(finite_or_none(number.value), finite_or_none(number.error))
+def _statistic(number: Estimate) -> result.Statistic:
+    return result.Statistic(finite_or_none(number.value), finite_or_none(number.error))
 
 
-def statistics(numbers: Sequence[Estimate], shares: Sequence[float], worst: float = math.inf) -> list[Statistic]:
+def statistics(numbers: Sequence[Estimate], shares: Sequence[float], worst: float = math.inf) -> list[result.Statistic]:
     """Mean of numbers with errors, which has no value unless all are known, and their fractiles."""
     value, error = (float(np.mean([getattr(each, part) for each in numbers])) for part in ("value", "error"))
     fractiles = [uncertain_fractile(numbers, share, worst) for share in shares]
     return [_statistic(each) for each in (Estimate(value, error), *fractiles)]
 
 
-def spectrum_bands(points: Sequence[Point]) -> Iterator[Spectrum]:
+def spectrum_bands(points: Sequence[Point]) -> Iterator[result.Spectrum]:
     """Floor spectra of every body of every structure at the largest scale, over all motions; the larger of x and y."""
     top = max((point.member.scale for point in points), default=math.nan)
     for name, own in _by([point for point in points if point.member.scale == top], "member.structure").items():
@@ -305,12 +285,13 @@ def spectrum_bands(points: Sequence[Point]) -> Iterator[Spectrum]:
         ]
         for body in range(bodies):
             columns = np.array(values)[:, :, body].transpose(2, 0, 1).tolist()  # by period, motion, value and error
-            numbers = [[Estimate(*pair) for pair in column] for column in columns]
+            numbers = ([Estimate(*pair) for pair in column] for column in columns)
             mean, *shares, largest = zip(*(statistics(column, (*FRACTILES, 1.0)) for column in numbers))
-            yield Spectrum(name, body + 1, top, known[0].damping, known[0].period.tolist(), mean, shares, largest)
+            about = name, body + 1, top, known[0].damping, known[0].period.tolist()
+            yield result.Spectrum(*about, mean, shares, largest)
 
 
-def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[Curve]:
+def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[result.Curve]:
     """Every demand of every motion over its scales, by structure, demand, model and motion."""
     for name in _by(equations, "member.structure"):
         both = [[point for point in points if point.member.structure == name] for points in (equations, engine)]
@@ -321,7 +302,7 @@ def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[Curv
                     numbers = [_statistic(point.estimate(quantity)) for point in points]
                     values, errors = [each.value for each in numbers], [each.error for each in numbers]
                     scales = [point.member.scale for point in points]
-                    yield Curve(name, *_named(quantity), points[0].model, motion, scales, values, errors)
+                    yield result.Curve(name, *_named(quantity), points[0].model, motion, scales, values, errors)
 
 
 def quantities(points: Sequence[Point]) -> list[Quantity]:
@@ -341,7 +322,7 @@ def uncertain_fractile(numbers: Sequence[Estimate], share: float, worst: float =
     return Estimate(middle, max(high - middle, middle - low)) if math.isfinite(middle) else Estimate(math.nan, math.nan)
 
 
-def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Point]) -> Iterator[Difference]:
+def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Point]) -> Iterator[result.Difference]:
     """The largest difference of every demand that both sides have, and the largest with the same friction law."""
     equations = {(point.member.structure, point.member.scene.name): point for point in points}
     for name, own in _by(engine, "member.structure").items():
@@ -351,7 +332,7 @@ def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Poi
             apart, same = ([*_differences(quantity, first, own)] for first in (matching, same_law))
             closest = max(same, default=(math.nan, math.nan))
             largest, alike_apart, errors = map(finite_or_none, (max(apart, default=closest)[0], *closest))
-            yield Difference(name, *_named(quantity), largest, alike_apart, errors, len(apart))
+            yield result.Difference(name, *_named(quantity), largest, alike_apart, errors, len(apart))
 
 
 def _differences(quantity: Quantity, first: Sequence[Point], second: Sequence[Point]) -> Iterator[tuple[float, float]]:

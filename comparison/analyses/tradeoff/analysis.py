@@ -3,21 +3,13 @@
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from comparison.analyses.tradeoff import trade
 from comparison.analyses.tradeoff.settings import Question, Setting, Settings, asked, settings, user_settings
-from comparison.analyses.tradeoff.trade import (
-    Answered,
-    Entry,
-    MeasuredTrade,
-    Stated,
-    Trade,
-    labeled,
-    quantile,
-    with_pareto_fronts,
-)
 from comparison.json_file import finite_or_none
 from comparison.result_types import Array
 from comparison.runner.analysis import Analysis
@@ -100,17 +92,13 @@ def without_value(measurement: Measurement, failed: TaskResult) -> Measured:
 
 def joined(parts: Sequence[Measured]) -> Measured:
     """The measurements of one function as one: times added up, and the first error message."""
-    return Measured(
-        np.concatenate([part.mu for part in parts]),
-        np.concatenate([part.error_estimate for part in parts]),
-        sum(part.seconds for part in parts),
-        float(np.mean([part.step for part in parts])),
-        next((part.error_message for part in parts if part.error_message), ""),
-    )
+    mu, error_estimate = map(np.concatenate, zip(*((part.mu, part.error_estimate) for part in parts)))
+    seconds, step = sum(part.seconds for part in parts), float(np.mean([part.step for part in parts]))
+    return Measured(mu, error_estimate, seconds, step, next(filter(None, (part.error_message for part in parts)), ""))
 
 
 @dataclass(frozen=True)
-class TradeOff(Analysis[list[MeasuredTrade]]):
+class TradeOff(Analysis[list[trade.MeasuredTrade]]):
     """Error against compute time of every setting in every scene with phases; quick: fewer points and values."""
 
     key, stage = "tradeoff", "trade-off"
@@ -122,7 +110,7 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
         tasks = [task for scene in study.phased for parts in self._measurements(scene) for task in parts]
         return list({task.key: task for task in tasks}.values())  # one function may serve two settings
 
-    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredTrade]:
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[trade.MeasuredTrade]:
         """One diagram for each scene, without what the command knows of the run."""
         return [self._trade(scene, results) for scene in study.phased]
 
@@ -137,10 +125,8 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
         for each in self._settings(scene):
             question = questions[each.question]
             yield self._tasks(scene, (each.function, each.settings), question, each.seconds)
-            against, seconds = (
-                (each.against, CHEAP) if each.against else (question.reference_solution, question.seconds)
-            )
-            yield self._tasks(scene, against, question, seconds)
+            seconds = CHEAP if each.against else question.seconds
+            yield self._tasks(scene, each.against or question.reference_solution, question, seconds)
 
     def _tasks(self, scene: Scene, function: Function, question: Question, seconds: float) -> list[Task]:
         """Those of one function on the sample of a question; seconds: per point of a motion of 20 s, about."""
@@ -148,49 +134,40 @@ class TradeOff(Analysis[list[MeasuredTrade]]):
         size, phases = int(np.clip(CHUNK / each, 1, count)), sample(count)
         engine = engine_of(function[1]).get("function", "")
         limits = {engine_of(model.settings)["function"]: model.timeout for model in self.supplied}
-        limit = limits.get(engine)
+        limit, chunks = limits.get(engine), (phases[first : first + size] for first in range(0, count, size))
+        more: dict[str, Any] = {"about": scene, "timeout": limit and limit * size, "group": engine}
         return [
-            Task(
-                measure,
-                Measurement(scene, function, phases[first : first + size]),
-                self.stage,
-                each * min(size, count - first),
-                scene,
-                timeout=limit and limit * size,
-                group=engine,
-            )
-            for first in range(0, count, size)
+            Task(measure, Measurement(scene, function, chunk), self.stage, each * len(chunk), **more)
+            for chunk in chunks
         ]
 
-    def _trade(self, scene: Scene, results: TaskResults) -> MeasuredTrade:
+    def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
         measured = (
             joined([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
         )
         solutions = [(question, next(measured)) for question in asked(scene)]
         rows = [(setting, next(measured), next(measured)) for setting in self._settings(scene)]
         entries = [entry(setting, answer, against.mu) for setting, answer, against in rows]
-        entries = with_pareto_fronts(entries, len(scene.bodies))
+        entries = trade.with_pareto_fronts(entries, len(scene.bodies))
         answered = [_answered(*solution, entries) for solution in solutions]
-        values = {
-            "mu": [answer.mu for _, answer, _ in rows],
-            "reference_solution": [against.mu for *_, against in rows],
-            "error_estimate": [answer.error_estimate for _, answer, _ in rows],
-        }
-        trade = Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
-        return MeasuredTrade(trade, labeled(entries, values, sample(max(question.points for question in answered))))
+        numbers = zip(*((answer.mu, against.mu, answer.error_estimate) for _, answer, against in rows))
+        values = dict(zip(trade.MEANINGS, map(list, numbers)))
+        phases = sample(max(question.points for question in answered))
+        found = trade.Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
+        return trade.MeasuredTrade(found, trade.labeled(entries, values, phases))
 
 
-def entry(setting: Setting, measured: Measured, reference_solution: Array) -> Entry:
+def entry(setting: Setting, measured: Measured, reference_solution: Array) -> trade.Entry:
     """What one setting gave at M phase pairs, against mu (M, N) of the reference solution there."""
     error = np.abs(measured.mu / reference_solution - 1.0)
     error_estimate = measured.error_estimate / np.abs(measured.mu)
     points = len(measured.mu)
     median, most, estimate = (
-        [quantile(column, share) for column in errors.T]
+        [trade.quantile(column, share) for column in errors.T]
         for errors, share in ((error, 0.5), (error, 0.95), (error_estimate, 0.95))
     )
-    return Entry(
-        **{field.name: getattr(setting, field.name) for field in fields(Stated)},
+    return trade.Entry(
+        **{field.name: getattr(setting, field.name) for field in fields(trade.Stated)},
         points=points,
         answered=int(np.isfinite(error).all(axis=1).sum()),
         seconds=measured.seconds / points,
@@ -202,46 +179,32 @@ def entry(setting: Setting, measured: Measured, reference_solution: Array) -> En
     )
 
 
-def _answered(question: Question, reference_solution: Measured, entries: Sequence[Entry]) -> Answered:
+def _answered(question: Question, reference_solution: Measured, entries: Sequence[trade.Entry]) -> trade.Answered:
     """The question with its reference solution, and what is known about that."""
     error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
     error = float(np.nanmax(error_estimate)) if np.isfinite(error_estimate).any() else float("inf")
     tolerance = question.reference_solution[1]["tolerance"]
     side = "the reference" if question.reference_solution[0].startswith("reference") else "the engine"
     seconds = reference_solution.seconds / len(reference_solution.mu)
-    return Answered(
-        question.key,
-        question.title,
-        len(reference_solution.mu),
-        f"{side} at a tolerance of {tolerance:.0e}, {seconds:.2g} s per point",
-        error,
-        [f"its own error estimate is {error:.0e} at most", *_agreements(question, entries)],
-    )
+    solution = f"{side} at a tolerance of {tolerance:.0e}, {seconds:.2g} s per point"
+    checks = [f"its own error estimate is {error:.0e} at most", *_agreements(question, entries)]
+    return trade.Answered(question.key, question.title, len(reference_solution.mu), solution, error, checks)
 
 
-def _agreements(question: Question, entries: Sequence[Entry]) -> list[str]:
+def _agreements(question: Question, entries: Sequence[trade.Entry]) -> list[str]:
     """How far the most accurate setting of other methods, else of the same one, agrees with the reference solution."""
-    candidates = [
-        setting
-        for setting in entries
-        if setting.question == question.key and not setting.model_error and setting.answered
-    ]
     by_engine = question.reference_solution[0].startswith("multibody")
-    agreements = []
-    for family, what in {} if by_engine else OTHER_METHODS.items():
-        others = [setting for setting in candidates if setting.method.startswith(family)]
-        agreements += [_agreement(min(others, key=_largest), what)] if others else []
-    controlled = [setting for setting in candidates if setting.controlled]
-    if agreements or not controlled:
-        return agreements
-    return [_agreement(min(controlled, key=_largest), "the same code, asked for less")]
+    candidates = [each for each in entries if each.question == question.key and not each.model_error and each.answered]
+    families = [(what, [each for each in candidates if each.method.startswith(family)])
+                for family, what in ({} if by_engine else OTHER_METHODS).items()]  # fmt: skip
+    if not any(others for _, others in families):
+        families = [("the same code, asked for less", [each for each in candidates if each.controlled])]
 
+    def largest(setting: trade.Entry) -> float:
+        return max(np.inf if error is None else error for error in setting.most)
 
-def _agreement(setting: Entry, what: str) -> str:
-    at = f"{setting.method} ({setting.parameter} {setting.value:.0e})"
-    return f"{at}, {what}, agrees with it to {_largest(setting):.0e} at 95 %"
-
-
-def _largest(setting: Entry) -> float:
-    """Error of the mu that is known worst."""
-    return max(np.inf if error is None else error for error in setting.most)
+    best = [(what, min(others, key=largest)) for what, others in families if others]
+    return [
+        f"{each.method} ({each.parameter} {each.value:.0e}), {what}, agrees with it to {largest(each):.0e} at 95 %"
+        for what, each in best
+    ]

@@ -68,15 +68,13 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     if options.growth:
         return _grown(scenes[0], options, argv, out, console, executor)
     measured = measured_trades(scenes, options, argv, console, executor)
-    for scene_trade in measured:
-        with writing(out):
-            publish(out, _files(scene_trade), COMMAND)
-    before = {trade.scene: trade for trade in _stored(out)}
-    trades = {scene_trade.trade.scene: scene_trade.trade for scene_trade in measured}
     with writing(out):
-        (file,) = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list((before | trades).values())))}, COMMAND)
-    for trade in trades.values():
-        print_trade(console, trade)
+        for each in measured:
+            publish(out, _files(each), COMMAND)
+        trades = {trade.scene: trade for trade in [*_stored(out), *(each.trade for each in measured)]}
+        (file,) = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
+    for each in measured:
+        print_trade(console, each.trade)
     console.print(f"Trade: {file}, and SCENE-tradeoff.png and .nc beside it.", soft_wrap=True)
     return 0
 
@@ -93,9 +91,8 @@ def _grown(
     facts = run_facts("tradeoff", options, words, begin)
     measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
     picture = made_by(lambda folder: draw_growth(folder / growth.PICTURE, measured))
-    files = {growth.FILE: growth.STORED.as_json(measured), **picture}
     with writing(out):
-        publish(out, files, COMMAND)
+        publish(out, {growth.FILE: growth.STORED.as_json(measured), **picture}, COMMAND)
     print_growth(console, series)
     console.print(f"Growth: {out / growth.FILE}, and growth.png beside it.", soft_wrap=True)
     return 0
@@ -147,11 +144,8 @@ def measured_trades(
     console.print(f"Unless they are stored: about {about:.0f} s with {width} workers.")
     begin = time.monotonic()
     results = computed("tradeoff", options, words, tasks, MODELS, console, executor)
-    run = {
-        **run_facts("tradeoff", options, words, begin),
-        "quick": options.quick,
-        "stored_before": results.parts[tradeoff.stage].stored,
-    }
+    more = {"quick": options.quick, "stored_before": results.parts[tradeoff.stage].stored}
+    run = run_facts("tradeoff", options, words, begin) | more
     attributes = {"command": run["command"], **run["provenance"]}
     return [
         MeasuredTrade(replace(measured.trade, run=run), measured.values.assign_attrs(attributes))

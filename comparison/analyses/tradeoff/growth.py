@@ -102,9 +102,8 @@ STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "python -m compar
 
 def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]) -> Series:
     """The series with its slope; NaN where there is no measurement."""
-    slope, uncertainty = fitted_slope(values, seconds)
-    numbers = finite_or_none(slope), finite_or_none(uncertainty)
-    return Series(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *numbers)
+    slope = map(finite_or_none, fitted_slope(values, seconds))
+    return Series(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *slope)
 
 
 def fitted_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
@@ -134,9 +133,8 @@ class Growth(Analysis[list[Series]]):
         collected = []
         for quantity, model, tasks in self._series(study):
             answers = [results.value(task, without_value) for task in tasks]
-            parts = [1 if quantity.name == PAIRED else len(answer.mu) for answer in answers]
-            known = [1.0 if np.isfinite(answer.mu).all() else float("nan") for answer in answers]
-            seconds = [answer.seconds / part * one for answer, part, one in zip(answers, parts, known)]
+            costs = [each.seconds / (1 if quantity.name == PAIRED else len(each.mu)) for each in answers]
+            seconds = [cost if np.isfinite(each.mu).all() else float("nan") for cost, each in zip(costs, answers)]
             collected.append(with_slope(quantity.name, quantity.unit, model.title, quantity.values, seconds))
         return collected
 
@@ -150,9 +148,8 @@ class Growth(Analysis[list[Series]]):
         ]
 
     def _task(self, quantity: Quantity, model: Model, scene: Scene, value: float) -> Task:
-        settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(TOLERANCE)}
-        if model.side == "engine":
-            settings["max_work"] = MAX_WORK
+        work = {"max_work": MAX_WORK} if model.side == "engine" else {}
+        settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(TOLERANCE), **work}
         phases = sample(int(value) if quantity.name == PAIRED else POINTS[model.side])
         measurement = Measurement(quantity.scene(scene, value), (model.amplification, settings), phases)
         return Task(measure, measurement, self.stage, about=scene, timeout=LIMIT)
