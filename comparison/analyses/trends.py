@@ -90,7 +90,6 @@ def trend(
 
 
 def _verdict(slope: Slope, expected: float | None) -> str:
-    """What the fit allows to say, in words."""
     if not np.isfinite(slope.exponent):
         return "within the error bars: no slope can be told"
     if slope.uncertainty > SETTLED:

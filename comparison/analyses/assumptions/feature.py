@@ -36,7 +36,6 @@ def _varied(report: Report) -> list[tuple[Scene, Sequence[AssumptionCell]]]:
 
 
 def _tasks(report: Report) -> list[Task]:
-    """One figure for each scene whose assumptions were varied."""
     return [drawing_task(draw_assumption_figure, pair) for pair in _varied(report)]
 
 
@@ -47,15 +46,10 @@ def _draw(figures: Path, report: Report) -> None:
 
 
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:
-    pictures = [
-        {
-            "title": scene.title,
-            "name": scene.name,
-            "picture": inlined(smaller((figures / figure_name(scene)).read_bytes())),
-            "lines": uneven_lines(scene, cells),
-        }
-        for scene, cells in _varied(report)
-    ]
+    pictures = []
+    for scene, cells in _varied(report):
+        picture, lines = inlined(smaller((figures / figure_name(scene)).read_bytes())), uneven_lines(scene, cells)
+        pictures.append({"title": scene.title, "name": scene.name, "picture": picture, "lines": lines})
     return {"assumption_pictures": pictures}
 
 

@@ -168,13 +168,8 @@ def _moved(scene: Scene, model: Model, tolerance: float) -> Solved:
     clock = time.process_time()
     trajectory: Callable[..., Trajectory] = imported(str(model.trajectory))
     motions = [trajectory(scene, phase, **model.settings, tolerance=tolerance) for phase in PHASES]
-    nothing = np.full(len(scene.bodies), np.nan)
-    rows = [
-        (motion.peak, motion.accuracy.peak_error)
-        if motion.status in ANSWERED and motion.accuracy is not None
-        else (nothing, nothing)
-        for motion in motions
-    ]
+    nothing = (np.full(len(scene.bodies), np.nan),) * 2
+    rows = [(m.peak, m.accuracy.peak_error) if m.status in ANSWERED and m.accuracy else nothing for m in motions]
     peaks, errors = np.moveaxis(np.array(rows), 1, 0) / ground_peak(scene, PHASES)[:, None]
     turns = tuple(tuple(turn.value for turn in demands(motion).torsion or ()) for motion in motions)
     status, cost = tuple(str(motion.status) for motion in motions), time.process_time() - clock

@@ -50,14 +50,9 @@ SAFETY = 1.5  # on the difference of two steps, which is half to once the error 
 
 
 def _against(
-    side: ModuleType,
-    phases: Array,
-    periods: float,
-    tolerance: float,
-    speeds: Sequence[float],
-    resolved: bool,
+    side: ModuleType, phases: Array, periods: float, tolerance: float, speeds: Sequence[float], resolved: bool,
     scene: Scene,
-) -> Values:
+) -> Values:  # fmt: skip
     """The motion at each v_reg against the set-valued one, resolved at the same speed or the supremum."""
     short = _short(scene, periods)
     return _relative(
@@ -80,7 +75,6 @@ def _with_turning(scene: Scene) -> Values:
 
 
 def _relative(pairs: Iterable[tuple[Amplification, Amplification]]) -> Values:
-    """Answers against their limits."""
     parts = [(a.mu / limit.mu - 1.0, np.hypot(a.error, limit.error) / limit.mu) for a, limit in pairs]
     sizes, errors = (np.stack(each, axis=1) for each in zip(*parts))
     return sizes, errors

@@ -94,8 +94,8 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
         bodies, grid = max(len(scene.bodies) for scene in study.scenes), study.grid
         status = np.full((len(names), len(models), grid**2), NOT_ASKED, dtype=object)
         numbers: dict[str, Array] = {}
-        values = self.values(study, surfaces, results)
-        for (scene, model, places), (estimated, outcomes) in zip(_batches(study), values, strict=True):
+        answers = self.values(study, surfaces, results)
+        for (scene, model, places), (estimated, outcomes) in zip(_batches(study), answers, strict=True):
             where = names.index(scene.name), models.index(model.key)
             status[where][places] = outcomes
             for name, estimates in estimated.items():
@@ -168,7 +168,6 @@ def demand_statistics(study: Study, demands: xr.Dataset | None, scene: Scene) ->
 def _statistics(
     study: Study, demands: xr.Dataset, scene: Scene, model: Model, name: str, body: int
 ) -> Iterator[DemandStatistics]:
-    """At most one."""
     place = {"scene": scene.name, "model": model.key} | ({"body": body} if body else {})
     axis = study.axis(model, scene)
     value, error = (np.asarray(demands[key].sel(place), float)[np.ix_(axis, axis)] for key in (name, f"{name}_error"))

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from comparison.analyses.demands.analysis import DemandStatistics, DemandSurfaces, PhaseExtreme, demand_statistics
-from comparison.analyses.motions.feature import MotionDemands
 from comparison.analyses.panels import distribution_panels
 from comparison.report.plots import DEMANDS, Panel
 from comparison.report.results import Results
@@ -85,22 +84,19 @@ def _of_two_models(scene: SceneResult, titles: dict[str, str]) -> Iterator[tuple
     over_phases = scene.of("demand_statistics")
     rows = over_phases or scene.of("demands")
     keys = [key for key in titles if key in {row.model for row in rows}]
-    numbers = _of_phases if over_phases else _of_motions
     for key in dict.fromkeys((keys[0], keys[-1])):
-        own = [row for row in rows if row.model == key]
-        of_bodies = [(name, scene.bodies if body == -1 else body, factor) for _, name, body, factor in COLUMNS]
-        yield key, [_cell(name, numbers(own, name, body), factor) for name, body, factor in of_bodies]
-
-
-def _of_phases(rows: Sequence[DemandStatistics], name: str, body: int | None) -> list[PhaseExtreme]:
-    shown = [row for row in rows if row.quantity == name and body in (None, row.body)]
-    return [row.lowest if name.endswith("_min") else row.highest for row in shown]
-
-
-def _of_motions(motions: Sequence[MotionDemands], name: str, body: int | None) -> list[UncertainNumber]:
-    found = [getattr(motion, name) for motion in motions]
-    listed = [[each] if isinstance(each, UncertainNumber) else each for each in found]
-    return [number for each in listed for number in (each[body - 1 : body] if body else each)]
+        own, cells = [row for row in rows if row.model == key], []
+        for _, name, place, factor in COLUMNS:
+            body = scene.bodies if place == -1 else place
+            if over_phases:
+                shown = [row for row in own if row.quantity == name and body in (None, row.body)]
+                numbers = [row.lowest if name.endswith("_min") else row.highest for row in shown]
+            else:
+                found = [getattr(motion, name) for motion in own]
+                listed = [[each] if isinstance(each, UncertainNumber) else each for each in found]
+                numbers = [number for each in listed for number in (each[body - 1 : body] if body else each)]
+            cells.append(_cell(name, numbers, factor))
+        yield key, cells
 
 
 def _cell(name: str, numbers: Sequence[PhaseExtreme | UncertainNumber], factor: float) -> str:

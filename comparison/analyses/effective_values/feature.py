@@ -1,24 +1,21 @@
 """Effective values: in the report."""
 
 from comparison.analyses.effective_values.analysis import PHASES, Effective, EffectiveValues, ForcedRatio, forced_ratios
-from comparison.report.section import Feature, SceneField, Section
+from comparison.report.section import Feature, Findings, SceneField, Section
+from reference.problem import Scene
 
+
+def _effective(findings: Findings, scene: Scene) -> list[Effective]:
+    return [each for each in findings.found.get("effective") or [] if each.scene == scene.name]
+
+
+FORCED = "one per axis, harmonic and body above the platform; empty under a recorded motion"
 FEATURE = Feature(
     "effective",
     analysis=EffectiveValues(),
     scene_fields={
-        "effective": SceneField(
-            list[Effective],
-            "the scene, then every model",
-            lambda findings, scene: [
-                each for each in findings.found.get("effective") or [] if each.scene == scene.name
-            ],
-        ),
-        "forced": SceneField(
-            list[ForcedRatio],
-            "one per axis, harmonic and body above the platform; empty under a recorded motion",
-            lambda findings, scene: forced_ratios(scene),
-        ),
+        "effective": SceneField(list[Effective], "the scene, then every model", _effective),
+        "forced": SceneField(list[ForcedRatio], FORCED, lambda findings, scene: forced_ratios(scene)),
     },
     section=Section(
         "Effective values",

@@ -214,7 +214,7 @@ def structures_of(members: Sequence[Member], moved: Mapping[str, result.Stripe])
     found = []
     for name, own in _by(members, "structure").items():
         scene, isolator, stripe = own[0].scene, None, moved.get(name)
-        at = {} if stripe is None else {"mean": stripe.mean.value, "median": stripe.fractiles[result.MEDIAN].value}
+        at = {} if stripe is None else {"mean": stripe.mean.value, "median": stripe.fractiles[MEDIAN].value}
         statistic, displacement = next(((key, value) for key, value in at.items() if value), ("", 0.0))
         if displacement and not scene.flat and scene.dry_friction.fast:
             linear = effective_isolator(scene, displacement)

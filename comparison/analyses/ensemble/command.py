@@ -70,8 +70,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     if line := how_paired(options.suite):
         console.print(line, soft_wrap=True, markup=False)
     print_implausible_values(console, [member.scene for member in members])
-    tasks = ensemble.tasks()
-    engine = len(ensemble.chosen())
+    tasks, engine = ensemble.tasks(), len(ensemble.chosen())
     seconds = sum(task.seconds for task in tasks)
     console.print(f"{len(members)} motions by the equations, {engine} by the engine: {seconds:.0f} s of compute.")
     if options.plan:
@@ -84,11 +83,8 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     cost = results.parts[ensemble.stage].seconds
     run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
     result = ensemble.result(points, run)
-    files = {
-        STORED.name: STORED.as_json(result),
-        TABLE: table_text(points).encode(),
-        **made_by(lambda folder: draw_ensemble(folder / PICTURE, result)),
-    }
+    files = {STORED.name: STORED.as_json(result), TABLE: table_text(points).encode()}
+    files |= made_by(lambda folder: draw_ensemble(folder / PICTURE, result))
     with writing(out):
         written = publish(out, files, "comparison.ensemble")
     print_ensemble(console, result, cost)
@@ -102,9 +98,7 @@ def asked_family(options: argparse.Namespace, source: str) -> Family:
     loading: Any = data.get("excitation")
     if options.suite is not None:
         name = options.suite if ":" in options.suite else str(Path(options.suite).absolute())
-        record: dict[str, Any] = {"suite": name, "motion": "all"}
-        if options.normalized:
-            record["normalized"] = True
+        record = {"suite": name, "motion": "all"} | ({"normalized": True} if options.normalized else {})
         scale = loading.get("scale", 1.0) if isinstance(loading, dict) else 1.0
         data = {key: value for key, value in data.items() if key != "duration"}  # as long as each motion
         loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}}

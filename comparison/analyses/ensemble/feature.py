@@ -27,6 +27,7 @@ from reference.problem import GRAVITY
 SHOWN = ("displacement", "residual", "base_shear", "uplift", "support_force_max")
 OF_BODY = {"acceleration": "acceleration of body {}", "drift": "drift below body {}", "torsion": "rotation of body {}"}
 NAMED = 6  # motions of the engine that are named one by one
+PERIOD = {"title": "period, s", "log": True}  # an axis
 WIDTH = 0.3  # of a strip, in steps from one structure to the next
 READ = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "J": ("kJ", 1e-3), "rad": ("mrad", 1e3), "m/s^2": ("g", 1.0 / GRAVITY)}
 
@@ -72,7 +73,7 @@ def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
         if stripes := ensemble.stripes_of(name, quantity):
             x = [place + WIDTH if one else stripe.scale for stripe in stripes]
             fractiles = zip(*(stripe.fractiles for stripe in stripes))
-            series.append(_median(ensemble, place, x, fractiles, factor, band=not one, line=not one))
+            series.append(_median(name, place, x, fractiles, factor, band=not one, line=not one))
         look = {"name": "engine", "color": "ink", "marks": True, "line": False}
         look |= {"legend": False} if any(line["name"] == "engine" for line in series) else {}
         series += _values(engine, factor, place - WIDTH if one else None, **look)
@@ -98,18 +99,12 @@ def _values(curves: Sequence[Curve], factor: float, place: float | None, **look:
 
 
 def _median(
-    ensemble: EnsembleResult,
-    place: int,
-    x: list[Any],
-    fractiles: Iterable[Sequence[Statistic]],
-    factor: float,
-    **look: Any,
+    name: str, place: int, x: list[Any], fractiles: Iterable[Sequence[Statistic]], factor: float, **look: Any
 ) -> dict[str, Any]:
     """Median of a structure with its band, from low, median and high at every x."""
     columns = zip(("low", "y", "high"), fractiles)
     numbers = {key: [_scaled(each.value, factor) for each in column] for key, column in columns}
-    about = {"name": ensemble.structures[place].name, "color": place, "x": x}
-    return {**about, **numbers, "band": True, "marks": True, "width": 2.4, **look}
+    return {"name": name, "color": place, "x": x, **numbers, "band": True, "marks": True, "width": 2.4, **look}
 
 
 def _profiles(ensemble: EnsembleResult) -> list[Panel]:
@@ -121,13 +116,12 @@ def _profiles(ensemble: EnsembleResult) -> list[Panel]:
             unit, factor = unit_for_reading(quantity, structure.weight)
             if rows := ensemble.profile(structure.name, quantity):
                 fractiles = zip(*(row.fractiles for row in rows))
-                series.append(_median(ensemble, place, [row.body for row in rows], fractiles, factor))
+                series.append(_median(structure.name, place, [row.body for row in rows], fractiles, factor))
         if series:
             ticks = [[n, str(n)] for n in range(1, max(each.bodies for each in ensemble.structures) + 1)]
-            x_axis = {"title": "body, from the platform up", "ticks": ticks}
+            axes = {"title": "body, from the platform up", "ticks": ticks}, _from_zero(f"{quantity}, {unit}", series)
             label = f"{quantity} over the height, {_motions(ensemble)} at scale {max(ensemble.scales):g}"
-            y_axis = _from_zero(f"{quantity}, {unit}", series)
-            panels.append(panel(f"{quantity} over the height", label, x_axis, y_axis, series))
+            panels.append(panel(f"{quantity} over the height", label, *axes, series))
     return panels
 
 
@@ -136,16 +130,15 @@ def _spectra(ensemble: EnsembleResult) -> list[Panel]:
     panels = []
     for title in ("platform", "top"):
         series = [
-            _median(ensemble, place, list(spectrum.period), spectrum.fractiles, 1.0 / GRAVITY, marks=False)
+            _median(structure.name, place, list(spectrum.period), spectrum.fractiles, 1.0 / GRAVITY, marks=False)
             for place, structure in enumerate(ensemble.structures)
             for spectrum in ensemble.spectra
             if (spectrum.structure, spectrum.body) == (structure.name, 1 if title == "platform" else structure.bodies)
         ]
         if series and (title == "platform" or max(each.bodies for each in ensemble.structures) > 1):
             quantity = f"pseudo-acceleration, {100.0 * ensemble.spectra[0].damping:g} % damping, g"
-            axes = {"title": "period, s", "log": True}, _from_zero(quantity, series)
             label = f"floor spectrum of the {title}, {_motions(ensemble)}"
-            panels.append(panel(f"floor spectrum: {title}", label, *axes, series))
+            panels.append(panel(f"floor spectrum: {title}", label, PERIOD, _from_zero(quantity, series), series))
     return panels
 
 
@@ -208,13 +201,12 @@ def _matched(ensemble: EnsembleResult) -> list[Panel]:
     series.append({"x": x, "y": mean.tolist(), "name": "geometric mean of the motions", "color": 0, "width": 2.4})
     wanted = [value / GRAVITY for value in target.acceleration]
     series.append({"x": x, "y": wanted, "name": "target", "color": "ink", "width": 2.4})
-    axes = {"title": "period, s", "log": True}, _from_zero("pseudo-acceleration, 5 % damping, g", series)
+    y = _from_zero("pseudo-acceleration, 5 % damping, g", series)
     label = f"response spectra of the ground and their target, {_motions(ensemble)} at scale 1"
-    return [panel("response spectra of the ground", label, *axes, series)]
+    return [panel("response spectra of the ground", label, PERIOD, y, series)]
 
 
 def _from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """An axis that starts at zero."""
     values = [value for each in series for key in ("y", "high") for value in each.get(key, ()) if value is not None]
     return {"title": title, "range": [0.0, 1.06 * max(values, default=0.0) or 1.0]}
 

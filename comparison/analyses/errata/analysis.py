@@ -7,14 +7,14 @@ in which the loading is strongest: mu_i with the erratum over mu_i without it, m
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
 
 import reference
-from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING
-from comparison.analyses.errata.printed_matrices import printed_amplification as _printed
+from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
 from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Text, result
 from comparison.runner.task_results import TaskResults
@@ -166,22 +166,16 @@ ERRATA = (
     ),
     MeasuredErratum("section 5", "solution (5.7)", "solution (4.7)", "there is no (5.7)", _NAME),
 )
+_printed, _rest = partial(printed_amplification, phases=PHASES), partial(_mu, equations="small")
 # by number of the erratum, from 0: to which scenes it applies, mu as printed, and mu without it
 MEASURES: dict[int, tuple[Callable[[Scene], bool], Mu, Mu]] = {
     0: (any_scene, _softened, _mu),
     1: (_moving, lambda scene: _mu(scene.with_values({"isolator.friction": 1.0})), _mu),
-    4: (_two_springs, lambda scene: _printed(scene, PHASES, [WRONG_SPRING]), lambda scene: _printed(scene, PHASES)),
-    6: (
-        lambda scene: scene.lubricated and not scene.flat,  # (3.9) is multiplied by Delta, which is infinite on a plane
-        lambda scene: _printed(scene, PHASES, [WRONG_DAMPING]),
-        lambda scene: _printed(scene, PHASES),
-    ),
+    4: (_two_springs, partial(_printed, errata=[WRONG_SPRING]), _printed),
+    # (3.9) is multiplied by Delta, which is infinite on a plane
+    6: (lambda scene: scene.lubricated and not scene.flat, partial(_printed, errata=[WRONG_DAMPING]), _printed),
     7: (any_scene, lambda scene: _cut(scene, **_small(scene)), lambda scene: _mu(scene, **_small(scene))),
-    8: (
-        _moving,
-        lambda scene: _mu(scene, equations="small", rest_condition="printed"),
-        lambda scene: _mu(scene, equations="small", rest_condition="consistent"),
-    ),
+    8: (_moving, partial(_rest, rest_condition="printed"), partial(_rest, rest_condition="consistent")),
     10: (_moving, _cut, _mu),
 }
 

@@ -26,15 +26,8 @@ from reference.problem.scene_error import first_error
 
 Finer = tuple[str, Array, Array]  # status, mu and error of a finer run at a phase pair
 
-PHYSICS = {
-    Outcome.RIM_REACHED,
-    Outcome.TRAVEL_REACHED,
-    Outcome.CONTACT_LOST,
-    Outcome.OVERTURNED,
-    Outcome.PAINLEVE,
-    Outcome.NON_FINITE_LOAD,
-    Outcome.NO_GROUND_MOTION,
-}
+PHYSICS = {Outcome.RIM_REACHED, Outcome.TRAVEL_REACHED, Outcome.CONTACT_LOST, Outcome.OVERTURNED, Outcome.PAINLEVE}
+PHYSICS |= {Outcome.NON_FINITE_LOAD, Outcome.NO_GROUND_MOTION}
 NUMERICS = {Outcome.TOLERANCE_NOT_MET, Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED}
 FINE = 0.1  # share of the tolerance within which a run must know the value to confirm it, if not as well as claimed
 ROUNDING = 1e-12  # relative: two runs this close are the same
@@ -131,12 +124,8 @@ class Cell:
 
 def cells(rows: Sequence[Row], columns: Sequence[Column] = COLUMNS) -> list[Cell]:
     """Every model that each extreme concerns; of the numerics of our engine none is for an engine of the user."""
-    return [
-        Cell(row, column)
-        for row in rows
-        for column in columns
-        if (column.like or column.key) in row.columns and not (column.like and row.amplification)
-    ]
+    pairs = [(row, column) for row in rows for column in columns if (column.like or column.key) in row.columns]
+    return [Cell(row, column) for row, column in pairs if not (column.like and row.amplification)]
 
 
 def solve_cell(cell: Cell) -> Entry:
@@ -223,19 +212,12 @@ class Extremes(Analysis[Matrix]):
         """The cell's, which waits for the compiled reference only if it asks the equations."""
         row, column = cell.row, cell.column
         functions = {row.amplification or column.amplification, *(function for function, _, _ in column.finer)}
-        return Task(
-            solve_cell,
-            cell,
-            self.stage,
-            column.seconds if row.quick else SECONDS_OF_LONG_ROWS,
-            needs_compiled_reference=EQUATIONS in functions,
-            timeout=self.limit,
-            group=column.key if column.like else "",
-        )
+        seconds, compiled = column.seconds if row.quick else SECONDS_OF_LONG_ROWS, EQUATIONS in functions
+        group = column.key if column.like else ""
+        return Task(solve_cell, cell, self.stage, seconds, None, compiled, self.limit, group)
 
 
 def _failed(cell: Cell, failed: TaskResult) -> Entry:
-    """In place of a verdict: the model has failed with its process."""
     reason = f"{FAILURES.get(failed.outcome, 'raises')} {failed.error_message}"
     return Entry(Verdict.FAILED, reason, failed.outcome.value)
 

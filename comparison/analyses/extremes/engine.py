@@ -38,15 +38,9 @@ def amplification(
     if step is not None:  # the largest one is so many times as long, the smallest stays what it is
         factor = step / math.sqrt(scene.radius / GRAVITY) / levels[0].step
         more, error = math.ceil(math.log(factor, STEP_RATIO)), max(factor, 1.0) ** 2  # a method of second order
-        levels = [
-            replace(
-                level,
-                step=level.step * factor,
-                max_divisions=max(level.max_divisions + more, 0),
-                error_floor=level.error_floor * error,
-            )
-            for level in levels
-        ]
+        for number, level in enumerate(levels):
+            changed = replace(level, step=level.step * factor, error_floor=level.error_floor * error)
+            levels[number] = replace(changed, max_divisions=max(level.max_divisions + more, 0))
     return multibody.amplification(
         scene, phases, model, regularization, tolerance, full=True, levels=levels, max_work=max_work
     )

@@ -78,23 +78,16 @@ _TRANSLATIONAL = {"model": "translational", "regularization": V_REG, "max_work":
 _SPATIAL = {"model": "spatial", "regularization": V_REG, "max_work": MAX_WORK}
 STATED = "comparison.analyses.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
 
+# the same law and geometry by other means and far closer; the engine itself where that has no answer
+_FINER = (EQUATIONS, _REGULARIZED, 1e-6), (ENGINE, _TRANSLATIONAL, 3e-5), (ENGINE, _TRANSLATIONAL, 1e-4)
+_FINER_SPATIAL = (ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)
+
 COLUMNS = (
     _column("small", "small equations", "small", None),
     _column("exact", "exact equations", "exact", None),
     _column("regularised", "exact equations, v_reg", "exact", V_REG),
-    Column(
-        "translational",
-        "translational engine",
-        ENGINE,
-        _TRANSLATIONAL,
-        1e-3,
-        # the same law and geometry by other means and far closer; the engine itself where that has no answer
-        ((EQUATIONS, _REGULARIZED, 1e-6), (ENGINE, _TRANSLATIONAL, 3e-5), (ENGINE, _TRANSLATIONAL, 1e-4)),
-        1.0,
-    ),
-    Column(
-        "spatial", "spatial engine", ENGINE, _SPATIAL, 1e-2, ((ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)), 8.5
-    ),
+    Column("translational", "translational engine", ENGINE, _TRANSLATIONAL, 1e-3, _FINER, 1.0),
+    Column("spatial", "spatial engine", ENGINE, _SPATIAL, 1e-2, _FINER_SPATIAL, 8.5),
 )
 ALL = tuple(column.key for column in COLUMNS)
 
@@ -157,7 +150,6 @@ def _upward(amplitude: float) -> list[list[float]]:
 def _rows(
     group: str, scenes: Mapping[Any, Mapping[str, Any]], columns: tuple[str, ...] = ALL, **more: Any
 ) -> list[Row]:
-    """A row for each scene, by the value of the quantity."""
     titles = [value if isinstance(value, str) else f"{value:g}" for value in scenes]
     return [Row(group, title, stated, columns, **more) for title, stated in zip(titles, scenes.values())]
 
@@ -352,7 +344,6 @@ def _uneven() -> Iterator[Row]:
 
 
 def _with_bodies(**keys: Any) -> dict[str, Any]:
-    """The plain scene with keys of every body."""
     stated = scene()
     return {**stated, "bodies": [{**body, **keys} for body in stated["bodies"]]}
 

@@ -1,6 +1,6 @@
 """Families of scenes: in the report and in summary.json."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -93,52 +93,48 @@ def _axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
     return values, {"title": family.key}
 
 
-def _line(
-    name: str, color: Any, places: list[float], middle: Sequence[float], band: Sequence[Sequence[float]] = ()
-) -> dict[str, Any]:
-    """A line of a panel, with a band from the smallest to the largest where they differ."""
-    line = {"name": name, "x": places, "y": plain(middle), "color": color, "marks": True}
-    if any(low < high for low, high in zip(*band)):
-        line |= {**dict(zip(("low", "high"), map(plain, band))), "band": True}
-    return line
+def _over(family: FamilyResult, title: str, label: str, unit: str, lines: Iterable[tuple[Any, ...]]) -> Panel:
+    """A panel over the value that runs. lines: name, color and values, with the smallest and the largest, if any."""
+    places, axis = _axis(family)
+    series = []
+    for name, color, middle, *band in lines:
+        line = {"name": name, "x": places, "y": plain(middle), "color": color, "marks": True}
+        if any(low < high for low, high in zip(*band)):
+            line |= {**dict(zip(("low", "high"), map(plain, band))), "band": True}
+        series.append(line)
+    return panel(title, f"{label} over {family.key}", axis, {"title": unit}, series)
 
 
 def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
-    places, axis = _axis(family)
     titles = {model.key: model.title for model in results.models}
-    series = [
-        _line(titles[curve.model], number, places, curve.mean, (curve.lowest, curve.highest))
-        for number, curve in enumerate(curve for curve in family.curves if curve.body == body)
-    ]
-    return panel(f"mu_{body}", f"mu_{body} of every model over {family.key}", axis, {"title": f"μ_{body}"}, series)
+    curves = [curve for curve in family.curves if curve.body == body]
+    lines = [(titles[each.model], n, each.mean, each.lowest, each.highest) for n, each in enumerate(curves)]
+    return _over(family, f"mu_{body}", f"mu_{body} of every model", f"μ_{body}", lines)
 
 
 def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
-    places, axis = _axis(family)
     effects = {model.key: model.effect or model.title for model in results.models} | {TOTAL: "total"}
-    series = []
-    for number, step in enumerate((step for step in family.steps if step.body == body), start=1):
-        color = "ink" if step.model == TOTAL else number
-        series.append(_line(effects[step.model], color, places, [100.0 * size for size in step.size]))
+    lines = [
+        (effects[step.model], "ink" if step.model == TOTAL else number, [100.0 * size for size in step.size])
+        for number, step in enumerate((step for step in family.steps if step.body == body), start=1)
+    ]
     title = f"what each effect adds to mu_{body}"
-    return panel(title, f"{title} over {family.key}", axis, {"title": "% of the first model"}, series)
+    return _over(family, title, title, "% of the first model", lines)
 
 
 def _family_demand(
     results: Results, family: FamilyResult, quantity: str, body: int, title: str, unit: str, scale: float
 ) -> Panel | None:
     """One demand of every model over the value that runs: median of the motions, from smallest to largest."""
-    places, axis = _axis(family)
     looks = {model.key: (model.title, number) for number, model in enumerate(results.models)}
-    series = []
+    lines = []
     for demand in family.demands:
         if (demand.quantity, demand.body) == (quantity, body):
             numbers = (demand.median, demand.lowest, demand.highest)
             median, *band = ([scale * value for value in column] for column in numbers)
-            series.append(_line(*looks[demand.model], places, median, band))
+            lines.append((*looks[demand.model], median, *band))
     of_which = "over all phases" if family.demands_over_phases else "of the stored motions"
-    described = f"{title} {of_which}", f"{title} over {family.key}"
-    return panel(*described, axis, {"title": f"{title}, {unit}"}, series) if series else None
+    return _over(family, f"{title} {of_which}", title, f"{title}, {unit}", lines) if lines else None
 
 
 def _draw(figures: Path, report: Report) -> None:

@@ -167,20 +167,12 @@ def moved(task: Arguments) -> StoredMotion:
 def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
     """The motion with its demands and spectra, thinned. Raises ValueError for numbers that are not finite."""
     whole = StoredMotion(
-        place,
-        model.key,
-        motion.time,
-        motion.position[:, :, :2],
-        motion.absolute_acceleration[:, :, :2],
-        tuple((float(start), float(end)) for start, end in motion.stick),
-        str(motion.status),
-        contact_force=motion.contact_force,
-        isolator_force=motion.isolator_force,
-        support_force=motion.support_force,
-        yaw=motion.extra.get("yaw", _none()),
-        demands=demands(motion),
-        spectra=floor_spectra(motion) if motion.status in ANSWERED else None,
-    )
+        place, model.key, motion.time, motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2],
+        tuple((float(start), float(end)) for start, end in motion.stick), str(motion.status),
+        contact_force=motion.contact_force, isolator_force=motion.isolator_force,
+        support_force=motion.support_force, yaw=motion.extra.get("yaw", _none()),
+        demands=demands(motion), spectra=floor_spectra(motion) if motion.status in ANSWERED else None,
+    )  # fmt: skip
     values = np.hstack([block for name, block in whole.blocks().items() if name != "time"])
     size = np.linalg.norm(motion.absolute_acceleration, axis=2)
     if not (np.isfinite(size).all() and np.isfinite(values).all()):

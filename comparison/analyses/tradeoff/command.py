@@ -82,7 +82,6 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 def _grown(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
 ) -> int:
-    """Measure how the cost grows; the exit code."""
     begin, study = time.monotonic(), Study((scene,), 1, TOLERANCE)
     tasks = Growth().tasks(study)
     models = {task.argument.function[0] for task in tasks}
@@ -154,7 +153,6 @@ def measured_trades(
 
 
 def _files(measured: MeasuredTrade) -> dict[str, bytes]:
-    """Values and pictures of one scene."""
     picture = figure_file(measured.trade.scene, "tradeoff")
     return made_by(
         lambda folder: with_ending(folder / picture, ".nc").write_bytes(netcdf(measured.values)),

@@ -100,14 +100,9 @@ def _tradeoff_panel(trade: Trade, question: Answered, body: int, most: int | Non
 
 def _curve(method: str, entries: Sequence[Entry], body: int, number: int) -> dict[str, Any]:
     times = [f"{scientific(entry.most[body] or 0.0)} in {1e3 * entry.seconds:.3g} ms" for entry in entries]
-    line: dict[str, Any] = {
-        "name": method,
-        "x": [entry.seconds for entry in entries],
-        "y": [max(entry.most[body] or 0.0, 1e-16) for entry in entries],
-        "marks": True,
-        "titles": [f"{method}, {entry.setting}: {time}" for entry, time in zip(entries, times)],
-        "color": number,
-    }
+    x, y = [entry.seconds for entry in entries], [max(entry.most[body] or 0.0, 1e-16) for entry in entries]
+    titles = [f"{method}, {entry.setting}: {time}" for entry, time in zip(entries, times)]
+    line: dict[str, Any] = {"name": method, "x": x, "y": y, "marks": True, "titles": titles, "color": number}
     return {**line, "dash": "5 3"} if entries[0].model_error else line
 
 
@@ -120,12 +115,9 @@ def _draw(figures: Path, report: Report) -> None:
 
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:
     measured = report.results.of("growth")
-    return {
-        "tradeoff_panels": tradeoff_panels,
-        "tradeoff_answers": tradeoff_answers,
-        "growth_panels": growth_panels(measured.series if measured else ()),
-        "digests": {scene.digest for scene in report.results.scenes},
-    }
+    panels, digests = growth_panels(measured.series if measured else ()), {s.digest for s in report.results.scenes}
+    functions = {"tradeoff_panels": tradeoff_panels, "tradeoff_answers": tradeoff_answers}
+    return {**functions, "growth_panels": panels, "digests": digests}
 
 
 GROWTH = Feature(

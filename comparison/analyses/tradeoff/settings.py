@@ -146,7 +146,6 @@ def _levels(quick: bool) -> Iterator[Setting]:
 
 
 def _constant(quick: bool) -> Iterator[Setting]:
-    """The engine at constant step, by its integrators."""
     for solver, steps in STEPS.items():
         call, few = (CONSTANT, "step", {"solver": solver, "v_reg": V_REG}), steps[:: 2 if quick else 1]
         seconds = [0.25e-3 / step for step in few]

@@ -69,10 +69,8 @@ def read_folder(folder: Path) -> Measured:
     for grams in sorted(plates, key=int):
         x, y = _content(plates[grams], "t", "x"), _content(bases[grams], "t", "y")
         time = _series(plates[grams], "t", x["t"])
-        plate, base = (
-            _series(*each, len(time)) for each in ((plates[grams], "x", x["x"]), (bases[grams], "y", y["y"]))
-        )
-        runs.append(Shaken(int(grams) * 1e-3, time, plate, base))
+        plate = _series(plates[grams], "x", x["x"], len(time))
+        runs.append(Shaken(int(grams) * 1e-3, time, plate, _series(bases[grams], "y", y["y"], len(time))))
     decay = _decay(files[DECAY]) if DECAY in files else None
     large = _large(files[LARGE]) if LARGE in files else None
     if not (runs or decay or large):

@@ -16,7 +16,7 @@ from report_texts import both_pages, summary_of
 
 from comparison.analyses.claims import evidence
 from comparison.analyses.claims import table as table_module  # table: what a test made
-from comparison.analyses.claims.checks import Finding, Verdict, counted, judged, similar
+from comparison.analyses.claims.checks import Finding, Verdict, counted, judged
 from comparison.analyses.claims.claims import CLAIMS, Claim
 from comparison.analyses.claims.command import main
 from comparison.analyses.claims.evidence import Evidence, Question, gathered
@@ -150,10 +150,6 @@ def test_a_case_without_an_answer_leaves_its_claims_open() -> None:
     assert _claim("Fig. 3a", "four").verdict(changed) == Verdict(Finding.OPEN, "fig3-I: ok, rim reached")
     assert _claim("Fig. 4a", "similar").verdict(changed) == Verdict(Finding.OPEN, "fig4-dry: broke")
     assert _claim("Fig. 3c", "two peaks").verdict(changed).finding.holds
-
-
-def test_similarity_compares_the_same_phases() -> None:
-    assert similar(Evidence(FOUR[..., None], 0.0), Evidence(FOUR[::2, ::2, None], 0.0)).found == "correlation 1.00"
 
 
 def _planted(names: str) -> Claim:
@@ -323,7 +319,6 @@ def test_a_peak_in_a_corner_has_its_twin_in_the_center() -> None:
 def test_the_fold_of_the_denominator_is_in_viscous_surfaces() -> None:
     """The proof that viscous friction cannot smooth them: second differences across it fall like the step alone."""
     evidence = gathered(Question("fig4-viscous", Reading(), 8))
-    assert evidence.ground is not None
     assert evidence.ground.kind == "fold"
     scene, way = CASES["fig4-viscous"](Reading()), np.array([1.0, -1.0])
     near = np.array(evidence.ground.phases) + np.linspace(-0.1, 0.1, 4001)[:, None] * way

@@ -34,15 +34,7 @@ Array = NDArray[np.float64]
 
 GRID = 16
 STEP, LITERAL_STEP, FINE = 4e-4, 1e-3, 2e-4  # s
-CONFIRMED = (
-    Reading(1.0),
-    OWN_PERIOD,
-    LIGHT_BODY,
-    LITERAL,
-    Reading(2.0),
-    Reading(0.6),
-    replace(LITERAL, amplitude=0.6),
-)
+CONFIRMED = (Reading(1.0), OWN_PERIOD, LIGHT_BODY, LITERAL, Reading(2.0), Reading(0.6), replace(LITERAL, amplitude=0.6))
 TINY = np.finfo(float).tiny  # a platform that never slides has no displacement to compare with
 ALL_CASES = sorted({case for claim in CLAIMS for case in claim.cases})
 

@@ -13,17 +13,7 @@ import numpy as np
 import pytest
 
 import reference
-from comparison.analyses.ensemble.analysis import (
-    SCALE,
-    Ensemble,
-    Member,
-    Point,
-    Points,
-    bounds,
-    members_of,
-    stripes,
-    uncertain_fractile,
-)
+from comparison.analyses.ensemble import analysis
 from comparison.analyses.ensemble.command import FILES, main, table_text
 from comparison.analyses.ensemble.feature import draw_ensemble
 from comparison.analyses.ensemble.target import matched
@@ -78,15 +68,15 @@ def test_fractiles_of_known_numbers_are_those_of_numpy() -> None:
     numbers = [Estimate(value, 0.0) for value in values]
     for share in (0.0, 0.16, 0.5, 0.84, 1.0):
         expected = np.quantile(values, share, method="hazen")
-        assert uncertain_fractile(numbers, share).value == pytest.approx(expected, abs=1e-12)
-        assert uncertain_fractile(numbers, share).error == 0.0
+        assert analysis.uncertain_fractile(numbers, share).value == pytest.approx(expected, abs=1e-12)
+        assert analysis.uncertain_fractile(numbers, share).error == 0.0
 
 
 def test_the_error_of_a_fractile_covers_every_change() -> None:
     random = np.random.default_rng(2)
     values, errors = random.uniform(1.0, 2.0, 9), random.uniform(0.0, 0.2, 9)
     for share in (0.16, 0.5, 0.84):
-        stated = uncertain_fractile([Estimate(*pair) for pair in zip(values, errors)], share)
+        stated = analysis.uncertain_fractile([Estimate(*pair) for pair in zip(values, errors)], share)
         for _ in range(200):
             changed = values + errors * random.uniform(-1.0, 1.0, 9)
             assert abs(np.quantile(changed, share, method="hazen") - stated.value) <= stated.error + 1e-12
@@ -94,24 +84,24 @@ def test_the_error_of_a_fractile_covers_every_change() -> None:
 
 def test_what_has_no_answer_counts_as_larger_than_all_others() -> None:
     numbers = [Estimate(value, 0.0) for value in (3.0, NAN, 1.0, 2.0, NAN)]
-    assert uncertain_fractile(numbers, 0.5).value == 3.0
-    assert math.isnan(uncertain_fractile(numbers, 0.6).value)
-    assert math.isnan(uncertain_fractile([Estimate(NAN, NAN)], 0.5).value)
+    assert analysis.uncertain_fractile(numbers, 0.5).value == 3.0
+    assert math.isnan(analysis.uncertain_fractile(numbers, 0.6).value)
+    assert math.isnan(analysis.uncertain_fractile([Estimate(NAN, NAN)], 0.5).value)
 
 
 def demanding(
     displacement: float, error: float, residual: Estimate, model: str = "exact", motion: str = "motion 1"
-) -> Point:
+) -> analysis.Point:
     """A motion of which two demands are known, every other is lacking."""
     known = {"status": "ok", "displacement": Estimate(displacement, error), "residual": residual}
     demands = Demands(**{**{field.name: None for field in fields(Demands)}, **known})  # type: ignore[arg-type]
-    return Point(Member("mine", motion, 1.0, load_scene("fig3-I")), model, "ok", demands)
+    return analysis.Point(analysis.Member("mine", motion, 1.0, load_scene("fig3-I")), model, "ok", demands)
 
 
 def test_the_bound_of_the_engine_has_the_errors_of_both_sides() -> None:
     rest = Estimate(1.0, 0.0)
     equations, alike, engine = demanding(2.0, 0.1, rest), demanding(2.5, 0.2, rest), demanding(3.0, 0.4, rest)
-    (bound, _) = bounds([equations], [engine], [alike])
+    (bound, _) = analysis.bounds([equations], [engine], [alike])
     assert (bound.quantity, bound.body, bound.points) == ("displacement", None, 1)
     assert bound.largest == pytest.approx(0.5)
     assert bound.like_for_like == pytest.approx(0.2)
@@ -125,7 +115,7 @@ def test_without_an_answer_the_smallest_force_is_not_known() -> None:
         for point in (known, known, known, unknown)
         if point.demands is not None
     ]
-    displacement, _, force = stripes(points)
+    displacement, _, force = analysis.stripes(points)
     assert (displacement.smallest.value, force.largest.value) == (1.0, 1.0)
     assert (displacement.largest.value, force.smallest.value) == (None, None)
 
@@ -133,7 +123,7 @@ def test_without_an_answer_the_smallest_force_is_not_known() -> None:
 def test_a_motion_that_still_moves_is_counted_with_its_reason() -> None:
     reason = "moving at the end: take a longer duration"
     points = [demanding(1.0, 0.0, Estimate(NAN, NAN, reason)), demanding(1.0, 0.0, Estimate(0.5, 0.0))]
-    displacement, residual = stripes(points)
+    displacement, residual = analysis.stripes(points)
     assert (displacement.answered, displacement.reasons) == (2, {})
     assert (residual.answered, residual.reasons) == (1, {reason: 1})
 
@@ -152,8 +142,8 @@ def test_the_picture_has_the_numbers_in_the_units_of_its_axes(monkeypatch: pytes
     points = [demanding(float(n), 0.0, Estimate(1.0, 0.0), motion=f"motion {n}") for n in range(11)]
     engine = [demanding(5.5, 0.25, Estimate(1.0, 0.0), "translational")]
     one_body = load_scene("fig3-I").with_values({"bodies": [{"mass": 1.0}]})
-    ensemble = Ensemble((Member("mine", "motion 1", 1.0, one_body),))
-    draw_ensemble(tmp_path / "ensemble.png", ensemble.result(Points(points, engine, engine), {}))
+    ensemble = analysis.Ensemble((analysis.Member("mine", "motion 1", 1.0, one_body),))
+    draw_ensemble(tmp_path / "ensemble.png", ensemble.result(analysis.Points(points, engine, engine), {}))
     axes = figures[0].axes[0]
     assert axes.get_ylabel() == "largest displacement of the isolator, mm"
     assert axes.get_ylim()[0] == 0.0
@@ -171,13 +161,13 @@ def test_the_engine_is_asked_at_different_motions_and_scales(folder: Path) -> No
     text = SCENE[: SCENE.index("excitation")].replace("title", 'combine = "product"\ntitle')
     loading = 'excitation = {record = {suite = "suite", motion = "all"}, scale = {range = [0.5, 2.0], steps = 4}}\n'
     (folder / "family.toml").write_text(text + loading)
-    members = members_of([load_family("family.toml")])
-    assert Ensemble(members, None).chosen() == list(range(12))
+    members = analysis.members_of([load_family("family.toml")])
+    assert analysis.Ensemble(members, None).chosen() == list(range(12))
     for count in (0, 1, 2, 3, 12, 50):
-        chosen = Ensemble(members, count).chosen()
+        chosen = analysis.Ensemble(members, count).chosen()
         assert len(chosen) <= min(count, 12)
         assert (len(chosen) > 0) == (count > 0)
-    three = [members[place] for place in Ensemble(members, 3).chosen()]
+    three = [members[place] for place in analysis.Ensemble(members, 3).chosen()]
     assert len({member.motion for member in three}) == 3
     assert len({member.scale for member in three}) == 3
 
@@ -418,7 +408,9 @@ def test_motions_are_scaled_to_the_target_spectrum(folder: Path, undrawn: None) 
 def test_a_motion_at_many_scales_is_matched_once(tmp_path: Path) -> None:
     (tmp_path / "code.csv").write_text("period [s], acceleration [g]\n0.1, 0.5\n2.0, 0.3\n")
     scene = load_scene("synthetic-pair")
-    members = [Member("a", "m", scale, scene.with_values({SCALE: scale})) for scale in (0.3, 0.7, 1.0, 1.3)]
+    members = [
+        analysis.Member("a", "m", scale, scene.with_values({analysis.SCALE: scale})) for scale in (0.3, 0.7, 1.0, 1.3)
+    ]
     scaled, target = matched(members, str(tmp_path / "code.csv"), None)
     assert len(target.motions) == 1
     assert {member.factor for member in scaled} == {target.motions[0].factor}

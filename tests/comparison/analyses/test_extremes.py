@@ -13,17 +13,7 @@ from matplotlib.image import imread
 from runs import no_executor
 
 import reference
-from comparison.analyses.extremes.analysis import (
-    Cell,
-    Extremes,
-    Reply,
-    answers,
-    cells,
-    judged,
-    read_scene,
-    reduced,
-    solve_cell,
-)
+from comparison.analyses.extremes import analysis
 from comparison.analyses.extremes.command import main
 from comparison.analyses.extremes.engine import amplification
 from comparison.analyses.extremes.figure import draw_extremes
@@ -63,7 +53,7 @@ class Ending(ThreadPoolExecutor):
         return ended
 
 
-def computed(extremes: Extremes, results: TaskResults | None = None, executor: Pool = Ending) -> Matrix:
+def computed(extremes: analysis.Extremes, results: TaskResults | None = None, executor: Pool = Ending) -> Matrix:
     """The matrix, by one worker."""
     results = results or TaskResults()
     Runner(results, 1, executor).run(extremes.tasks())
@@ -71,19 +61,19 @@ def computed(extremes: Extremes, results: TaskResults | None = None, executor: P
 
 
 def named(group: str) -> list[Row]:
-    return [row for row in reduced(list(rows())) if row.group == group]
+    return [row for row in analysis.reduced(list(rows())) if row.group == group]
 
 
 @pytest.mark.parametrize("model", FAILING)
 def test_a_model_that_is_wrong_fails_and_is_told_why(model):
-    cell = solve_cell(Cell(PLAIN, fake(model)))
+    cell = analysis.solve_cell(analysis.Cell(PLAIN, fake(model)))
     assert cell.verdict == Verdict.FAILED
     assert FAILING[model] in cell.reason
 
 
 def test_models_that_crash_in_a_worker_fail_with_the_reason():
     columns = [replace(fake(model), key=model) for model in ("crashes", "raises")]
-    (row,) = computed(Extremes([replace(PLAIN, columns=("crashes", "raises"))], columns)).rows
+    (row,) = computed(analysis.Extremes([replace(PLAIN, columns=("crashes", "raises"))], columns)).rows
     assert {entry.verdict for entry in row.entries.values()} == {Verdict.FAILED}
     assert "exit code 3" in row.entries["crashes"].reason
     assert FAILING["raises"] in row.entries["raises"].reason
@@ -91,7 +81,7 @@ def test_models_that_crash_in_a_worker_fail_with_the_reason():
 
 def test_a_model_that_hangs_costs_its_cell_alone(tmp_path):
     other = replace(fake("honest"), key="other")
-    extremes = Extremes([replace(PLAIN, columns=("fake", "other"))], [fake("hangs"), other], 2.0)
+    extremes = analysis.Extremes([replace(PLAIN, columns=("fake", "other"))], [fake("hangs"), other], 2.0)
     (row,) = computed(extremes, TaskResults(Cache(tmp_path))).rows
     hanging = row.entries["fake"]
     assert (hanging.verdict, hanging.status) == ("FAILED", "time limit")
@@ -122,16 +112,16 @@ AGAINST_A_RULE = replace(PLAIN, scene=scene(friction=-0.1))
     ],
 )
 def test_every_kind_of_answer_has_its_verdict(row, column, verdict, reason):
-    cell = solve_cell(Cell(row, column))
+    cell = analysis.solve_cell(analysis.Cell(row, column))
     assert (cell.verdict, reason in cell.reason) == (verdict, True), cell.reason
 
 
 @pytest.mark.parametrize("group", ["friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"])
 def test_the_equations_fail_at_no_extreme(group):
-    tasks = cells(named(group))
+    tasks = analysis.cells(named(group))
     assert tasks
     for cell in tasks:
-        entry = solve_cell(cell)
+        entry = analysis.solve_cell(cell)
         assert entry.verdict != Verdict.FAILED, (cell.row.title, cell.column.key, entry.reason)
 
 
@@ -139,14 +129,14 @@ def test_a_motion_of_a_millisecond_converges():
     """mu_2 is 5e-6, a difference of accelerations near 1: no run knows it better than 2e-7 of itself."""
     for row in rows():
         if (row.group, row.title) == ("duration, s", "0.001"):
-            entries = [solve_cell(Cell(row, column)) for column in COLUMNS[:3]]
+            entries = [analysis.solve_cell(analysis.Cell(row, column)) for column in COLUMNS[:3]]
     assert [entry.verdict for entry in entries] == [Verdict.CONVERGED] * 3, [entry.reason for entry in entries]
     assert 1e-7 < entries[2].error < 1e-6
 
 
 @pytest.mark.long
 def test_the_equations_fail_at_none_of_the_extremes():
-    matrix = computed(Extremes(reduced(list(rows())), limit=120.0), executor=process_pool)
+    matrix = computed(analysis.Extremes(analysis.reduced(list(rows())), limit=120.0), executor=process_pool)
     assert [(row.group, row.title, title, cell.reason) for row, title, cell in matrix.listed(Verdict.FAILED)] == []
     assert sum(matrix.counts().values()) >= 120
 
@@ -159,7 +149,6 @@ def test_the_command_writes_the_matrix_and_computes_once(tmp_path, capsys):
         r"^3 cells in .* s of processor time: \d+ converged, \d+ refused, \d+ limit, 0 FAILED\.$", out, re.M
     )
     matrix = STORED.load(tmp_path / "report")
-    assert matrix is not None
     assert matrix.run["command"].startswith("python -m comparison.extremes --models small ")
     assert {row.group for row in matrix.rows} == {"amplitude, m/s^2"}
     assert (tmp_path / "report" / "extremes.png").read_bytes().startswith(b"\x89PNG")
@@ -207,7 +196,7 @@ def test_the_legend_of_the_picture_lies_within_it(tmp_path: Path, models: int, g
 
 @pytest.mark.parametrize("choice", [{"contact_stiffness": 1e4}, {"contact_stiffness": 1e6}, {"step": 0.1}])
 def test_the_error_knows_what_a_bad_stiffness_costs(choice):
-    brief = read_scene(scene(duration=0.5))
+    brief = analysis.read_scene(scene(duration=0.5))
     engine = amplification(brief, [(0.3, 1.1)], tolerance=1e-2, **choice)
     exact = reference.amplification(brief, [(0.3, 1.1)], equations="exact", regularization=1e-3)
     assert engine.status[0] in ("ok", "tolerance not met")
@@ -225,14 +214,14 @@ def test_a_larger_radius_leaves_the_building_above_its_contacts():
 
 
 def test_every_known_cause_of_a_limit_is_that_of_a_cell():
-    asked = {((cell.row.group, cell.row.title), cell.column.key) for cell in cells(list(rows()))}
+    asked = {((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.cells(list(rows()))}
     assert {(extreme, model) for extreme, models in CAUSES.items() for model in models} <= asked
 
 
 def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):
     monkeypatch.setitem(CAUSES, (PLAIN.group, PLAIN.title), {"fake": "the fake gives up"})
-    assert solve_cell(Cell(PLAIN, fake("unable"))).reason == "step limit: the fake gives up"
-    assert "gives up" not in solve_cell(Cell(PLAIN, fake("honest"))).reason
+    assert analysis.solve_cell(analysis.Cell(PLAIN, fake("unable"))).reason == "step limit: the fake gives up"
+    assert "gives up" not in analysis.solve_cell(analysis.Cell(PLAIN, fake("honest"))).reason
 
 
 def test_a_value_that_says_nothing_is_not_confirmed() -> None:
@@ -244,11 +233,11 @@ def test_a_value_that_says_nothing_is_not_confirmed() -> None:
         (Outcome.RIM_REACHED, 1.0, True),
         (Outcome.STEP_LIMIT, 1.0, False),
     ):
-        assert answers(Reply(mu, share * mu, (status.value,))) == says, (status, share)
+        assert analysis.answers(analysis.Reply(mu, share * mu, (status.value,))) == says, (status, share)
 
 
 @pytest.mark.parametrize(("off", "verdict"), [(0.9, "converged"), (1.5, "FAILED")])
 def test_an_error_half_of_what_it_should_be_fails(off: float, verdict: str) -> None:
     mu, claimed = np.array([[1.0, 2.0], [1.0, 2.0]]), 1e-3
-    reply = Reply(mu * [[1.0, 1.0], [1.0, 1.0 + off * claimed]], claimed * mu, ("ok", "ok"))
-    assert judged(reply, [Reply(mu, 1e-6 * mu, ("ok", "ok"))], 1e-2, False, ()).verdict == verdict
+    reply = analysis.Reply(mu * [[1.0, 1.0], [1.0, 1.0 + off * claimed]], claimed * mu, ("ok", "ok"))
+    assert analysis.judged(reply, [analysis.Reply(mu, 1e-6 * mu, ("ok", "ok"))], 1e-2, False, ()).verdict == verdict

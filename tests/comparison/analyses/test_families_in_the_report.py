@@ -55,7 +55,6 @@ def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
     surfaces = solved(study)
     surfaces["mu"].loc[{"scene": family.scenes[1].name, "model": "translational"}] = np.nan
     results = report_of(study, surfaces, {}, [], RUN, families=[family]).results
-    assert results.families is not None
     curves = {(curve.model, curve.body): curve for curve in results.families[0].curves}
     assert len(curves) == 2 * len(study.hierarchy)
     small, engine = curves["small", 1], curves["translational", 1]
@@ -115,7 +114,6 @@ def test_an_axis_is_logarithmic_over_decades_and_names_a_few(file: Path) -> None
     family = load_family(file)
     study = Study(family.scenes, 2, 1e-3, fake_hierarchy())
     results = report_of(study, solved(study), {}, [], RUN, families=[family]).results
-    assert results.families is not None
 
     def axis(*values: float | str) -> dict[str, Any]:
         changed = results.families[0].model_copy(update={"values": list(values)})

@@ -96,7 +96,6 @@ def test_the_packed_columns_are_the_motion(scene, motions) -> None:
         blocks = read_back(packed, about)
         assert about["count"] == len(motion.time)
         assert set(blocks) == set(motion.blocks())
-        assert motion.demands is not None
         largest = motion.demands.displacement
         assert about["demands"]["displacement"] == pytest.approx([largest.value, largest.error], rel=1e-6)
         assert ("support_force" in blocks) == ("yaw" in blocks) == (motion.model == "spatial")
@@ -126,7 +125,6 @@ def test_lines_between_packed_instants_give_the_motion(scene, motions) -> None:
 
 def test_the_extremes_of_the_demands_are_in_the_stored_motion(motions) -> None:
     for motion in motions:
-        assert motion.demands is not None
         force = np.linalg.norm(motion.isolator_force, axis=1).max()
         assert force == pytest.approx(motion.demands.base_shear.value, rel=1e-12)
         assert motion.contact_force.min() == pytest.approx(motion.demands.contact_force_min.value, rel=1e-12)
@@ -174,8 +172,6 @@ def test_a_stored_motion_is_read_back_from_the_cache_as_it_was(tmp_path: Path, m
         Cache(tmp_path).put(key, (motion, 0.5))
         kept, _ = Cache(tmp_path).get(key, tuple[StoredMotion, float])
         assert repr(kept.demands) == repr(motion.demands), "NaN included"
-        assert kept.spectra is not None
-        assert motion.spectra is not None
         np.testing.assert_array_equal(kept.spectra.acceleration, motion.spectra.acceleration)
         for name, block in motion.blocks().items():
             np.testing.assert_array_equal(kept.blocks()[name], block)
@@ -289,9 +285,7 @@ def test_a_model_with_a_coarse_grid_moves_at_its_own_phases_only(monkeypatch: py
     study, surfaces = _studied(12)
     asked: list[tuple[str, int, int]] = []
 
-    def noted(
-        task: analysis.Arguments,
-    ) -> analysis.StoredMotion:
+    def noted(task: analysis.Arguments) -> analysis.StoredMotion:
         asked.append((task[1].key, task[3].row, task[3].column))
         return analysis._nothing(task[3], task[1].key, "ok", "")  # type: ignore[arg-type]
 

@@ -13,22 +13,9 @@ from scipy.stats import linregress
 
 from comparison.analyses.tradeoff import analysis, command, growth
 from comparison.analyses.tradeoff.analysis import Measured, Measurement, TradeOff, entry, joined, sample
-from comparison.analyses.tradeoff.growth import (
-    QUANTITIES,
-    STORED,
-    Growth,
-    fitted_slope,
-    tall,
-    with_slope,
-)
+from comparison.analyses.tradeoff.growth import QUANTITIES, STORED, Growth, fitted_slope, tall, with_slope
 from comparison.analyses.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
-from comparison.analyses.tradeoff.trade import (
-    Trade,
-    load,
-    quantile,
-    unbeaten,
-    with_pareto_fronts,
-)
+from comparison.analyses.tradeoff.trade import Trade, load, quantile, unbeaten, with_pareto_fronts
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
@@ -168,7 +155,6 @@ def test_the_command_measures_nothing_twice(
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
     first = load(tmp_path / "out")
-    assert first is not None
     assert [entry.most for entry in first[0].entries] == [pytest.approx([gap, gap]) for gap in (1e-3, 1e-2)]
     values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
     assert dict(values.sizes) == {"setting": 2, "point": 3, "body": 2}
@@ -177,7 +163,6 @@ def test_the_command_measures_nothing_twice(
     assert command.main(words, ThreadPoolExecutor) == 0
     assert "9 of 9 tasks are in" in capsys.readouterr().out
     again = load(tmp_path / "out")
-    assert again is not None
     assert (again[0].entries, again[0].questions) == (first[0].entries, first[0].questions)
     assert again[0].run["stored_before"] == 9
     again_values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
@@ -203,7 +188,6 @@ def test_a_tall_scene_has_its_bodies_one_above_the_other(bodies: int) -> None:
     heights = [body.height for body in scene.bodies]
     assert len(heights) == bodies
     assert heights == sorted(heights)
-    assert scene.isolator.ring is not None
     assert scene.isolator.ring >= bodies
 
 
@@ -229,7 +213,6 @@ def test_the_command_writes_and_prints_the_growth(
     monkeypatch.setattr(command, "by_workers", lambda *rest: workers)
     assert command.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0
     found = STORED.load(tmp_path)
-    assert found is not None
     assert found.series == [bodies, workers]
     rows = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert ["bodies", "exact", "2", "0.5"] in rows

@@ -12,7 +12,7 @@ import reference
 from comparison.analyses.convergence import analysis as convergence
 from comparison.analyses.convergence.analysis import LIMITS, PENETRATIONS, Convergence, limit_trends
 from comparison.analyses.scaling.analysis import PRINTED, STEP, Scaling, scaled
-from comparison.analyses.trends import Slope, Trend, fitted, trend
+from comparison.analyses.trends import Trend, fitted, trend
 from comparison.study.study import Study
 from reference import trajectory
 from reference.problem import Amplification, Scene, load_scene
@@ -88,7 +88,6 @@ def test_the_verdict_says_what_the_fit_allows(sizes: Array, expected: float | No
 def test_medians_are_of_the_absolute_size_of_what_is_known() -> None:
     sizes = trend("s", 1, "w", (1.0, 0.5), np.array([[-4.0, 1.0], [2.0, np.nan], [3.0, np.nan]]), np.ones((3, 2)), None)
     assert sizes.medians == (3.0, 1.0)
-    assert Slope(1.0, 0.1, 2, 1).points == 2
 
 
 def _model(step: Callable[[float], float], error: float = 1e-9) -> Callable[..., Amplification]:

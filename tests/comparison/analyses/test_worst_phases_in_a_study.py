@@ -8,14 +8,7 @@ import pytest
 import xarray as xr
 
 import reference
-from comparison.analyses.worst_phases.analysis import (
-    ENGINE_POINTS,
-    NOWHERE,
-    Worst,
-    WorstPhases,
-    _engine_beside,
-    worst_of,
-)
+from comparison.analyses.worst_phases import analysis
 from comparison.runner.task import unfinished
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, TRANSLATIONAL
@@ -31,7 +24,7 @@ def study_of(*scenes: Scene) -> Study:
 
 
 def test_exact_and_like_equations_are_searched_for_every_body() -> None:
-    searched = [task.argument[1:5] for task in WorstPhases().tasks(study_of(SHORT))]
+    searched = [task.argument[1:5] for task in analysis.WorstPhases().tasks(study_of(SHORT))]
     assert [(model.key, body) for model, _, quantity, body in searched if quantity == "amplification"] == [
         (key, body) for key in ("exact", "regularised") for body in (1, 2)
     ]
@@ -42,13 +35,13 @@ def test_exact_and_like_equations_are_searched_for_every_body() -> None:
 
 def test_a_record_has_no_worst_phases() -> None:
     study = study_of(reference.load_scene("synthetic-pair"))
-    assert WorstPhases().tasks(study) == []
-    assert WorstPhases().collect(study, None, TaskResults()) is None
+    assert analysis.WorstPhases().tasks(study) == []
+    assert analysis.WorstPhases().collect(study, None, TaskResults()) is None
 
 
 @pytest.mark.long
 def test_the_engine_confirms_the_maximum_of_the_equations() -> None:
-    equations, engine = worst_of((SHORT, REGULARIZED, TRANSLATIONAL, "amplification", 2, 1e-3, None))
+    equations, engine = analysis.worst_of((SHORT, REGULARIZED, TRANSLATIONAL, "amplification", 2, 1e-3, None))
     assert engine.model == "translational"
     assert abs(engine.at_start - equations.value) <= engine.start_error + equations.error
     assert engine.value >= engine.at_start
@@ -62,15 +55,13 @@ def test_an_engine_without_an_answer_there_says_why(monkeypatch: pytest.MonkeyPa
         return answer
 
     monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", lambda path: refusing)
-    worst = Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
-    engine = _engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
+    worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
+    engine = analysis._engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
     assert math.isnan(engine.value)
     assert engine.reason == Outcome.STEP_LIMIT.value
 
 
-def test_the_engine_is_asked_where_its_ratio_says(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_engine_is_asked_where_its_ratio_says(monkeypatch: pytest.MonkeyPatch) -> None:
     def equations(phases: Any) -> Any:
         return 2.0 - ((phases - [1.004, 2.002]) ** 2).sum(axis=1)
 
@@ -88,9 +79,9 @@ def test_the_engine_is_asked_where_its_ratio_says(
     sides = {TRANSLATIONAL.amplification: answering(engine), REGULARIZED.amplification: answering(equations)}
     monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", sides.__getitem__)
     monkeypatch.setattr("reference.measures.local_search.ground_peak", lambda scene, phases: np.ones(len(phases)))
-    worst = Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
-    beside = _engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
-    assert beside.evaluations == ENGINE_POINTS
+    worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
+    beside = analysis._engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
+    assert beside.evaluations == analysis.ENGINE_POINTS
     assert (beside.at_start, beside.start_error) == pytest.approx((2.0 - 2e-5, 2e-9), rel=1e-4)
     assert beside.phases == pytest.approx((1.005, 2.002), abs=1e-4)  # 1e-3 of slope over 2 of curvature
 
@@ -111,7 +102,7 @@ def test_searches_begin_at_the_hills_of_what_they_search() -> None:
         },
         coords={"scene": scenes, "model": models, "body": [1, 2]},
     )
-    tasks = WorstPhases().tasks(study, surfaces)
+    tasks = analysis.WorstPhases().tasks(study, surfaces)
     for task in tasks:
         shift = 0 if task.argument[3] == "displacement" else 3
         assert task.argument[6].tolist() == [[alpha[5], alpha[9 + shift]]]
@@ -119,11 +110,10 @@ def test_searches_begin_at_the_hills_of_what_they_search() -> None:
 
 def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:
     study, results = study_of(SHORT), TaskResults()
-    tasks = WorstPhases().tasks(study)
+    tasks = analysis.WorstPhases().tasks(study)
     for task in tasks:
         results.put(task, unfinished(Outcome.TIME_LIMIT, "took too long"))
-    rows = WorstPhases().collect(study, None, results)
-    assert rows is not None
+    rows = analysis.WorstPhases().collect(study, None, results)
     assert len(rows) == len(tasks) + 2  # the engine's rows
-    assert all(row.reason == f"{Outcome.TIME_LIMIT}: took too long" and row.phases == NOWHERE for row in rows)
+    assert all(row.reason == f"{Outcome.TIME_LIMIT}: took too long" and row.phases == analysis.NOWHERE for row in rows)
     assert EXACT.key in {row.model for row in rows}
