@@ -172,7 +172,7 @@ def _sentence(study: Study, scene: Scene, numbers: Headline, bars: Waterfall, of
 def _agreement(numbers: Headline, models: Mapping[str, Model], paper: str, engine: str) -> str:
     start = f"no difference beyond the numerical error: {engine} and {paper} agree"
     if numbers.phases_per_axis == 1:
-        return f"{start} {_under(numbers)} (difference {difference(numbers.mean, numbers.mean_error)})."
+        return f"{start} under the record (difference {difference(numbers.mean, numbers.mean_error)})."
     return f"{start} (mean difference {difference(numbers.mean, numbers.mean_error)} {_over(numbers, models)})."
 
 
@@ -180,7 +180,7 @@ def _difference(numbers: Headline, models: Mapping[str, Model], paper: str, engi
     in_the_mean = abs(numbers.mean) > RESOLVED * numbers.mean_error
     gives = f"{engine} gives {more_or_less(numbers.mean, numbers.mean_error)} than {paper}"
     if numbers.phases_per_axis == 1:
-        return f"{gives} {_under(numbers)}."
+        return f"{gives} under the record."
     if numbers.real >= MOST and in_the_mean:
         return f"{gives} (mean {_over(numbers, models)})."
     apart = "differ at most initial phases, but not in the mean"
@@ -222,10 +222,6 @@ def _without_geometry(bars: Sequence[WaterfallBar], cause: Cause, models: Mappin
     size = {bar.model: abs(bar.size) for bar in bars}
     geometry = [size[key] for key in size if models[key].effect == "geometry"]
     return bool(geometry and cause.models) and geometry[0] < SMALL * size[cause.models[0]]
-
-
-def _under(numbers: Headline) -> str:
-    return "under the record" if math.isnan(numbers.maximum_phases[0]) else "at the one phase pair"
 
 
 def _over(numbers: Headline, models: Mapping[str, Model]) -> str:

@@ -197,6 +197,9 @@ def test_the_command_writes_the_demands_of_every_motion(folder: Path) -> None:
     expected = np.quantile(column, [0.16, 0.5, 0.84], method="hazen")
     assert [each["value"] for each in stripe["fractiles"]] == pytest.approx(expected)
     assert (stripe["answered"], stripe["unit"], stripe["body"]) == (3, "m", None)
+    assert summary["structures"][0]["isolator"]["displacement"] == stripe["mean"]["value"], "at the largest scale"
+    (band,) = (band for band in summary["spectra"] if band["body"] == 1)
+    assert (band["scale"], band["damping"]) == (1.0, 0.05)
 
 
 def test_the_engine_agrees_like_for_like_at_its_motion(folder: Path, undrawn: None) -> None:

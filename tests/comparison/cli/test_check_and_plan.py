@@ -140,9 +140,20 @@ def test_the_worst_body_breaks_a_limit_whichever_it_is(limit: str, body: int) ->
     study = Study((scene,), 2, 1e-3, fake_hierarchy(gap=0.0))
     surfaces = solved(study)
     surfaces["mu"].loc[{"model": "translational", "body": body}] *= 1.021
+    surfaces["mu"].loc[{"model": "translational", "body": body, "alpha1": 0.0, "alpha2": 0.0}] *= 1.01
     found = [limit for limit in limits_of(study, surfaces) if limit.breaches]
-    assert [(each.key, [breach.body for breach in each.breaches]) for each in found] == [(limit, [body])]
     rows = {(row.pair, row.body): getattr(row, limit) for row in differences(study, surfaces)}
+    breaches = [(breach.body, breach.found) for each in found for breach in each.breaches]
+    assert ([each.key for each in found], breaches) == ([limit], [(body, rows["like-for-like", body])])
     at_it = scene.with_values({"acceptance": {limit: rows["like-for-like", body]}})
     at_limit = limits_of(replace(study, scenes=(at_it,)), surfaces)
     assert [each.breaches for each in at_limit if each.key == limit] == [()], "as large as allowed is allowed"
+
+
+def test_models_without_a_common_phase_pair_leave_nothing_to_compare() -> None:
+    study = Study((reference.load_scene("fig3-I"),), 2, 1e-3, fake_hierarchy())
+    surfaces = solved(study)
+    for key, alpha1 in (("regularised", 0.0), ("translational", np.pi)):
+        surfaces["mu"].loc[{"model": key, "alpha1": alpha1}] = np.nan
+    broken = next(limit for limit in limits_of(study, surfaces) if limit.key == "median").broken_texts
+    assert [line.split(":")[1] for line in broken] == [" nothing to compare (exact equations, v_reg"]

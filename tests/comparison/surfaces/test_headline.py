@@ -99,6 +99,9 @@ def test_missing_values_are_counted_in_the_phases() -> None:
     study, surfaces = planted_study(dict.fromkeys(KEYS, 0.05))
     surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0, "alpha2": 0.0}] = np.nan
     assert "mean over 15 of 4 × 4 initial phases, 15 of them independent" in told(study, surfaces).sentence
+    for name in ("mu", "error"):  # nothing is relative to zero
+        surfaces[name].loc[{"model": "small", "alpha1": np.pi, "alpha2": 0.0}] = 0.0
+    assert "mean over 14 of 4 × 4 initial phases" in told(study, surfaces).sentence
 
 
 @pytest.mark.parametrize("bodies", [1, 6])

@@ -69,6 +69,9 @@ def test_the_largest_difference_may_be_of_the_finer_engine() -> None:
     assert {bar.model: bar.size for bar in largest.bars} == pytest.approx(
         {"exact": 0.0, "resolved": -0.4, "regularised": 0.0, "translational": 0.0}, abs=1e-12
     )
+    surfaces["stride"].loc[{"model": "resolved"}] = 2
+    bars = waterfall(study, surfaces, study.scenes[0], 2).largest.bars
+    assert [math.isnan(bar.size) for bar in bars] == [False, True, True, False], "nothing is computed there"
 
 
 def test_without_a_common_phase_there_is_no_bar_and_no_crash() -> None:
