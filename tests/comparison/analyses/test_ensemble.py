@@ -15,7 +15,8 @@ import pytest
 import reference
 from comparison.analyses.ensemble import analysis
 from comparison.analyses.ensemble.command import FILES, main, table_text
-from comparison.analyses.ensemble.feature import draw_ensemble
+from comparison.analyses.ensemble.feature import demand_rows, draw_ensemble, ensemble_panels
+from comparison.analyses.ensemble.result import STORED
 from comparison.analyses.ensemble.target import matched
 from reference.measures import Demands, Estimate
 from reference.problem import load_family, load_scene
@@ -331,6 +332,15 @@ def test_the_spatial_engine_adds_demands_of_supports(folder: Path, undrawn: None
     assert found["support_force_max", "spatial"]["answered"] == 3
     assert found["torsion", "spatial"]["answered"] == 3
     assert ("uplift", "exact") not in found
+    rows = demand_rows(STORED.load(Path("out")))
+    names = {row["name"] for row in rows}
+    assert {"base shear", "largest support force (spatial engine)"} <= names
+    assert "base shear (spatial engine)" not in names, "it is that of the equations"
+    factors = {"mm": 1e3, "kN": 1e-3, "kJ": 1e-3, "mrad": 1e3, "g": 1 / 9.81, "% of the weight": 100 / 9810, "%": 100.0}
+    for row in rows:
+        if row["stripe"].answered == 3:
+            expected = factors.get(row["unit"], 1.0) * row["stripe"].fractiles[1].value
+            assert float(row["cells"][2].partition(" ±")[0]) == pytest.approx(expected, rel=1e-3), row["name"]
 
 
 def write_at2(file: Path, factor: float) -> None:
@@ -401,6 +411,11 @@ def test_motions_are_scaled_to_the_target_spectrum(folder: Path, undrawn: None) 
     assert (target["low"], target["high"]) == (0.2, 1.5)
     assert target["motions"][1]["factor"] == pytest.approx(2.0, rel=2e-3)
     np.testing.assert_allclose(target["motions"][1]["acceleration"], target["acceleration"], rtol=2e-2)
+    lines = {line["name"]: line["y"] for line in ensemble_panels(STORED.load(Path("report")))[-1]["plot"]["series"]}
+    every = [motion["acceleration"] for motion in target["motions"]]
+    mean = np.prod(every, axis=0) ** (1.0 / 3.0)
+    np.testing.assert_allclose(lines["geometric mean of the motions"], mean / 9.81, rtol=1e-12)
+    np.testing.assert_allclose(lines["target"], np.divide(target["acceleration"], 9.81), rtol=1e-12)
     second = [row for row in table if row["motion"] == "m2"]
     assert [float(row["scale"]) for row in second] == [0.5, 1.0]
     assert [float(row["factor"]) for row in second] == pytest.approx([2.0, 2.0], rel=2e-3)
@@ -416,6 +431,7 @@ def test_a_motion_at_many_scales_is_matched_once(tmp_path: Path) -> None:
     ]
     scaled, target = matched(members, str(tmp_path / "code.csv"), None)
     assert len(target.motions) == 1
+    assert np.ptp(np.diff(np.log(target.acceleration))) < 1e-12, "straight in the logarithms"
     assert {member.factor for member in scaled} == {target.motions[0].factor}
 
 

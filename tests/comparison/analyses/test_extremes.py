@@ -12,6 +12,7 @@ from known_results import PLAIN, fake
 from matplotlib.image import imread
 from runs import no_executor
 
+import multibody
 import reference
 from comparison.analyses.extremes import analysis
 from comparison.analyses.extremes.command import main
@@ -194,7 +195,18 @@ def test_the_legend_of_the_picture_lies_within_it(tmp_path: Path, models: int, g
     assert (picture[:, [0, -1]] == 1.0).all(), "nothing goes on beyond its borders"
 
 
-@pytest.mark.parametrize("choice", [{"contact_stiffness": 1e4}, {"contact_stiffness": 1e6}, {"step": 0.1}])
+def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    brief, asked = analysis.read_scene(scene(duration=0.5)), {}
+    usual = multibody.levels(brief, "translational", 1e-2, 1e-3)[0]
+    monkeypatch.setattr("multibody.amplification", lambda *rest, levels, **settings: asked.update(first=levels[0]))
+    amplification(brief, [(0.3, 1.1)], contact_stiffness=1e4)
+    assert asked["first"].penetration == pytest.approx(brief.total_mass * 9.81 / (1e4 * brief.radius))
+    amplification(brief, [(0.3, 1.1)], step=0.1)
+    assert asked["first"].step * np.sqrt(brief.radius / 9.81) == pytest.approx(0.1)
+    assert asked["first"].error_floor / usual.error_floor == pytest.approx((asked["first"].step / usual.step) ** 2)
+
+
+@pytest.mark.parametrize("choice", [{"contact_stiffness": 1e4}, {"step": 0.1}])
 def test_the_error_knows_what_a_bad_stiffness_costs(choice):
     brief = analysis.read_scene(scene(duration=0.5))
     engine = amplification(brief, [(0.3, 1.1)], tolerance=1e-2, **choice)
@@ -236,8 +248,19 @@ def test_a_value_that_says_nothing_is_not_confirmed() -> None:
         assert analysis.answers(analysis.Reply(mu, share * mu, (status.value,))) == says, (status, share)
 
 
-@pytest.mark.parametrize(("off", "verdict"), [(0.9, "converged"), (1.5, "FAILED")])
-def test_an_error_half_of_what_it_should_be_fails(off: float, verdict: str) -> None:
-    mu, claimed = np.array([[1.0, 2.0], [1.0, 2.0]]), 1e-3
-    reply = analysis.Reply(mu * [[1.0, 1.0], [1.0, 1.0 + off * claimed]], claimed * mu, ("ok", "ok"))
-    assert analysis.judged(reply, [analysis.Reply(mu, 1e-6 * mu, ("ok", "ok"))], 1e-2, False, ()).verdict == verdict
+@pytest.mark.parametrize(
+    ("off", "claimed", "finer", "verdict"),
+    [
+        (0.9e-3, 1e-3, 1e-6, "converged"),
+        (1.5e-3, 1e-3, 1e-6, "FAILED"),
+        (0.0, 1e-3, 2e-3, "FAILED"),  # the finer run knows it less well than claimed, and not to a tenth of 1e-2
+        (0.0, 1e-4, 9e-4, "converged"),
+        (0.0, 1.5e-2, 1e-6, "FAILED"),
+        (0.9e-2, np.nan, 1e-6, "converged"),
+        (1.5e-2, np.nan, 1e-6, "limit"),
+    ],
+)
+def test_an_error_half_of_what_it_should_be_fails(off: float, claimed: float, finer: float, verdict: str) -> None:
+    mu = np.array([[1.0, 2.0], [1.0, 2.0]])
+    reply = analysis.Reply(mu * [[1.0, 1.0], [1.0, 1.0 + off]], claimed * mu, ("ok", "ok"))
+    assert analysis.judged(reply, [analysis.Reply(mu, finer * mu, ("ok", "ok"))], 1e-2, False, ()).verdict == verdict

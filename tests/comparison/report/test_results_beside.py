@@ -157,7 +157,7 @@ def test_results_beside_a_report_are_in_its_summary(beside: tuple[str, Path, dic
 def test_a_panel_of_an_ensemble_is_in_the_unit_of_its_axis(beside: tuple[str, Path, dict[str, bytes]]) -> None:
     results = StudyResults.model_validate_json((beside[1] / "summary.json").read_bytes())
     [panel] = [each for each in ensemble_panels(results.of("ensemble")) if each["title"] == ISOLATOR]
-    assert panel["plot"]["y"]["title"] == f"{ISOLATOR}, mm"
+    assert panel["plot"]["y"] == {"title": f"{ISOLATOR}, mm", "range": pytest.approx([0.0, 1.06 * 511.0])}
     motions, [band], [engine] = (
         [line for line in panel["plot"]["series"] if line["name"] == name]
         for name in ("tower: one motion", "tower", "engine")
