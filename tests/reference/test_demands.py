@@ -193,6 +193,9 @@ def test_a_residual_after_creep_is_that_of_coulomb_friction() -> None:
         assert abs(found.value - truth.value) < 0.02 * (truth.value - end)
         if motion is not engine:  # a single run states no errors
             assert truth.value - end < found.error < 2.0 * truth.value
+            rests = np.searchsorted(motion.time, motion.stick)
+            ways = np.linalg.norm(np.diff(motion.position[rests, 0, :2], axis=1)[:, 0], axis=-1)
+            assert (found.error >= 0.999 * ways.sum(), len(ways) > 1) == (True, True), "of all rests together"
 
 
 @pytest.mark.long
@@ -255,10 +258,12 @@ def held(place: float, force: float, rests: int, accuracy: Accuracy | None = Non
     position[:, 0, 0], position[:, 1, 0] = place, 3.0 * place
     acceleration = np.zeros((101, 2, 3))
     acceleration[:, 0, 0] = force / 3.0
+    velocity = np.zeros((101, 2, 3))
+    velocity[0, 0, 0] = np.sqrt(2.0 * force / 3.0)  # what friction takes is there at the start
     power = np.full(101, force / scene.duration)
     stick = [(scene.duration * (k + 0.5) / rests, scene.duration * (k + 1.0) / rests) for k in range(rests)]
     return Trajectory(
-        time, position, np.zeros((101, 2, 3)), acceleration, np.full(101, 10.0 * force), stick, "ok", np.nan, scene,
+        time, position, velocity, acceleration, np.full(101, 10.0 * force), stick, "ok", np.nan, scene,
         peak=np.array([force / 3.0, 0.0]), ground=np.zeros((101, 3)), friction_power=power, accuracy=accuracy,
     )  # fmt: skip
 
@@ -281,6 +286,7 @@ def test_the_error_of_every_demand_is_what_the_other_runs_say() -> None:
         "contact_force_max": (120.0, 16.2),
         "stops": (4.0, 2.0),
         "friction_energy": (12.0, 0.12 + 1.0 + 0.5),
+        "energy_balance": (0.0, 0.12),
     }
     found = estimates(answer)
     for name, (value, error) in expected.items():

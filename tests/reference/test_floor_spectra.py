@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from chains import chain
@@ -11,7 +13,7 @@ from scipy.integrate import solve_ivp
 import multibody
 import reference
 from reference import factor_for_spectrum
-from reference.problem import Scene, Trajectory
+from reference.problem import Accuracy, Scene, Trajectory
 
 PHASE = (2.0, 0.7)
 DAMPING = 0.05
@@ -111,6 +113,16 @@ def test_more_samples_change_less_than_the_error(name, regularization) -> None:
     spectra = reference.floor_spectra(motion)
     assert (np.abs(spectra.acceleration - finer.acceleration) <= spectra.error).all()
     assert np.median(spectra.error / spectra.acceleration) < 2e-3
+
+
+def test_the_error_of_a_spectrum_counts_the_other_runs() -> None:
+    motion = harmonic(0.8, 1.0, 101)
+    larger = replace(motion, absolute_acceleration=1.1 * motion.absolute_acceleration)
+    alone, beside = (
+        reference.floor_spectra(replace(motion, accuracy=Accuracy(np.zeros(1), others, shares, 0.01)), [0.3, 0.9])
+        for others, shares in (((), ()), ((larger,), (0.5,)))
+    )
+    np.testing.assert_allclose((beside.error - alone.error)[:, 0], 0.05 * alone.acceleration[:, 0], rtol=1e-9)
 
 
 def test_a_motion_that_ended_early_has_no_spectra() -> None:

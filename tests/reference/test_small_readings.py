@@ -81,6 +81,8 @@ def test_dampers_take_the_energy_of_a_body_on_a_held_platform() -> None:
     assert answer.damping_energy is not None
     assert answer.friction_energy.value == 0.0
     assert answer.damping_energy.value == pytest.approx(0.5 * 50.0 * 0.02**2, rel=1e-3)
+    assert answer.energy_balance is not None
+    assert abs(answer.energy_balance.value) < 1e-3 * answer.damping_energy.value
 
 
 @pytest.mark.parametrize("share", [0.6, 0.72, 0.9])

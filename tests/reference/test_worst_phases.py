@@ -121,9 +121,11 @@ def largest_on(scene: Scene, points: int, **law: Any) -> tuple[Array, float]:
 
 def test_no_point_of_a_grid_exceeds_the_maximum() -> None:
     scene = reference.load_scene("fig3-I")
-    mu, _ = largest_on(scene, 24)
-    worst = reference.worst_phases(scene)
+    mu, displacement = largest_on(scene, 24)
+    worst, far = reference.worst_phases(scene), reference.worst_phases(scene, quantity="displacement")
     assert mu[0] <= worst.value + worst.error < mu[0] + 0.1
+    assert displacement <= far.value + far.error < 1.02 * displacement
+    assert far.error >= 1e-3 * far.value, "a surface knows displacements to a thousandth"
 
 
 @pytest.mark.long
