@@ -22,6 +22,12 @@ def test_a_power_of_a_value_has_its_derivative_within_the_error() -> None:
     assert missed <= found.error <= 1e-5 * abs(found.value)
 
 
+def test_the_error_of_the_quantity_is_over_the_step() -> None:
+    """1.6 % of the value is the largest step, over which (4 near - far) / 3 has three times the error."""
+    found = sensitivity(ONE_BODY, ["bodies.0.mass"], lambda scene: Estimate(scene.total_mass, 1e-3))["bodies.0.mass"]
+    assert (found.value, found.error) == pytest.approx((1.0, 3.0 * 1e-3 / (1.6e-2 * 2.0)))
+
+
 def test_a_kink_within_the_step_shows_in_the_error() -> None:
     def kinked(scene: Scene) -> Estimate:
         return Estimate(max(scene.isolator.friction - 0.08, 0.0), 0.0)  # type: ignore[operator]

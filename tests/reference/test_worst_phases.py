@@ -64,6 +64,8 @@ def test_a_smooth_maximum_is_found_to_its_error(monkeypatch: pytest.MonkeyPatch)
     assert worst.kind == "smooth"
     assert abs(worst.value - 4.0) <= worst.error
     assert np.allclose(worst.phases, TOP, atol=1e-5)
+    from_two = reference.worst_phases(scene_with(monkeypatch, hill, level), starts=[TOP + 0.3, TOP - 0.4])
+    assert (from_two.climbs, from_two.reached, np.isnan(from_two.runner_up)) == (2, 2, True)
 
 
 def test_a_maximum_on_an_oblique_edge_is_found_to_its_error(monkeypatch: pytest.MonkeyPatch) -> None:
