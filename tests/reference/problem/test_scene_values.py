@@ -94,46 +94,27 @@ anything = st.recursive(
 )
 
 
-def put(data: object, path: list, value: object) -> None:
-    *way, last = path
+def put(data: object, path: str, value: object) -> None:
+    *way, last = (int(key) if key.isdigit() else key for key in path.split("."))
     for key in way:
         data = data[key]
     data[last] = value
 
 
-PLACES = [
-    ["title"],
-    ["duration"],
-    ["isolator"],
-    ["isolator", "period"],
-    ["isolator", "friction"],
-    ["isolator", "supports"],
-    ["bodies", 0, "offset"],
-    ["bodies", 1, "yaw"],
-    ["bodies"],
-    ["bodies", 0],
-    ["bodies", 0, "mass"],
-    ["bodies", 1],
-    ["bodies", 1, "period"],
-    ["bodies", 1, "period", 0],
-    ["excitation"],
-    ["excitation", "amplitudes"],
-    ["excitation", "amplitudes", 1],
-    ["excitation", "periods", 1],
-    ["excitation", "decay"],
-    ["acceptance"],
-    ["name"],
-    ["surprise"],
-]
+PLACES = (
+    "title duration isolator isolator.period isolator.friction isolator.supports bodies bodies.0 bodies.0.mass"
+    " bodies.0.offset bodies.1 bodies.1.yaw bodies.1.period bodies.1.period.0 excitation excitation.amplitudes"
+    " excitation.amplitudes.1 excitation.periods.1 excitation.decay acceptance name surprise"
+)
 
 
-@example(place=["bodies", 0], value={"\n": False})
-@given(place=st.sampled_from(PLACES), value=anything)
+@example(place="bodies.0", value={"\n": False})
+@given(place=st.sampled_from(PLACES.split()), value=anything)
 @settings(max_examples=120, deadline=None)
-@example(place=["isolator", "period"], value=1e200)
-@example(place=["bodies", 1, "period", 0], value=1e-300)
-@example(place=["duration"], value=10**400)
-@example(place=["bodies", 0, "mass"], value=5e-324)
+@example(place="isolator.period", value=1e200)
+@example(place="bodies.1.period.0", value=1e-300)
+@example(place="duration", value=10**400)
+@example(place="bodies.0.mass", value=5e-324)
 def test_any_value_in_any_place_is_a_scene_or_a_scene_error(place, value):
     data = tomllib.loads(GOOD)
     put(data, place, value)
@@ -183,12 +164,3 @@ def test_the_digest_sees_what_changes_results_and_nothing_else():
     for old, new in changes:
         digests.add(parse_scene(GOOD.replace(old, new).encode(), "one").digest())
     assert len(digests) == len(changes) + 1
-
-
-def test_a_copy_with_other_bodies_has_their_masses_and_links():
-    scene = load_scene("fig3-I")
-    assert len(scene.masses) == 2
-    assert scene.stiffness.shape == (1, 2)
-    alone = scene.with_values({"bodies": scene.bodies[:1]})
-    assert alone.masses.tolist() == [scene.bodies[0].mass]
-    assert alone.stiffness.shape == (0, 2)
