@@ -119,6 +119,8 @@ def test_lines_between_packed_instants_give_the_motion(scene, motions) -> None:
     }
     for name, values in parts.items():
         columns = values.reshape(len(whole.time), -1)
+        for extreme in (np.min, np.max):
+            np.testing.assert_array_equal(extreme(kept[name], axis=0), extreme(columns, axis=0))
         lines = np.stack([np.interp(whole.time, kept["time"][:, 0], column) for column in kept[name].T], axis=1)
         assert (np.abs(lines - columns) <= 1.001 * SHARE * swing(columns)).all(), name
 

@@ -50,16 +50,21 @@ def test_nothing_on_the_front_is_beaten_and_all_else_is() -> None:
     assert unbeaten(pairs[0], [pairs[0]] * 2), "two that are alike"
 
 
+SETTING = Setting("exact", "one", "step", "", 1.0, False, False, RUN, {}, 1.0)
+
+
 def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
     assert quantile(np.array([1.0, 2.0, 3.0, 40.0]), 0.95) == 40.0
     assert quantile(np.array([np.nan]), 0.5) is None
+    share = np.arange(101.0)[:, None]
+    shares = entry(SETTING, Measured(1.0 + share, share * (1.0 + share), 1.0, np.nan), np.ones((101, 1)))
+    assert (shares.median, shares.most, shares.error_estimate) == ([50.0], [95.0], [95.0])
 
 
 def test_a_setting_with_gaps_is_not_on_the_front() -> None:
-    setting = Setting("exact", "one", "step", "", 1.0, False, False, RUN, {}, 1.0)
     ones = np.ones((3, 1))
     good, lost, other = (
-        entry(setting, Measured(ones * mu, 0.1 * ones * mu, seconds, np.nan), ones)
+        entry(SETTING, Measured(ones * mu, 0.1 * ones * mu, seconds, np.nan), ones)
         for mu, seconds in ((1.1, 3.0), ([[1.0], [np.nan], [1.0]], 1.0), (1.0, 0.1))
     )
     marked = with_pareto_fronts([good, lost, replace(other, model_error=True)], 1)

@@ -11,8 +11,8 @@ import multibody
 import reference
 from comparison.analyses.convergence import analysis as convergence
 from comparison.analyses.convergence.analysis import LIMITS, PENETRATIONS, Convergence, limit_trends
-from comparison.analyses.scaling.analysis import PRINTED, STEP, Scaling, scaled
-from comparison.analyses.trends import Trend, fitted, trend
+from comparison.analyses.scaling.analysis import CUTOFF, PRINTED, STEP, Scaling, scaled
+from comparison.analyses.trends import Slope, Trend, fitted, trend
 from comparison.study.study import Study
 from reference import trajectory
 from reference.problem import Amplification, Scene, load_scene
@@ -91,10 +91,11 @@ def test_medians_are_of_the_absolute_size_of_what_is_known() -> None:
 
 
 def _model(step: Callable[[float], float], error: float = 1e-9) -> Callable[..., Amplification]:
-    """mu = 2 + i, small as printed 1 + 0.01 s^2 of it, exact step(s) above that; s read from the scene's loading."""
+    """mu = 2 + i, small as printed 1 + 0.01 s^2 of it, exact step(s) above that; s is that of loading and cutoff."""
 
     def amplification(scene: Scene, phases: Array, equations: str, **settings: object) -> Amplification:
         s = float(np.abs(scene.amplitudes).max())
+        assert settings["cutoff"] in (None, CUTOFF * s)
         factor = (1.0 + 0.01 * s**2) * (1.0 + (step(s) if equations == "exact" else 0.0))
         mu = factor * (2.0 + np.arange(len(scene.bodies)) + 0.1 * np.cos(phases[:, :1]))
         return Amplification(mu, error * mu, np.full(len(mu), "ok"), np.full(len(mu), np.nan), 0.0)

@@ -49,6 +49,7 @@ def test_no_panel_has_more_curves_than_can_be_told_apart() -> None:
     panels = tradeoff_panels(replace(TRADE, entries=many))
     assert len(panels) == 2, "the platform and the last body"
     assert all(len(panel["plot"]["series"]) == MAX_CURVES for panel in panels)
+    assert panels[1]["plot"]["bands"] == [{"from": 1e-30, "to": QUESTION.error}], "below the reference's own error"
 
 
 def test_a_fitted_slope_is_in_the_legend() -> None:
