@@ -89,7 +89,7 @@ def test_every_claim_holds_on_surfaces_as_described(claim: Claim) -> None:
 
 
 ONE_AXIS, BOTH_AXES, DRY, WET = (PAPER[name] for name in ("fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"))
-ROUGH = np.where(np.random.default_rng(2).uniform(size=(N, N)) > 0.5, 1.0, 3.0)
+ROUGH = np.tile([1.0, 3.0], (N, N // 2))  # along one phase
 VIOLATIONS: list[tuple[str, str, Mapping[str, Evidence]]] = [
     ("Fig. 3", "small", {"fig3-II": replace(BOTH_AXES, swing=0.2)}),
     ("Fig. 3", "close to resonance", {"fig3-I": replace(ONE_AXIS, resonance=((0.9, 1.0), (1.11, 1.0)))}),
@@ -111,7 +111,7 @@ VIOLATIONS: list[tuple[str, str, Mapping[str, Evidence]]] = [
     ("Fig. 4b", "similar", {"fig4-dry": _seen(TWO, SEVERAL_PEAKS)}),
     ("Fig. 4c, d", "viscous friction makes the surfaces smooth", {"fig4-viscous": replace(WET, bends=(SMOOTH, FOLD))}),
     ("Fig. 4c, d", "between the kinks", {"fig4-viscous": replace(WET, numerators=(SMOOTH, FOLD))}),
-    ("Fig. 4c, d", "smoother", {"fig4-viscous": _seen(ROUGH, CORNERS)}),
+    *(("Fig. 4c, d", "smoother", {"fig4-viscous": _seen(rough, CORNERS)}) for rough in (ROUGH, ROUGH.T)),
 ]
 
 

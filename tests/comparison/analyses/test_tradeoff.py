@@ -11,12 +11,13 @@ import xarray as xr
 from known_analyses import collected
 from scipy.stats import linregress
 
-from comparison.analyses.tradeoff import analysis, command, growth
+from comparison.analyses.tradeoff import analysis, command, growth, outside
 from comparison.analyses.tradeoff.analysis import Measured, Measurement, TradeOff, entry, joined, sample
 from comparison.analyses.tradeoff.growth import QUANTITIES, STORED, Growth, fitted_slope, tall, with_slope
 from comparison.analyses.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
 from comparison.analyses.tradeoff.trade import Trade, load, quantile, unbeaten, with_pareto_fronts
 from comparison.study.study import Study
+from reference import amplification
 from reference.problem import Amplification, Scene, load_scene
 
 SECONDS = 1.5  # of motion: a slide and a stop
@@ -105,6 +106,16 @@ def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -
     checks = next(question.checks for question in trade.questions if question.key == "regularised")
     assert any("SciPy LSODA" in line for line in checks)
     assert any("translational engine" in line for line in checks)
+
+
+def test_scipy_has_the_factors_of_the_equations(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("slope", "slopes", "exact_acceleration"):  # not compiled
+        monkeypatch.setattr(outside, name, getattr(outside, name).py_func)
+    bodies = [{"mass": 1.0}, *({"mass": 0.5, "period": [0.6, 0.5], "damping": ratio} for ratio in (0.3, 0.1))]
+    scene = load_scene("fig3-I").with_values({"duration": 0.8, "bodies": bodies}).with_amplitude(3.0)
+    expected = amplification(scene, [(0.3, 1.1)], regularization=1e-2)
+    found = outside.factors_by_scipy(scene, [(0.3, 1.1)], "LSODA", 1e-8, 1e-2)
+    np.testing.assert_allclose(found, expected.mu, rtol=2e-6)
 
 
 @pytest.mark.long

@@ -76,13 +76,22 @@ def test_a_known_friction_ratio_is_found_from_one_run(tmp_path: Path):
 
 
 @pytest.mark.parametrize("grams", [250, 450])
-def test_the_equations_predict_runs_of_an_independent_program(tmp_path: Path, grams: int):
+def test_the_equations_predict_runs_of_an_independent_program(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, grams: int
+):
     save(tmp_path, grams)
     cycles = frame.fold(read_folder(tmp_path).runs[0])
     found = np.mean([frame.read_cycle(each, cycles.frequency) for each in cycles.motions], axis=0)
-    computed = frame.solve(cycles, frame.Setup(ratio=RATIO))
+    setup = frame.Setup(ratio=RATIO)
+    motion = frame.compute(EQUATIONS, cycles, setup)
+    computed = frame.read(cycles, motion).values
     assert computed[:2] == pytest.approx(found[:2], rel=5e-4)  # without the damper: 5e-3
     assert computed[2:] == pytest.approx(found[2:], abs=0.2)
+    monkeypatch.setattr(frame, "compute", lambda *asked: motion)
+    factors = np.linspace(0.99, 1.01, len(cycles.motions))
+    scattered = cycles._replace(motions=cycles.motions * factors[:, None])
+    first = frame._compare_run(scattered, "predicted", setup, [setup], setup, setup).quantities[0]
+    assert first.data / first.measured == pytest.approx(2.0 * factors.std(ddof=1), rel=0.02)
 
 
 def test_the_numbers_of_a_known_cycle_are_read():
@@ -180,6 +189,7 @@ def test_the_recorded_table_is_that_of_the_published_files():
 
 
 def test_both_sides_agree_on_all_recorded_quantities():
+    assert sum(recorded().counts().values()) == 2 * len(recorded().quantities)
     for each in recorded().quantities:
         engine, smoothed = each.sides[ENGINE], each.sides[SMOOTHED]
         assert abs(engine.value - smoothed.value) <= engine.numerical + smoothed.numerical, each

@@ -64,6 +64,7 @@ def with_error(size: float, error: float) -> str:
 SEARCHED = [
     Worst("fig3-I", "exact", "amplification", 1, 8.765, 1e-4, (1.0, 2.0), "smooth", runner_up=8.5, climbs=4, reached=3),
     Worst("fig3-I", "exact", "displacement", 1, 0.123, 2e-5, (3.0, 4.0), "kink", runner_up=0.11, climbs=6, reached=5),
+    Worst("fig3-I", "exact", "amplification", 2, 7.321, 3e-4, (5.0, 6.0), "jump", (0.25, -0.75), 7.1, 8, 7),
 ]
 
 
@@ -337,8 +338,9 @@ def test_outcomes_costs_and_largest_values_are_in_their_columns(tables: Tables) 
     assert [list(row.values())[3:] for row in shown] == [
         ["8.765", "1.0e-04", "1.0000", "2.0000", "on a smooth maximum", "8.5", "3 of 4"],
         ["0.123", "2.0e-05", "3.0000", "4.0000", "on an edge of the surface", "0.11", "5 of 6"],
+        ["7.321", "3.0e-04", "5.0000", "6.0000", "beside a jump, approached from (+0.25, -0.75)", "7.1", "7 of 8"],
     ]
-    assert [row["quantity"] for row in shown] == ["μ1", "displacement, m"]
+    assert [row["quantity"] for row in shown] == ["μ1", "displacement, m", "μ2"]
 
 
 def test_the_page_draws_the_surfaces_under_their_models(report: Path) -> None:
