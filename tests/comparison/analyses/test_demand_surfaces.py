@@ -83,6 +83,9 @@ def test_statistics_are_those_of_the_surface(study: Study, demands: xr.Dataset) 
     assert (SMALL.key, "drift", 1) not in rows
     assert (SMALL.key, "uplift", 0) not in rows, "no supports"
     assert row.fractiles[2].value == pytest.approx(float(drift.median()), rel=0.2)
+    unsure = demands.assign(drift_error=demands["drift_error"].where(demands["alpha1"] > 0.0))
+    rows = {(row.model, row.quantity, row.body): row for row in demand_statistics(study, unsure, scene)}
+    assert [np.isnan(rows[SMALL.key, name, 2].mean.error) for name in ("drift", "acceleration")] == [True, False]
 
 
 def test_surfaces_nc_has_them_beside_mu(study: Study, demands: xr.Dataset) -> None:

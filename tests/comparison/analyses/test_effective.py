@@ -91,7 +91,9 @@ def test_every_scene_has_its_statement_and_its_models() -> None:
 
 
 def test_the_dampers_of_both_sides_are_those_of_the_scene() -> None:
-    scene = load_scene("fig3-I").with_values({"bodies.1.damping": [0.7, 0.3], "duration": 2.0})
+    platform, body = load_scene("fig3-I").model_dump(exclude_none=True)["bodies"]
+    bodies = [platform, {**body, "damping": 0.2}, {**body, "damping": [0.7, 0.3], "height": 2.0 * body["height"]}]
+    scene = load_scene("fig3-I").with_values({"bodies": bodies, "duration": 2.0})
     assert stated(scene).damping == 0.7
     models = {model.key: model for model in MODEL_HIERARCHY}
     for key in ("small", "exact", "regularised", "translational"):

@@ -232,6 +232,16 @@ def test_regularization_is_of_first_order() -> None:
     assert supremum[1].verdict == "falls"
 
 
+def test_a_limit_has_its_error_and_as_many_periods_as_asked() -> None:
+    limit, answer = (
+        Amplification(np.full((1, 2), mu), np.full((1, 2), error), np.array(["ok"]), np.full(1, np.nan), 0.0)
+        for mu, error in ((2.0, 3e-3), (3.0, 4e-3))
+    )
+    sizes, errors = convergence._relative([(answer, limit)])
+    assert (sizes.tolist(), errors.ravel().tolist()) == ([[[0.5, 0.5]]], pytest.approx([2.5e-3] * 2))
+    assert convergence._short(load_scene("fig3-I"), 3.0).duration == pytest.approx(3.0 * 1.1), "of 0.9 and 1.1 s"
+
+
 @pytest.mark.parametrize("order", [1, 2])
 def test_the_error_of_a_constant_step_covers_it(monkeypatch: pytest.MonkeyPatch, order: int) -> None:
     """A method of this order that is off by 1 % with the coarser steps."""
