@@ -61,9 +61,7 @@ class Refined:
     """A refinement, and the runs that it asked for."""
 
     answer: Refinement
-    asked: list[tuple[int, float]] = field(
-        default_factory=list
-    )  # the number of the level, and how far supports give way
+    asked: list[tuple[int, float]] = field(default_factory=list)  # number of the level, and how far supports give way
     work: list[float] = field(default_factory=list)  # steps that each run was allowed
 
 

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -25,12 +23,6 @@ NAMES = ("NODES", "A", "A2", "AT_START", "MONOMIALS", "EIGENVALUES", "TO_CHANNEL
 NAMES_OF_CHAIN = ("ONES_IN_CHANNELS", "NODES_IN_CHANNELS", "THROUGH_REAL", "THROUGH_IMAGINARY")
 # kernels of OpenBLAS, and what a processor must have to run them
 KERNELS = {"Prescott": ("SSE3",), "Haswell": ("AVX2", "FMA3"), "SkylakeX": ("AVX512_SKX",)}
-# what only some processors have or know: extensions, names of processors and of OpenBLAS's kernels for them
-OF_SOME = re.compile(
-    r"CORETYPE|CPU_FEATURES|CPU_NAME(?!=['\"]?generic)|cpu_features|\b(?:avx|sse|fma|neon|sve|bmi|amx)[0-9]\w*|"
-    r"prescott|nehalem|sandybridge|haswell|skylake|cooperlake|sapphirerapids|\bzen[0-9]?\b|armv8|neoverse",
-    re.IGNORECASE,
-)
 CONSTANTS = f"""
 import sys
 from reference.solver import chain, collocation
@@ -69,9 +61,9 @@ def here() -> np.ndarray:
     )
 
 
-def lacking(kernels: str, features: Mapping[str, bool] = __cpu_features__) -> list[str]:
+def lacking(kernels: str) -> list[str]:
     """What kernels need and a processor does not have: they would end in an illegal instruction."""
-    return [feature for feature in KERNELS[kernels] if not features.get(feature)]
+    return [feature for feature in KERNELS[kernels] if not __cpu_features__.get(feature)]
 
 
 @pytest.mark.parametrize("kernels", KERNELS)
@@ -84,20 +76,6 @@ def test_the_constants_do_not_depend_on_linear_algebra(kernels: str) -> None:
     here = [getattr(collocation, name).tobytes() for name in NAMES]
     here += [getattr(chain, name).tobytes() for name in NAMES_OF_CHAIN]
     assert other == b"".join(here)
-
-
-def test_kernels_are_asked_for_only_where_they_can_run() -> None:
-    of_2004, of_2013 = {"SSE3": True}, {"SSE3": True, "AVX2": True, "FMA3": True, "AVX512_SKX": False}
-    assert [lacking(kernels, of_2004) for kernels in KERNELS] == [[], ["AVX2", "FMA3"], ["AVX512_SKX"]]
-    assert [lacking(kernels, of_2013) for kernels in KERNELS] == [[], [], ["AVX512_SKX"]]
-    assert all(lacking(kernels, {"ASIMD": True}) for kernels in KERNELS), "a processor of another family"
-
-
-def test_no_other_test_names_what_only_some_processors_have() -> None:
-    files = [ROOT / name for name in ("noxfile.py", "pyproject.toml", ".ci/run")]
-    files += [*(ROOT / ".github").rglob("*.yml"), *(ROOT / "tests").rglob("*.py")]
-    found = {file.relative_to(ROOT): OF_SOME.search(file.read_text(encoding="utf-8")) for file in files}
-    assert [str(file) for file, named in found.items() if named] == [str(Path(__file__).relative_to(ROOT))]
 
 
 def test_the_constants_of_the_method_are_accurate_to_rounding() -> None:

@@ -30,24 +30,15 @@ def test_a_range_makes_a_scene_of_every_value(tmp_path: Path) -> None:
     assert fifth.digest() == load_scene("fig3-I").digest(), "the same question as with the number written there"
 
 
+FAST = "{slow = 0.05, fast = {values = [0.1, 0.08]}, rate = 50.0}"
 KEYS = {
     "at the top": ("duration = 20.0", "duration = {range = [5, 20], steps = 4}", "duration", (5, 10, 15, 20)),
     "whole numbers": ("supports = 4", "supports = {range = [3, 5], steps = 3}", "isolator.supports", (3, 4, 5)),
     "of a body": ("mass = 1.0\nperiod", "mass = {range = [1, 2], steps = 3}\nperiod", "bodies.1.mass", (1.0, 1.5, 2.0)),
     "in a list": ("[[1.0, 0.0]", "[[{range = [1.0, 2.0], steps = 2}, 0.0]", "excitation.amplitudes.0.0", (1.0, 2.0)),
-    "fast friction": (
-        "friction = 0.1",
-        "friction = {slow = 0.05, fast = {values = [0.1, 0.08]}, rate = 50.0}",
-        "isolator.friction.fast",
-        (0.1, 0.08),
-    ),
+    "fast friction": ("friction = 0.1", f"friction = {FAST}", "isolator.friction.fast", (0.1, 0.08)),
     "values": ("friction = 0.1", "friction = {values = [0.3, 0.05]}", "isolator.friction", (0.3, 0.05)),
-    "texts": (
-        'title = "Fig. 3a, b: each harmonic along its own axis"',
-        'title = {values = ["a", "b"]}',
-        "title",
-        ("a", "b"),
-    ),
+    "texts": (f'title = "{load_scene("fig3-I").title}"', 'title = {values = ["a", "b"]}', "title", ("a", "b")),
 }
 
 
@@ -73,11 +64,7 @@ def test_any_key_of_one_value_may_run(tmp_path: Path, old: str, new: str, key: s
 
 def test_names_have_as_many_digits_as_it_takes(tmp_path: Path) -> None:
     family = load_family(_file(tmp_path, "friction = 0.1", "friction = {range = [0.1, 0.10001], steps = 3}"))
-    assert [scene.name for scene in family.scenes] == [
-        "mine[friction=0.1]",
-        "mine[friction=0.100005]",
-        "mine[friction=0.10001]",
-    ]
+    assert [scene.name for scene in family.scenes] == [f"mine[friction={n}]" for n in (0.1, 0.100005, 0.10001)]
 
 
 def test_a_scene_without_a_range_is_a_family_of_one() -> None:
