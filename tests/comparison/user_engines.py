@@ -36,10 +36,6 @@ def off_with_error(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.nda
     return 1.021 * plain(scene, phases), 1e-3 * plain(scene, phases)
 
 
-def off_in_the_second_body(scene: Scene, phases: np.ndarray) -> np.ndarray:
-    return plain(scene, phases) * [1.0, 1.021]
-
-
 def with_one_error(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return plain(scene, phases), np.where(phases.any(axis=1)[:, None], np.nan, 1e-3 * plain(scene, phases))
 
@@ -132,25 +128,12 @@ def prints(scene: Scene, phases: np.ndarray) -> np.ndarray:
     return plain(scene, phases)
 
 
-def computes_for_ever(scene: Scene, phases: np.ndarray) -> None:
-    while True:
-        pass
-
-
 def waits_for_ever(scene: Scene, phases: np.ndarray) -> None:
     time.sleep(1e9)
 
 
 def leaves(scene: Scene, phases: np.ndarray) -> None:
     os._exit(7)
-
-
-def spoils_its_process(scene: Scene, phases: np.ndarray) -> np.ndarray:
-    mu = plain(scene, phases)
-    os.chdir("/")
-    os.environ.clear()
-    np.linspace = None  # type: ignore[assignment]
-    return mu
 
 
 def as_reference(scene: Scene, phases: np.ndarray) -> np.ndarray:

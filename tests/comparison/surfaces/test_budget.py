@@ -54,6 +54,9 @@ def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
     assert row.ratio == pytest.approx(2.0)
     assert row.beyond_error == 1.0
     assert row.median == pytest.approx(0.1)
+    surfaces["error"].loc[{**second, "alpha1": 0.0}] = np.nan
+    (row,) = (row for row in differences(study, surfaces) if (row.pair, row.body) == ("like-for-like", 1))
+    assert (row.beyond_error, np.isnan(row.ratio)) == (1.0, True), "a share of those that state an error"
 
 
 def test_a_budget_without_a_step_does_not_close() -> None:
@@ -61,6 +64,10 @@ def test_a_budget_without_a_step_does_not_close() -> None:
     steps_and_total = steps(study, surfaces, "fig3-I", 1)
     assert closure(steps_and_total[1:]) == pytest.approx(0.02)
     assert closure([steps_and_total[0], *steps_and_total]) == pytest.approx(0.02)
+    one = np.zeros_like(steps_and_total[0].size)
+    one[0, 4] = 0.3
+    off = replace(steps_and_total[0], size=steps_and_total[0].size + one)
+    assert closure([off, *steps_and_total[1:]]) == pytest.approx(0.3)
 
 
 @pytest.mark.parametrize("grid", [12, 34, 48, 50])

@@ -69,6 +69,9 @@ def test_a_difference_within_five_errors_is_no_difference() -> None:
 def test_codes_that_differ_like_for_like_do_not_agree() -> None:
     study, surfaces = planted_study({"translational": 0.2, "spatial": 0.2})
     assert "the two codes differ by up to 20 %" in told(study, surfaces).sentence
+    study, surfaces = planted_study({"translational": 0.05})
+    surfaces["mu"].loc[{"model": "spatial", "alpha1": [0.0, np.pi]}] *= np.array([0.4, 1.6])[:, None, None]
+    assert "the two codes agree to 5 %" in told(study, surfaces).sentence, "beside differences with a mean of 0"
 
 
 def test_a_record_has_no_phases_and_no_mean() -> None:
