@@ -12,7 +12,7 @@ import reference
 from comparison.analyses.convergence import analysis as convergence
 from comparison.analyses.convergence.analysis import LIMITS, PENETRATIONS, Convergence, limit_trends
 from comparison.analyses.scaling.analysis import CUTOFF, PRINTED, STEP, Scaling, scaled
-from comparison.analyses.trends import Slope, Trend, fitted, trend
+from comparison.analyses.trends import Trend, fitted, trend
 from comparison.study.study import Study
 from reference import trajectory
 from reference.problem import Amplification, Scene, load_scene
