@@ -121,8 +121,7 @@ class ValidityRange:
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
     share: Annotated[float, "largest relative change"]
-    key: Axis
-    """what varies: ring, m; height, as a multiple of the stated one; offset, m along x and y; or yaw, rad"""
+    key: Annotated[Axis, "what varies: ring, m; height, times the stated one; offset, m along x and y; or yaw, rad"]
     holds: Annotated[float | None, "last value up to which every value tried stays within; null if none does"]
     fails: Annotated[float | None, "first value tried that does not; null if all do"]
 

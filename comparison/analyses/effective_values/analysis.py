@@ -35,8 +35,7 @@ class Effective:
     acceleration: Annotated[Number, "absolute acceleration of the platform at t = 0, m/s^2"] = float("nan")
     damping: Number = float("nan")
     """coefficient of the damper of the top link along x, N s/m; null without dampers, and where bodies turn"""
-    stiffness: Number = float("nan")
-    """stiffness of the top link along x, N/m; null where it is not given by bars"""
+    stiffness: Annotated[Number, "of the top link along x, N/m; null where it is not given by bars"] = float("nan")
     error_message: Annotated[Text, "why there are no values, or empty"] = ""
 
 

@@ -51,8 +51,7 @@ class Extreme:
 
     group: Annotated[str, "the quantity"]
     title: Annotated[str, "its extreme value"]
-    entries: Mapping[str, Entry]
-    """what came of it, by key of the model; none for a model that the extreme does not concern"""
+    entries: Annotated[Mapping[str, Entry], "by key of the model; none for a model that the extreme does not concern"]
 
 
 @result

@@ -76,8 +76,7 @@ class FamilyDemand:
     model: Annotated[str, "key of the model"]
     quantity: Annotated[str, "key in `demands` of a scene, with the unit stated there"]
     body: Annotated[int, "number of the body; 0 where the demand is of the isolator"]
-    median: tuple[Number, ...]
-    """median over the motions that have the demand, one for each scene; null without any"""
+    median: Annotated[tuple[Number, ...], "median over the motions that have the demand, by scene; null without any"]
     lowest: Annotated[tuple[Number, ...], "smallest of them"]
     highest: Annotated[tuple[Number, ...], "largest of them"]
     motions: Annotated[tuple[int, ...], "how many motions have the demand"]

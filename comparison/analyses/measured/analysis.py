@@ -36,8 +36,7 @@ class ComputedPeak:
     value: Annotated[Number, "in the unit of the quantity; null without an answer"]
     error: Annotated[Number, "estimated absolute error"]
     difference: Annotated[Number, "computed less measured value"]
-    exceeds: bool | None
-    """whether its size exceeds the uncertainty and the error together; null where it is not known"""
+    exceeds: Annotated[bool | None, "whether its size exceeds uncertainty and error together; null if not known"]
     status: Annotated[str, "how the motion ended, or why it lacks this value"]
 
 

@@ -46,15 +46,11 @@ class Entry(Stated):
     points: Annotated[int, "phase pairs asked for"]
     answered: Annotated[int, "phase pairs with a value"]
     seconds: Annotated[float, "processor time per point, s"]
-    median: Sequence[float | None]
-    """median relative error of each mu against the reference solution; null without a value"""
-    most: Sequence[float | None]
-    """relative error of each mu that 95 % of the points meet; null without a value"""
-    error_estimate: Sequence[float | None]
-    """relative error estimate of each mu that 95 % of the points meet; null without estimates"""
+    median: Annotated[Sequence[float | None], "median relative error of each mu; null without a value"]
+    most: Annotated[Sequence[float | None], "relative error of each mu that 95 % of the points meet; null without"]
+    error_estimate: Annotated[Sequence[float | None], "estimate of it that 95 % of the points meet; null without"]
     step: Annotated[float | None, "mean step, s; null where the method does not tell it"] = None
-    pareto_front: Sequence[bool] = ()
-    """for each mu, whether no other method is as accurate (95 %) in less time"""
+    pareto_front: Annotated[Sequence[bool], "by mu: whether no other method is as accurate (95 %) in less time"] = ()
     error_message: Annotated[str, "what went wrong, or empty"] = ""
 
     @property

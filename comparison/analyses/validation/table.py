@@ -53,8 +53,7 @@ class Quantity:
     data: Annotated[float, "u_D"]
     inputs: Annotated[float, "u_input"]
     cause: Annotated[str, "what is behind an E beyond u_val; empty where there is none"]
-    sides: Mapping[str, Comparison]
-    """by side: equations, smoothed (the equations with the engine's friction law), engine"""
+    sides: Annotated[Mapping[str, Comparison], "by side: equations, smoothed (with the engine's friction law), engine"]
 
 
 @result
@@ -74,10 +73,8 @@ class Validation:
 
     quantities: Annotated[Sequence[Quantity], "in the order of the experiments"]
     inputs: Annotated[Sequence[str], "of the computations, in sentences: value, uncertainty, unit, and who states them"]
-    facts: Sequence[str]
-    """what else was found, in sentences: ratio of every run, small-vibration equations at large angles"""
-    curves: Sequence[Curve]
-    """of the plots; from the measured files, so only in the file of a user who has these"""
+    facts: Annotated[Sequence[str], "what else was found, in sentences"]
+    curves: Annotated[Sequence[Curve], "of the plots; only in the file of a user who has the measured files"]
     run: Annotated[Mapping[str, Any], "command, provenance"]
 
     def counts(self) -> dict[str, int]:

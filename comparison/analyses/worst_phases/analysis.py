@@ -29,7 +29,6 @@ from reference.measures.local_search import LocalSearch, Points, Surface, predic
 from reference.problem import Scene
 
 TOLERANCE = 1e-5  # relative error of mu by the equations
-POINTS = 600  # of the equations that a search takes
 ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
 ENGINE_POINTS = 6  # of it: the middle and the corners of the square, and where it is predicted to be largest
 SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases` searches
@@ -52,8 +51,7 @@ class Worst:
     phases: Annotated[Phases, "(alpha1, alpha2), rad"] = NOWHERE
     kind: Literal["smooth", "kink", "jump", "nearby", ""] = ""
     """what the surface has there; "nearby": the largest of an engine beside the worst phases of the equations"""
-    side: Phases = NOWHERE
-    """direction in the plane of phases from a jump to the large values beside it; null otherwise"""
+    side: Annotated[Phases, "direction from a jump to the large values beside it; null otherwise"] = NOWHERE
     runner_up: Annotated[Number, "the highest other value at which a climb ended"] = math.nan
     climbs: Annotated[int, "hills from which a climb started"] = 0
     reached: Annotated[int, "climbs that ended at the maximum"] = 0
