@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,9 @@ import multibody
 from multibody.integration import look_ahead
 from multibody.integration.adaptive import Budget, EngineRun, Place, go_on
 from multibody.integration.level import Level
+from multibody.integration.level_runs import _settled
 from multibody.integration.one_run import PhasePair
+from multibody.integration.peak import Peaks
 from multibody.integration.refine import refine
 from multibody.models.assembly import assemble
 from multibody.models.units import units_of
@@ -138,3 +141,10 @@ def test_a_motion_is_integrated_again_behind_a_look_ahead(monkeypatch: pytest.Mo
     assert len(ends) == 4, "to the first quiet, ahead to the second burst, over it, ahead to the end"
     assert early.finest.peaks.instant.max() * units_of(scene).time > 5.0
     np.testing.assert_allclose(early.peaks, whole.peaks, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("travel", "early"), [(1.0, True), (0.5, False)])
+def test_a_run_close_to_the_travel_goes_on_to_the_end(travel: float, early: bool) -> None:
+    run = EngineRun(Peaks(1, math.inf), math.inf, max_displacement=0.499, min_load=1.0, settled=2.0)
+    model: Any = SimpleNamespace(rim=1.0, travel=travel)
+    assert math.isfinite(_settled(run, model, 1e-3)) == early

@@ -340,6 +340,7 @@ def test_levels_on_other_springs_do_not_lower_the_error() -> None:
     candidate = done.candidate()
     assert candidate is not None
     np.testing.assert_allclose(candidate.errors, 2e-3, rtol=1e-2)
+    assert replace(candidate, level_errors=np.array([0.1, 0.2])).relative_error == pytest.approx(0.2, rel=1e-2)
 
 
 @pytest.mark.parametrize("wrong", [-0.1, 1.5, math.nan, "0.5"])

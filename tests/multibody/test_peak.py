@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from multibody.integration.peak import Peaks
+from multibody.integration.peak import Peaks, _corner
 
 Signal = Callable[[np.ndarray], np.ndarray]
 
@@ -77,6 +77,15 @@ def test_a_sample_between_corners_has_the_change_as_error(chunks: int) -> None:
         peaks.add(t, signal(t)[:, None], 1.0 + t[:, None] - corners)
     assert peaks.instant[0] == pytest.approx(0.52)
     assert peaks.sampling[0] == pytest.approx((2.0 - 0.5) * (0.52 - corners[0]))
+
+
+def test_two_instants_of_one_corner_are_part_of_its_error() -> None:
+    """The slip speed passes 1 at 0.504 by the samples before the corner, and at 0.512 by those behind it."""
+    time = np.arange(0.44, 0.58, 0.02)
+    slip = 1.0 + np.where(time < 0.51, time - 0.504, 3.0 * (time - 0.512))
+    value, error, instant = _corner(time, np.where(time < 0.51, 1.0, 0.9), slip[:, None], 3, 1.0, [3])
+    assert (value, instant) == pytest.approx((0.95, 0.508))
+    assert error == pytest.approx(0.5 * 0.1 + 0.5 * 0.008 * 0.1 / 0.02)
 
 
 def test_a_corner_that_is_not_looked_for_is_misread() -> None:

@@ -206,6 +206,9 @@ def test_the_overturning_moment_is_that_of_inertia(supports: int) -> None:
     # without the weight of the displaced body half of it is missing; inertia of the tilt and yaw are left out
     difference = np.abs(at_supports - of_bodies)
     assert np.quantile(difference, 0.95) < 1e-2 * np.abs(of_bodies).max()
+    held = (motion.extra["slip_speed"] < 1e-3).sum(axis=1)
+    rest = [any(begin <= instant <= end for begin, end in motion.stick) for instant in motion.time]
+    assert ((held == supports) == rest).all(), "all supports creep"
 
 
 def test_a_stated_stiffness_of_the_supports_is_part_of_the_model() -> None:
