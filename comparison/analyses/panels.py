@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 COLORS = ("#1f4e8c", "#b3541e", "#2a7f4f", "#7b3f98", "#8a6d00", "#37808c", "#b3124b", "#5b9bd5")
 GRAYS = {"ink": "#222222", "gray": "0.5"}
+LEGEND_ROWS, LEGEND_ROW = 4, 11.5  # rows of a legend in one column; height of a row, points
 MARKERS = "os^Dv<>PX*"  # told apart without colors, too
 
 
@@ -63,7 +64,6 @@ def draw_panels(path: Path, title: str, panels: Sequence[Panel], columns: int = 
 
 def _draw(axes: Axes, each: Panel) -> None:
     plot = each["plot"]
-    axes.set_title(mathtext(each["title"]), fontsize=10)
     axes.grid(color="0.92")
     for line in plot["series"]:
         number = line.get("color", 0)
@@ -89,7 +89,10 @@ def _draw(axes: Axes, each: Panel) -> None:
     for band in plot.get("bands", ()):
         axes.axhspan(*np.clip([band["from"], band["to"]], bottom, top), color="0.93", lw=0.0, zorder=0)
     axes.set_ylim(bottom, top)
-    axes.legend(fontsize=7.5, frameon=False)
+    named = len(axes.get_legend_handles_labels()[1])
+    columns = 1 if named <= LEGEND_ROWS else 2
+    axes.set_title(mathtext(each["title"]), fontsize=10, pad=6.0 + LEGEND_ROW * -(-named // columns))
+    axes.legend(fontsize=7.5, frameon=False, ncols=columns, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderpad=0.0)
 
 
 def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:

@@ -22,9 +22,9 @@ GLOSSARY = {
     "paper's equations.",
     "paper's equations": "The printed equations (4.3)-(4.4) for small vibrations, with dry friction that sticks.",
     "geometry": "The whole sphere instead of its small-vibration form: equations (3.9)-(3.13).",
-    "the instant of stopping": "When a sliding platform comes to rest, its acceleration jumps. The paper's largest "
+    "the peak at the stop": "When a sliding platform comes to rest, its acceleration jumps. The paper's largest "
     "value counts the limit just before the jump, which no computed motion reaches. This step leaves it out.",
-    "friction smoothed near rest": "Friction that grows linearly with the speed below v_reg = 1 mm/s, as engines "
+    "regularized friction": "Friction that grows linearly with the speed below v_reg = 1 mm/s, as engines "
     "have it, instead of friction that sticks.",
     "elastic contact": "The engine's contact gives way a little; that of the equations is rigid.",
     "turning of the bodies": "Bodies may turn, overturning shifts load between the supports, and supports may lift "

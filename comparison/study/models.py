@@ -227,7 +227,7 @@ RESOLVED = _next(
     {"mu_i": "largest value at rest or sliding faster than v_c = 1e-3 m/s"},
     key="resolved",
     title="exact equations, resolved peak",
-    effect="the instant of stopping",
+    effect="the peak at the stop",
     adds="The same motion, read only at rest and while sliding faster than v_c = 1e-3 m/s: what the one-sided "
     "limits at stops, which no sampling reaches, are worth.",
     settings={**EXACT.settings, "cutoff": V_REG},
@@ -238,7 +238,7 @@ REGULARIZED = _next(
     {"friction": "the same Coulomb law, times |v| / v_reg below v_reg = 1e-3 m/s", "mu_i": _PEAK},
     key="regularised",
     title="exact equations, v_reg",
-    effect="friction smoothed near rest",
+    effect="regularized friction",
     adds="Friction linear below v_reg = 1e-3 m/s, as an engine has it: no true rest, no jump at a stop.",
     settings={"equations": "exact", "regularization": V_REG},
     applies=dry,

@@ -20,6 +20,7 @@ from comparison.analyses.ensemble.feature import (
     agreement_sentence,
     demand_rows,
     draw_ensemble,
+    heading,
     isolator_sentence,
     largest_differences,
     target_sentence,
@@ -139,7 +140,7 @@ def table_text(points: Points) -> str:
 
 def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> None:
     """The demands at the largest scale, outcomes, and how far the engine is."""
-    top, motions = max(result.scales), result.motions
+    top = max(result.scales)
     if result.target:
         console.print(target_sentence(result.target), soft_wrap=True, markup=False)
         table = new_table("motion", "factor")
@@ -149,9 +150,7 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
     rows = [row for row in demand_rows(result) if row["scale"] == top]
     for structure in result.structures:
         own = [row for row in rows if row["scene"] == structure.name]
-        at = f", at scale {top:g}" if len(result.scales) > 1 or top != 1.0 else ""
-        title = f"{structure.title} ({structure.name}): {motions} {'motion' if motions == 1 else 'motions'}{at}:"
-        console.print(title, soft_wrap=True, markup=False)
+        console.print(f"{heading(result, structure, top)}:", soft_wrap=True, markup=False)
         shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
         table = new_table("quantity", "unit", "mean", *shares, "largest", "motions")
         for row in own:

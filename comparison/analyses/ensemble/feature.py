@@ -1,5 +1,7 @@
 """Demands under many motions as engineers read them: in the report, on the terminal and as a picture."""
 
+import re
+import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -28,6 +30,7 @@ SHOWN = ("displacement", "residual", "base_shear", "uplift", "support_force_max"
 OF_BODY = {"acceleration": "acceleration of body {}", "drift": "drift below body {}", "torsion": "rotation of body {}"}
 NAMED = 6  # motions of the engine that are named one by one
 PERIOD = {"title": "period, s", "log": True}  # an axis
+UNSEEN = 5e-5  # of a value: a smaller error is not seen in four digits
 WIDTH = 0.3  # of a strip, in steps from one structure to the next
 READ = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "J": ("kJ", 1e-3), "rad": ("mrad", 1e3), "m/s^2": ("g", 1.0 / GRAVITY)}
 
@@ -54,34 +57,55 @@ def ensemble_panels(ensemble: EnsembleResult) -> list[Panel]:
 
 def draw_ensemble(path: Path, ensemble: EnsembleResult) -> None:
     """Write the panels to `path`, PNG, and as PDF."""
-    names = ", ".join(f"{each.title} ({each.name})" for each in ensemble.structures)
-    draw_panels(path, f"{names}, {_motions(ensemble)}: median, 16 % to 84 %", ensemble_panels(ensemble))
+    names = textwrap.shorten(
+        ", ".join(dict.fromkeys(each.title for each in ensemble.structures)), 110, placeholder="..."
+    )
+    draw_panels(path, f"{names}\n{_motions(ensemble)}: median, 16 % to 84 %", ensemble_panels(ensemble))
 
 
 def _motions(ensemble: EnsembleResult) -> str:
     return f"{ensemble.motions} motion{'' if ensemble.motions == 1 else 's'}"
 
 
+def heading(ensemble: EnsembleResult, structure: Structure, scale: float) -> str:
+    """Structure, number of motions, and the scale where there are several."""
+    at = f", scale {scale:g}" if len(ensemble.scales) > 1 or scale != 1.0 else ""
+    return f"{structure.title} ({labels(ensemble)[structure.name]}): {_motions(ensemble)}{at}"
+
+
+def labels(ensemble: EnsembleResult) -> dict[str, str]:
+    """What tells the structures apart, by their names: of those of one file the values in which they differ."""
+    names = [each.name for each in ensemble.structures]
+    files, values = zip(*(name.rstrip("]").partition("[")[::2] for name in names))
+    parts = [re.split(r", |\+", text) for text in values]
+    columns = [column for column in zip(*parts) if len({*column}) > 1]
+    alike = len({*files}) == 1 and len({len(part) for part in parts}) == 1 and columns
+    return dict(zip(names, (", ".join(row) for row in zip(*columns)) if alike else names))
+
+
 def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
-    one, series = len(ensemble.scales) == 1, []
+    one = len(ensemble.scales) == 1
+    series: list[dict[str, Any]] = []
+    by_engine: list[dict[str, Any]] = []
     for place, structure in enumerate(ensemble.structures):
         name, (unit, factor) = structure.name, unit_for_reading(quantity, structure.weight)
         motions, engine = ensemble.curves_of(name, quantity)
-        look: dict[str, Any] = {"name": f"{name}: one motion", "color": place, "legend": False}
+        look: dict[str, Any] = {"name": f"{labels(ensemble)[name]}: one motion", "color": place, "legend": False}
         look |= {"marks": True, "line": False} if one else {"width": 0.7}
         series += _values(motions, factor, place if one else None, **look)
         if stripes := ensemble.stripes_of(name, quantity):
             x = [place + WIDTH if one else stripe.scale for stripe in stripes]
             fractiles = zip(*(stripe.fractiles for stripe in stripes))
-            series.append(_median(name, place, x, fractiles, factor, band=not one, line=not one))
+            series.append(_median(labels(ensemble)[name], place, x, fractiles, factor, band=not one, line=not one))
         look = {"name": "engine", "color": "ink", "marks": True, "line": False}
-        look |= {"legend": False} if any(line["name"] == "engine" for line in series) else {}
-        series += _values(engine, factor, place - WIDTH if one else None, **look)
+        look |= {"legend": False} if by_engine else {}
+        by_engine += _values(engine, factor, place - WIDTH if one else None, **look)
     title = title_of(quantity)
     places = range(len(ensemble.structures))
     strips = {"title": "", "ticks": [[place, ""] for place in places], "range": [-0.6, len(places) - 0.4]}
     scales = {"title": "scale factor of the motion", "range": [0.0, 1.04 * max(ensemble.scales)]}
     label = f"{title} {'by scene' if one else 'over the scale factor'}, {_motions(ensemble)}"
+    series += by_engine
     return panel(title, label, strips if one else scales, _from_zero(f"{title}, {unit}", series), series)
 
 
@@ -116,7 +140,9 @@ def _profiles(ensemble: EnsembleResult) -> list[Panel]:
             unit, factor = unit_for_reading(quantity, structure.weight)
             if rows := ensemble.profile(structure.name, quantity):
                 fractiles = zip(*(row.fractiles for row in rows))
-                series.append(_median(structure.name, place, [row.body for row in rows], fractiles, factor))
+                series.append(
+                    _median(labels(ensemble)[structure.name], place, [row.body for row in rows], fractiles, factor)
+                )
         if series:
             ticks = [[n, str(n)] for n in range(1, max(each.bodies for each in ensemble.structures) + 1)]
             axes = {"title": "body, from the platform up", "ticks": ticks}, _from_zero(f"{quantity}, {unit}", series)
@@ -130,7 +156,14 @@ def _spectra(ensemble: EnsembleResult) -> list[Panel]:
     panels = []
     for title in ("platform", "top"):
         series = [
-            _median(structure.name, place, list(spectrum.period), spectrum.fractiles, 1.0 / GRAVITY, marks=False)
+            _median(
+                labels(ensemble)[structure.name],
+                place,
+                list(spectrum.period),
+                spectrum.fractiles,
+                1.0 / GRAVITY,
+                marks=False,
+            )
             for place, structure in enumerate(ensemble.structures)
             for spectrum in ensemble.spectra
             if (spectrum.structure, spectrum.body) == (structure.name, 1 if title == "platform" else structure.bodies)
@@ -242,12 +275,16 @@ def shown_stripes(stripes: Sequence[Stripe], structure: str, scale: float) -> li
 
 
 def text_of(number: Statistic, factor: float) -> str:
-    """A value to four digits without power of ten, with its error, which may be unknown."""
+    """A value to four digits without power of ten, with its error where these digits show it."""
     if number.value is None:
         return "none"
     value = factor * number.value
     digits = f"{value:.4g}" if abs(value) < 1e4 else f"{float(f'{value:.4g}'):.0f}"
-    return digits if number.error is None else f"{digits} ± {factor * number.error:.1g}"
+    return (
+        digits
+        if number.error is None or factor * number.error <= UNSEEN * abs(value)
+        else f"{digits} ± {factor * number.error:.1g}"
+    )
 
 
 FEATURE = Feature(
@@ -262,7 +299,9 @@ FEATURE = Feature(
             "ensemble_panels": ensemble_panels(report.results.of("ensemble")),
             "ensemble_rows": demand_rows(report.results.of("ensemble")),
             "agreement_sentence": agreement_sentence,
+            "heading": heading,
             "isolator_sentence": isolator_sentence,
+            "labels": labels(report.results.of("ensemble")),
             "target_sentence": target_sentence,
             "title_of": title_of,
         },

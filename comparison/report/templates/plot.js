@@ -107,7 +107,7 @@ function drawPlot(box, spec) {
     }
     series.x.forEach((x, i) => {
       if (!shown[i]) return;
-      if (series.low && !series.band && known(series.low[i])) drawing.append(svgElement("line", { x1: X(x), x2: X(x), y1: clampY(Math.max(series.low[i], spec.y.log ? yRange[0] : -Infinity)), y2: clampY(series.high[i]), class: `line ${look}` }));
+      if (series.low && !series.band && known(series.low[i]) && known(series.high[i])) drawing.append(svgElement("line", { x1: X(x), x2: X(x), y1: clampY(Math.max(series.low[i], spec.y.log ? yRange[0] : -Infinity)), y2: clampY(series.high[i]), class: `line ${look}` }));
       if (!series.marks) return;
       const mark = markOf(series.marks === true ? series.color : series.marks, X(x), Y(series.y[i]), look);
       mark.append(svgElement("title", {}, series.titles?.[i] ?? `${series.name}: ${+x.toPrecision(5)}, ${+series.y[i].toPrecision(4)}`));

@@ -45,8 +45,8 @@ from comparison.surfaces.figures import pairs, print_maps
 
 EFFECTS = (
     "geometry",
-    "the instant of stopping",
-    "friction smoothed near rest",
+    "the peak at the stop",
+    "regularized friction",
     "elastic contact",
     "turning of the bodies",
 )

@@ -33,7 +33,7 @@ def test_the_sentence_has_the_planted_size_and_cause() -> None:
     assert result.sentence.startswith(
         "fig3-I, platform: the engine gives 12 % less than the paper's equations (mean over 4 × 4 initial phases, "
     )
-    assert "Cause: the instant of stopping, not geometry." in result.sentence
+    assert "Cause: the peak at the stop, not geometry." in result.sentence
     assert "the two codes agree to" in result.sentence
 
 
