@@ -35,9 +35,8 @@ from comparison.cli.terminal import print_models_left_out, print_plan, print_sto
 from comparison.cli.user_models import Engines, as_words
 from comparison.registry import chosen_analyses, first_tasks, levels
 from comparison.runner.cache import Cache, store_beside
-from comparison.runner.executors import Pool
 from comparison.runner.output import clear_dead
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Deadline, TimeUpError, progress, wide_console
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults

@@ -28,8 +28,7 @@ from comparison.analyses.claims.table import GRID, RECORD, SIGNS, ClaimTable
 from comparison.analyses.effective_values.analysis import forced_ratios
 from comparison.json_file import json_text
 from comparison.runner.cache import Cache, store_beside
-from comparison.runner.executors import cores
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import cores, process_pool
 from comparison.runner.runner import Runner, compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults

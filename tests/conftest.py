@@ -21,8 +21,7 @@ import pytest
 from hypothesis import settings
 from numba.core.dispatcher import Dispatcher
 
-from comparison.runner.executors import cores
-from comparison.runner.processes import one_thread_each
+from comparison.runner.processes import cores, one_thread_each
 
 try:
     import fcntl

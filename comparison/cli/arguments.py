@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
 
 from comparison.runner.cache import Cache
-from comparison.runner.executors import cores
+from comparison.runner.processes import cores
 from comparison.runner.task import BATCH, RESULT
 from reference.command import OneLineParser, UsageError
 from reference.problem import SceneError

@@ -20,9 +20,8 @@ from comparison.cli.arguments import EndedEarlyError, changed, command_line, job
 from comparison.runner.cache import Cache, StoreError, refuse_foreign_store, store_beside
 from comparison.runner.dask import cluster
 from comparison.runner.environment import provenance
-from comparison.runner.executors import ExecutorLostError, Pool
 from comparison.runner.output import destination
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import ExecutorLostError, Pool, process_pool
 from comparison.runner.progress import progress
 from comparison.runner.runner import Runner, compiling_task
 from comparison.runner.task import Task

@@ -16,8 +16,7 @@ from typing import Any
 
 from comparison.cli.arguments import CommandParser, number
 from comparison.runner.environment import engine_fingerprint
-from comparison.runner.executors import TimeLimitError, WorkerDiedError
-from comparison.runner.processes import Workers
+from comparison.runner.processes import TimeLimitError, WorkerDiedError, Workers
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.user_models import LAWS, LIKE, TIME_LIMIT, names_of, note_line, silent, user_function, user_model
 from comparison.wording import exception_line

@@ -21,8 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numba
 
 from comparison.runner.environment import environment_fingerprint
-from comparison.runner.executors import ExecutorLostError, WorkerDiedError
-from comparison.runner.processes import Call, Workers
+from comparison.runner.processes import Call, ExecutorLostError, WorkerDiedError, Workers
 from reference.problem import SceneError
 
 if TYPE_CHECKING:

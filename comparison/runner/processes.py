@@ -3,6 +3,11 @@ Worker processes of this machine, each with a pipe of its own: one that dies or 
 
 The system ends a process that computes for longer than its task may, also in the middle of compiled code, where no
 handler of Python would run. It counts the process's own processor time: what else the machine does makes no task fail.
+
+What the runner asks of any executor beyond `concurrent.futures`, all of it optional: `width`, how many tasks to keep at
+work; `start(call, seconds, group)`, a call in a process of its group, with a limit of processor time; from a future
+`WorkerDiedError` and `TimeLimitError`, where the call has ended its process and harmed no other, and
+`ExecutorLostError`, where there is no going on; `abandon`, to end at once.
 """
 
 from __future__ import annotations
@@ -26,8 +31,6 @@ from typing import Any
 
 import numba
 
-from comparison.runner.executors import TimeLimitError, WorkerDiedError
-
 try:
     import resource
 except ImportError:  # Windows limits no process: the wall time has to do
@@ -41,8 +44,45 @@ EXIT = 5.0  # s from the end of a pipe to the end of its process
 SAFE_PATH = "PYTHONSAFEPATH"  # set: Python does not put the working directory in front of what it searches
 
 Call = Callable[[], Any]
+Pool = Executor | Callable[[int], Executor]  # an executor that somebody else ends, or what makes one for N jobs
 
 _processes = threading.Lock()  # starting a process collects others that have ended: one thread at a time does either
+
+
+class WorkerDiedError(Exception):
+    """The process that ran this task died, `times` in a row. The executor goes on, and no other task was harmed."""
+
+    def __init__(self, message: str, times: int = 1, exit_code: int | None = None) -> None:
+        super().__init__(message)
+        self.times, self.exit_code = times, exit_code
+
+
+class TimeLimitError(Exception):
+    """The process that ran this task was ended, because the task took longer than it may. `str(error)`: how long."""
+
+
+class ExecutorLostError(RuntimeError):
+    """No task can be computed any more. `str(error)` is one line that says why."""
+
+
+def cores() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@contextmanager
+def executing(pool: Pool, jobs: int) -> Iterator[Executor]:
+    """The executor; one that is made for the block ends with it, and without waiting if the block raises."""
+    if isinstance(pool, Executor):
+        yield pool
+        return
+    made = pool(jobs)
+    try:
+        yield made
+    except BaseException:
+        made.shutdown(wait=False, cancel_futures=True)
+        raise
+    made.shutdown()
 
 
 def process_pool(jobs: int) -> Workers:

@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 import reference
-from comparison.runner.executors import ExecutorLostError, Pool, TimeLimitError, WorkerDiedError, executing
+from comparison.runner.processes import ExecutorLostError, Pool, TimeLimitError, WorkerDiedError, executing
 from comparison.runner.progress import Display
 from comparison.runner.task import GIVEN_UP, GIVEN_UP_AFTER, Task, TaskResult, execute, unfinished
 from comparison.runner.task_results import TaskResults

@@ -12,9 +12,7 @@ from typing import Any, Literal
 from reference.problem import Scene, mirror_symmetric, no_friction
 
 V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity, on both sides alike
-REFERENCE_TOLERANCE = (
-    1e-6  # the reference is cheap: asked for at least this, so that its error never blurs a difference
-)
+REFERENCE_TOLERANCE = 1e-6  # asked at least of the equations, which are cheap: their error blurs no difference
 SOFTENED = "softened-"  # begins the key of a model whose bars are softened
 
 

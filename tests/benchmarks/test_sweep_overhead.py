@@ -25,8 +25,7 @@ from local_cluster import LocalCluster
 
 from comparison.runner.cache import Cache
 from comparison.runner.dask import cluster
-from comparison.runner.executors import Pool
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import Pool, process_pool
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study

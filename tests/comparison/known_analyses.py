@@ -16,7 +16,7 @@ from comparison.analyses.claims.readings import READINGS
 from comparison.analyses.claims.table import table_of
 from comparison.analyses.trends import trend
 from comparison.runner.analysis import Analysis
-from comparison.runner.executors import Pool
+from comparison.runner.processes import Pool
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults

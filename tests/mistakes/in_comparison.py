@@ -204,7 +204,7 @@ MISTAKES = (
             '("drift", 2, "drift of the lowest story", "mm", 1.0)', "Values in m have the unit mm.",
             (OF + "demand_surfaces.py::test_panels_are_in_the_units_of_their_axes",)),
     # runner
-    Mistake(RUNNER + "executors.py", "        made.shutdown(wait=False, cancel_futures=True)\n        raise",
+    Mistake(RUNNER + "processes.py", "        made.shutdown(wait=False, cancel_futures=True)\n        raise",
             "        raise", "An executor is not shut down after an exception.",
             (DEATHS + "an_executor_ends_with_the_block_that_it_was_made_for",)),
     Mistake(RUNNER + "task_results.py", " and result.error_message != GIVEN_UP", "",

@@ -14,9 +14,8 @@ from comparison.analyses.assumptions.feature import draw_assumption_figure
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs, writing
 from comparison.cli.computing import computed
 from comparison.cli.terminal import new_table
-from comparison.runner.executors import Pool
 from comparison.runner.output import destination, publish, refuse_foreign_files
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.models import has_spatial_data
 from comparison.study.study import Study, refuse_same_names

@@ -21,9 +21,8 @@ from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table
-from comparison.runner.executors import Pool
 from comparison.runner.output import destination, publish, refuse_foreign_files
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from reference.problem import SceneError
 

@@ -11,8 +11,7 @@ from comparison.analyses.claims.table import GRID, SIGNS, Claims, ClaimTable
 from comparison.analyses.effective_values.analysis import forced_ratios
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, whole_number
 from comparison.cli.computing import computed
-from comparison.runner.executors import Pool
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.study import Study
 from reference.problem import builtin_scenes, load_scene

@@ -30,9 +30,8 @@ from comparison.analyses.ensemble.target import matched
 from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table, print_implausible_values
-from comparison.runner.executors import Pool
 from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent

@@ -18,9 +18,8 @@ from comparison.analyses.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED
 from comparison.cli.arguments import CommandParser, command, jobs, number, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.user_models import add_models, user_models
-from comparison.runner.executors import Pool
 from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from reference.problem import SceneError
 

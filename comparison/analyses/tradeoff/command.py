@@ -22,9 +22,8 @@ from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table
 from comparison.cli.user_models import add_models, user_models
-from comparison.runner.executors import Pool
 from comparison.runner.output import destination, made_by, netcdf, publish, refuse_foreign_files
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.study import Study, refuse_same_names
 from comparison.surfaces.figures.file_names import figure_file, with_ending

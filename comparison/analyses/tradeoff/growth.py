@@ -13,7 +13,7 @@ from comparison.analyses.tradeoff.analysis import Measurement, measure, sample, 
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import result
 from comparison.runner.analysis import Analysis
-from comparison.runner.executors import cores
+from comparison.runner.processes import cores
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model

@@ -21,8 +21,7 @@ from comparison.analyses.extremes.figure import draw_extremes
 from comparison.analyses.extremes.matrix import STORED, Extreme, Matrix, Verdict
 from comparison.analyses.extremes.rows import CAUSES, COLUMNS, PLAIN_RADIUS, Row, rows, scene
 from comparison.runner.cache import Cache
-from comparison.runner.executors import Pool, TimeLimitError, WorkerDiedError
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import Pool, TimeLimitError, WorkerDiedError, process_pool
 from comparison.runner.runner import Runner
 from comparison.runner.task import TaskResult
 from comparison.runner.task_results import TaskResults

@@ -13,7 +13,7 @@ from runs import Run
 
 from comparison.runner.cache import Cache, Key
 from comparison.runner.dask import cluster
-from comparison.runner.executors import Pool
+from comparison.runner.processes import Pool
 from comparison.runner.progress import Display
 from comparison.runner.runner import Runner
 from comparison.runner.task import BATCH, Task

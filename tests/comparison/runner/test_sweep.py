@@ -17,8 +17,7 @@ from light_tasks import counted, doubled, hangs_in_compiled_code, is_kept_waitin
 from runs import no_executor
 
 from comparison.runner.cache import Cache
-from comparison.runner.executors import ExecutorLostError, Pool, TimeLimitError, executing
-from comparison.runner.processes import process_pool
+from comparison.runner.processes import ExecutorLostError, Pool, TimeLimitError, executing, process_pool
 from comparison.runner.runner import Runner
 from comparison.runner.task import GIVEN_UP, Task, TaskResult
 from comparison.runner.task_results import TaskResults
