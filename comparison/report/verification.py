@@ -40,6 +40,9 @@ reference: reference/test_energy_balance.py
 reference: reference/test_oracle_values.py
   another program: SciPy, event by event, from the same physics | the sum of both errors |
     test_amplification_is_the_oracle_s
+reference: reference/test_heated_friction.py
+  friction that heat lowers: another program, by constant steps | the error of its steps |
+    test_a_heated_motion_is_that_of_constant_steps
 reference: comparison/analyses/test_errata.py
   the matrices (3.9)-(3.13) written from the print, errata corrected | 1e-4, peaks read every 2 ms |
     test_the_mended_matrices_are_the_exact_equations
