@@ -1,7 +1,5 @@
 """Published numbers as an analysis: a task for every benchmark and side."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Mapping, Sequence

@@ -5,8 +5,6 @@ Only facts are taken from the sources: parameters and numbers. A closed form was
 digits.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

@@ -5,8 +5,6 @@ Exit codes: 0 every number is met or its difference explained; 1 not; 2 a wrong 
 written; others as in `run_command`.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from dataclasses import replace
@@ -34,7 +32,17 @@ SOLVERS = {model.trajectory for model in MODELS.values()}  # what the workers as
 def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Solve the benchmarks that the command line asks for; the exit code."""
     begin = time.monotonic()
-    options = _parser().parse_args(argv)
+    parser = CommandParser("benchmarks", "Numbers published elsewhere, each by the equations and by the engine.")
+    parser.add_out(f"where {STORED.name} and {PAGE} go")
+    parser.add_computing()
+    parser.add_argument("--only", default="", metavar="TEXT", help="the benchmarks whose name contains this")
+    parser.add_argument(
+        "--mastodon",
+        type=Path,
+        metavar="FILE",
+        help="CSV with the input of MASTODON's friction pendulum test, which is not shipped: adds that benchmark",
+    )
+    options = parser.parse_args(argv)
     jobs(options)  # refused before anything else is looked at
     analysis = BenchmarkTable(_chosen(options.only, options.mastodon))
     out = destination(options.out)
@@ -77,17 +85,3 @@ def _chosen(only: str, mastodon_input: Path | None) -> list[Case]:
         names = ", ".join(case.scene.name for case in known)
         raise SceneError("command line", "--only", only, f"no benchmark is left: take part of a name, {names}")
     return chosen
-
-
-def _parser() -> CommandParser:
-    parser = CommandParser("benchmarks", "Numbers published elsewhere, each by the equations and by the engine.")
-    parser.add_out(f"where {STORED.name} and {PAGE} go")
-    parser.add_computing()
-    parser.add_argument("--only", default="", metavar="TEXT", help="the benchmarks whose name contains this")
-    parser.add_argument(
-        "--mastodon",
-        type=Path,
-        metavar="FILE",
-        help="CSV with the input of MASTODON's friction pendulum test, which is not shipped: adds that benchmark",
-    )
-    return parser

@@ -1,7 +1,5 @@
 """External benchmarks: in the report."""
 
-from __future__ import annotations
-
 from comparison.analyses.benchmarks.table import MEANING, STORED, Benchmarks, Verdict, stated, with_error
 from comparison.report.section import Feature, Section
 

@@ -5,8 +5,6 @@ Between its instants a motion is the cubic with its positions and velocities, so
 the instants are.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicHermiteSpline

@@ -1,14 +1,12 @@
 """Published numbers beside what both sides compute, as data: a file, and what the report needs of it."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 from enum import StrEnum
 from importlib import resources
-from typing import Any
+from typing import Annotated, Any
 
 import jinja2
 
@@ -42,10 +40,8 @@ MEANING = {
 class Number:
     """What one side computes of a published number."""
 
-    value: float | None
-    """in the unit of the published number; null without an answer"""
-    error: float | None
-    """estimated absolute error; null where it is not known"""
+    value: Annotated[float | None, "in the unit of the published number; null without an answer"]
+    error: Annotated[float | None, "estimated absolute error; null where it is not known"]
     verdict: Verdict
     """met: within both errors; friction: the equations with the engine's friction law give the same; model: the source
     models something else; NOT MET: neither; no answer: no value"""
@@ -55,14 +51,10 @@ class Number:
 class Row:
     """One published number."""
 
-    quantity: str
-    """what it is"""
-    unit: str
-    """its unit; empty for a pure number"""
-    published: float
-    """the number"""
-    uncertainty: float
-    """absolute, as published or half of the last digit; 0 for an exact number"""
+    quantity: Annotated[str, "what it is"]
+    unit: Annotated[str, "its unit; empty for a pure number"]
+    published: Annotated[float, "the number"]
+    uncertainty: Annotated[float, "absolute, as published or half of the last digit; 0 for an exact number"]
     numbers: Mapping[str, Number] = field(default_factory=dict)
     """by side: equations, smoothed (the equations with the engine's friction law), engine"""
 
@@ -71,34 +63,23 @@ class Row:
 class Benchmark:
     """The published numbers of one scene."""
 
-    name: str
-    """name of the scene"""
-    title: str
-    """what is solved"""
-    source: str
-    """where the numbers are published"""
-    evidence: str
-    """for what it is evidence"""
-    regularization: float
-    """v_reg of the engine, m/s"""
-    difference: str
-    """what the source models and this project does not; empty where the models are the same"""
-    rows: Sequence[Row]
-    """one per published number"""
-    endings: Mapping[str, str]
-    """by side: how the motion ended"""
-    seconds: Mapping[str, float]
-    """by side: processor time, s"""
+    name: Annotated[str, "name of the scene"]
+    title: Annotated[str, "what is solved"]
+    source: Annotated[str, "where the numbers are published"]
+    evidence: Annotated[str, "for what it is evidence"]
+    regularization: Annotated[float, "v_reg of the engine, m/s"]
+    difference: Annotated[str, "what the source models and this project does not; empty where the models are the same"]
+    rows: Annotated[Sequence[Row], "one per published number"]
+    endings: Annotated[Mapping[str, str], "by side: how the motion ended"]
+    seconds: Annotated[Mapping[str, float], "by side: processor time, s"]
 
 
 @result
 class Benchmarks:
     """All benchmarks."""
 
-    benchmarks: Sequence[Benchmark]
-    """one per scene"""
-    run: Mapping[str, Any]
-    """command, times, provenance"""
+    benchmarks: Annotated[Sequence[Benchmark], "one per scene"]
+    run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
     def counts(self) -> dict[str, int]:
         """Numbers of the equations and of the engine by verdict, from the best to the worst, zeros included."""

@@ -1,7 +1,5 @@
 """Numbers published elsewhere: met by the equations and by the engine, or the difference is explained."""
 
-from __future__ import annotations
-
 import json
 import math
 import os
