@@ -6,17 +6,8 @@ from typing import Annotated
 
 import numpy as np
 
+from comparison.analyses.claims import peaks_and_valleys as counting
 from comparison.analyses.claims.evidence import Evidence
-from comparison.analyses.claims.peaks_and_valleys import (
-    LEAST_SHARE,
-    MOST_SHARE,
-    SHARE,
-    Counts,
-    drawn,
-    periodic,
-    profiled,
-    relief,
-)
 from comparison.analyses.claims.readings import EPSILON
 from comparison.analyses.claims.smoothness import Bend
 from comparison.result_types import Array, Text, result
@@ -30,7 +21,7 @@ ROUNDING = 1e-9  # of epsilon: T_c (1 -+ epsilon) itself is close to T_c
 NEAR = np.pi / 4.0  # rad, from a corner, or from the center of a quadrant
 CORNERS = ((0.0, 0.0),)  # of the square that closes, where its four corners are one point
 CENTERS = tuple((a * np.pi, b * np.pi) for a in (0.5, 1.5) for b in (0.5, 1.5))  # as near as a peak and its twin can be
-VIEWS = {"periodic": periodic, "drawn": drawn, "profile": profiled}
+VIEWS = {"periodic": counting.periodic, "drawn": counting.drawn, "profile": counting.profiled}
 
 
 class Finding(StrEnum):
@@ -140,16 +131,16 @@ def near_resonance(case: Evidence) -> Verdict:
     return judged(max(gaps) <= EPSILON * (1.0 + ROUNDING), "; ".join(words))
 
 
-def views(case: Evidence, body: int, share: float = SHARE) -> dict[str, Counts]:
+def views(case: Evidence, body: int, share: float = counting.SHARE) -> dict[str, counting.Counts]:
     """Peaks and valleys of the surface of a body, from 1 on, by way of counting. share: least prominence over range."""
     return {name: count(case.mu[..., body - 1], case.error, share) for name, count in VIEWS.items()}
 
 
-def counted(case: Evidence, wanted: Counts) -> Verdict:
+def counted(case: Evidence, wanted: counting.Counts) -> Verdict:
     """As many peaks and valleys of mu_1 as the paper counts, both in the same view."""
     if case.flat(1):
         return judged(False, "flat")
-    at_shares = [views(case, 1, share) for share in (SHARE, LEAST_SHARE, MOST_SHARE)]
+    at_shares = [views(case, 1, share) for share in (counting.SHARE, counting.LEAST_SHARE, counting.MOST_SHARE)]
     holds = {name: counts == wanted for name, counts in at_shares[0].items()}
     finding = Finding.AS_DRAWN if holds["drawn"] or holds["profile"] else Finding.NOT
     if holds["periodic"]:
@@ -164,7 +155,7 @@ def counted(case: Evidence, wanted: Counts) -> Verdict:
 
 def more_complex(case: Evidence) -> Verdict:
     """Check that mu_2 has several peaks and valleys, and more of them than mu_1."""
-    first, second = (periodic(case.mu[..., body], case.error, LEAST_SHARE) for body in (0, 1))
+    first, second = (counting.periodic(case.mu[..., body], case.error, counting.LEAST_SHARE) for body in (0, 1))
     words = f"mu_2 {second.peaks} and {second.valleys}, mu_1 {first.peaks} and {first.valleys}"
     return judged(min(second) > 1 and sum(second) > sum(first), words)
 
@@ -175,7 +166,7 @@ def near(case: Evidence, places: Sequence[tuple[float, float]]) -> Verdict:
     if case.flat(2):
         return judged(False, "flat")
     step = 2.0 * np.pi / len(mu)
-    tops = [(step * row, step * column) for row, column in relief(mu, case.error).tops]
+    tops = [(step * row, step * column) for row, column in counting.relief(mu, case.error).tops]
     words = ", ".join(f"({np.degrees(top[0]):.0f}°, {np.degrees(top[1]):.0f}°)" for top in tops)
     holds = all(min(torus_distance(top, place) for place in places) <= NEAR for top in tops)
     return judged(holds, f"peaks at {words}")
