@@ -114,22 +114,21 @@ def test_the_page_shows_table_and_motions_of_a_record(tmp_path: Path) -> None:
         assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
     with sync_playwright() as driver:
         browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        for width in (PHONE,):
-            visit = opened(browser, place / "index.html", width)
-            page = visit.page
-            assert page.locator("canvas.surface:visible").count() == 0
-            assert page.locator("[data-record]:visible tbody tr").count() == 6, "one row for each model"
-            until(page, "document.querySelector('[data-part=plots] svg')")
-            page.locator("[data-part=pair]").select_option("like-for-like")
-            until(page, "document.querySelector('[data-part=plots] .legend')?.textContent.includes('translational')")
-            page.locator("[data-part=scene]").select_option(index=1)
-            page.locator("[data-part=body]").select_option("2")
-            assert page.locator("[data-record='1-2']").is_visible()
-            unfolded(page)
-            assert page.evaluate(OVERLAPS)["faults"] == []
-            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-            assert "phases per axis" not in page.inner_text("main")
-            assert (visit.complaints, len(visit.requests)) == ([], 1)
+        visit = opened(browser, place / "index.html", PHONE)
+        page = visit.page
+        assert page.locator("canvas.surface:visible").count() == 0
+        assert page.locator("[data-record]:visible tbody tr").count() == 6, "one row for each model"
+        until(page, "document.querySelector('[data-part=plots] svg')")
+        page.locator("[data-part=pair]").select_option("like-for-like")
+        until(page, "document.querySelector('[data-part=plots] .legend')?.textContent.includes('translational')")
+        page.locator("[data-part=scene]").select_option(index=1)
+        page.locator("[data-part=body]").select_option("2")
+        assert page.locator("[data-record='1-2']").is_visible()
+        unfolded(page)
+        assert page.evaluate(OVERLAPS)["faults"] == []
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        assert "phases per axis" not in page.inner_text("main")
+        assert (visit.complaints, len(visit.requests)) == ([], 1)
         browser.close()
 
 
