@@ -6,6 +6,8 @@ Measure every engine of examples/engines beside ours and write docs/engines.md w
 Without names every engine that is installed here is measured. What was measured before is kept in docs/engines.json, so
 that an engine that is installed elsewhere keeps its rows. 64 phase pairs of two scenes; those whose motion mirrors
 another's are computed once. Error: relative, against the reference at a tolerance of 1e-9. Time: of the processor.
+
+docs/question.json states what is asked, and the answer with its errors, for codes that no adapter calls.
 """
 
 from __future__ import annotations
@@ -25,7 +27,8 @@ import reference
 from comparison.runner.environment import PACKAGES
 from comparison.runner.processes import Workers
 from comparison.study.user_models import amplification
-from reference.problem import load_scene, phase_grid
+from reference.problem import GRAVITY, load_scene, phase_grid
+from reference.problem.excitation import exponents
 from reference.problem.symmetry import sources
 
 DOCS = Path(__file__).parent
@@ -138,10 +141,51 @@ def main(names: list[str]) -> None:
             rows = [row for row in rows if any(row[key] != measured[key] for key in ("scene", "engine", "setting"))]
             rows.append(measured)
             store.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    (DOCS / "question.json").write_text(json.dumps(question()) + "\n", encoding="utf-8")
     order = [engine.name for engine in ENGINES]
     rows.sort(key=lambda row: (SCENES.index(row["scene"]), order.index(row["engine"]), row["seconds"]))
     _draw(rows)
     (DOCS / "engines.md").write_text(_page(rows), encoding="utf-8")
+
+
+def question() -> dict[str, Any]:
+    """What every engine is asked, in SI units and without this package, and the answer with its errors."""
+    phases = phase_grid(GRID)
+    asked: dict[str, Any] = {
+        "asked": "mu[i]: largest absolute acceleration of body i over the largest ground acceleration, from rest at "
+        "the lowest point, 0 <= t <= duration, for each pair of phases",
+        "system": "Body 1 slides inside a sphere of the radius; its contact force carries the weight of all bodies. "
+        "Bodies 2, 3, ... rise and fall with it and move relative to it in x and y; link j joins bodies j and j + 1. "
+        "Friction: Coulomb, at rest up to the same coefficient.",
+        "ground": "acceleration along axis a: sum over k of amplitude[a][k] exp(-decay[k] t) cos(omega[k] t + "
+        "phase[k])",
+        "answers": {
+            "supremum": "one-sided limits at stops included",
+            "resolved": f"the same, read at rest or faster than {V_REG} m/s",
+            "regularized": f"friction linear in the speed below {V_REG} m/s",
+            "small, resolved": "equations of small vibrations, read like resolved",
+        },
+        "phases": phases.tolist(),
+        "scenes": {},
+    }
+    for name in SCENES:
+        scene = load_scene(name)
+        waves = exponents(scene)
+        results = {key: reference.amplification(scene, phases, tolerance=1e-9, **law) for key, law in SOLUTIONS.items()}
+        asked["scenes"][name] = {
+            "gravity": GRAVITY,
+            "radius": scene.radius,
+            "friction": scene.friction_coefficient,
+            "masses": scene.masses.tolist(),
+            "stiffness": scene.stiffness.tolist(),
+            "amplitude": scene.amplitudes.tolist(),
+            "omega": waves.imag.tolist(),
+            "decay": (-waves.real).tolist(),
+            "duration": scene.duration,
+            "mu": {key: found.mu.tolist() for key, found in results.items()},
+            "error": {key: found.error.tolist() for key, found in results.items()},
+        }
+    return asked
 
 
 def _measured(engine: Engine) -> Iterator[dict[str, Any]]:

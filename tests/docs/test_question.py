@@ -1,0 +1,47 @@
+"""The question that other codes are asked, answered from its file alone."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+QUESTION = json.loads(Path(__file__).parents[2].joinpath("docs/question.json").read_text(encoding="utf-8"))
+V_REG = 1e-3
+
+
+@pytest.mark.parametrize(("name", "pair"), [("fig3-I", 9), ("fig3-II", 21)])
+def test_the_file_of_the_question_is_enough_to_answer_it(name, pair):
+    """Newton-Euler on the sphere by SciPy, friction linear below v_reg."""
+    scene, phase = QUESTION["scenes"][name], np.array(QUESTION["phases"][pair])
+    masses, stiffness, amplitude, omega, decay = (
+        np.array(scene[key]) for key in ("masses", "stiffness", "amplitude", "omega", "decay")
+    )
+    bodies, total, radius = len(masses), masses.sum(), scene["radius"]
+
+    def ground(t):
+        return amplitude @ (np.exp(-decay * t) * np.cos(omega * t + phase))
+
+    def accelerations(t, y):
+        x, v = y.reshape(2, bodies, 2)
+        u = ground(t)
+        a = np.diff(stiffness * np.diff(x, axis=0), axis=0, prepend=0.0, append=0.0) / masses[:, None] - u[:2]
+        height = np.sqrt(radius**2 - x[0] @ x[0])
+        normal, velocity = np.append(-x[0], height) / radius, np.append(v[0], x[0] @ v[0] / height)
+        speed = np.linalg.norm(velocity)
+        push = normal - scene["friction"] * velocity / max(speed, V_REG)
+        free, inverse = np.append(a[0], -scene["gravity"] - u[2]), 1.0 / np.array([masses[0], masses[0], total])
+        platform = free + inverse * push * (speed**2 / radius - normal @ free) / (normal @ (inverse * push))
+        a[0] = platform[:2]
+        return a, np.column_stack([a + u[:2], np.full(bodies, u[2] + platform[2])])
+
+    def slope(t, y):
+        return np.append(y[2 * bodies :], accelerations(t, y)[0])
+
+    span = 0.0, scene["duration"]
+    run = solve_ivp(slope, span, np.zeros(4 * bodies), "LSODA", rtol=1e-7, atol=1e-9, dense_output=True)
+    times = np.interp(np.arange(0.0, len(run.t) - 1.0, 0.2), np.arange(len(run.t)), run.t)
+    largest = np.max([np.linalg.norm(accelerations(t, run.sol(t))[1], axis=1) for t in times], axis=0)
+    mu = largest / np.max([np.linalg.norm(ground(t)) for t in np.linspace(*span, 20_001)])
+    np.testing.assert_allclose(mu, scene["mu"]["regularized"][pair], rtol=2e-4)
