@@ -207,16 +207,17 @@ def test_a_tall_scene_has_its_bodies_one_above_the_other(bodies: int) -> None:
     assert scene.isolator.ring >= bodies
 
 
-def test_the_cost_grows_with_bodies_and_phase_pairs() -> None:
-    few = [
-        replace(QUANTITIES[0], values=(2, 4, 8), models=QUANTITIES[2].models),
-        replace(QUANTITIES[2], values=(4, 16, 64)),
-    ]
-    bodies, pairs = collected(Growth(few), Study((SCENE,), 1, 1e-3), executor=lambda jobs: ThreadPoolExecutor(1))
-    assert bodies.quantity == "bodies"
-    assert pairs.quantity == "phase pairs"
-    assert None not in bodies.seconds
-    assert pairs.seconds[-1] > pairs.seconds[0]
+def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.MonkeyPatch) -> None:
+    def measured(measurement: Measurement) -> Measured:
+        """A second for every body of every phase pair."""
+        mu = np.ones((len(measurement.phases), len(measurement.scene.bodies)))
+        return Measured(mu, mu, float(mu.size), np.nan)
+
+    monkeypatch.setattr(growth, "measure", measured)
+    few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 16))]
+    *bodies, pairs = collected(Growth(few), Study((SCENE,), 1, 1e-3), executor=ThreadPoolExecutor)
+    assert [each.seconds for each in bodies] == [[2.0, 4.0, 8.0]] * 3, "of every model"
+    assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 32.0])
 
 
 def test_the_command_writes_and_prints_the_growth(
