@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from multibody.integration.peak import Peaks
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation
 from multibody.models.impact import ImpactLaw
+from multibody.motion import _attitude
 from reference.problem import GRAVITY, DryFriction, Outcome, Scene, SceneError, load_scene
 
 NO_LINKS = np.ones(0, dtype=bool)
@@ -243,6 +245,15 @@ def test_a_platform_high_in_the_air_touches_no_sphere(tilt: float) -> None:
     flying = np.array([[0.0, 0.0, 60.0, 0.0, tilt, 0.0]])
     assert (depressions.clearance(flying) > 0.5).all()
     assert depressions.beyond_rim(flying)[0] == (tilt > 0.0), "its depressions are no longer above the spheres"
+
+
+def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
+    angles, model = np.array([0.3, -0.4, 0.9]), SimpleNamespace(bodies=np.arange(3)[None])
+    gap = np.array([[-1.0, 1.0, 1.0, -1.0]]).T
+    motion = SimpleNamespace(coordinates=np.tile([0.0, 0.0, 0.0, *angles], (4, 1)), gap=gap)
+    found = _attitude(model, motion, np.arange(4.0))  # type: ignore[arg-type]
+    np.testing.assert_allclose(found["tilt"], np.arccos(rotation(angles)[2, 2]))
+    assert found["liftoff"].tolist() == [[0.0, 0.0, 3.0]], "from the last instant of contact to the next"
 
 
 def test_a_tower_that_overturns_ends_under_that_name() -> None:

@@ -232,6 +232,13 @@ def test_without_any_run_on_real_bearings_there_is_no_value(refined: Any) -> Non
     assert np.isnan(done.answer.peaks).all()
 
 
+def test_of_two_levels_without_an_answer_the_finer_one_says_why(refined: Any) -> None:
+    done = refined(
+        lambda number, _: result(1.0, outcome=Outcome.STEP_LIMIT if number == 0 else Outcome.SOLVER_FAILED), 2
+    )
+    assert done.answer.outcome == Outcome.SOLVER_FAILED
+
+
 def test_supports_that_rattle_stand_on_real_bearings(refined: Any) -> None:
     done = refined(lambda number, _: result(1.0, outcome=Outcome.STEP_LIMIT if number == 0 else Outcome.OK))
     assert done.asked == [(0, STIFF), (0, REAL), (1, REAL), (2, REAL)]

@@ -145,8 +145,10 @@ def test_a_notebook_shows_scene_surface_and_motion_as_tables(surface):
     table = surface._repr_html_()
     assert f"<td>2</td><td>{surface.mu[:, 1].min():.5g}</td>" in table
     assert "9 ok" in table
+    assert f"± {surface.error[:, 1].max():.1g}, 9 ok" in table
     motion = reference.trajectory(SCENE, (2.0, 0.7))
-    assert f"<td>{motion.peak[0]:.5g}</td>" in motion._repr_html_()
+    far = 1e3 * np.linalg.norm(motion.position[:, 1, :2], axis=1).max()
+    assert f"<td>2</td><td>{far:.4g}</td><td>{motion.peak[1]:.5g}</td>" in motion._repr_html_()
     named = SCENE.with_values({"title": "a < b"})._repr_html_()
     assert "a &lt; b" in named
     assert f"<td>{SCENE.masses[1]:.4g}</td>" in named

@@ -41,6 +41,7 @@ from comparison.registry import report_of
 from comparison.report.page_data import page_data
 from comparison.report.pdf import map_tasks
 from comparison.run import main
+from comparison.surfaces.distribution import grid_maxima
 from comparison.surfaces.figures import pairs, print_maps
 
 EFFECTS = (
@@ -314,6 +315,8 @@ def test_a_largest_value_names_its_grid_and_the_search() -> None:
         Worst("fig3-I", "exact", "amplification", 1, value=8.765, phases=(1.0, 2.0)),
         Worst("fig3-I", "translational", "amplification", 1, value=7.654, phases=(1.1, 2.1)),
     ]
+    for each in grid_maxima(study, surfaces.assign(error=1e-3 * (100.0 - surfaces["mu"])), study.scenes[0]):
+        assert each.error == pytest.approx(1e-3 * (100.0 - each.mu))
     report = report_of(study, surfaces, {"worst_phases": searched}, [], RUN)
     [(about, _)] = map_tasks(report)
     fine, coarse = heights("small", 1, GRID).max(), heights("spatial", 1, COARSE).max()

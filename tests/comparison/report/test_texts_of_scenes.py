@@ -94,6 +94,7 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     scene = Scene.model_construct(**{**dict(valid), "name": "a\x00\x01\ud800\ufffe<b>", "title": title})
     study = Study((scene,), 2, 1e-3, fake_hierarchy())
     surfaces = solved(study)
+    surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0}] = np.nan
     results = report_of(study, surfaces, {}, [], RUN).results
     assert results.broken
     suites = ElementTree.fromstring(junit(results).encode())
@@ -101,6 +102,7 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     text = summary_text(results)
     assert r"\[a\](http://b) \#1 \$x\$ \&copy; \~\~c\~\~ \<b\> \| d" in text
     assert "`` run `a` ``" in text
+    assert text.count("| 2 of 4 |") == 2, "totals of two bodies, whose status is ok"
     assert np.unique([line.count("|") for line in text.splitlines() if line.startswith("| a")]).size <= 2
 
 

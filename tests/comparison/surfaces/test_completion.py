@@ -107,6 +107,8 @@ def test_a_ridge_between_coarse_phases_is_completed(blank: tuple[Study, xr.Datas
     assert (surface.held_out, surface.confidence, surface.asked) == (59, CONFIDENCE, 1e-3)
     assert surface.share == pytest.approx(0.05, abs=5e-4)
     assert surface.model_error == pytest.approx(ENGINE_ERROR)
+    for share in (4.9, 5.1):
+        assert replace(surface, difference=share * surface.error).difference_accepted == (share > 5.0)
     assert f"{100.0 * surface.error:.2g} % at 59 held-out phase pairs" in surface.certificate
     assert "with 95 % confidence at most 5 % of the phase pairs" in surface.certificate
     computed = surface.mu[every, every]
