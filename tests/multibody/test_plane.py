@@ -65,6 +65,8 @@ def test_turning_a_scene_into_its_plane_keeps_the_loading(x: float, y: float, fi
     phases = np.array([(0.3, 1.1), (4.0, 2.0)])
     np.testing.assert_allclose(ground_peak(turned, phases), ground_peak(scene, phases), rtol=1e-13)
     np.testing.assert_array_equal(turned.stiffness, scene.stiffness)
+    damped = CASES["along y, links of two stiffnesses"].with_values({"bodies.1.damping": [0.2, 0.7]})
+    assert in_plane(damped).damping.tolist() == [[0.7, 0.2]]
 
 
 def test_loads_of_any_size_are_judged_without_overflow() -> None:

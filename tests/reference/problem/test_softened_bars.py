@@ -124,6 +124,11 @@ def test_bars_that_cannot_hold_the_bodies_upright_are_refused() -> None:
     with pytest.raises(SceneError, match="topple under their weight"):
         scene.with_values({**tall, "bodies.1.mass": 1000.0})
     scene.with_values({**tall, "bodies.1.mass": 1000.0, "bodies.1.bars": {**bars, "spread": 0.5}})
+    for effect in ("softening", "shortening"):  # bars that shorten let the weight sink elsewhere, by as much
+        loaded = {**tall, "bodies.1.bars": {**bars, "load_effect": effect}}
+        scene.with_values({**loaded, "bodies.1.mass": 144.6})
+        with pytest.raises(SceneError, match="topple under their weight"):
+            scene.with_values({**loaded, "bodies.1.mass": 144.7})
 
 
 def _agree(scene: Scene, phases: Any) -> None:
