@@ -211,5 +211,15 @@ MISTAKES = (
     Mistake(MODELS + "speed_friction.py", "(self._mass_ratio * steepness", "(steepness",
             "Friction of the speed acts back on the mass of all bodies, not on the platform's.",
             (TESTS + "test_speed_friction.py::test_a_change_of_the_coefficient_acts_back_on_the_slip",)),
+    Mistake(INTEGRATION + "refine.py", "(errors / peaks.value).argmax()", "(errors / peaks.value).argmin()",
+            "A miss of the tolerance is where the best peak is.", (SPRINGS + "test_without_a_further_level_bearings_give_the_answer",)),
+    Mistake(INTEGRATION + "estimate.py", "np.where(rate > MAX_CREDIBLE_RATE, earlier / MIN_RATE, change)", "change",
+            "Two levels that agree by accident have no error.",
+            (EXTREME + "test_changes_of_opposite_sign_show_no_rate_of_convergence",)),
+    Mistake(INTEGRATION + "peak.py", "abs(readings[0] - readings[1]) + 0.5 * (max(instants) - min(instants)) * slope",
+            "abs(readings[0] - readings[1])",
+            "The error at a corner lacks when it is.", (PEAK + "test_two_instants_of_one_corner_are_part_of_its_error",)),
+    Mistake("multibody/motion.py", "(motion.slip < model.corner).all(axis=1)", "(motion.slip < model.corner).any(axis=1)",
+            "A platform rests where one support does.", (TESTS + "test_spatial.py::test_the_overturning_moment_is_that_of_inertia",)),
 )
 # fmt: on

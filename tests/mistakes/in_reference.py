@@ -233,5 +233,14 @@ MISTAKES = (
             "The surface is at 0 degrees C before the motion.", (HEATED,)),
     Mistake(SOLVER + "contact/friction.py", "tz = rz - normal * nz", "tz = 0.0 * rz",
             "The force that holds the platform at rest has no vertical part.", (TESTS + "test_contact_law.py",)),
+    Mistake(MEASURES + "spectra.py", "error += share * np.abs(spectra(other) - value)", "pass",
+            "The error of a spectrum lacks what finer runs change.",
+            (SPECTRA + "test_the_error_of_a_spectrum_counts_the_other_runs",)),
+    Mistake(PROBLEM + "reductions.py", "isolator.ring * math.cos(math.pi / isolator.supports)", "isolator.ring",
+            "A platform tips over a support, not over the line between two.",
+            (TESTS + "test_velocity_friction.py::test_what_friction_forbids_the_larger_coefficient_forbids",)),
+    Mistake(PROBLEM + "bar_links.py", "0.25 * link.load * link.pendulum", "0.5 * link.load * link.pendulum",
+            "Bars that shorten hold a body upright too well.",
+            (TESTS + "problem/test_softened_bars.py::test_bars_that_cannot_hold_the_bodies_upright_are_refused",)),
 )
 # fmt: on
