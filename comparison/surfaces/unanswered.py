@@ -131,5 +131,5 @@ def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bo
 
 
 def _usable(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
-    """At which of them every value is known to half of itself."""
+    """At which of them every value is known to better than half of its size."""
     return np.asarray(np.isfinite(known_mu(surfaces, scene.name, model)[: len(scene.bodies)]).all(axis=0))

@@ -89,7 +89,7 @@ class Demands:
         Energy that the dampers of the links dissipate. None without dampers, and where bodies turn.
     energy_balance : Estimate or None, J
         Work of the ground less `friction_energy`, `damping_energy` and the energy stored: zero but for errors.
-        None where bodies turn, which takes up energy that the motion does not show.
+        None where bodies turn, which absorbs energy that the motion does not show.
     """
 
     status: str

@@ -9,7 +9,7 @@ constant step, and another of half its length for the error bar, so that nothing
 
 With bodies that turn there is no set-valued answer to compare with. The spatial model is compared with itself at a
 v_reg ten times smaller than the smallest one: unequal support forces keep the supports from stopping together, so that
-its peaks converge where those of the translational model climb towards the supremum.
+its peaks converge where those of the translational model grow towards the supremum.
 """
 
 import math

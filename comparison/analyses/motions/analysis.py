@@ -1,4 +1,4 @@
-"""Motions kept for the report: a few phase pairs of every scene, by the models of its two differences, thinned."""
+"""Motions kept for the report: a few phase pairs of every scene, by the models of its two differences, decimated."""
 
 from dataclasses import dataclass, field, replace
 
@@ -83,15 +83,15 @@ def _none() -> Array:
 @dataclass(frozen=True)
 class StoredMotion:
     """
-    One motion at a place, thinned.
+    One motion at a place, decimated.
 
     model: key of the model. time: (T,), s. position, acceleration: (T, N, 2), displacement relative to the plate, and
     absolute acceleration. stick: s, intervals of rest, or of creep below v_reg. status: how the motion ended.
     error_message: why there is no motion, or "". contact_force: (T,), N, normal force of the isolator. This and the
     arrays below are empty in a motion that lacks them. isolator_force: (T, 2), N, horizontal force of the bodies on the
     isolator. support_force: (T, K), N, normal force of every support of the spatial model. yaw: (T,), rad, turn of the
-    platform about the vertical, of the spatial model. demands: of the motion before it was thinned. None if it was not
-    computed. spectra: likewise.
+    platform about the vertical, of the spatial model. demands: of the motion before it was decimated; None if it was
+    not computed. spectra: likewise.
     """
 
     place: Place
@@ -152,7 +152,7 @@ def shown_models(study: Study, scene: Scene) -> list[Model]:
 
 
 def moved(task: Arguments) -> StoredMotion:
-    """The motion of one task, thinned; what goes wrong is said in `error_message`."""
+    """The motion of one task, decimated; what goes wrong is said in `error_message`."""
     scene, model, tolerance, place, phase = task
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
@@ -165,7 +165,7 @@ def moved(task: Arguments) -> StoredMotion:
 
 
 def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
-    """The motion with its demands and spectra, thinned. Raises ValueError for numbers that are not finite."""
+    """The motion with its demands and spectra, decimated. Raises ValueError for numbers that are not finite."""
     whole = StoredMotion(
         place, model.key, motion.time, motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2],
         tuple((float(start), float(end)) for start, end in motion.stick), str(motion.status),

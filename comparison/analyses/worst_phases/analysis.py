@@ -3,8 +3,8 @@ The worst phases of every scene: the largest mu_i and displacement over all phas
 
 The search of `reference.worst_phases` is made for the exact equations, and for those that the engine answers for.
 Beside these the engine is searched in a square around the worst phases, so that its own maximum nearby is known, too:
-its ratio to the equations, which hardly changes there, says where that is. The searches begin at the hills of the
-surfaces, if these are as fine as the search's own grid.
+its ratio to the equations, which hardly changes there, says where that is. The searches begin at the local maxima of
+the surfaces, if these are as fine as the search's own grid.
 """
 
 import math
@@ -52,9 +52,9 @@ class Worst:
     kind: Literal["smooth", "kink", "jump", "nearby", ""] = ""
     """what the surface has there; "nearby": the largest of an engine beside the worst phases of the equations"""
     side: Annotated[Phases, "direction from a jump to the large values beside it; null otherwise"] = NOWHERE
-    runner_up: Annotated[Number, "the highest other value at which a climb ended"] = math.nan
-    climbs: Annotated[int, "hills from which a climb started"] = 0
-    reached: Annotated[int, "climbs that ended at the maximum"] = 0
+    runner_up: Annotated[Number, "the highest other value at which a local search ended"] = math.nan
+    climbs: Annotated[int, "local maxima from which a search started"] = 0
+    reached: Annotated[int, "searches that ended at the maximum"] = 0
     evaluations: Annotated[int, "phase pairs that were computed"] = 0
     at_start: Annotated[Number, "an engine's value at the worst phases of the equations"] = math.nan
     start_error: Annotated[Number, "estimated absolute error of it"] = math.nan
@@ -93,7 +93,7 @@ def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Qua
 def _starts(
     study: Study, surfaces: xr.Dataset | None, scene: Scene, model: Model, quantity: str, body: int
 ) -> Array | None:
-    """The hills of the surface, if it is as fine as the grid of the search."""
+    """The local maxima of the surface, if it is as fine as the grid of the search."""
     if surfaces is None or len(study.axis(model, scene)) < GRID:
         return None
     of_platform = quantity == "displacement"
