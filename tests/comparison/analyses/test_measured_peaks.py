@@ -13,9 +13,10 @@ from report_texts import page_of, schema_errors, summary_of
 from runs import Run
 
 import reference
+from comparison.analyses.measured import analysis
 from comparison.analyses.measured.analysis import MeasuredPeaks, _beside
 from comparison.report.results import Results
-from comparison.study.models import EXACT, MODEL_HIERARCHY, RESOLVED, SMALL, TRANSLATIONAL
+from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, RESOLVED, SMALL, TRANSLATIONAL
 from comparison.study.study import Study
 from comparison.study.user_models import user_model
 from reference.problem import Scene, load_scene
@@ -78,6 +79,15 @@ def test_a_motion_that_ends_early_has_no_peaks_and_says_why():
     (only,) = compared(scene, EXACT)
     assert only.computed[0].status == "travel reached"
     assert only.computed[0].exceeds is None
+
+
+def test_both_functions_of_a_model_have_its_tolerance_and_law(monkeypatch):
+    asked = []
+    monkeypatch.setattr(analysis, "imported", lambda path: lambda *given, **settings: asked.append(settings))
+    for quantity in ("mu", "drift"):
+        with pytest.raises((AttributeError, TypeError)):  # None is no answer
+            analysis.peaks_at((PLAIN, REGULARIZED, 1e-4, (0.0, 0.0), ((quantity, 2),)))
+    assert asked == [{"tolerance": 1e-4, **REGULARIZED.settings}] * 2
 
 
 def test_a_quantity_that_a_model_lacks_is_not_known():

@@ -61,7 +61,15 @@ def test_a_fitted_slope_is_in_the_legend() -> None:
     (line,) = panel["plot"]["series"]
     assert line["name"] == "μ_1, exact minus small, supremum: slope 2.01 ± 0.03"
     assert line["y"] == [0.1, None]
-    assert panel["plot"]["x"]["log"]
+    assert panel["plot"]["x"] == {"title": "s", "log": True}
+    softer = replace(trend, what="engine, contact", exponent=float("nan"), parameter=(3e-3, 1e-3))
+    other = replace(trend, scene="fig4-dry")
+    first, second, third = trend_panels([other, trend, *[softer] * (MAX_CURVES + 1)], "")
+    assert [each["title"] for each in (second, third)] == ["fig3-I", "fig4-dry"]
+    assert first["title"] == f"fig3-I, {MAX_CURVES} of {MAX_CURVES + 1} differences: the table has all"
+    assert [each["plot"]["x"]["title"] for each in (first, second)] == ["penetration, ρ", "v_reg, m/s"]
+    assert first["plot"]["y"] == {"title": "median relative difference", "log": True}
+    assert [line["name"] for line in first["plot"]["series"]] == ["μ_1, engine, contact: slope none"] * MAX_CURVES
 
 
 @pytest.mark.parametrize("word", GLOSSARY)

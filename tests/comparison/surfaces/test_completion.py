@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.stats import binom
 from studies import solved
 
+from comparison.report.page_data import _completed
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, TRANSLATIONAL, Model, never
 from comparison.study.study import Study
@@ -128,6 +129,9 @@ def test_a_surface_may_be_drawn_where_its_difference_may_not(blank: tuple[Study,
     rough = 5e-4 * np.random.default_rng(0).uniform(-1.0, 1.0, (FINE, FINE))
     surface = completed(blank, ridge(*ALPHA), rough, first=1.0)
     assert (surface.accepted, surface.difference_accepted) == (True, False)
+    on_the_page = _completed(surface)
+    assert on_the_page is not None
+    assert not on_the_page["difference"]
 
 
 def test_the_spatial_model_is_never_a_surface_on_few_phases(blank: tuple[Study, xr.Dataset]) -> None:
