@@ -1,8 +1,8 @@
 """
 A flat slider, rho = inf: a plane under the platform, no restoring force.
 
-Plain equations on a plane, a mass that sticks or slides and linear springs, are solved again by SciPy. A rigid block
-has closed forms: Newmark's sliding block.
+A rigid block has closed forms: Newmark's sliding block. Bodies on links are solved again in
+`tests/multibody/test_sliding_plate.py`.
 """
 
 from __future__ import annotations
@@ -12,12 +12,11 @@ import math
 import numpy as np
 import pytest
 from chains import chain
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import reference
 from reference.analytical import frictionless_motion, stopping_distance, stopping_time
-from reference.problem import GRAVITY, Scene, State, ground_acceleration, ground_peak, load_scene, phase_grid
+from reference.problem import GRAVITY, Scene, State, ground_peak, load_scene, phase_grid
 
 FLAT = {"isolator.period": None, "isolator.radius": math.inf}
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])
@@ -34,81 +33,6 @@ def block(amplitude: float, friction: float, duration: float, period: float = 1.
     """A rigid block under one undamped harmonic along x."""
     rows = [[amplitude, 0.0], [0.0, 0.0]]
     return chain(math.inf, friction, [3.0], (), rows, (period, period), (0.0, 0.0), duration)
-
-
-# an independent solution ---------------------------------------------------------------------------------------------
-
-LINKED = [{"mass": 2.0}, {"mass": 1.0, "period": [0.5, 0.6]}, {"mass": 0.5, "stiffness": [80.0, 40.0]}]
-SIX = {
-    "own axes": flat(duration=6.0),
-    "oblique, strong": flat("fig3-II", duration=6.0, excitation__scale=3.0),
-    "lubricated": flat("fig4-viscous", duration=6.0),
-    "three bodies, vertical": flat(
-        duration=6.0, bodies=LINKED, excitation__amplitudes=[[1.0, 0.4], [-0.3, 1.2], [1.3, 0.9]]
-    ),
-    "light platform": flat(duration=6.0, bodies=[{"mass": 0.05}, {"mass": 1.0, "period": [0.6, 0.5]}]),
-    "recorded": load_scene("synthetic-pair").with_values({**FLAT, "duration": 6.0}),
-}
-
-
-def plane_factors(scene: Scene, phase) -> np.ndarray:
-    """mu_i of bodies on a plane under Coulomb friction, linear below V_REG, or lubricated; by SciPy."""
-    masses, links, count = scene.masses, scene.stiffness, len(scene.bodies)
-    creeping = True  # slower than V_REG
-
-    def accelerations(t, state):
-        """Relative accelerations (N, 2) and the ground's (3,)."""
-        x, v = state[: 2 * count].reshape(-1, 2), state[2 * count :].reshape(-1, 2)
-        ground = ground_acceleration(scene, phase, [t])[0]
-        force = np.zeros((count, 2))
-        pull = links * (x[1:] - x[:-1])
-        force[:-1] += pull
-        force[1:] -= pull
-        normal = masses.sum() * (GRAVITY + ground[2])
-        over_speed = 1.0 if scene.lubricated else 1.0 / (V_REG if creeping else math.hypot(*v[0]))
-        force[0] -= scene.friction_coefficient * normal * over_speed * v[0]
-        return force / masses[:, None] - ground[:2], ground
-
-    def slope(t, state):
-        return np.concatenate([state[2 * count :], accelerations(t, state)[0].ravel()])
-
-    def corner(t, state):
-        return math.hypot(*state[2 * count : 2 * count + 2]) / V_REG - 1.0
-
-    corner.terminal = True
-    knots = scene.record[:, 0] if scene.recorded else np.empty(0)
-    ends = [*knots[(knots > 0.0) & (knots < scene.duration)], scene.duration]
-    begin, state, highest = 0.0, np.zeros(4 * count), np.zeros(count)
-    while ends:
-        corner.direction = 1.0 if creeping else -1.0
-        events = None if scene.lubricated else corner
-        run = solve_ivp(
-            slope, (begin, ends[0]), state, "LSODA", events=events, dense_output=True, rtol=1e-11, atol=1e-14
-        )
-        steps = np.union1d(run.t, 0.5 * (run.t[1:] + run.t[:-1]))
-        instants = np.union1d(steps, np.linspace(begin, run.t[-1], 2 + math.ceil((run.t[-1] - begin) / 2e-4)))
-        for t, each in zip(instants, run.sol(instants).T):
-            relative, ground = accelerations(t, each)
-            total = np.column_stack([relative + ground[:2], np.full(count, ground[2])])
-            highest = np.maximum(highest, (total**2).sum(axis=1))
-        begin, state = run.t[-1], run.y[:, -1]
-        if run.status == 1:
-            creeping = not creeping
-        else:
-            ends.pop(0)
-    return np.sqrt(highest) / ground_peak(scene, [phase])[0]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", SIX)
-def test_factors_are_those_of_an_independent_solution_on_a_plane(name):
-    scene, phase = SIX[name], PHASES[1]
-    expected = plane_factors(scene, phase)
-    regularization = None if scene.lubricated else V_REG
-    for equations in ("exact", "small"):
-        answer = reference.amplification(scene, [phase], equations=equations, regularization=regularization)
-        assert answer.status.tolist() == ["ok"]
-        np.testing.assert_allclose(answer.mu[0], expected, rtol=5e-6)
 
 
 # Newmark's sliding block ---------------------------------------------------------------------------------------------
