@@ -26,7 +26,7 @@ from comparison.analyses.benchmarks.analysis import (
 )
 from comparison.analyses.benchmarks.cases import LIMITS, Case, Reading, cases, mastodon, published, shipped
 from comparison.analyses.benchmarks.command import main
-from comparison.analyses.benchmarks.table import STORED, Benchmarks, Verdict, page
+from comparison.analyses.benchmarks.table import STORED, Benchmarks, Number, Verdict, page, with_error
 from reference.analytical import den_hartog
 from reference.problem import SceneError, State
 
@@ -175,11 +175,12 @@ def test_a_number_is_met_within_both_errors():
     near, far = (1.005, 1e-3), (1.2, 1e-3)
     assert _verdicts(equations=near, smoothed=near, engine=near)[ENGINE] == Verdict.MET
     assert _verdicts(equations=(1.0105, 1e-3), smoothed=far, engine=far)[EQUATIONS] == Verdict.MET
-    assert _verdicts(equations=near, smoothed=far, engine=(1.2005, 1e-3))[ENGINE] == Verdict.FRICTION
+    assert _verdicts(equations=near, smoothed=far, engine=(1.2015, 1e-3))[ENGINE] == Verdict.FRICTION
     assert _verdicts(equations=near, smoothed=near, engine=far)[ENGINE] == Verdict.OFF
     assert _verdicts(equations=far, smoothed=far, engine=far)[EQUATIONS] == Verdict.OFF
     assert _verdicts("heating", equations=far, smoothed=far, engine=far)[EQUATIONS] == Verdict.MODEL
     assert _verdicts(equations=(math.nan, math.nan), smoothed=far, engine=far)[EQUATIONS] == Verdict.NONE
+    assert with_error(Number(2.02423, 3e-4, Verdict.MET)) == "2.0242 ± 3e-04"
 
 
 def test_a_side_that_fails_costs_the_others_nothing():

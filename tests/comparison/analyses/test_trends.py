@@ -44,6 +44,10 @@ def test_the_uncertainty_covers_the_scatter() -> None:
         slope = fitted(SCALES, sizes, 1e-6 * np.abs(sizes))
         within += abs(slope.exponent - 2.0) <= slope.uncertainty
     assert within > 174
+    design = np.column_stack([np.tile(np.log(S), 3), np.kron(np.eye(3), np.ones((4, 1)))])  # a size of its own for each
+    [left] = np.linalg.lstsq(design, np.log(sizes.ravel()), rcond=None)[1]
+    deviation = np.sqrt(left / (12 - 4) * np.linalg.inv(design.T @ design)[0, 0])
+    assert slope.uncertainty == pytest.approx(2.0 * deviation, rel=1e-6)
 
 
 def test_error_bars_alone_make_an_uncertainty() -> None:
