@@ -138,7 +138,7 @@ MISTAKES = (
             (DEMANDS + "test_the_stops_are_the_rests_after_the_first_slip",)),
     Mistake(MEASURES + "demands.py", "return Estimate(value, creep + sampling +", "return Estimate(value, sampling +",
             "The error of a residual lacks what creep changes.",
-            (DEMANDS + "test_the_error_of_a_residual_covers_regularization",)),
+            (DEMANDS + "test_a_residual_after_creep_is_that_of_coulomb_friction",)),
     Mistake(MEASURES + "demands.py", "return float(np.hypot(*place[min(first, len(place) - 1)])), creep",
             "return float(np.hypot(*place[-1])), creep", "The residual is that at the end of the creep.",
             (DEMANDS + "test_a_residual_after_creep_is_that_of_coulomb_friction",)),
