@@ -4,8 +4,6 @@ What all tests share: their examples, what they compile, and how many run at onc
 Property tests draw the same examples in every run, so that a gate gives one answer twice; -m long draws new ones.
 """
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Every public name says what it takes and gives, and its examples run."""
 
-from __future__ import annotations
-
 import ast
 import doctest
 import inspect

@@ -1,7 +1,5 @@
 """What is installed is complete, and the files around the code say what is there."""
 
-from __future__ import annotations
-
 import ast
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """Every pattern of the project works in proportion to the length of the text that it is held against."""
 
-from __future__ import annotations
-
 import inspect
 import re
 import sys

@@ -1,7 +1,5 @@
 """The notebook runs from its first to its last cell, and shows what it says."""
 
-from __future__ import annotations
-
 import ast
 import json
 from pathlib import Path

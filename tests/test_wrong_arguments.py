@@ -1,7 +1,5 @@
 """A wrong argument of a public function is one line that names it and says what to pass."""
 
-from __future__ import annotations
-
 import inspect
 import re
 from collections.abc import Callable

@@ -5,8 +5,6 @@ A recording of the README's command: when its lines, its pages and its end come.
 included, and once more with everything stored.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -4,8 +4,6 @@ Two formulations of the translational model, the package's own and a kinematic t
 One run at constant step as the engine's tutorials do it: peaks read at the steps, no error estimate.
 """
 
-from __future__ import annotations
-
 import time
 from dataclasses import dataclass
 from typing import Any

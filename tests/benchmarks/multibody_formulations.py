@@ -7,8 +7,6 @@ Every candidate runs one phase pair at constant step. The table gives its proces
 (the engine's defaults at 1 ms on the rigid body, as its tutorials do it) and its relative error against the equations.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from formulations import FORMULATIONS, PENETRATION, V_REG, run
 

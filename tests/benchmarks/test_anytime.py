@@ -4,8 +4,6 @@ The default study as a user sees it: its pages, its deadline, its second run. Fo
 `python tests/benchmarks/first_command.py` prints the events alone.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 from pathlib import Path
 

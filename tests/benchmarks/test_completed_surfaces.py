@@ -4,8 +4,6 @@ The translational surfaces of the paper's scenes on 64 x 64 phases from 8 x 8 co
 Run with `python -m pytest tests/benchmarks/test_completed_surfaces.py -m long -s`; docs/decisions/0009 has the figures.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from dataclasses import replace

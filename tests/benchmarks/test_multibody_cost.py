@@ -1,7 +1,5 @@
 """What the engine's answers cost: formulations and solvers, one point against one plain run, memory of many runs."""
 
-from __future__ import annotations
-
 import multiprocessing
 import resource
 import time

@@ -6,8 +6,6 @@ Full and reduced runs alternate, and the fastest of each are compared:
 other work on the machine only ever slows a run down.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from typing import Any

@@ -7,8 +7,6 @@ fifty times as closely around its peaks; on a fixed grid of instants it misses t
 Run with `python -m pytest tests/benchmarks/test_reference_speed.py -m long -s`; reference/README.md has the figures.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -5,8 +5,6 @@ Batches that only wait keep the processors free, so that the pause of a worker b
 out takes; its median, beside the known length of a batch, does not mind a busy machine.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import time

@@ -12,8 +12,6 @@ A comment in front of a block says how the tests run it:
 folder. A `text` block after Python is what it prints.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Every block of code in the documentation does what it says; pages.py has the rules."""
 
-from __future__ import annotations
-
 import json
 import shlex
 import subprocess

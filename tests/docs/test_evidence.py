@@ -1,7 +1,5 @@
 """The table of evidence is the one that its command writes, and the README states the same measured numbers."""
 
-from __future__ import annotations
-
 import importlib.util
 
 from pages import ROOT

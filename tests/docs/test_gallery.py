@@ -1,7 +1,5 @@
 """Every example runs as a user would run it, is short, and has its picture in the gallery."""
 
-from __future__ import annotations
-
 import ast
 import importlib.util
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Every link inside the documentation leads somewhere. Links to other sites are not opened: tests need no network."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The pages are built without a warning, and nothing on them is loaded from a network."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Texts for readers use the words of the field."""
 
-from __future__ import annotations
-
 import ast
 import re
 from pathlib import Path

@@ -4,8 +4,6 @@ Plant the mistakes of the register, one at a time, and run the tests that should
 python tests/mistakes/plant.py [PACKAGE ...] [--only N ...] [--short] [--jobs J]; N counts those of a package from 1.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import shutil

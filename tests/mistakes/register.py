@@ -1,7 +1,5 @@
 """The register of planted mistakes: what is wrong in one place of a package, and which tests see it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path

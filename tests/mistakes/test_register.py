@@ -1,7 +1,5 @@
 """The register follows the source: every mistake can be planted, and every test that should see it exists."""
 
-from __future__ import annotations
-
 import ast
 from functools import cache
 

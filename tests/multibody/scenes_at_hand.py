@@ -1,7 +1,5 @@
 """Small scenes for the engine's closed-form cases."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

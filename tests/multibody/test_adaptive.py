@@ -1,7 +1,5 @@
 """The run_adaptively: smaller steps at stops and nowhere else, and restarts that the contact does not notice."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

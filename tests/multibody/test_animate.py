@@ -1,7 +1,5 @@
 """The film of a run is written without a display, and shows the motion that was computed."""
 
-from __future__ import annotations
-
 import dataclasses
 import io
 import sys

@@ -1,7 +1,5 @@
 """Links of bars in the spatial model: the clamped beam in every direction, under the weight that it carries."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What is read from every chunk of steps is, to the same bits, what plain operations on whole arrays give."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

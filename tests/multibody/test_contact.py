@@ -1,7 +1,5 @@
 """The contact of the engine against closed forms: what one mass does on the sphere."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

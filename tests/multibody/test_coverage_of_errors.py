@@ -1,7 +1,5 @@
 """Stated errors of the engine, on random scenes whose factors another program knows (random_truths.json)."""
 
-from __future__ import annotations
-
 import numpy as np
 from random_truths import LIKE_FOR_LIKE, beyond_and_ratios, case_of
 

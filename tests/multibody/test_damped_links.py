@@ -1,7 +1,5 @@
 """Dampers in the links: closed forms, no moments left over; test_like_for_like.py has more."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

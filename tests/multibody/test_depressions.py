@@ -1,7 +1,5 @@
 """Bounds on a platform's place and angles prove that no sphere leaves its depression, and only where that is so."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Buildings on elastic bearings against Kane's equations in relative coordinates (elastic_chain.py)."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Energy along a whole run of the chain: what the plate's motion puts in is stored or rubbed away."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """At the extremes a point ends with an error that holds or with a status, and its work is known before it is spent."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Supports that lift off and close again: closed forms of impacts and flights, overturning, the key of the scene."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """A single body whose center is level with the depressions does not turn: the translational model answers for it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

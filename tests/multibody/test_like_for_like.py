@@ -1,7 +1,5 @@
 """Same law, same geometry: the engine and the paper's exact equations must give the same factors."""
 
-from __future__ import annotations
-
 import math
 import multiprocessing
 from collections.abc import Callable

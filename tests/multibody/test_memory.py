@@ -1,7 +1,5 @@
 """What a call of the engine allocates is freed when it returns."""
 
-from __future__ import annotations
-
 import gc
 import subprocess
 import sys

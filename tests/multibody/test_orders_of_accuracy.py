@@ -1,7 +1,5 @@
 """Orders of the engine in its step: a manufactured motion without stops, and a slide that stops."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Reading the largest value between samples: smooth tops, corners of the law, and the error given for both."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """A motion that stays in a plane (4.7) is computed without the bodies' coordinates across it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

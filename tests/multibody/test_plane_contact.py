@@ -1,7 +1,5 @@
 """A flat slider in the engine: a sphere on a plane, in units of length that the loading gives."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The plate's frame: inertial forces over a plate at rest and a plate that really moves give the same motion."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scenes_at_hand import changed

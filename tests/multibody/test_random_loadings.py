@@ -1,7 +1,5 @@
 """Whatever the loading, no value of the engine is called ok that the equations with the same law contradict."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from random_loadings import Case, random_case

@@ -1,7 +1,5 @@
 """The engine under a recorded motion: steps end at its knots, and it finds what the equations find."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Loading and friction scaled together by s: the sphere's curvature fades like s^2, and with it all but numerics."""
 
-from __future__ import annotations
-
 import numpy as np
 from scenes_at_hand import changed
 

@@ -1,7 +1,5 @@
 """One run at a level or at a constant step is what `amplification` and `trajectory` are made of."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

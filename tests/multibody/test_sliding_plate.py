@@ -1,7 +1,5 @@
 """Flights and impacts, flat sliders and recorded motions against independent equations (sliding_plate.py)."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The spatial model: an independent calculation, conservation, statics of the supports, liftoff."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

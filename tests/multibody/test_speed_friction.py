@@ -1,7 +1,5 @@
 """Friction that depends on the velocity in the engine: closed forms and order; test_like_for_like.py has more."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scenes_at_hand import CONSTANT, changed, one_body

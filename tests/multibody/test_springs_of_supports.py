@@ -4,8 +4,6 @@ Which springs the supports of an answer stand on, and what that leaves open, wit
 A run of the engine is replaced by a function of the level, so that every path is reached without a step.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace

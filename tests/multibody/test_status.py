@@ -1,7 +1,5 @@
 """Points without an answer are NaN with a status that says why and when; wrong arguments are refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scenes_at_hand import CONSTANT, changed, one_body

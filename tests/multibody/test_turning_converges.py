@@ -1,7 +1,5 @@
 """With bodies that turn mu_1 converges as v_reg -> 0; in translation it climbs on towards the supremum."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scenes_at_hand import changed

@@ -1,7 +1,5 @@
 """Centers of mass off the axis, boxes and links at an angle, supports at stated positions."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A model that is refused for its work says so from the scene alone, by how much, and what helps."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Clamped bars under the weight of a body by the theory of beam-columns and by the engine's beam elements."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from itertools import pairwise

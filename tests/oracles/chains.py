@@ -1,7 +1,5 @@
 """Scenes for the tests, in few words."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

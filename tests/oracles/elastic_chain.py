@@ -9,8 +9,6 @@ the rates of the coordinates themselves, which turn with the link. Each support 
 damping. The start is the static equilibrium, in which fast motions of the bearings balance the loading's first value.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass

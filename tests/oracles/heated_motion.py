@@ -1,7 +1,5 @@
 """A motion under regularized friction that its own heat lowers, by constant steps: no code shared with the solver."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

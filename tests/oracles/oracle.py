@@ -7,8 +7,6 @@ t, slip direction and ln V: a near-stop is then a smooth stretch of the curve, a
 V = 1e-15 m/s. What is left of the turning of the slip direction there goes on with everything else frozen (the arc).
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """The cases of `oracle_values.json`: what is asked, in the words of the scene file."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -1,7 +1,5 @@
 """One smooth piece of motion at a time: SciPy steps, events found on the dense output, peaks refined."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

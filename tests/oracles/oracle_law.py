@@ -1,7 +1,5 @@
 """Accelerations written once more, straight from Newton-Euler, in plain Python: no code shared with the solver."""
 
-from __future__ import annotations
-
 import cmath
 import math
 

@@ -5,8 +5,6 @@ Each number comes with the difference of runs at two tolerances a hundred times 
 one and so an upper estimate for the finer one that is kept.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from pathlib import Path

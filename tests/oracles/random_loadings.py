@@ -1,7 +1,5 @@
 """Random scenes of the translational engine, from loadings that rounding drowns to such that end the motion."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -5,8 +5,6 @@ Each value comes with its own error: the difference of runs at two tolerances a 
 one. Scenes in which the contact opens, or which take an oracle too long, are left out.
 """
 
-from __future__ import annotations
-
 import json
 import signal
 import sys

@@ -12,8 +12,6 @@ linear in the slip velocity below v_reg. Supports and centers of mass are anywhe
 axis through its origin. Boxes and links may be at an angle.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ literal (4.6) by explicit midpoint steps. `by_scipy`: laws without a corner at v
 as one system. Plain Python; `fast` compiles the loops.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import cache

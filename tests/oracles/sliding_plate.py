@@ -7,8 +7,6 @@ law of friction for the velocities after the impact. Friction is linear in the s
 integrates from event to event and from sample to sample of a recorded motion.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Any

@@ -7,8 +7,6 @@ the bodies above, and of the platform under N sin(theta) inward and mu N against
 other Z. Exact for the equations of the sphere; nothing is integrated.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The solver against motions with a closed form. Tolerances are multiples of the tolerance asked of the solver."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

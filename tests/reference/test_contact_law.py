@@ -1,7 +1,5 @@
 """Along every run: at rest the force lies in the friction cone, sliding goes against friction, the contact presses."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

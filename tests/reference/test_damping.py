@@ -1,7 +1,5 @@
 """Dampers in the links against closed forms, limits and symmetries; `oracle_values.json` has more."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Demands of a motion: closed forms, the same numbers from both sides, and errors that hold."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 from dataclasses import replace

@@ -5,8 +5,6 @@ Powers are integrated by Gauss's rule between the instants where the contact sti
 for the kinks that remain where a slide turns round without a rest.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

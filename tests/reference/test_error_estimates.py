@@ -1,7 +1,5 @@
 """The error that comes with every mu holds, and the work it costs is asserted, not only the answer."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

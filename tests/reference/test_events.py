@@ -1,7 +1,5 @@
 """Where an event lies within a step."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import exp
 from types import FunctionType

@@ -1,7 +1,5 @@
 """The compiled solver gives the same numbers on every processor and in every process."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

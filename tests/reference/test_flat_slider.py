@@ -5,8 +5,6 @@ A rigid block has closed forms: Newmark's sliding block. Bodies on links are sol
 `tests/multibody/test_sliding_plate.py`.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Floor response spectra: closed forms of an oscillator, an independent solution, the same from both sides."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

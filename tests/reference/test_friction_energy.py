@@ -1,7 +1,5 @@
 """Energy that friction dissipates: closed forms, the friction law itself, and the balance with the ground's work."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The ground's acceleration inside the solver."""
 
-from __future__ import annotations
-
 from types import SimpleNamespace
 
 import numba

@@ -1,7 +1,5 @@
 """Friction that its own heat lowers, against an independent integration, closed forms and limits."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from heated_motion import heated_motion, temperature_rise

@@ -1,7 +1,5 @@
 """A light platform under a heavy tower: its equations are solved where they have an answer, else that is told."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

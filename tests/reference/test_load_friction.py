@@ -1,7 +1,5 @@
 """Friction that depends on the normal force against limits and closed forms; `oracle_values.json` has more."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numba import types

@@ -1,7 +1,5 @@
 """A manufactured motion without stops: circles of a chain over friction on the exact sphere."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from turning_platform import turning

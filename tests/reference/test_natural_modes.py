@@ -1,7 +1,5 @@
 """Natural modes (4.8)-(4.11) against closed form, exact rational arithmetic and the identities they must satisfy."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The solver against the independent answers of `oracle_values.json` (made by oracle_values.py)."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Demands of every phase pair: those of the single motions, the same from both sides, gaps that cost no other pair."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from oracle_law import Law

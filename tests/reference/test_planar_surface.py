@@ -1,7 +1,5 @@
 """A motion that stays in a plane (4.7) is solved in it: the same surface, where and only where it stays there."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Random valid scenes: nothing hangs, nothing is silently wrong, every failure has a name."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

@@ -1,7 +1,5 @@
 """The equations under a recorded motion: kinks of the loading cost neither accuracy nor the error estimate."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

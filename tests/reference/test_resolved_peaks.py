@@ -1,7 +1,5 @@
 """Resolved peaks: only rest and slides faster than the cutoff count, however short such a part of a step is."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

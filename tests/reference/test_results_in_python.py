@@ -1,7 +1,5 @@
 """Phases of any shape, results as xarray, and their drawings."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

@@ -1,7 +1,5 @@
 """Rows do with every number what a float does alone."""
 
-from __future__ import annotations
-
 import math
 import operator
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Derivatives with respect to values of the scene, against closed forms and a law of scaling."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

@@ -1,7 +1,5 @@
 """Single numbers that are read off motions, each by its own closed form."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
 from typing import Any

@@ -1,7 +1,5 @@
 """Each way a run can fail, provoked by a scene, with the instant it happens at."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

@@ -1,7 +1,5 @@
 """Runs that stop once nothing can come: no peak, displacement or outcome is lost by it, on random scenes."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

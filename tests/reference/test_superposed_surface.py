@@ -1,7 +1,5 @@
 """A surface of linear equations is a sum of one motion per harmonic: the integrated one, and only where that holds."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

@@ -1,7 +1,5 @@
 """Exact symmetries of the paper's system: each maps one run onto another, digit for digit up to the tolerance."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

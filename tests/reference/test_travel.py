@@ -1,7 +1,5 @@
 """A motion ends where the platform needs a larger displacement than the isolator permits, at the right instant."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

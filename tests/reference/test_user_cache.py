@@ -1,7 +1,5 @@
 """What this machine made goes into the user's cache, never into the installed package or to where others may write."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

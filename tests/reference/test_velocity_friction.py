@@ -1,7 +1,5 @@
 """Friction that depends on the velocity against closed forms, limits and scaling; `oracle_values.json` has more."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

@@ -1,7 +1,5 @@
 """The largest value over all phases: surfaces with a known maximum, and fine grids of the equations."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Circular shaking against the force balance on the sphere, written in space and not by complex amplitudes."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from chains import chain

@@ -1,7 +1,5 @@
 """Free decay under dry friction against integration with SciPy between the turning points."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

@@ -1,7 +1,5 @@
 """Den Hartog's steady oscillation: known values, the equation of motion, the bound of continuous sliding."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """The frictionless response against direct integration of (4.3)-(4.4) with SciPy."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

@@ -1,7 +1,5 @@
 """The largest length over time of a vector that is linear in the phases: no interval that holds it is passed over."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -1,7 +1,5 @@
 """Motions of one body in the spherical cap: formulas against quadrature and integration."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp

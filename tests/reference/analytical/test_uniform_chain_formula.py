@@ -1,7 +1,5 @@
 """Modes of the uniform chain against a dense eigensolver."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.linalg import eigh

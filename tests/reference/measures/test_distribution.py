@@ -1,7 +1,5 @@
 """mu as a random variable: closed forms, independent samples, and what unknown values may change."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray

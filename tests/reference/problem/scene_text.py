@@ -1,7 +1,5 @@
 """A valid scene file as text, and edits of it."""
 
-from __future__ import annotations
-
 GOOD = """title = "two bodies"
 duration = 2.0
 

@@ -1,7 +1,5 @@
 """A link given by its bars: k = 12 n E J / l^3, and nothing else than a stiffness to every model."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """Several keys of a scene run at once, as product or as zip, also over all motions of a suite."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -1,7 +1,5 @@
 """One value of a scene that runs over a range makes a scene of each of its values; what is no range is one line."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Files that somebody else may have written: regular ones of a stated size are read, others are one line at once."""
 
-from __future__ import annotations
-
 import os
 import time
 from collections.abc import Callable

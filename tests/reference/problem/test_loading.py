@@ -1,7 +1,5 @@
 """The ground motion in closed form, its peak, and the phases."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

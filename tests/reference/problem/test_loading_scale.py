@@ -1,7 +1,5 @@
 """`excitation.scale` of the two-frequency loading: the same as larger amplitudes, everywhere."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

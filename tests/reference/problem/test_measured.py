@@ -1,7 +1,5 @@
 """Measured peaks of a scene file: what may be stated, and that they change nothing else."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from pathlib import Path
 

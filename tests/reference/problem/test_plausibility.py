@@ -1,7 +1,5 @@
 """Values that are hardly meant get one line each; wrong keys and forms say what is meant."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """Every quantity and argument has a range: inside it is an answer or a named outcome, outside it one line."""
 
-from __future__ import annotations
-
 import math
 import time
 

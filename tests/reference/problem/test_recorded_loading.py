@@ -1,7 +1,5 @@
 """A scene with a recorded motion: its samples, what is between and behind them, and how it is refused."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from hypothesis import given

@@ -1,7 +1,5 @@
 """Every rule of the scene file: broken, it is one SceneError on one line with file, key, value and rule."""
 
-from __future__ import annotations
-
 import pickle
 
 import pytest

@@ -1,7 +1,5 @@
 """docs/scene.md lists every key of a scene file as the program reads it."""
 
-from __future__ import annotations
-
 import importlib.util
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What a valid scene says in SI units; files of random bytes, random tables and random valid scenes."""
 
-from __future__ import annotations
-
 import json
 import math
 import tomllib

@@ -1,7 +1,5 @@
 """Scenes that are built and changed in Python: arrays and tuples for lists, records from arrays, equality and hash."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from pydantic import ValidationError

@@ -1,7 +1,5 @@
 """Bars under the weight that they carry: softer, and refused where they would buckle."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The one way to change values of a scene: by dotted key, validated like a scene file."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 

@@ -1,7 +1,5 @@
 """Structures that compiled code passes by reference."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Parts of a compiled function are built with it and nowhere else."""
 
-from __future__ import annotations
-
 import gc
 import os
 import subprocess
