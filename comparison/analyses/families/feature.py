@@ -23,6 +23,7 @@ from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.figures.file_names import figure_file
 from comparison.wording import MAX_NAMES
 
+MOTION = "excitation.record.motion"  # a number that no axis has: motions are named
 DECADES = 30.0  # of its largest over its smallest value: beyond it the axis is logarithmic
 
 
@@ -56,7 +57,7 @@ def family_results(findings: Findings, scenes: Sequence[SceneResult]) -> list[Fa
         result = FamilyResult(
             name=family.name,
             key=family.key,
-            values=list(family.values),
+            values=list(family.labels[family.key] if family.key == MOTION else family.values),
             scenes=[scene.name for scene in family.scenes],
             curves=family_curves(findings.study, findings.surfaces, family),
             steps=family_steps(family, {scene.name: scene.waterfalls for scene in scenes}),

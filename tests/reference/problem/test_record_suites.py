@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 import pytest
 
-from reference.problem import GRAVITY, Scene, SceneError, load_scene
+from reference.problem import GRAVITY, Scene, SceneError, load_family, load_scene
 
 SCENE = """title = "of a suite"
 isolator = {{radius = 0.25, friction = 0.1}}
@@ -38,6 +38,17 @@ def test_motions_of_a_directory_are_numbered_by_name(folder):
     assert [scene.duration for scene in scenes] == [3.0, 4.0, 2.0]
     assert scenes[0].record[1, 1] == pytest.approx(0.2 * GRAVITY)
     assert scenes[0].excitation.files == "suite 1"
+
+
+def test_motions_of_a_directory_are_labeled_by_their_files(folder):
+    (folder / "pairs").mkdir()
+    for name in ("RSN2_X_H1", "RSN2_X_H2", "rsn1-y090", "rsn1-y000"):
+        header = "a\nb\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 2, DT= 0.1 SEC\n"
+        (folder / "pairs" / f"{name}.AT2").write_text(f"{header}0.1 0.2\n")
+    for suite, names in (("suite", ("a", "b", "c")), ("pairs", ("RSN2_X", "rsn1-y"))):
+        family = load_family(written(folder, f'suite = "{suite}", motion = "all"'))
+        assert family.labels == {"excitation.record.motion": names}
+        assert family.values == tuple(range(1, len(names) + 1))
 
 
 def test_a_suite_is_relative_to_the_scene_file(folder, monkeypatch):
