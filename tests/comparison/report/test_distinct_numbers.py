@@ -181,7 +181,7 @@ def test_an_error_bar_is_as_long_as_the_error_on_either_side(body: int, report: 
     assert len(rows) == 6
     ticks = [float(x) for x in re.findall(r'class="(?:grid|zero)" x1="([\d.]+)%', rows[0][1])]
     page = page_of(report)
-    labels = re.findall(r'<text x="[\d.]+%" y="11" text-anchor="middle">(.*?)</text>', page)[: len(ticks)]
+    labels = re.findall(r'<text x="[\d.]+%" y="11" text-anchor="middle"[^>]*>(.*?)</text>', page)[: len(ticks)]
     sizes = [float(label.replace("−", "-").replace("+", "").replace(" %", "")) / 100.0 for label in labels]
     per_share = (ticks[-1] - ticks[0]) / (sizes[-1] - sizes[0])  # percent of the width for a size of 1
     phases = grid_phases(COARSE)

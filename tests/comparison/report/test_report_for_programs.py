@@ -24,7 +24,7 @@ def test_the_summary_names_every_broken_limit_and_every_verdict(finished: Path) 
     assert r"- fig3-I: body 1: acceptance.median: 0.01 found, 0.0001 allowed" in text
     assert "- **fig3-I** (Fig. 3a, b" in text
     assert "Cause: elastic contact, not geometry" in text, "the only model of the hierarchy that differs"
-    assert "no building has been compared, and this study has no measured peaks" in text
+    assert "No building has been compared, and this study has no measured peaks" in text
 
 
 def test_junit_fails_the_broken_limits_of_every_scene(finished: Path) -> None:

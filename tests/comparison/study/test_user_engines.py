@@ -73,7 +73,7 @@ def stranger(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     (tmp_path / "my_engine.py").write_text(code, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
-    (option,) = re.findall(r"--model (mine=\S+)\n", DOCS.read_text(encoding="utf-8"))
+    (option,) = re.findall(r"--grid 4 --model (mine=\S+)\n", DOCS.read_text(encoding="utf-8"))
     yield option
     sys.modules.pop("my_engine", None)
 
