@@ -30,7 +30,8 @@ def sampled(record: Record, times: Array) -> Samples:
     row = np.clip(np.searchsorted(record.start[:steps], times, side="right") - 1, 0, steps - 1)
     theta = np.clip((times - record.start[row]) / record.length[row], 0.0, 1.0)
     near = (record.contact[:steps] == STOPPING)[row]
-    theta[near] = _place(record.clock[row[near]], times[near])
+    if near.any():
+        theta[near] = _place(record.clock[row[near]], times[near])
     blocks = [slice(first, first + BLOCK) for first in range(0, max(len(times), 1), BLOCK)]
     parts = [_in_steps(record, row[block], theta[block], near[block]) for block in blocks]
     return Samples(*map(np.concatenate, zip(*parts)))
