@@ -32,6 +32,5 @@ class MappedAnalysis(Analysis[Result]):
         return [results.value(task, self.without_value) for task in self.tasks(study, surfaces)]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Any:
-        """All that the tasks listed; None for a study without phases."""
-        values = self.values(study, surfaces, results)
-        return [each for listed in values for each in listed] if study.phased else None
+        """All that the tasks listed; None if they listed nothing."""
+        return [each for listed in self.values(study, surfaces, results) for each in listed] or None

@@ -163,6 +163,13 @@ def test_the_scaled_scene_moves_as_the_scene_scaled(name: str, friction: object)
     np.testing.assert_allclose(larger, 2.0 * smaller, atol=1e-2 * np.abs(larger).max())
 
 
+def test_friction_that_heat_lowers_is_not_scaled() -> None:
+    heating = {"contact_radius": 0.1, "conductivity": 18.0, "diffusivity": 4e-6}
+    heated = load_scene("fig3-I").with_values({"isolator.friction": {"slow": 0.1, "heating": heating}})
+    study = Study((heated,), 2, 1e-3)
+    assert collected(Scaling(), study) is None
+
+
 @pytest.mark.long
 def test_the_step_to_the_exact_equations_is_geometry() -> None:
     """fig3-II: every trend like s^2, with an uncertainty below 0.1."""
