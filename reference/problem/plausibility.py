@@ -27,7 +27,7 @@ def implausible_values(scene: Scene) -> list[str]:
         lines.append(f"a natural period is {longest:.4g} s: units of mass and stiffness?")
     if LARGEST_RADIUS < scene.radius < math.inf and scene.isolator.radius is not None:
         lines.append(f"the radius of the isolator is {scene.radius:.4g} m: mm?")
-    if not scene.isolator.lubrication and (friction := scene.dry_friction.fast) > LARGEST_FRICTION:
+    if not scene.isolator.lubrication and (friction := scene.dry_friction.largest) > LARGEST_FRICTION:
         lines.append(f"the friction coefficient is {friction:.4g}: percent?")
     spread = float(scene.masses.max() / scene.masses.min())
     if spread >= MASS_RATIO:

@@ -539,6 +539,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "isolator.friction": tuple(VelocityFriction.model_fields),
     f"isolator.friction.{FRICTIONS[1]}": tuple(VelocityFriction.model_fields),
     "isolator.friction.heating": tuple(Heating.model_fields),
+    f"isolator.friction.{FRICTIONS[1]}.heating": tuple(Heating.model_fields),
     "bodies": tuple(Body.model_fields),
     "bodies.bars": tuple(Bars.model_fields),
     "acceptance": tuple(Acceptance.model_fields),

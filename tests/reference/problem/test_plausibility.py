@@ -18,6 +18,7 @@ BODIES = [{"mass": 1e3}, {"mass": 1e3, "stiffness": [4e5, 4e5]}]
         ({"bodies.1.stiffness": [1.0, 4e5]}, ["a natural period is 198.7 s: units of mass and stiffness?"]),
         ({"isolator.radius": 2200.0}, ["the radius of the isolator is 2200 m: mm?"]),
         ({"isolator.radius": float("inf")}, []),
+        ({"isolator.friction": {"slow": 5.0, "fast": 0.06, "rate": 50.0}}, ["the friction coefficient is 5: percent?"]),
         ({"bodies.0.mass": 1e9}, ["masses differ by a factor of 1e+06: kg in one place and t in another?"]),
     ],
 )

@@ -25,6 +25,7 @@ BROKEN = [
     ("friction = {slow = 0.1, fast = 0.2}", "isolator.friction", None, "give fast and rate together, or neither"),
     ("friction = {slow = 0.0, fast = 0.2, rate = 50.0}", "isolator.friction.slow", 0.0, "greater than 0"),
     ("friction = {slow = 0.1, fast = 0.2, rat = 50.0}", "isolator.friction.rat", 50.0, "did you mean rate"),
+    ("friction = {slow = 0.1, heating = {radius = 0.2}}", "isolator.friction.heating.radius", 0.2, "contact_radius"),
     ("friction = 0.1 ->", "isolator", {"period": 1.0}, "exactly one of friction and lubrication"),
     ("friction = 0.1\nlubrication = 0.2", "isolator", None, "exactly one of friction"),
     ("period = 1.0 ->", "isolator", {"friction": 0.1}, "exactly one of period and radius"),
