@@ -12,7 +12,7 @@ FEATURE = Feature(
     analysis=Scaling(),
     section=Section(
         "Scaling test",
-        "python -m comparison.run makes it, of scenes with phases",
+        "python -m comparison.run makes it, of scenes with phases and without heated friction",
         lambda report, figures: {"trend_panels": trend_panels},
         verifies=True,
     ),
