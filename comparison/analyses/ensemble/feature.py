@@ -77,7 +77,7 @@ def labels(ensemble: EnsembleResult) -> dict[str, str]:
     """What tells the structures apart, by their names: of those of one file the values in which they differ."""
     names = [each.name for each in ensemble.structures]
     files, values = zip(*(name.rstrip("]").partition("[")[::2] for name in names))
-    parts = [re.split(r", |\+", text) for text in values]
+    parts = [re.split(r", |\+(?!\d)", text) for text in values]
     columns = [column for column in zip(*parts) if len({*column}) > 1]
     alike = len({*files}) == 1 and len({len(part) for part in parts}) == 1 and columns
     return dict(zip(names, (", ".join(row) for row in zip(*columns)) if alike else names))

@@ -8,6 +8,7 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields, replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ import pytest
 import reference
 from comparison.analyses.ensemble import analysis
 from comparison.analyses.ensemble.command import FILES, main, table_text
-from comparison.analyses.ensemble.feature import demand_rows, draw_ensemble, ensemble_panels
+from comparison.analyses.ensemble.feature import demand_rows, draw_ensemble, ensemble_panels, labels
 from comparison.analyses.ensemble.result import STORED
 from comparison.analyses.ensemble.target import matched
 from reference.measures import Demands, Estimate
@@ -476,3 +477,10 @@ def test_the_terminal_names_motions_without_value(
     (name,) = (c["motion"] for c in content()["curves"] if c["quantity"] == "displacement" and None in c["values"])
     assert f"Without a value for 1 motion ({name}): every demand: travel reached." in said
     assert f"at the median displacement, {1e3 * reached[1]:.4g} mm" in said
+
+
+def test_structures_are_told_apart_by_the_values_that_differ() -> None:
+    """A power of ten is one value, and not two."""
+    names = [f"frame[friction=slow=0.03+rate={rate}, travel=0.2]" for rate in ("1e+05", "2e+05")]
+    found = labels(SimpleNamespace(structures=[SimpleNamespace(name=name) for name in names]))
+    assert list(found.values()) == ["rate=1e+05", "rate=2e+05"]
