@@ -23,7 +23,7 @@ VERSION: Literal[5] = 5  # grows when a key changes its meaning or goes
 
 # what measured motions (comparison.analyses.validation) say of the models, for every report
 VALIDATED = (
-    "Validated is dry friction alone: of a shaken frame they predict the share of time at rest within its uncertainty, "
+    "Only dry friction is validated: for a shaken frame they predict the share of time at rest within its uncertainty, "
     "0.8 % of a cycle, and the half range at nearly twice the load 7.7 % too large. No building has been compared"
 )
 

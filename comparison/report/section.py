@@ -45,11 +45,10 @@ class Section:
 
     shows: fields of the results; where all of them are None the section is left out, and `absent` says which command
     makes it. name, template (in comparison/analyses or comparison/report/templates), shows: those of the feature unless
-    they are given. context: what the template
-    reads, from the report and the folder of its figures. tasks: drawings for the workers. draw: writes its pictures
-    into the folder of the figures. title_recorded: title where no scene has phases, "" for the same. folded: whether
-    the reader opens it. verifies: whether it verifies the tool rather than answers the question, and so stands in
-    verification.html.
+    they are given. context: what the template reads, from the report and the folder of its figures. tasks: drawings for
+    the workers. draw: writes its pictures into the folder of the figures. title_recorded: title where no scene has
+    phases, "" for the same. folded: whether the reader opens it. verifies: whether it verifies the tool rather than
+    answers the question, and so stands in verification.html.
     """
 
     title: str

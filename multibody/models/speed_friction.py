@@ -2,10 +2,10 @@
 Friction that depends on slip speed, normal force or heat, for contacts of the engine, whose coefficient is one number.
 
 Before every step the coefficient of each contact is set to that at the slip speed and the normal force which the
-contact will have at the end of the step: the straight lines through its last two of each, and at the temperature that
-follows (surface_heat.py). Within a step the engine
-solves for constant coefficients. So the error is of second order in the step, like that of the integrator, as long as
-a step is short beside the time in which the change of friction acts back on the speed (`feedback`).
+contact will have at the end of the step, by straight lines through the last two values of each, and at the temperature
+that follows from them (surface_heat.py). Within a step the engine solves for constant coefficients. So the error is of
+second order in the step, like that of the integrator, as long as a step is short beside the time in which the change of
+friction acts back on the speed (`feedback`).
 """
 
 from __future__ import annotations

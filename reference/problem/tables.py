@@ -168,7 +168,7 @@ class VelocityFriction(Table):
     """
     Dry friction that depends on the slip speed, the normal force, its own heat, or several of them.
 
-    The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n times what heating leaves.
+    The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n, times the temperature factor of `heating`.
     """
 
     slow: Annotated[Positive, within("isolator.friction.slow"), about("coefficient at rest", "", ALL)]
