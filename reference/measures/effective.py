@@ -44,7 +44,7 @@ def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolat
     Parameters
     ----------
     scene : Scene
-        With dry friction. Its coefficient at high speed counts, under the weight.
+        With dry friction. Its coefficient at high speed counts, under the weight and without heat.
     displacement : array_like, m
         Amplitude D of the cycle, of any shape, above 0; usually the largest displacement under a ground motion.
 
