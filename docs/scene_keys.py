@@ -21,20 +21,20 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "VelocityFriction",
         "isolator.friction",
         "Friction that depends on the slip speed, mu(v) = fast - (fast - slow) exp(-rate v), as in friction-pendulum"
-        " practice: `friction = {slow = 0.03, fast = 0.06, rate = 100.0}`. It holds the platform at rest with `slow`."
-        " Regularized it is mu(v) min(1, v / v_reg). `load_exponent` n multiplies it by (N / N_ref)^n, with N the"
-        " normal force, in the spatial model of each support against its share of N_ref; `slow` may then stand alone."
-        " Each number may run over a range.",
+        " practice: `friction = {slow = 0.03, fast = 0.06, rate = 100.0}`. At rest the coefficient is `slow`. The"
+        " regularized law is mu(v) min(1, v / v_reg). `load_exponent` n multiplies the coefficient by (N / N_ref)^n of"
+        " the normal force N. In the spatial model N is the force of one support and N_ref its share. `slow` may then"
+        " stand alone. Each number may run over a range.",
     ),
     (
         "`heating` of `isolator.friction`",
         "Heating",
         "isolator.friction.heating",
-        "`[isolator.friction.heating]`: the coefficients are those at 20 degrees C, and the heat of sliding multiplies"
-        " them by 0.79 (0.7^(0.02 T) + 0.4). T is the temperature at the center of the track, by conduction into a half"
-        " space: T0 + sqrt(D / pi) / k times the integral of q(t - s) / sqrt(s), with q the power of friction over the"
-        " area of the contact. It is heated while the slider covers it, up to a displacement of sqrt(pi) / 2 of"
-        " `contact_radius`. This is the law of FPBearingPTV in OpenSees and of MASTODON. `slow` may then stand alone.",
+        "`[isolator.friction.heating]`: the coefficients are those at 20 degrees C. The heat of sliding multiplies them"
+        " by 0.79 (0.7^(0.02 T) + 0.4). T is the temperature at the center of the track, by conduction into a half"
+        " space: T0 + sqrt(D / pi) / k times the integral of q(t - s) / sqrt(s). q is the friction power per contact"
+        " area. The center is heated while the slider covers it, up to a displacement of sqrt(pi) / 2 of"
+        " `contact_radius`. FPBearingPTV in OpenSees and MASTODON use the same law. `slow` may then stand alone.",
     ),
     (
         "`[[bodies]]`",
@@ -47,12 +47,12 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "Bars",
         "bodies.bars",
         "`bars = {count = 4, bending_stiffness = 120.0, length = 1.0}` in place of `period` or `stiffness`: the link of"
-        " (2.3), k = 12 n E J / l^3. `period` and `stiffness` state a link as it is under the weight that it carries;"
-        " `bars` state it without load. Where a study has such a scene, its last model softens them by the weight above"
-        " them at rest, `Scene.softened()`: P / (l (tan x / x - 1)) of each bar under the load P,"
-        " x = (l / 2) sqrt(P / EJ). `load_effect` softens them in every model. Bars that would buckle, at"
-        " P = pi^2 EJ / l^2, are refused then. In the spatial model `axial_stiffness` makes the link a clamped beam in"
-        " every direction; bars that could not hold the bodies upright are refused.",
+        " (2.3), k = 12 n E J / l^3. `period` and `stiffness` describe a link under the weight that it carries; `bars`"
+        " describe it without load. The last model of a study softens the bars by the weight above them at rest,"
+        " `Scene.softened()`. A bar under the load P then has the stiffness P / (l (tan x / x - 1)) with"
+        " x = (l / 2) sqrt(P / EJ). `load_effect` softens the bars in every model. Softened bars that would buckle, at"
+        " P = pi^2 EJ / l^2, are refused. In the spatial model `axial_stiffness` makes the link a clamped beam in"
+        " every direction. Bars that could not hold the bodies upright are refused.",
     ),
     ("`[excitation]`, two frequencies", "Excitation", "excitation", "Ground acceleration (5.2)-(5.4)."),
     ("`[excitation]`, recorded motion", "Record", "excitation", "A record in place of the two frequencies."),
@@ -60,41 +60,41 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "`[acceptance]`",
         "Acceptance",
         "acceptance",
-        "Limits for `--check`. `median`, `maximum` and `ratio` here are those of `like_for_like`; the tables `total`,"
-        " `translational` and `like_for_like` take the same three keys. So does a table with the name of an engine that"
-        " joins the study with `--model NAME=...`, as `[acceptance.mine]`: its difference from the equations.",
+        "Limits for `--check`. `median`, `maximum` and `ratio` in this table apply to `like_for_like`. The tables"
+        " `total`, `translational` and `like_for_like` take the same three keys. So does the table of an engine that"
+        " `--model NAME=...` adds, such as `[acceptance.mine]`; it limits the difference from the equations.",
     ),
     (
         "`[analyses]`",
         "Analyses",
         "analyses",
-        f"What the report tells of the scene beside its amplification factors: {', '.join(ANALYSES)}. `--only`,"
-        " `--skip` and `--also` of the command line come before it.",
+        f"Analyses of the report beside the amplification factors: {', '.join(ANALYSES)}. `--only`, `--skip` and"
+        " `--also` of the command line override this table.",
     ),
     (
         "`[[measured]]`",
         "Measured",
         "measured",
-        "One table per measured peak. The report sets it beside what every model computes, with both errors; it changes"
-        " no result. [Validation](validation.md) says what an experiment must record.",
+        "One table per measured peak. The report compares it with the result of every model and shows both errors. It"
+        " changes no result. [Validation](validation.md) says what an experiment must record.",
     ),
 )
 INTRODUCTION = f"""# The scene file
 
-A scene is a TOML file in UTF-8 of at most 4 MiB. Its name is the stem of the file. `reference/problem/scenes` has the
-paper's four cases and `reference/problem/examples` two recorded motions. An unknown key is an error that names the
-nearest valid keys; a wrong value is an error in one line with file, key, value and rule.
+A scene is a TOML file in UTF-8 of at most 4 MiB. The stem of the file name is its name. `reference/problem/scenes` has
+the paper's four cases and `reference/problem/examples` two recorded motions. The error for an unknown key names the
+nearest valid keys. The error for a wrong value gives file, key, value and rule in one line.
 
 Every optional key is off by default. "All" models are the paper's equations and the two engine models, translational
-and spatial; the spatial model needs every key of its own but `support_stiffness`, `support_damping`, `restitution`,
-`offset`, `yaw` and those of `bars`, and no `ring` with positions of supports.
+and spatial. The spatial model requires all of its own keys except `support_stiffness`, `support_damping`,
+`restitution`, `offset`, `yaw` and those of `bars`. It requires no `ring` if the positions of the supports are stated.
 
-One number of a scene may run over a range, which makes one scene of every value:
-`friction = {{range = [0.02, 0.2], steps = 10}}` or `friction = {{values = [0.05, 0.1]}}`. Several keys may run where
-the file begins with `combine = "product"`, a scene of every combination of the values, or `combine = "zip"`, a scene of
-the first values, one of the second, and so on. `motion = "all"` runs over the motions of a suite.
+One number of a scene may run over a range, which makes one scene for each value:
+`friction = {{range = [0.02, 0.2], steps = 10}}` or `friction = {{values = [0.05, 0.1]}}`. Several keys may run if the
+file begins with `combine`. `combine = "product"` makes a scene for each combination of the values. `combine = "zip"`
+makes a scene of the first values, one of the second, and so on. `motion = "all"` runs over the motions of a suite.
 
-The duration is at most {MAX_CYCLES:g} periods, of the shortest period of the loading and the pendulum.
+The duration is at most {MAX_CYCLES:g} times the shortest period of the loading and the pendulum.
 
 This page is written by `python docs/scene_keys.py`.
 """
