@@ -43,8 +43,9 @@ def heated(system: System, record: Record, end: float) -> System:
     instants = 0.5 * (times[changes] + times[changes + 1])
     for _ in range(NEWTON_STEPS if len(changes) else 0):
         motion = sampled(record, instants)
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             step = _outside(system, motion) / (2.0 * (motion.x[:, 0] * motion.v[:, 0]).sum(axis=1))
+        step[np.isnan(step)] = 0.0
         instants = np.clip(instants - step, times[changes], times[changes + 1])
     starts = np.flatnonzero(np.diff(record.contact[: len(start)] == REST)) + 1
     behind = np.append(np.diff(times)[changes], np.diff(bounds)[starts])

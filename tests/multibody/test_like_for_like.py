@@ -109,7 +109,7 @@ def test_factors_lie_within_their_errors_at_any_scale(name: str, scale: float) -
 @pytest.mark.long
 @pytest.mark.parametrize("name", SCENES)
 def test_64_points_of_a_surface_lie_within_their_errors(name: str) -> None:
-    strict = 1e-5 if "heated" in name else 1e-6  # which one of the 64 would miss
+    strict = 1e-5 if "heated" in name else 1e-6  # one of the 64 misses 1e-6
     compare(SCENES[name], np.random.default_rng(7).uniform(0.0, 2.0 * np.pi, (64, 2)), strict=strict)
 
 
