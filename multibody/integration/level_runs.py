@@ -115,7 +115,7 @@ class LevelRuns:
         level, before = self.levels[number], self.levels[number - 1]
         finished = [other.peaks for other in self.runs[-3:] if other.outcome == Outcome.OK]
         compliances = [other.warping_compliance for other in self.levels[max(number - 2, 0) : number + 1]]
-        if self.softest == REAL_WARPING_COMPLIANCE and compliances[0] != compliances[-2]:
+        if compliances[0] != compliances[-2]:  # a change of springs is no rate of convergence
             finished = finished[-2:]
         errors = from_levels(finished, self.levels[: number + 1], model)
         rounding = from_rounding(run.peaks, level, self.runs[-2].peaks, before)

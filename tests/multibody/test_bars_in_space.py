@@ -208,6 +208,13 @@ def test_three_stories_on_bars_agree_with_newton_euler() -> None:
     assert_agrees_with_newton_and_euler(building("softened", bodies=[platform, first, second, third]), (2.0, 0.7))
 
 
+def test_levels_on_other_springs_show_no_rate_of_convergence() -> None:
+    """mu_1 of rigid_chain.py at its tolerance of 1e-6; three levels, of which the first has other springs."""
+    engine = multibody.amplification(building("shortening"), [(np.pi / 2.0, np.pi / 2.0)], "spatial", tolerance=1e-3)
+    assert engine.status[0] == Outcome.OK
+    assert abs(engine.mu[0, 0] - 0.92185809) <= engine.error[0, 0]
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["softened", "shortening"])
 def test_a_whole_surface_agrees_with_newton_euler_equations(name: str) -> None:
