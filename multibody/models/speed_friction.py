@@ -60,7 +60,7 @@ class SpeedFriction:
         self._load_rate = nothing if state.load is None or state.load_rate is None else state.load_rate.tolist()
         self._start = self._end = time
         if self._heat is not None and not self._heat.begin(time):
-            self._heat.step_to(time, self._power(0.0), math.hypot(*state.coordinates[:2]))
+            self._heat.step_to(time, self._power(self._cold(0.0), 0.0), math.hypot(*state.coordinates[:2]))
         self._set(mbs, 0.0)
 
     def feedback(self, slip: Array) -> Array:
@@ -82,7 +82,8 @@ class SpeedFriction:
                 self._load = load
             self._slip, self._start = slip, self._end
             if self._heat is not None:
-                self._heat.step_to(self._end, self._power(0.0), math.hypot(*mbs.systemData.GetODE2Coordinates()[:2]))
+                place = mbs.systemData.GetODE2Coordinates()[:2]
+                self._heat.step_to(self._end, self._power(self._cold(0.0), 0.0), math.hypot(*place))
         self._end = end
         self._set(mbs, end - self._start)
         return True
@@ -96,14 +97,17 @@ class SpeedFriction:
 
     def _set(self, mbs: Any, span: float) -> None:
         """Set the coefficients at the speeds and loads that the contacts have after `span`."""
+        coefficients = self._cold(span)
         if self._heat is not None:
             end = self._start + span
-            celsius = self._heat.temperature(end, self._power(span), self._heat.distance(end))
+            celsius = self._heat.temperature(end, self._power(coefficients, span), self._heat.distance(end))
             self._factor = Heat.factor(celsius)
-        for contact, coefficient in zip(self._contacts, self._coefficients(span), strict=True):
+            coefficients = list(self._factor * coefficients)
+        for contact, coefficient in zip(self._contacts, coefficients, strict=True):
             mbs.SetObjectParameter(contact, "dynamicFriction", coefficient)
 
-    def _coefficients(self, span: float) -> list[float]:
+    def _cold(self, span: float) -> list[float]:
+        """Coefficients of the contacts after `span`, without heat."""
         law, coefficients = self.law, []
         loads = zip(self._load, self._load_rate, strict=True)
         for slip, rate, (load, load_rate) in zip(self._slip, self._rate, loads, strict=True):
@@ -112,12 +116,12 @@ class SpeedFriction:
             if law.exponent != 0.0:
                 coefficient *= max(load + span * load_rate, LEAST_LOAD) ** law.exponent
             coefficients.append(coefficient)
-        return coefficients if self._heat is None else list(self._factor * coefficients)
+        return coefficients
 
-    def _power(self, span: float) -> Array:
-        """Power of friction of each contact after `span`, W."""
+    def _power(self, cold: list[float], span: float) -> Array:
+        """Power of friction of each contact after `span`, W, from the coefficients then without heat."""
         slip, rate, load, load_rate = map(np.array, (self._slip, self._rate, self._load, self._load_rate))
         speed, pressed = np.maximum(slip + span * rate, 0.0), np.maximum(load + span * load_rate, 0.0)
         held = np.minimum(speed / self._threshold, 1.0)
-        power: Array = self._watt * np.array(self._coefficients(span)) * pressed * held * speed
+        power: Array = self._watt * (self._factor * cold) * pressed * held * speed
         return power

@@ -8,13 +8,16 @@ kernel is integrated exactly. P itself has the factor k_T: both are found togeth
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from numba import njit
 
+from reference.build_cache import cached_on_disk
 from reference.problem import DryFriction
 from reference.problem.friction import Heat
 from reference.solver.collocation import MISSED, MONOMIALS, NODES, STAGES, A
-from reference.solver.compiled import OPTIONS, cached_entry_point
+from reference.solver.compiled import OPTIONS
 from reference.solver.samples import Samples, sampled
 from reference.solver.system import REST, Array, Record, System
 
@@ -114,7 +117,7 @@ def long_after(theta: float, power: Array) -> float:
     return total
 
 
-@cached_entry_point
+@cached_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
 def warm(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
     """
     Fill k_T at the nodes of pieces (K, S). power: where k_T is one, times the rise of the temperature.
