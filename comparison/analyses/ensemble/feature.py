@@ -96,7 +96,7 @@ def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
         if stripes := ensemble.stripes_of(name, quantity):
             x = [place + WIDTH if one else stripe.scale for stripe in stripes]
             fractiles = zip(*(stripe.fractiles for stripe in stripes))
-            series.append(_median(labels(ensemble)[name], place, x, fractiles, factor, band=not one, line=not one))
+            series.append(_median(ensemble, place, x, fractiles, factor, band=not one, line=not one))
         look = {"name": "engine", "color": "ink", "marks": True, "line": False}
         look |= {"legend": False} if by_engine else {}
         by_engine += _values(engine, factor, place - WIDTH if one else None, **look)
@@ -123,11 +123,17 @@ def _values(curves: Sequence[Curve], factor: float, place: float | None, **look:
 
 
 def _median(
-    name: str, place: int, x: list[Any], fractiles: Iterable[Sequence[Statistic]], factor: float, **look: Any
+    ensemble: EnsembleResult,
+    place: int,
+    x: list[Any],
+    fractiles: Iterable[Sequence[Statistic]],
+    factor: float,
+    **look: Any,
 ) -> dict[str, Any]:
     """Median of a structure with its band, from low, median and high at every x."""
     columns = zip(("low", "y", "high"), fractiles)
     numbers = {key: [_scaled(each.value, factor) for each in column] for key, column in columns}
+    name = labels(ensemble)[ensemble.structures[place].name]
     return {"name": name, "color": place, "x": x, **numbers, "band": True, "marks": True, "width": 2.4, **look}
 
 
@@ -140,9 +146,7 @@ def _profiles(ensemble: EnsembleResult) -> list[Panel]:
             unit, factor = unit_for_reading(quantity, structure.weight)
             if rows := ensemble.profile(structure.name, quantity):
                 fractiles = zip(*(row.fractiles for row in rows))
-                series.append(
-                    _median(labels(ensemble)[structure.name], place, [row.body for row in rows], fractiles, factor)
-                )
+                series.append(_median(ensemble, place, [row.body for row in rows], fractiles, factor))
         if series:
             ticks = [[n, str(n)] for n in range(1, max(each.bodies for each in ensemble.structures) + 1)]
             axes = {"title": "body, from the platform up", "ticks": ticks}, _from_zero(f"{quantity}, {unit}", series)
@@ -156,14 +160,7 @@ def _spectra(ensemble: EnsembleResult) -> list[Panel]:
     panels = []
     for title in ("platform", "top"):
         series = [
-            _median(
-                labels(ensemble)[structure.name],
-                place,
-                list(spectrum.period),
-                spectrum.fractiles,
-                1.0 / GRAVITY,
-                marks=False,
-            )
+            _median(ensemble, place, list(spectrum.period), spectrum.fractiles, 1.0 / GRAVITY, marks=False)
             for place, structure in enumerate(ensemble.structures)
             for spectrum in ensemble.spectra
             if (spectrum.structure, spectrum.body) == (structure.name, 1 if title == "platform" else structure.bodies)
