@@ -138,10 +138,10 @@ def _motion(scene: Scene, phase: Array, system: System, run: _Run, asked: Array 
     instants = _instants(scene, record) if asked is None else asked
     instants = instants[instants <= (run.instant if early else scene.duration)] if steps else instants[:0]
     motion = sampled(record, instants)
-    height, climb = _vertical(motion.x[:, 0], motion.v[:, 0], system)
+    height, vz = _vertical(motion.x[:, 0], motion.v[:, 0], system)
     shape = (len(instants), len(scene.bodies), 1)
     position = np.concatenate([motion.x, np.broadcast_to(height[:, None, None], shape)], axis=-1)
-    velocity = np.concatenate([motion.v, np.broadcast_to(climb[:, None, None], shape)], axis=-1)
+    velocity = np.concatenate([motion.v, np.broadcast_to(vz[:, None, None], shape)], axis=-1)
     return Trajectory(
         time=instants,
         position=position,

@@ -18,7 +18,7 @@ from comparison.cli.arguments import CommandParser, number
 from comparison.runner.environment import engine_fingerprint
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, Workers
 from comparison.study.models import MODEL_HIERARCHY, Model
-from comparison.study.user_models import LAWS, LIKE, TIME_LIMIT, names_of, note_line, silent, user_function, user_model
+from comparison.study.user_models import LAWS, LIKE, TIME_LIMIT, names_of, note_line, quiet, user_function, user_model
 from comparison.wording import exception_line
 from reference.problem import SceneError
 from reference.problem.acceptance import ENGINE_NAME, Acceptance
@@ -118,7 +118,7 @@ def _looked_at(spec: str, path: str) -> dict[str, Any]:
 def look_at(path: str) -> tuple[str, dict[str, str]]:
     """Import a function inside a worker process: why it cannot be used, or "", and what its numbers depend on."""
     module, name = path.split(":")
-    with silent():
+    with quiet():
         try:
             function = user_function(path)
             return "", {"names": names_of(function), **engine_fingerprint(module)}

@@ -36,7 +36,7 @@ UNKNOWN_ERROR = np.nan  # of an engine that states none
 
 def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> Amplification:
     """What a supplied function answers, in the form of `multibody.amplification`, asked with the settings it names."""
-    with silent():
+    with quiet():
         function = user_function(engine["function"])
         begin = _processor_time()
         try:
@@ -185,7 +185,7 @@ def _processor_time() -> float:
 
 
 @contextmanager
-def silent() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Drop what the block prints, also from compiled code, and give it nothing to read; in a worker process only."""
     if multiprocessing.parent_process() is None:
         yield

@@ -33,7 +33,8 @@ from multibody.integration.openings import FIRST_STEP, Event, Openings
 from multibody.integration.peak import CANDIDATE_FRACTION, Peaks, kinks
 from multibody.integration.travel import travel_reached
 from multibody.models.recorded import align_steps
-from multibody.models.system import EngineModel, EngineState
+from multibody.models.state import EngineState
+from multibody.models.system import EngineModel
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]

@@ -25,7 +25,8 @@ from multibody.integration.constant_step import set_initial_state
 from multibody.integration.openings import GAP_TOLERANCE, OPENING_GAP
 from multibody.models.engine import exudyn
 from multibody.models.impact import ImpactLaw
-from multibody.models.system import EngineModel, EngineState
+from multibody.models.state import EngineState
+from multibody.models.system import EngineModel
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -1,4 +1,4 @@
-"""One run of the engine between two instants at constant step, from a stored state, silent on the terminal."""
+"""One run of the engine between two instants at constant step, from a stored state, quiet on the terminal."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn
 from multibody.models.plate import COORDINATES, PLATE_MASS_RATIO, carried_along
-from multibody.models.system import EngineModel, EngineState
+from multibody.models.state import EngineState
+from multibody.models.system import EngineModel
 
 Array = NDArray[np.float64]
 

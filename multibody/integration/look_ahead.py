@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from multibody.integration.adaptive import Budget, EngineRun, Place, begin_run, go_on
 from multibody.integration.constant_step import Engine
 from multibody.integration.level import Level
-from multibody.models.system import EngineModel, EngineState
+from multibody.models.state import EngineState
+from multibody.models.system import EngineModel
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]

@@ -23,7 +23,8 @@ from multibody.integration.constant_step import Engine
 from multibody.integration.level import Level
 from multibody.integration.look_ahead import looks_ahead, run_looking_ahead
 from multibody.integration.peak import Peaks
-from multibody.models.system import EngineModel, EngineState
+from multibody.models.state import EngineState
+from multibody.models.system import EngineModel
 from reference.problem import Outcome, Scene, State, ground_acceleration
 from reference.problem.excitation import acceleration_of_ground
 

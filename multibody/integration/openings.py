@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 
 from multibody.integration.constant_step import Engine, Motion
 from multibody.models.impact import ImpactLaw
-from multibody.models.system import EngineState
+from multibody.models.state import EngineState
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

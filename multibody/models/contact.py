@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.models.system import EngineState
+from multibody.models.state import EngineState
 from multibody.models.units import Units
 from reference.problem import Scene
 

@@ -45,6 +45,7 @@ from multibody.models.plane import farthest, plane_contact, platform_on_plane, s
 from multibody.models.plate import plate_for
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
+from multibody.models.state import EngineState
 from multibody.models.supports import (
     DETERMINATE,
     MIN_WARPING_COMPLIANCE,
@@ -53,7 +54,7 @@ from multibody.models.supports import (
     sharing_supports,
     sphere_nodes,
 )
-from multibody.models.system import EngineModel, EngineState
+from multibody.models.system import EngineModel
 from multibody.models.units import Units, link_damping, link_stiffness, units_of
 from reference.problem import DryFriction, Scene, State
 from reference.problem.supports import ring_places

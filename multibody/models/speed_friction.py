@@ -11,20 +11,18 @@ friction acts back on the speed (`feedback`).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from multibody.models.engine import exudyn
 from multibody.models.loading import Ground
+from multibody.models.state import EngineState
 from multibody.models.surface_heat import SurfaceHeat
 from multibody.models.units import Units
 from reference.problem import GRAVITY, DryFriction, Scene
 from reference.problem.friction import LEAST_LOAD, Heat
-
-if TYPE_CHECKING:
-    from multibody.models.system import EngineState
 
 Array = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,25 +14,11 @@ from multibody.models.depressions import Depressions
 from multibody.models.impact import ImpactLaw
 from multibody.models.loading import Ground
 from multibody.models.speed_friction import SpeedFriction
+from multibody.models.state import EngineState
 from multibody.models.units import Units
 from reference.problem import State
 
 Array = NDArray[np.float64]
-
-AT_REST = np.zeros((3, 3))
-
-
-@dataclass(frozen=True)
-class EngineState:
-    """One state of the engine in its own units, relative to the plate."""
-
-    coordinates: Array  # (n,)
-    velocities: Array  # (n,)
-    contact: Array  # (c,), contact data
-    plate: Array = field(default_factory=AT_REST.copy)  # (3, 3), its own displacement, velocity, acceleration
-    slip_rate: Array | None = None  # (K,), of the contacts' slip speeds over the last step, where there was one
-    load: Array | None = None  # (K,), of the contacts, over their shares of the weight, where friction depends on it
-    load_rate: Array | None = None  # (K,), over the last step, where there was one
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,8 @@ from multibody.models.plane import farthest, plane_contact, platform_on_plane, s
 from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
-from multibody.models.system import EngineModel, EngineState
+from multibody.models.state import EngineState
+from multibody.models.system import EngineModel
 from multibody.models.units import link_damping, link_stiffness, units_of
 from reference.problem import Scene, State
 

@@ -62,7 +62,7 @@ class Work:
     growth: float  # bound on the growth of the length
     held: float  # s, for which rest or creep is held whatever the force; 0 where nothing holds it
     # the phase of the contact
-    entered: float  # logarithm of the speed at which stretched time began
+    first_log_speed: float  # logarithm of the speed at which stretched time began
     left: float  # s, by which rest is entered early
     # the step
     x1: Array  # (N, 2) at its end
@@ -155,7 +155,7 @@ def _fill(work: Work, bodies: int) -> None:
     work.drift = np.zeros(n)
     work.time = work.angle = work.log_speed = work.log_ratio = work.start2 = 0.0
     work.length = work.stretched = work.fitting = work.growth = work.held = 0.0
-    work.entered = work.left = work.old_length = work.end = work.steps = 0.0
+    work.first_log_speed = work.left = work.old_length = work.end = work.steps = 0.0
     work.reach2 = work.peaked = work.settled = work.look = 0.0
 
 
@@ -179,6 +179,6 @@ def start_anew(work: Work, length: float, end: float) -> None:
     work.time = work.angle = work.log_speed = work.log_ratio = work.start2 = 0.0
     work.length, work.stretched, work.growth, work.old_length = length, 0.0, 0.0, 0.0
     work.end, work.peaked, work.settled = end, 0.0, 0.0
-    work.held = work.entered = work.left = work.steps = work.reach2 = 0.0
+    work.held = work.first_log_speed = work.left = work.steps = work.reach2 = 0.0
     for i in range(work.x.shape[0]):
         work.best[i] = work.reading_error[i] = work.drift[i] = 0.0

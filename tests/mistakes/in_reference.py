@@ -85,7 +85,7 @@ MISTAKES = (
             "Friction falls with the speed where it should rise.",
             (TESTS + "test_velocity_friction.py::test_a_straight_slide_stops_as_friction_of_its_speed_says",)),
     Mistake(SOLVER + "contact/friction.py",
-            "return planar + climb * climb / (system.radius * system.radius - px * px - py * py)", "return planar",
+            "return planar + radial * radial / (system.radius * system.radius - px * px - py * py)", "return planar",
             "The sliding speed on the cap is the horizontal one.",
             (TESTS + "test_closed_form_motions.py::test_swing_down_and_up_the_cap_with_friction",)),
     Mistake(SOLVER + "chain.py", "force -= system.damping_below[i, axis] * (v[i, axis] - v[i - 1, axis])",

@@ -11,7 +11,7 @@ from multibody.integration.constant_step import set_initial_state, silence
 from multibody.models.assembly import assemble
 from multibody.models.depressions import angular_velocity_matrix
 from multibody.models.engine import exudyn
-from multibody.models.system import EngineState
+from multibody.models.state import EngineState
 from reference.measures import demands
 from reference.problem import Amplification, Outcome, Scene
 

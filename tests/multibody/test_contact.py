@@ -11,7 +11,7 @@ from scipy.special import ellipk
 import multibody
 from multibody.integration.constant_step import Engine, silence
 from multibody.models.assembly import assemble
-from multibody.models.system import EngineState
+from multibody.models.state import EngineState
 from reference.problem import GRAVITY, Scene, State, Trajectory
 
 

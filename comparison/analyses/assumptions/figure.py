@@ -41,10 +41,10 @@ def _map(axes: Axes, scene: Scene, cells: Sequence[AssumptionCell], body: int) -
         if not known:
             axes.add_patch(Rectangle((column - 0.5, row - 0.5), 1.0, 1.0, color=NO_VALUE))
         dark = known and size > WITHIN[1]
-        doubtful = (
-            f"\n± {100.0 * cell.error_estimate(body):.2g}" if known and cell.error_estimate(body) > 0.2 * size else ""
-        )
-        text = f"{100.0 * size:.2g}{doubtful}" if known else "none"
+        error = cell.error_estimate(body)
+        text = f"{100.0 * size:.2g}" if known else "none"
+        if known and error > 0.2 * size:
+            text += f"\n± {100.0 * error:.2g}"
         axes.text(column, row, text, ha="center", va="center", fontsize=9, color="w" if dark else "k")
     norm = BoundaryNorm([0.0, *WITHIN, np.inf], len(COLORS))
     axes.imshow(image, cmap=ListedColormap(COLORS), norm=norm, origin="lower", aspect="auto")

@@ -82,14 +82,14 @@ def _read(reading: Reading, motion: Trajectory) -> tuple[list[float], list[float
     if motion.status not in ANSWERED or len(motion.time) < 2:
         return [], []
     values, accuracy = reading.of(motion), motion.accuracy
-    others = [] if accuracy is None else [reading.of(each) for each in (thinned(motion), *accuracy.coarser)]
+    others = [] if accuracy is None else [reading.of(each) for each in (decimated(motion), *accuracy.coarser)]
     if accuracy is None or any(len(other) != len(values) for other in others):  # another number of swings
         return values, [math.nan] * len(values)
     rows = zip(values, *others)
     return values, [accuracy.error_of(value, rest) + abs(value - halved) / 3.0 for value, halved, *rest in rows]
 
 
-def thinned(motion: Trajectory) -> Trajectory:
+def decimated(motion: Trajectory) -> Trajectory:
     """Every second sample of a motion: what is read of it is four times as wrong, at kinks, and more elsewhere."""
     kept = np.append(np.arange(0, len(motion.time) - 1, 2), len(motion.time) - 1)
     arrays = {name: getattr(motion, name)[kept] for name in ("time", "position", "velocity", "absolute_acceleration")}

@@ -80,7 +80,7 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
     for place, node in enumerate(order):
         rank[node] = place
     parent = [-1] * len(height)  # of what stands above the falling water: every island's root is its highest node
-    climbs = [-1] * len(height)  # the maximum that steepest ascent leads to
+    top_of = [-1] * len(height)  # the maximum that steepest ascent leads to
     into = list(range(len(height)))  # of lesser maxima, the one across their saddle
     tops = []
     for node in order:
@@ -90,18 +90,18 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
                 islands.setdefault(_root(parent, other), other)
         if not islands:
             tops.append(node)
-            parent[node] = climbs[node] = node
+            parent[node] = top_of[node] = node
             continue
-        climbs[node] = climbs[next(iter(islands.values()))]
+        top_of[node] = top_of[next(iter(islands.values()))]
         highest, *others = sorted(islands, key=rank.__getitem__)
         parent[node] = highest
         for lesser in others:
             parent[lesser] = highest
             if height[lesser] - height[node] < least:
-                into[lesser] = climbs[islands[highest]]
+                into[lesser] = top_of[islands[highest]]
     peaks = [top for top in tops if into[top] == top]
     number = {top: peaks.index(_root(into, top)) for top in tops}
-    regions = np.array([number[top] for top in climbs]).reshape(mu.shape)
+    regions = np.array([number[top] for top in top_of]).reshape(mu.shape)
     return Relief([divmod(top, mu.shape[1]) for top in peaks], regions)
 
 

@@ -96,9 +96,9 @@ def _peaks(scene: Scene, phase: Array, errata: Collection[str]) -> Array:
             q, v = state[:count], state[count:]
             a = _accelerations(fixed, q, v, u)
             delta = -math.sqrt(scene.radius**2 - q[0] ** 2 - q[1] ** 2)
-            climb = -(a[0] * q[0] + a[1] * q[1]) / delta - _w(q[0], q[1], v[0], v[1], delta)  # (3.4)
+            az = -(a[0] * q[0] + a[1] * q[1]) / delta - _w(q[0], q[1], v[0], v[1], delta)  # (3.4)
             total[row, :, :2] = a.reshape(-1, 2) + u[:2]
-            total[row, :, 2] = climb + u[2]
+            total[row, :, 2] = az + u[2]
         size: Array = np.linalg.norm(total, axis=2)
         return size
 

@@ -221,7 +221,7 @@ def _above_its_contacts(stated: dict[str, Any]) -> dict[str, Any]:
 
 
 def _chains() -> Iterator[Row]:
-    # a shock climbs the towers in 0.5 to 1.6 s
+    # a shock takes to the top of the towers 0.5 to 1.6 s
     for count, link in ((1, 1.0), (2, 1.0), (10, 0.3), (100, 0.03), (1000, 0.01)):
         tower = scene(masses=[1.0] * count, link=(link, 0.8 * link), storey=0.3, duration=3.0 if count <= 10 else 2.0)
         few, models = (PHASES, ALL) if count <= 10 else (PHASES[:1], PLANAR)

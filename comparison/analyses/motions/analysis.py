@@ -18,7 +18,7 @@ from reference.measures import Demands, FloorSpectra, demands, floor_spectra
 from reference.measures.demands import ANSWERED
 from reference.problem import Outcome, Scene, Trajectory
 
-SHARE = 0.003  # of the swing of a component: what a thinned motion may be off by
+SHARE = 0.003  # of the swing of a component: what a decimated motion may be off by
 MIN_SWING = 0.01  # of its largest value: a component that changes less is as good as constant
 SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
 
@@ -31,7 +31,7 @@ def swing(values: Array) -> Array:
     return np.where(scale > 0.0, scale, 1.0)
 
 
-def thinned(time: Array, values: Array, peaks: NDArray[np.intp], share: float = SHARE) -> NDArray[np.intp]:
+def decimated(time: Array, values: Array, peaks: NDArray[np.intp], share: float = SHARE) -> NDArray[np.intp]:
     """
     Indices to keep of `values` (T, C) at `time` (T,): both ends, `peaks`, and as many more as it takes for straight
     lines between them to miss no value by more than `share` of its component's `swing`.
@@ -179,7 +179,7 @@ def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
         raise ValueError("the motion holds numbers that are not finite")
     extremes = [size.argmax(axis=0), values.argmax(axis=0), values.argmin(axis=0)]
     extremes += [np.linalg.norm(part, axis=1).argmax()[None] for part in (whole.position[:, 0], whole.isolator_force)]
-    kept = thinned(whole.time, values, np.unique(np.concatenate(extremes)))
+    kept = decimated(whole.time, values, np.unique(np.concatenate(extremes)))
     arrays = {name: getattr(whole, name)[kept] for name in whole.blocks()}
     return replace(whole, **arrays)
 

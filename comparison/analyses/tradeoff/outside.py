@@ -102,8 +102,8 @@ def accelerations(scene: Scene, phase: ArrayLike, times: Array, states: Array, v
     a = slopes(times, states, constants)[:, 2 * count :].reshape(-1, count, 2)
     x, v = states[:, :2], states[:, 2 * count : 2 * count + 2]
     depth = np.sqrt(scene.radius**2 - (x**2).sum(axis=1))
-    climb = (x * v).sum(axis=1) / depth
-    vertical = ((v**2).sum(axis=1) + climb**2 + (x * a[:, 0]).sum(axis=1)) / depth
+    vz = (x * v).sum(axis=1) / depth
+    vertical = ((v**2).sum(axis=1) + vz**2 + (x * a[:, 0]).sum(axis=1)) / depth
     ground = ground_acceleration(scene, phase, times)
     total = a + ground[:, None, :2]
     size: Array = np.sqrt((total**2).sum(axis=2) + (vertical + ground[:, 2])[:, None] ** 2)

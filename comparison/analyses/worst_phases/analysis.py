@@ -61,7 +61,7 @@ class Worst:
     reason: Annotated[Text, "why there is no value, or empty"] = ""
 
 
-# scene, model, engine, quantity, body, tolerance of the engine, starts of the climbs (K, 2) or None
+# scene, model, engine, quantity, body, tolerance of the engine, starts of the searches (K, 2) or None
 Arguments = tuple[Scene, Model, Model | None, Quantity, int, float, Array | None]
 
 
@@ -135,18 +135,18 @@ def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolera
     """The engine at the worst phases of the equations `like` it, and its largest value in a square around them."""
     engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
     start = engine.at(np.array([worst.phases]))
-    climb = LocalSearch(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
+    search = LocalSearch(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
     (corners, _), (square, _) = square_of(2), square_of(3)
-    computed = engine.at(climb.phases + ENGINE_HALF_WIDTH * corners)
-    equations = _surface(scene, like, TOLERANCE, worst.body).at(climb.phases + ENGINE_HALF_WIDTH * square)
-    highest, _ = predicted(engine, climb, _estimated(start, computed, equations))
-    climb.take(computed)
-    climb.take(engine.at(highest[None]))
-    if not math.isfinite(climb.value):
+    computed = engine.at(search.phases + ENGINE_HALF_WIDTH * corners)
+    equations = _surface(scene, like, TOLERANCE, worst.body).at(search.phases + ENGINE_HALF_WIDTH * square)
+    highest, _ = predicted(engine, search, _estimated(start, computed, equations))
+    search.take(computed)
+    search.take(engine.at(highest[None]))
+    if not math.isfinite(search.value):
         return Worst(scene.name, model.key, worst.quantity, worst.body, reason=engine.outcome)
-    alpha1, alpha2 = (climb.phases % (2.0 * np.pi)).tolist()
+    alpha1, alpha2 = (search.phases % (2.0 * np.pi)).tolist()
     return Worst(
-        scene.name, model.key, worst.quantity, worst.body, climb.value, climb.error, (alpha1, alpha2), "nearby",
+        scene.name, model.key, worst.quantity, worst.body, search.value, search.error, (alpha1, alpha2), "nearby",
         climbs=1, reached=1, evaluations=engine.evaluations,
         at_start=float(start.numerator[0] / start.denominator[0]),
         start_error=float(start.error[0]),

@@ -17,13 +17,13 @@ async function unpacked(id) {
 
 const sceneNow = () => study.scenes[state.scene];
 const pairNow = () => sceneNow().pairs.find(pair => pair.key === state.pair) ?? sceneNow().pairs[0];
-const thinned = (rows, n) => { const k = rows.length / n; return rows.filter((_, i) => i % k === 0).map(row => row.filter((_, j) => j % k === 0)); };
+const decimated = (rows, n) => { const k = rows.length / n; return rows.filter((_, i) => i % k === 0).map(row => row.filter((_, j) => j % k === 0)); };
 const pointsOf = (rows, errors) => rows.flatMap((row, i) => row.flatMap((z, j) => known(z) ? [{ a: turn * i / rows.length, b: turn * j / rows.length, z, error: errors?.[i][j] }] : []));
 
 // one model as it may be drawn: all phases, completed, or points; `every` asks for so many phases per axis only; phases: per axis, of what was computed
 function surfaceOf(scene, key, body, every = null) {
   const model = scene.models[key], mu = model.mu[body - 1], completed = model.completed[body - 1], { phases } = model;
-  if (every !== null && every < model.phases) return { rows: thinned(mu, every), sheet: false, points: pointsOf(thinned(mu, every), null), model, phases: every };
+  if (every !== null && every < model.phases) return { rows: decimated(mu, every), sheet: false, points: pointsOf(decimated(mu, every), null), model, phases: every };
   if (model.surface) return { rows: mu, sheet: true, points: [], model, phases };
   if (completed?.mu) return { rows: completed.mu, sheet: true, points: pointsOf(mu, null), model, completed, phases };
   return { rows: mu, sheet: false, points: pointsOf(mu, model.error?.[body - 1]), model, completed, phases };
@@ -32,7 +32,7 @@ const relative = (rows, base) => rows.map((row, i) => row.map((value, j) => know
 // the difference in percent of the first model, on the phases of both
 function differenceOf(scene, pair, body) {
   const [first, second] = [pair.first, pair.second].map(key => surfaceOf(scene, key, body)), [a, b] = [pair.first, pair.second].map(key => scene.models[key]);
-  const n = Math.min(a.phases, b.phases), raw = relative(thinned(b.mu[body - 1], n), thinned(a.mu[body - 1], n));
+  const n = Math.min(a.phases, b.phases), raw = relative(decimated(b.mu[body - 1], n), decimated(a.mu[body - 1], n));
   const errors = pair.uncertainty?.[body - 1].map(row => row.map(value => known(value) ? 100 * value : null));
   if (first.sheet && second.sheet && first.rows.length === second.rows.length && [first, second].every(one => !one.completed || one.completed.difference))
     return { rows: relative(second.rows, first.rows), sheet: true, points: first.completed || second.completed ? pointsOf(raw, null) : [], completed: second.completed ?? first.completed, phases: n };

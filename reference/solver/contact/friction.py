@@ -49,8 +49,8 @@ def sliding_speed2(system: System, px: Number, py: Number, vx: Number, vy: Numbe
     planar = vx * vx + vy * vy
     if system.small:
         return planar
-    climb = px * vx + py * vy
-    return planar + climb * climb / (system.radius * system.radius - px * px - py * py)
+    radial = px * vx + py * vy
+    return planar + radial * radial / (system.radius * system.radius - px * px - py * py)
 
 
 @compiled

@@ -85,7 +85,7 @@ def exact_slopes(system: System, work: Work, factor: Row, bend: Row) -> None:
     px, py, vx, vy = row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1)
     reaction, determinant = row(stage, REACTION), row(stage, DETERMINANT)
     sx, sy, nx, ny = factor * vx, factor * vy, -px / radius, -py / radius
-    climb = (px * vx + py * vy) / (radius * radius - px * px - py * py)
+    radial = (px * vx + py * vy) / (radius * radius - px * px - py * py)
     rise = (system.gravity + row(work.ground, 2)) / sqrt(1.0 - nx * nx - ny * ny)
     lean = nx * vx + ny * vy
     share = ratio / determinant  # of the reaction in a load along the normal
@@ -98,7 +98,7 @@ def exact_slopes(system: System, work: Work, factor: Row, bend: Row) -> None:
         f = row(stage, DRIVE + axis)
         if axis == 1:
             n, s = ny, sy
-        dspeed2 = 2.0 * climb * (v + climb * p)
+        dspeed2 = 2.0 * radial * (v + radial * p)
         gain = bend * dspeed2
         d_reaction = share * (dspeed2 / radius - dn * f - dn * n * rise) - turn * (dn * (2.0 * n - s) - gain * lean)
         put_pair(
@@ -106,7 +106,7 @@ def exact_slopes(system: System, work: Work, factor: Row, bend: Row) -> None:
             d_reaction * (nx - tx) + reaction * (dn * ex - gain * vx),
             d_reaction * (ny - ty) + reaction * (dn * ey - gain * vy),
         )  # fmt: skip
-        dspeed2 = 2.0 * (v + climb * p)
+        dspeed2 = 2.0 * (v + radial * p)
         gain = bend * dspeed2
         d_reaction = share * dspeed2 / radius + turn * (gain * lean + factor * n)
         put_pair(

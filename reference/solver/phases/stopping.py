@@ -59,7 +59,7 @@ def begin_stopping(system: System, work: Work, demand: Demand) -> None:
     ex, ey = heading(work.angle, system.axes)
     ax, ay, _, ratio = directed(system, load, exp(work.log_speed), ex, ey)
     begin_with(system, work, ground, ax, ay, STOPPING)
-    work.log_ratio, work.entered, work.fitting = log(ratio), work.log_speed, 0.0
+    work.log_ratio, work.first_log_speed, work.fitting = log(ratio), work.log_speed, 0.0
     work.stretched = FIRST_STEP / max(sqrt(ax * ax + ay * ay), MIN_FIRST_ACCELERATION * demand.unit)
 
 
@@ -68,7 +68,7 @@ def stretched_length(system: System, work: Work) -> float:
     """Length of the next step in tau: the longest that keeps time and place, and the chain's vibration."""
     ex, ey = heading(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
-    change = MAX_FIRST_LOG_SPEED_CHANGE + LOG_SPEED_CHANGE_GROWTH * max(0.0, work.entered - work.log_speed)
+    change = MAX_FIRST_LOG_SPEED_CHANGE + LOG_SPEED_CHANGE_GROWTH * max(0.0, work.first_log_speed - work.log_speed)
     if along > 0.0:  # the end of the step counts, not its start
         change /= 1.0 + LOG_SPEED_CHANGE_GROWTH
     h = min(work.stretched, change / max(abs(along), 1e-300))

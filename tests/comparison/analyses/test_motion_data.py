@@ -1,4 +1,4 @@
-"""The motions of the report: where and of which models, thinned as little as is said, and packed as the layout says."""
+"""The motions of the report: where and of which models, decimated as said, and packed as the layout says."""
 
 import base64
 import gzip
@@ -26,10 +26,10 @@ from comparison.analyses.motions.analysis import (
     Place,
     StoredMotion,
     chosen_places,
+    decimated,
     moved,
     shown_models,
     swing,
-    thinned,
 )
 from comparison.analyses.motions.page_data import (
     ROUNDING,
@@ -237,18 +237,18 @@ def _between(time: NDArray[np.float64], values: NDArray[np.float64], kept: NDArr
 def test_lines_between_the_kept_instants_miss_little() -> None:
     time = np.linspace(0.0, 20.0, 20001)
     values = np.stack([np.sin(7.0 * time) * np.exp(-time / 4.0), np.sign(np.sin(3.0 * time)) * 40.0], axis=1)
-    kept = thinned(time, values, np.array([123]))
+    kept = decimated(time, values, np.array([123]))
     missed = np.abs(_between(time, values, kept) - values).max(axis=0)
     assert (missed <= SHARE * np.abs(values).max(axis=0)).all()
     assert {0, 123, 20000} <= set(kept.tolist()), "both ends and the peak asked for"
     assert len(kept) < 1000, "a twentieth of the instants is enough for such a motion"
 
 
-def test_a_single_high_instant_is_never_thinned_away() -> None:
+def test_a_single_high_instant_is_never_left_out() -> None:
     time = np.linspace(0.0, 1.0, 1001)
     values = np.zeros((1001, 1))
     values[500] = 1.0
-    assert {499, 500, 501} <= set(thinned(time, values, np.zeros(0, int)).tolist())
+    assert {499, 500, 501} <= set(decimated(time, values, np.zeros(0, int)).tolist())
 
 
 def test_the_largest_difference_of_every_body_is_a_place() -> None:
