@@ -103,6 +103,22 @@ ENGINES = (
         "one-sided limits at stops: a step has one mean acceleration",
     ),
     Engine(
+        "solve_nivp",
+        "examples.engines.solve_nivp_slider:amplification",
+        "resolved",
+        ({"step": 8e-3}, {"step": 4e-3}),
+        "solve_nivp",
+        "one-sided limits at stops",
+    ),
+    Engine(
+        "nosnoc",
+        "examples.engines.nosnoc_slider:amplification",
+        "resolved",
+        ({"step": 0.04},),
+        "nosnoc",
+        "a friction force in any direction; one-sided limits at stops",
+    ),
+    Engine(
         "MuJoCo",
         "examples.engines.mujoco_slider:amplification",
         "small, resolved",

@@ -38,6 +38,8 @@ def mu(name: str, scene: Scene, **settings: Any) -> np.ndarray:
         ("scipy_equations", {"tolerance": 1e-2}, {"regularization": 1e-3}, (3e-3, 3e-4)),
         ("opensees", {"step": 2e-3}, {"equations": "small", "cutoff": 1e-3}, (0.5, 5e-3)),
         ("siconos_moreau", {"step": 4e-3}, {"cutoff": 1e-3}, (0.1, 5e-4)),
+        ("solve_nivp_slider", {"step": 8e-3}, {"cutoff": 1e-3}, (0.1, 5e-4)),
+        ("nosnoc_slider", {"step": 0.04}, {"cutoff": 1e-3}, (0.2, 0.07)),
         ("mujoco_slider", {"step": 1e-3}, {"equations": "small", "cutoff": 1e-3}, (0.05, 5e-4)),
     ],
 )
