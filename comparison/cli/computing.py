@@ -22,7 +22,7 @@ from comparison.runner.dask import cluster
 from comparison.runner.environment import provenance
 from comparison.runner.output import destination
 from comparison.runner.processes import ExecutorLostError, Pool, process_pool
-from comparison.runner.progress import progress
+from comparison.runner.progress import Display, progress
 from comparison.runner.runner import Runner, compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -48,8 +48,14 @@ def computed(
     models: set[str],
     console: Console,
     executor: Pool,
+    first: Sequence[Task] = (),
+    after_first: Callable[[TaskResults, Display], None] = lambda results, display: None,
 ) -> TaskResults:
-    """The results of all tasks of a command: stored ones, and others computed. Raises SceneError, EndedEarlyError."""
+    """
+    The results of all tasks of a command: stored ones, and others computed. Raises SceneError, EndedEarlyError.
+
+    first: tasks that are computed before the others; `after_first` is called between, unless no others are missing.
+    """
     width = jobs(options)
     out = destination(options.out)
     refuse_foreign_store(out)
@@ -66,7 +72,11 @@ def computed(
         workers(width, options.scheduler, models, executor, words, hint) as (count, pool),
         progress(console, sum(task.seconds for task in missing), count) as display,
     ):
-        Runner(results, count, pool, display).run(missing, compiling_task)
+        runner = Runner(results, count, pool, display)
+        runner.run(first, compiling_task)
+        if first and results.missing(missing):
+            after_first(results, display)
+        runner.run(missing, compiling_task)
     return results
 
 

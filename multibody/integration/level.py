@@ -27,6 +27,7 @@ from reference.problem.ranges import TOLERANCE, checked_number
 from reference.problem.scene import takes_scene
 
 MAX_LEVELS = 8
+LOOSE = 1e-2  # tolerance, from which on a record has a level before level 0 (measured: docs/multibody.md)
 STEPS_PER_PERIOD = 150  # of the fastest motion that matters, at level 0
 STEPS_PER_BAR_PERIOD = 40  # of the fastest motion that bars make which give way: a small part of the accelerations
 MAX_BAR_DIVISION = 20.0  # of the step for that motion: faster ones hardly move the bodies and are not resolved
@@ -136,6 +137,11 @@ class Level:
         """Smallest residual that Newton's iteration is asked for, in weights."""
         return max(1e-3 * self.newton * self.strength, self.rounding)
 
+    @property
+    def is_loose(self) -> bool:
+        """Whether it comes before level 0."""
+        return self.error_floor > MIN_RELATIVE_ERROR
+
     def coarsened(self) -> Level:
         """The same contact in steps `SCAN_RATIO` times as large, to look ahead."""
         return replace(
@@ -209,7 +215,9 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
     slowest = min(MAX_CONTACT_LAG * model.relaxation, share * period / (2.0 * math.pi), slowest)
     softest = max(min(slowest**2, MAX_PENETRATION), stiffest)
     stiffenings = math.floor(math.log(softest / stiffest, COMPLIANCE_RATIO) + 1e-9)
-    penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in range(MAX_LEVELS)]
+    first = -1 if scene.recorded and tolerance >= LOOSE else 0
+    numbers = range(first, first + MAX_LEVELS)
+    penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in numbers]
     brief = brief_motions(scene, model, step)
     smallest = min([MIN_STEP_AT_STOP * MAX_SLIP_CHANGE * model.relaxation, *(needed for _, needed in brief)])
     max_divisions = MIN_DIVISIONS
@@ -232,7 +240,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
             softest=followed**2,
             force_change=force_change,
         )
-        for level, penetration in enumerate(penetrations)
+        for level, penetration in zip(numbers, penetrations)
     ]
 
 

@@ -144,9 +144,10 @@ class LevelRuns:
         return Candidate(run, level, shared, errors, rounding, least, tuple(coarser), confirmed, floor=floor)
 
     def _levels_on_the_same_springs(self) -> int:
-        """How many levels before the last one have its springs: others are another motion, and confirm nothing."""
-        done = [level.warping_compliance for level in self.levels[: len(self.runs)]]
-        return len(done) - 1 - done.index(done[-1])
+        """How many levels from level 0 to the last have its springs: others are another motion, and confirm nothing."""
+        *before, last = self.levels[: len(self.runs)]
+        springs = last.warping_compliance
+        return sum(level.warping_compliance == springs and not level.is_loose for level in before)
 
     def _at(self, level: Level, stop: float = math.inf) -> EngineRun:
         return self.pair.at_level(level, self.budget, stop, keep=self.keep)

@@ -71,14 +71,16 @@ def refusal(
         return ""
     first_step, step = (level.step * built.units.time for level in (first, longest))
     needed, work = scene.duration / step, WHOLE_POINT * scene.duration / first_step
+    period = STEPS_PER_PERIOD * first_step / (1 + first.is_loose)
+    looser_helps = scene.recorded and not first.is_loose
     tried, enough = max_work * step, max_work * first_step / WHOLE_POINT
     return (
         f"refused before any step: it needs {needed:.2g} steps of the engine or more, and a phase pair may take "
         f"{max_work:.2g} ({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the "
-        f"fastest period is {STEPS_PER_PERIOD * first_step:.2g} s). Allow more work (max_work or "
+        f"fastest period is {period:.2g} s). Allow more work (max_work or "
         f"--max-work, about {_two_digits(work, math.ceil):g} steps), shorten the duration to about "
         f"{_two_digits(enough, math.floor):g} s (above {_two_digits(tried, math.ceil):g} s no step is taken), "
-        "or take a longer period; a looser tolerance does not help"
+        f"or take a longer period; a looser tolerance {'may help' if looser_helps else 'does not help'}"
     )
 
 

@@ -206,7 +206,7 @@ class _Key:
     """A key that runs: where it is, its values, and how they stand in names."""
 
     def __init__(
-        self, label: str, path: tuple[str | int, ...], table: dict[str, Any], motions: Sequence[str] = ()
+        self, label: str, path: tuple[str | int, ...], table: dict[str, Any], motions: Mapping[Any, str]
     ) -> None:
         self.path, self.table = path, table
         self.name = ".".join(map(str, path))
@@ -214,8 +214,8 @@ class _Key:
         self.listed = _values(label, self.name, table)
         self.values: list[Value] = [_named(value) if isinstance(value, dict) else value for value in self.listed]
         self.texts = _texts(label, self.name, self.listed)
-        named = path == MOTION and all(isinstance(value, int) and 0 < value <= len(motions) for value in self.listed)
-        self.labels = [motions[int(value) - 1] for value in self.values] if named else self.texts
+        named = path == MOTION and set(self.values) <= set(motions)
+        self.labels = [motions[value] for value in self.values] if named else self.texts
 
 
 def _check_combine(label: str, combine: Any, running: Sequence[_Key]) -> None:
@@ -259,12 +259,12 @@ def _all_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
     return _with(data, MOTION, {"values": motions})
 
 
-def _motion_names(data: dict[str, Any], label: str) -> list[str]:
-    """Names of the motions of the suite in a folder, by their files; none of another suite."""
+def _motion_names(data: dict[str, Any], label: str) -> dict[int, str]:
+    """Names of the motions of a suite by number; none without a suite."""
     try:
         return motion_names(data["excitation"]["record"]["suite"], Path(label).parent)
     except (KeyError, TypeError, SuiteError):
-        return []
+        return {}
 
 
 def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files | Numbers]:

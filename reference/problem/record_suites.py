@@ -45,12 +45,14 @@ def suite_motions(suite: Any, folder: Path) -> list[int]:
     return list(range(1, len(suite_files(suite, folder)) + 1))
 
 
-def motion_names(suite: Any, folder: Path) -> list[str]:
-    """Names of the motions in a directory: of their CSV files, or what their .AT2 files have in common."""
-    if _record_set(suite) is not None:
-        return []
+def motion_names(suite: Any, folder: Path) -> dict[int, str]:
+    """Names of the motions by number: of their files, or what their .AT2 files have in common."""
+    name = _record_set(suite)
+    if name is not None:
+        return {int(number): str(first) for number, first in _record_sets(name).records["ComponentA"].items()}
     firsts = [next(iter(files.items())) for files in suite_files(suite, folder)]
-    return [COMPONENT.fullmatch(file.stem)[1].rstrip("-_ ") if axis else file.stem for axis, file in firsts]  # type: ignore[index]
+    names = [COMPONENT.fullmatch(file.stem)[1].rstrip("-_ ") if axis else file.stem for axis, file in firsts]  # type: ignore[index]
+    return dict(enumerate(names, 1))
 
 
 def suite_samples(suite: Any, motion: Any, normalized: Any, folder: Path) -> Array:
@@ -104,7 +106,13 @@ def suite_files(suite: str, folder: Path) -> list[Mapping[str, Path]]:
     kinds = {file.suffix.lower() for file in files}
     if len(kinds) > 1:
         raise SuiteError("suite", "has CSV and .AT2 files: take one kind")
-    return [{"": file} for file in files] if kinds == {".csv"} else _paired(files)
+    if kinds == {".at2"}:
+        return _paired(files)
+    named: dict[str, Path] = {}
+    for file in files:
+        if (first := named.setdefault(file.stem, file)) is not file:
+            raise SuiteError("suite", f"{brief(first.name)} and {brief(file.name)} have one name: rename one of them")
+    return [{"": file} for file in files]
 
 
 def _paired(files: list[Path]) -> list[Mapping[str, Path]]:

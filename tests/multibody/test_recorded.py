@@ -1,6 +1,7 @@
 """The engine under a recorded motion: steps end at its knots, and it finds what the equations find."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import reference
 from multibody.integration.adaptive import Budget
 from multibody.integration.constant_step import silence
 from multibody.integration.level import levels_of
+from multibody.integration.level_runs import LevelRuns
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
 from multibody.models.assembly import assemble
@@ -65,6 +67,23 @@ def test_two_levels_that_agree_by_chance_have_a_floor() -> None:
     truth = reference.amplification(scene, [ANY], regularization=1e-3)
     assert list(found.status) == list(truth.status) == ["ok"]
     assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
+
+
+def test_a_loose_tolerance_begins_a_level_earlier_under_a_record() -> None:
+    """Twice the step of level 0, within its stated error; agreement behind impacts counts from level 0 on."""
+    scene = example("synthetic-pair")
+    loose, usual = multibody.levels(scene, tolerance=1e-2), multibody.levels(scene, tolerance=9e-3)
+    assert [level.step for level in loose] == [2.0 * usual[0].step, *(level.step for level in usual[:-1])]
+    assert (loose[1], [level.is_loose for level in loose[:2]]) == (usual[0], [True, False])
+    harmonic = reference.load_scene("fig3-I")
+    assert multibody.levels(harmonic, tolerance=1e-2)[0].step == multibody.levels(harmonic)[0].step
+    found = multibody.amplification(scene, [ANY], tolerance=1e-2)
+    truth = reference.amplification(scene, [ANY], regularization=1e-3)
+    assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error)
+    assert np.all(found.error >= 8e-4 * found.mu)
+    for levels, before in ((loose, 0), (usual, 1)):
+        runs = SimpleNamespace(levels=levels, runs=[None, None])
+        assert LevelRuns._levels_on_the_same_springs(runs) == before  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("model", ["translational", pytest.param("spatial", marks=pytest.mark.long)])

@@ -31,8 +31,9 @@ MEDIAN = FRACTILES.index(0.5)
 SMALLEST = ("contact_force_min", "support_force_min")  # demands of which the smallest value is the worst
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # steps of which fill an interval evenly
 REST = (0.0, 0.0)  # a record has no phases
-SECONDS_PER_KNOT = {"reference": 8e-5, "engine": 4e-3, "spatial": 1.5e-2}  # of processor time, for six bodies
+SECONDS_PER_KNOT = {"reference": 8e-5, "engine": 4e-3, "spatial": 7e-3}  # of processor time, for six bodies
 LIMIT = 900.0  # s of processor time of one motion
+TOLERANCE = 1e-2  # asked of the engine's largest accelerations: motions differ by far more
 
 Quantity = tuple[str, int]  # field of `Demands`, and body from 1 or 0 for the isolator
 
@@ -97,7 +98,7 @@ class Ensemble(Analysis[Points]):
     members: tuple[Member, ...]
     subset: int | None = 2
     model: Model = TRANSLATIONAL
-    tolerance: float = 1e-3
+    tolerance: float = TOLERANCE
     target: result.Target | None = None
 
     def tasks(self, study: Study | None = None, surfaces: xr.Dataset | None = None) -> list[Task]:
@@ -148,7 +149,9 @@ class Ensemble(Analysis[Points]):
             stripes=rows,
             curves=list(curves(*both)),
             spectra=list(spectrum_bands(points.equations)),
-            engine=result.Engine(self.model.key, ran, list(bounds(points.equations, points.engine, points.alike))),
+            engine=result.Engine(
+                self.model.key, ran, list(bounds(points.equations, points.engine, points.alike)), self.tolerance
+            ),
             run=run,
             target=self.target,
         )

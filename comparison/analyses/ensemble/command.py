@@ -10,6 +10,7 @@ import io
 import math
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,8 @@ from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table, print_implausible_values
 from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
-from comparison.runner.progress import wide_console
+from comparison.runner.progress import Display, wide_console
+from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent
 from reference.problem import Family, SceneError
@@ -78,17 +80,29 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
         return 0
     begin = time.monotonic()
-    results = computed("ensemble", options, argv, tasks, MODELS, console, executor)
-    points = ensemble.collect(None, None, results)
-    cost = results.parts[ensemble.stage].seconds
-    run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
-    result = ensemble.result(points, run)
-    files = {STORED.name: STORED.as_json(result), TABLE: table_text(points).encode()}
-    files |= made_by(lambda folder: draw_ensemble(folder / PICTURE, result))
-    with writing(out):
-        written = publish(out, files, "comparison.ensemble")
-    print_ensemble(console, result, cost)
-    console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
+
+    def show(part: Ensemble, results: TaskResults) -> None:
+        points, cost = part.collect(None, None, results), results.parts[part.stage].seconds
+        run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
+        result = part.result(points, run)
+        files = {STORED.name: STORED.as_json(result), TABLE: table_text(points).encode()}
+        files |= made_by(lambda folder: draw_ensemble(folder / PICTURE, result))
+        with writing(out):
+            written = publish(out, files, "comparison.ensemble")
+        print_ensemble(console, result, cost)
+        console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
+
+    def show_equations(results: TaskResults, display: Display) -> None:
+        show(equations, results)
+        console.print(
+            f"Next: {engine} motions by the {model.title}, about {display.left:.0f} s; then all tables again."
+        )
+
+    equations = replace(ensemble, subset=0)
+    show(
+        ensemble,
+        computed("ensemble", options, argv, tasks, MODELS, console, executor, equations.tasks(), show_equations),
+    )
     return 0
 
 
@@ -188,7 +202,7 @@ def missing_sentences(rows: Sequence[dict[str, Any]], result: EnsembleResult, st
         every = len(names) == len(rows)
         which = f" ({', '.join(ended)})" if every and count == len(ended) <= NAMED else ""
         what = "every demand" if every else ", ".join(names)
-        lines.append(f"Without a value for {count} {'motion' if count == 1 else 'motions'}{which}: {what}: {reason}.")
+        lines.append(f"Without a value for {count} {'motion' if count == 1 else 'motions'}{which}: {what} ({reason}).")
     return lines
 
 

@@ -210,7 +210,8 @@ def agreement_sentence(ensemble: EnsembleResult) -> str:
     )
     more = f" and {len(engine.points) - NAMED} more" if len(engine.points) > NAMED else ""
     known = [(size, name) for name, _, size, _ in largest_differences(ensemble) if size is not None]
-    title = f"The {engine.model} engine computed {len(engine.points)} of the motions: {ran}{more}."
+    title = f"The {engine.model} engine computed {len(engine.points)} of the motions: {ran}{more}. "
+    title += f"It was asked for largest accelerations to {percent(engine.tolerance)}."
     if not known:
         return title
     size, name = max(known)

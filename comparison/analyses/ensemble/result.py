@@ -124,6 +124,7 @@ class Engine:
     model: Annotated[str, "key of the model"]
     points: Annotated[Sequence[Mapping[str, str]], "scene, motion and status of every motion"]
     differences: Annotated[Sequence[Difference], "one for each demand"]
+    tolerance: Annotated[float, "relative error asked of its largest accelerations"] = 1e-3
 
 
 @result

@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields, replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from comparison.analyses.ensemble.command import FILES, main, table_text
 from comparison.analyses.ensemble.feature import demand_rows, draw_ensemble, ensemble_panels, labels
 from comparison.analyses.ensemble.result import STORED
 from comparison.analyses.ensemble.target import matched
+from comparison.runner.runner import Runner
 from reference.measures import Demands, Estimate
 from reference.problem import load_family, load_scene
 from reference.problem.record_suites import suite_samples
@@ -475,8 +477,34 @@ def test_the_terminal_names_motions_without_value(
     assert run("mine.toml", "--suite", "suite", "--engine", "0") == 0
     said = " ".join(capsys.readouterr().out.split())
     (name,) = (c["motion"] for c in content()["curves"] if c["quantity"] == "displacement" and None in c["values"])
-    assert f"Without a value for 1 motion ({name}): every demand: travel reached." in said
+    assert f"Without a value for 1 motion ({name}): every demand (travel reached)." in said
     assert f"at the median displacement, {1e3 * reached[1]:.4g} mm" in said
+
+
+def test_the_equations_are_shown_before_the_engine_runs(
+    folder: Path, undrawn: None, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first tables stand on the terminal and on disk when the engine is asked; nothing is shown twice later."""
+
+    compute, sweeps = Runner.run, iter([1])
+
+    def interrupted(*words: Any) -> None:
+        if not next(sweeps, 0):
+            raise KeyboardInterrupt
+        compute(*words)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Runner, "run", interrupted)
+        assert run("mine.toml", "--suite", "suite", "--engine", "1") == 130
+    said = capsys.readouterr()
+    assert "3 motions by the equations: 3 ok" in said.out
+    assert "Next: 1 motions by the translational engine, about" in said.out
+    assert said.err.startswith("interrupted: 3 results are kept")
+    assert (content()["outcomes"], content()["engine"]["points"]) == ({"ok": 3}, [])
+    for shown in (2, 1):
+        assert run("mine.toml", "--suite", "suite", "--engine", "1") == 0
+        assert capsys.readouterr().out.count("two bodies (mine): 3 motions") == shown
+        assert (len(content()["engine"]["points"]), content()["engine"]["tolerance"]) == (1, 0.01)
 
 
 def test_structures_are_told_apart_by_the_values_that_differ() -> None:

