@@ -44,10 +44,6 @@ def vague(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return plain(scene, phases), plain(scene, phases)
 
 
-def without_values(scene: Scene, phases: np.ndarray) -> np.ndarray:
-    return np.full_like(plain(scene, phases), np.nan)
-
-
 def takes_all(scene: Scene, phases: np.ndarray, **settings: Any) -> np.ndarray:
     told.update(settings)
     return plain(scene, phases)

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from heated_pendulum import ranges
 from known_analyses import collected
 from places import ROOT
 
@@ -101,22 +100,6 @@ def test_the_small_equations_with_heating_meet_mastodon():
     )
     assert np.abs(heated - theirs).max() < 3.1
     assert (np.abs(plain - theirs) > 15.0).all()
-
-
-@pytest.mark.long
-@NO_INPUT
-def test_mastodon_s_own_bearing_and_law_give_its_displacements():
-    """A planar integration of the published law with their elastic stiffness and restoring force."""
-    case = mastodon(INPUT)
-    scene = case.scene.with_values({"isolator.friction": {"slow": 0.03, "fast": 0.06, "rate": 100.0}})
-    times = np.arange(0.0, scene.duration, 1e-3)
-    ground = np.stack([np.interp(times, scene.record[:, 0], scene.record[:, axis]) for axis in (1, 2, 3)], axis=1)
-    ours = 1e3 * np.array(readings.ranges(reference.trajectory(scene, (0.0, 0.0), "small")))
-    rigid, _ = ranges(ground, 1e-3, 20, 1e-5, False)
-    heated, temperature = ranges(ground, 1e-3, 20, 1e-3, True)
-    assert np.abs(rigid - ours).max() < 2.0, "mm: the same model"
-    assert np.abs(heated - np.array(LIMITS)).max() < 3.0, "mm: read to 3 mm"
-    assert 190.0 < temperature < 205.0
 
 
 # the numbers themselves ----------------------------------------------------------------------------------------------

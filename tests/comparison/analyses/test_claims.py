@@ -5,14 +5,13 @@ from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from claims_literal import STEPS, literal_peaks, spike_over_the_step
+from claims_literal import literal_peaks
 from known_analyses import collected
 from numpy.typing import NDArray
-from report_texts import both_pages, summary_of
+from report_texts import both_pages
 
 from comparison.analyses.claims import evidence
 from comparison.analyses.claims import table as table_module  # table: what a test made
@@ -226,13 +225,6 @@ def test_evidence_of_the_paper_is_what_the_equations_give() -> None:
     assert min(evidence.gathered(Question("fig3-I", Reading(duration=1.5), 4)).apart) > 0.1
 
 
-@pytest.mark.long
-def test_four_peaks_are_a_matter_of_the_drawing() -> None:
-    """1 m/s^2, resolved peak: two ridges on the square that closes; cut open they are the paper's four and three."""
-    table = collected(Claims(16, [Reading()], [_claim("Fig. 3a", "four"), _claim("Fig. 3c", "two")]), PAPERS)
-    assert [claim.verdicts[0].finding for claim in table.claims] == [Finding.AS_DRAWN] * 2
-
-
 def test_peaks_that_only_the_cut_square_has_are_as_drawn() -> None:
     """One peak at the corner is four where the square is cut, and none on the profile."""
     found = counted(Evidence(CORNERS[..., None], 1e-4, ("ok",)), Counts(4, 1))
@@ -285,14 +277,6 @@ def test_the_literal_reading_rests_where_nothing_slides() -> None:
     assert np.abs(peaks.mu / expected - 1.0).max() < 1e-3
 
 
-def test_the_spike_is_counted_once_for_every_beginning_of_slip() -> None:
-    spike = spike_over_the_step(Reading(1.0, duration=3.0, peak="literal (4.6)"))
-    counted, left_out, starts = map(np.array, (spike.counted, spike.left_out, spike.starts))
-    assert counted.shape == left_out.shape == starts.shape == (len(STEPS), 3)
-    assert (counted >= left_out).all()
-    assert (starts > 0).all()
-
-
 def test_forced_ratios_are_those_of_oscillator_and_chain() -> None:
     scene = load_scene("fig3-II")
     for each in forced_ratios(scene):
@@ -308,14 +292,6 @@ def test_forced_ratios_are_those_of_oscillator_and_chain() -> None:
     assert three[::2] == pytest.approx(two, rel=1e-6)
     assert three[1::2] == pytest.approx([each**2 for each in two], rel=1e-6), "each body drives the next alike"
     assert forced_ratios(scene.with_values({"bodies": [scene.bodies[0].model_dump(exclude_none=True)]})) == []
-
-
-def test_a_peak_in_a_corner_has_its_twin_in_the_center() -> None:
-    """The proof that peaks cannot stand in corners alone, computed without any use of symmetry."""
-    scene = CASES["fig3-II"](LIGHT_BODY).with_values({"duration": 6.0})
-    phases = np.array([(0.1, 0.2), (5.9, 0.3)])
-    pairs = [amplification(scene, phases + shift, "small", tolerance=1e-6, full=True).mu for shift in (0.0, np.pi)]
-    assert np.abs(pairs[0] / pairs[1] - 1.0).max() < 1e-6
 
 
 def test_the_fold_of_the_denominator_is_in_viscous_surfaces() -> None:
@@ -356,18 +332,6 @@ def test_exponents_stand_with_their_uncertainty(page: str) -> None:
     rows = page.split('id="convergence"', 1)[1].split("</table>", 1)[0]
     assert ">none</td>" in rows
     assert "within the error bars: no slope can be told" in rows
-
-
-def test_the_summary_has_them_without_nan(finished: Path) -> None:
-    summary: dict[str, Any] = summary_of(finished)
-    claims = summary["claims"]
-    assert claims["reproduced"] == [1, 2]
-    assert [verdict["finding"] for verdict in claims["claims"][0]["verdicts"]] == ["reproduced", "as drawn"]
-    assert claims["never"] == ["Fig. 3b: mu_2 has several peaks and valleys, more complex than those of mu_1"]
-    forced = {scene["name"]: scene["forced"] for scene in summary["scenes"]}
-    assert [(each["axis"], round(each["ratio"], 2)) for each in forced["fig3-I"]] == [("x", 0.56), ("y", 4.56)]
-    assert summary["scaling"][0]["exponent"] == pytest.approx(2.0)
-    assert summary["convergence"][0]["exponent"] is None
 
 
 def test_claims_are_tested_only_with_all_scenes_of_the_paper() -> None:

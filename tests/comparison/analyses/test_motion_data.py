@@ -39,7 +39,6 @@ from comparison.analyses.motions.page_data import (
     spectrum_axis,
     starts_of,
 )
-from comparison.runner.cache import Cache, Key
 from comparison.study.models import REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from multibody.film import contact_paths
@@ -166,17 +165,6 @@ def test_a_refused_motion_has_no_numbers_and_unknown_demands() -> None:
     assert about["demands"]["drift"] == [[None, None]]
     assert about["spectra"] is None
     assert packed_motions(found(motion)) == packed_motions(found())
-
-
-def test_a_stored_motion_is_read_back_from_the_cache_as_it_was(tmp_path: Path, motions) -> None:
-    for number, motion in enumerate(motions):
-        key = Key(json.dumps("about"), str(number), "answer")
-        Cache(tmp_path).put(key, (motion, 0.5))
-        kept, _ = Cache(tmp_path).get(key, tuple[StoredMotion, float])
-        assert repr(kept.demands) == repr(motion.demands), "NaN included"
-        np.testing.assert_array_equal(kept.spectra.acceleration, motion.spectra.acceleration)
-        for name, block in motion.blocks().items():
-            np.testing.assert_array_equal(kept.blocks()[name], block)
 
 
 @pytest.mark.parametrize("name", ["contact_force", "isolator_force", "support_force", "yaw"])

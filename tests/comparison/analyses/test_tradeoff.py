@@ -79,24 +79,6 @@ def test_the_times_of_all_parts_add_up() -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("question", ["exact", "small", "regularised"])
-def test_the_error_of_the_reference_falls_with_its_tolerance(trade: Trade, question: str) -> None:
-    for method in ("reference, one run", "reference, two runs and an estimate"):
-        errors = np.array([setting.most for setting in trade.methods(question)[method]], dtype=float)
-        # from 1e-1 to 1e-8: a method of order 13 with steps of order 7 gains far more than a thousand
-        assert (errors[-1] < 1e-8).all()
-
-
-@pytest.mark.long
-def test_error_estimates_of_the_reference_hold(trade: Trade) -> None:
-    controlled = [setting for setting in trade.entries if setting.controlled and setting.method.startswith("reference")]
-    assert controlled
-    for setting in controlled:
-        for error, error_estimate in zip(setting.most, setting.error_estimate, strict=True):
-            assert error <= max(error_estimate, 1e-10), setting  # the reference solution is not known better
-
-
-@pytest.mark.long
 def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -> None:
     """The check that the diagram states: codes and methods with little in common meet."""
     for method, within in (("SciPy LSODA", 1e-7), ("translational engine, two levels", 1e-5)):
@@ -116,15 +98,6 @@ def test_scipy_has_the_factors_of_the_equations(monkeypatch: pytest.MonkeyPatch)
     expected = amplification(scene, [(0.3, 1.1)], regularization=1e-2)
     found = outside.factors_by_scipy(scene, [(0.3, 1.1)], "LSODA", 1e-8, 1e-2)
     np.testing.assert_allclose(found, expected.mu, rtol=2e-6)
-
-
-@pytest.mark.long
-def test_v_reg_is_a_model_error_that_falls(trade: Trade) -> None:
-    curve = [setting for setting in trade.of("exact") if "faster than v_reg" in setting.method]
-    errors = np.array([setting.most for setting in curve], dtype=float)
-    assert len(curve) > 2
-    assert all(setting.model_error and not any(setting.pareto_front) for setting in curve)
-    assert (np.diff(errors[:, 1]) < 0.0).all(), "mu_2 is well conditioned: in proportion to v_reg"
 
 
 def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:

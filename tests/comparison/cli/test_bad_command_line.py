@@ -43,30 +43,6 @@ def test_a_wrong_option_is_one_line_and_exit_code_2(
     assert list(tmp_path.iterdir()) == [], "nothing half-written"
 
 
-SCENES = {
-    "unknown key": ("title = 'a'\nduration = 3.0\nduratoin = 3.0\n", "duratoin = 3.0: unknown key"),
-    "missing key": ("title = 'a'\n", "duration = None: this key is required"),
-    "not toml": ("title = \n", "file = "),
-    "negative": ("title = 'a'\nduration = -1.0\n", "duration = -1.0: must be greater than 0"),
-}
-
-
-@pytest.mark.parametrize(("text", "rule"), SCENES.values(), ids=SCENES.keys())
-def test_a_wrong_scene_file_is_named_with_key_value_and_rule(
-    command: Callable[..., Run], text: str, rule: str, tmp_path: Path
-) -> None:
-    file = tmp_path / "mine.toml"
-    good = ROOT / "reference/problem/scenes/fig3-I.toml"
-    tables = good.read_text(encoding="utf-8").split("\n[isolator]", 1)[1]
-    file.write_text(f"{text}\n[isolator]{tables}", encoding="utf-8")
-    run = command(str(file))
-    assert run.code == 2
-    assert run.err.startswith(f"{file}: ")
-    assert rule in run.err
-    assert run.err.count("\n") == 1
-    assert list(tmp_path.iterdir()) == [file]
-
-
 def test_an_impossible_amplitude_names_the_scene(command: Callable[..., Run], tmp_path: Path) -> None:
     good = ROOT / "reference/problem/scenes/fig3-I.toml"
     file = tmp_path / "still.toml"

@@ -123,17 +123,6 @@ def test_the_gate_fails_where_a_side_is_off(study: Path, monkeypatch: pytest.Mon
         gate["test_the_equations_and_the_engine_agree"]()
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(
-    "words",
-    [["-m", "pytest", "-q"], ["-m", "comparison.run", "building.toml", "--grid", "4", "--check"]],
-    ids=["gate", "report"],
-)
-def test_what_its_continuous_integration_runs_passes(study: Path, words: list[str]) -> None:
-    run = subprocess.run([sys.executable, *words], cwd=study, capture_output=True, text=True, check=False)
-    assert run.returncode == 0, run.stdout + run.stderr
-
-
 @pytest.mark.parametrize(
     ("schema", "name"), [("github-workflows", ".github/workflows/study.yml"), ("gitlab-ci", ".gitlab-ci.yml")]
 )

@@ -6,11 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from pydantic import TypeAdapter
 from report_texts import page_of, schema_errors
 from runs import Run
 
-from comparison.analyses.effective_values.analysis import Effective, read_back
+from comparison.analyses.effective_values.analysis import read_back
 from comparison.analyses.errata.analysis import MEASURES, measured
 from comparison.registry import StudyResults
 from comparison.study.models import MODEL_HIERARCHY, models_of
@@ -30,13 +29,6 @@ def test_every_motion_shows_a_plane_and_its_friction(model):
         assert values.radius == math.inf
         assert values.friction == pytest.approx(0.1, rel=2e-3)
     assert values.mass == pytest.approx(2.0, rel=1e-6)
-
-
-def test_an_infinite_radius_is_written_and_read_as_a_word():
-    form = TypeAdapter(Effective)
-    written = form.dump_json(read_back((FLAT, MODEL_HIERARCHY[0])))
-    assert json.loads(written)["radius"] == "inf"
-    assert form.validate_json(written).radius == math.inf
 
 
 def test_the_report_of_a_flat_slider_is_valid_json_and_names_it(command: Callable[..., Run], tmp_path: Path):

@@ -321,17 +321,3 @@ def test_surfaces_without_any_value_are_said_to_have_none(
     assert visit.page.locator(".alert.red").count() > 0
     assert visit.complaints == []
     visit.page.close()
-
-
-@pytest.mark.long
-def test_a_page_without_surfaces_complains_of_nothing(
-    browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    analyses_are(monkeypatch)
-    words = ["fig3-I", "--grid", "2", "--jobs", "2", "--skip", "surfaces", "--out", str(tmp_path / "report")]
-    assert comparison.run.main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
-    visit = opened(browser, tmp_path / "report" / "index.html", PHONE)
-    assert visit.page.locator("canvas.surface").count() == 0
-    assert visit.page.locator("[data-waterfall=mean]:visible").count() == 2
-    assert visit.complaints == []
-    visit.page.close()

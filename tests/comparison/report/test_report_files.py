@@ -1,20 +1,33 @@
 """The files of a report."""
 
 import doctest
+import json
+import math
 import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
 from html import unescape
 from html.parser import HTMLParser
 from importlib import import_module
 from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
 import xarray as xr
+from jsonschema import Draft202012Validator
 from places import ROOT
+from pydantic import TypeAdapter
 from report_texts import page_of, summary_of
 
+from comparison.registry import StudyResults
 from comparison.report.verification import CHECKS, Check
 from comparison.study.models import MODEL_HIERARCHY
+from comparison.surfaces.waterfall import WaterfallBar
+from reference.problem import load_scene
 
 GRID = 4
 PARTS = {
@@ -142,3 +155,107 @@ def test_the_report_lists_them(finished: Path) -> None:
     page = page_of(finished, "verification.html")
     for check in CHECKS:
         assert check.test in page
+
+
+LIMITS = ("median", "maximum", "ratio", "closure", "failed")
+
+
+def test_the_summary_names_every_broken_limit_and_every_verdict(finished: Path) -> None:
+    text = (finished / "summary.md").read_text(encoding="utf-8")
+    assert "12 acceptance limits broken" in text
+    assert r"- fig3-I: body 1: acceptance.median: 0.01 found, 0.0001 allowed" in text
+    assert "- **fig3-I** (Fig. 3a, b" in text
+    assert "Cause: elastic contact, not geometry" in text, "the only model of the hierarchy that differs"
+    assert "No building has been compared, and this study has no measured peaks" in text
+
+
+def test_junit_fails_the_broken_limits_of_every_scene(finished: Path) -> None:
+    suites = ElementTree.parse(finished / "junit.xml").getroot()
+    assert [suite.get("name") for suite in suites] == ["fig3-I", "fig4-viscous"]
+    for suite in suites:
+        acceptance = load_scene(str(suite.get("name"))).acceptance
+        cases = suite.findall("testcase")
+        assert [case.get("name") for case in cases] == [f"acceptance.{k} = {getattr(acceptance, k):g}" for k in LIMITS]
+        failed = [case for case in cases if case.find("failure") is not None]
+        assert [str(case.get("name")).split()[0] for case in failed] == [
+            "acceptance.median",
+            "acceptance.maximum",
+            "acceptance.ratio",
+        ]
+        assert suite.get("failures") == "3"
+        text = str(failed[0].findtext("failure"))
+        assert [line.split(": ")[1] for line in text.splitlines()] == ["body 1", "body 2"], "both bodies break it"
+
+
+def _objects(schema: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Every schema inside a schema."""
+    yield schema
+    inner = [*schema.get("properties", {}).values(), *schema.get("$defs", {}).values()]
+    inner += [schema.get("items"), schema.get("additionalProperties"), *schema.get("anyOf", [])]
+    for part in inner:
+        if isinstance(part, dict):
+            yield from _objects(part)
+
+
+def test_every_key_of_the_summary_is_as_documented(finished: Path) -> None:
+    schema = json.loads((finished / "summary.schema.json").read_text(encoding="utf-8"))
+    Draft202012Validator.check_schema(schema)
+    summary = summary_of(finished)
+    assert [error_message.message for error_message in Draft202012Validator(schema).iter_errors(summary)] == []
+    for part in _objects(schema):
+        if "properties" in part:
+            limits_of_engines = {"$ref": "#/$defs/Limits"}  # tables under names that users choose
+            assert part["additionalProperties"] in (False, limits_of_engines), "an undocumented key is a fault"
+            assert all(key.get("description") for key in part["properties"].values())
+
+
+def test_the_summary_read_back_is_the_results(finished: Path) -> None:
+    text = (finished / "summary.json").read_text(encoding="utf-8")
+    assert json.loads(StudyResults.model_validate_json(text).as_json()) == json.loads(text)
+
+
+def test_a_missing_number_is_null_in_one_way() -> None:
+    form, bar = TypeAdapter(WaterfallBar), WaterfallBar("exact", math.nan, math.inf)
+    written = form.dump_python(bar, mode="json")
+    assert written == {"model": "exact", "size": None, "error": None, "real": False}
+    assert math.isnan(form.validate_python(written).size)
+
+
+SCRIPT = ROOT / "docs/compare_studies.py"
+
+
+def compare(before: Path, after: Path) -> tuple[int, str]:
+    """Exit code and output of the script."""
+    done = subprocess.run([sys.executable, SCRIPT, before, after], capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout
+
+
+@pytest.mark.long
+def test_a_changed_bit_and_a_changed_number_are_found(finished: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other"
+    shutil.copytree(finished, other)
+    summary = summary_of(other)
+    summary["run"]["wall_seconds"] += 1.0
+    for model in summary["scenes"][0]["models"].values():
+        model["cost"] += 1.0
+    (other / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    code, out = compare(finished, other)
+    assert (code, out.splitlines()[-1].endswith(": 0 differences.")) == (0, True), out
+
+    summary["scenes"][0]["differences"][0]["median"] += 1e-15
+    (other / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    surfaces = xr.load_dataset(other / "surfaces.nc")
+    mu = surfaces["mu"].values
+    mu.flat[0] = np.nextafter(mu.flat[0], np.inf)
+    surfaces.to_netcdf(other / "surfaces.nc", engine="h5netcdf")
+    code, out = compare(finished, other)
+    assert code == 1
+    lines = out.splitlines()
+    assert lines[0].startswith("surfaces.nc: mu: 1 of "), out
+    assert lines[1].startswith("summary.json: scenes[0].differences[0].median: "), out
+    assert len(lines) == 3, out
+
+
+@pytest.mark.long
+def test_a_folder_without_a_report_is_refused(finished: Path, tmp_path: Path) -> None:
+    assert compare(finished, tmp_path)[0] == 2

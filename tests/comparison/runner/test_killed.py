@@ -98,36 +98,6 @@ def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[...,
     assert summary_of(finer.report)["run"]["tiles_stored_before"] == sum(key in coarse for key in fine) > 0
 
 
-@pytest.mark.long
-@pytest.mark.skipif(sys.platform == "win32", reason="the system does not limit the size of files")
-def test_a_disk_that_fills_up_under_the_surfaces_is_one_line(tmp_path: Path) -> None:
-    script = """
-import resource, sys
-from concurrent.futures import ThreadPoolExecutor
-sys.path[:0] = [{here!r}, {root!r}]
-from comparison.report import writing as report
-from comparison.run import main
-from fake_models import fake_hierarchy
-written = report.write_report
-def with_little_room(*arguments):
-    resource.setrlimit(resource.RLIMIT_FSIZE, (20 * 1024, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
-    written(*arguments)
-report.write_report = with_little_room
-sys.exit(main(["fig3-I", "--grid", "2", "--only", "budget", "--out", "report"], fake_hierarchy(), ThreadPoolExecutor))
-"""
-    run = subprocess.run(
-        [sys.executable, "-c", script.format(here=str(HELPERS), root=str(ROOT))],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert run.returncode == 3, run.stderr
-    assert run.stderr.count("\n") == 1
-    assert "--out = 'report': could not be written: [Errno 27] File too large" in run.stderr
-    assert [entry.name for entry in tmp_path.iterdir()] == ["report.tiles"]
-
-
 def test_a_full_disk_is_exit_3_and_the_run_goes_on_later(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:

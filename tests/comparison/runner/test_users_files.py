@@ -4,17 +4,21 @@ import hashlib
 import itertools
 import os
 import signal
+import subprocess
+import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
 from fake_models import fake_hierarchy
 from known_results import FOUND
+from places import ROOT
 from report_texts import page_of
 from runs import Run
 
 from comparison.analyses.extremes import command as extremes
 from comparison.cli import reports
+from comparison.report import page
 from comparison.runner.cache import Cache, Key
 from comparison.runner.output import (
     MANIFEST,
@@ -256,13 +260,6 @@ def test_extremes_go_beside_a_file_that_appears_meanwhile(
     assert capsys.readouterr().err.count("not a file of this study") == 2
 
 
-def test_the_extremes_replace_their_own_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(extremes, "judged_matrix", lambda *rest: FOUND)
-    for _ in range(2):
-        extremes.main([*EXTREMES, "--out", str(tmp_path)])
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["extremes.json", "extremes.png", MANIFEST]
-
-
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")
 @pytest.mark.parametrize("deaths", range(4))
 def test_a_file_half_replaced_is_still_the_studys(tmp_path: Path, deaths: int) -> None:
@@ -351,3 +348,75 @@ def test_the_manifest_names_every_file_of_the_report(command: Callable[..., Run]
     report = command(*SMALL).report
     files = {path.relative_to(report).as_posix() for path in report.rglob("*") if path.is_file()}
     assert set(read_manifest(report)) == files - {MANIFEST}
+
+
+def test_a_second_run_replaces_the_first(command: Callable[..., Run]) -> None:
+    first = command(*SMALL)
+    before = (first.report / "summary.json").read_text(encoding="utf-8")
+    second = command(*SMALL, "--tolerance", "2e-3")
+    assert second.code == 0
+    after = (second.report / "summary.json").read_text(encoding="utf-8")
+    assert '"tolerance": 0.001' in before
+    assert '"tolerance": 0.002' in after
+    assert sorted(entry.name for entry in first.report.parent.iterdir()) == ["report", "report.tiles"]
+
+
+@pytest.mark.parametrize(
+    "error_message", [OSError("No space left on device"), KeyboardInterrupt()], ids=["disk full", "Ctrl-C"]
+)
+def test_a_report_that_cannot_be_finished_leaves_the_old_one(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, error_message: BaseException
+) -> None:
+    first = command(*SMALL)
+    before = {entry: entry.read_bytes() for entry in first.report.rglob("*") if entry.is_file()}
+
+    def breaks(*rest: object) -> str:
+        raise error_message  # the surfaces, the summary and the figures are written by then
+
+    monkeypatch.setattr(page, "page_data", breaks)
+    run = command(*SMALL, "--tolerance", "2e-3")
+    assert run.code == (130 if isinstance(error_message, KeyboardInterrupt) else 3)
+    assert run.err.count("\n") == 1
+    assert {entry: entry.read_bytes() for entry in first.report.rglob("*") if entry.is_file()} == before
+    assert sorted(entry.name for entry in first.report.parent.iterdir()) == ["report", "report.tiles"]
+
+
+def test_nothing_is_left_of_a_first_report_that_fails(tmp_path: Path) -> None:
+    def half() -> None:
+        with replace_report(tmp_path / "a" / "b" / "report") as report:
+            (report.folder / "index.html").write_text("half", encoding="utf-8")
+            raise RuntimeError("the second half")
+
+    with pytest.raises(RuntimeError, match="the second half"):
+        half()
+    assert list(tmp_path.iterdir()) == []
+
+
+KILLED = """
+import sys
+from pathlib import Path
+sys.path.insert(0, {root!r})
+from comparison.runner import output as store
+with store.replace_report(Path("report")) as report:
+    (report.folder / "index.html").write_text("half")
+    print("writing", flush=True)
+    sys.stdin.read()
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kill -9")
+def test_what_a_killed_run_left_is_cleared_of_a_living_one_not(tmp_path: Path) -> None:
+    (tmp_path / ".report-someone-else").mkdir()
+    script = KILLED.format(root=str(ROOT))
+    process = subprocess.Popen(
+        [sys.executable, "-c", script], cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    with process:
+        assert process.stdout is not None
+        process.stdout.readline()
+        clear_dead(tmp_path / "report")
+        assert len(list(tmp_path.iterdir())) == 2, "it lives"
+        process.kill()
+    assert len(list(tmp_path.iterdir())) == 2
+    clear_dead(tmp_path / "report")
+    assert [entry.name for entry in tmp_path.iterdir()] == [".report-someone-else"]

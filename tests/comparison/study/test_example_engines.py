@@ -56,21 +56,6 @@ def test_an_example_gives_mu_of_the_equations_with_its_law(
     assert (np.abs(mu(name, scene, **settings) / right - 1.0).max(axis=0) < close).all()
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("name", ["scipy_equations", "siconos_moreau"])
-def test_an_example_tends_to_the_equations_with_its_step(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    example(name, monkeypatch)
-    scene = load_scene("fig3-I").with_values({"duration": 3.0})
-    coarse, fine, law = (
-        ({"rtol": 1e-3}, {"rtol": 1e-6}, {"regularization": 1e-3})
-        if name == "scipy_equations"
-        else ({"step": 8e-3}, {"step": 1e-3}, {"cutoff": 1e-3})
-    )
-    right = reference.amplification(scene, PHASES, **law).mu[:, 1]
-    errors = [np.abs(mu(name, scene, **settings)[:, 1] / right - 1.0).max() for settings in (coarse, fine)]
-    assert errors[1] < 0.3 * errors[0]
-
-
 def test_the_page_of_other_engines_lists_every_example() -> None:
     page = (ROOT / "docs/other-engines.md").read_text(encoding="utf-8")
     files = sorted((ROOT / "examples/engines").glob("*.py"))

@@ -31,7 +31,7 @@ from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study, levels, nested_grids
 from comparison.surfaces.surfaces import surface_tasks
 from reference.command import StoppedError
-from reference.problem import load_scene, phase_axis, phase_grid
+from reference.problem import load_scene, phase_grid
 
 SCENES = (load_scene("fig3-I"), load_scene("synthetic-pair"))
 WORDS = ("fig3-I", "--grid", "24", "--only", "differences,effective,motions")
@@ -239,14 +239,6 @@ def test_each_grid_is_part_of_the_next(grid: int) -> None:
     level = levels(grid)
     for number, coarse in enumerate(chain):
         assert (level <= number).sum() == coarse
-
-
-def test_phases_of_nested_grids_are_the_same_to_the_last_bit() -> None:
-    chain = nested_grids(96)
-    for coarse, fine in pairwise(chain):
-        np.testing.assert_array_equal(phase_axis(fine)[:: fine // coarse], phase_axis(coarse))
-    np.testing.assert_allclose(phase_axis(96), 2.0 * np.pi * np.arange(96) / 96, rtol=1e-15)
-    np.testing.assert_array_equal(phase_grid(4)[6], phase_axis(4)[[1, 2]])
 
 
 def test_every_phase_pair_is_in_one_batch() -> None:

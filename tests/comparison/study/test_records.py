@@ -1,19 +1,14 @@
 """Records, real models and softened bars in a study."""
 
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 from browsers import CHROMIUM, FLAGS, OVERLAPS, PHONE, opened, unfolded, until
 from fake_models import fake_hierarchy, known_motions
 from known_analyses import analyses_are
-from places import EXAMPLES
 from playwright.sync_api import sync_playwright
-from report_texts import page_of, summary_of
-from runs import Run
 from studies import solved
 
 import multibody
@@ -37,7 +32,7 @@ from comparison.surfaces.budget import budget
 from comparison.surfaces.figures.pictures import Pictures
 from comparison.surfaces.surfaces import NOT_ASKED, labeled_surfaces
 from comparison.surfaces.unanswered import advice
-from reference.problem import Outcome, Scene, example_scenes, load_family, load_scene
+from reference.problem import Outcome, Scene, example_scenes, load_scene
 
 MIXED = ("synthetic-pair", "fig4-viscous")
 
@@ -67,37 +62,6 @@ def test_what_needs_phases_is_not_asked_of_a_record(study):
     assert reductions(Study(study.scenes[:1], 4, 1e-3)) == []
     (place,) = chosen_places(study, None, study.scenes[0])
     assert (place.row, place.column) == (0, 0)
-
-
-@pytest.mark.long
-def test_a_mixed_study_is_planned_computed_and_checked(command: Callable[..., Run]) -> None:
-    plan = command(*MIXED, "--grid", "4", "--plan")
-    assert (plan.code, "one point per model" in plan.out) == (0, True)
-    run = command(*MIXED, "--grid", "4", "--check", hierarchy=fake_hierarchy(gap=0.0))
-    assert (run.code, run.err) == (0, "")
-    first, second = summary_of(run.report)["scenes"]
-    assert {row["asked"] for row in first["differences"]} == {1}
-    assert {tuple(row["phases"]) for row in first["differences"]} == {(None, None)}
-    assert [scene["models"]["small"]["phases_per_axis"] for scene in (first, second)] == [1, 4]
-    with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as stored:
-        assert stored["recorded"].values.tolist() == [True, False]
-    names = sorted(file.name for file in (run.report / "figures").iterdir())
-    assert names
-    assert not [name for name in names if name.startswith("synthetic")]
-
-
-@pytest.mark.long
-def test_a_family_of_scales_is_drawn(command: Callable[..., Run], tmp_path: Path) -> None:
-    text = (EXAMPLES / "synthetic-pair.toml").read_text(encoding="utf-8")
-    file = tmp_path / "mine.toml"
-    file.write_text(text.replace("scale = 1.0", "scale = {range = [0.5, 2.0], steps = 4}"), encoding="utf-8")
-    assert [scene.record[5, 1] / load_scene("synthetic-pair").record[5, 1] for scene in load_family(file).scenes] == [
-        0.5, 1.0, 1.5, 2.0,
-    ]  # fmt: skip
-    run = command(str(file))
-    assert run.code == 0
-    assert (run.report / "figures" / "mine-body1-family.png").exists()
-    assert "4 values of excitation.scale" in page_of(run.report)
 
 
 def test_varied_rings_are_refused_of_a_record_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
@@ -130,26 +94,6 @@ def test_the_page_shows_table_and_motions_of_a_record(tmp_path: Path) -> None:
         assert "phases per axis" not in page.inner_text("main")
         assert (visit.complaints, len(visit.requests)) == ([], 1)
         browser.close()
-
-
-@pytest.fixture(scope="module")
-def real(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    place = tmp_path_factory.mktemp("real") / "report"
-    assert main(["fig3-I", "--grid", "4", "--full", "--jobs", "2", "--out", str(place)]) == 0
-    return place
-
-
-@pytest.mark.long
-def test_every_point_has_an_answer_with_an_error(real: Path) -> None:
-    with xr.open_dataset(real / "surfaces.nc", engine="h5netcdf") as data:
-        assert (data["status"] == "ok").all()
-        assert data["mu"].sizes == {"scene": 1, "model": 6, "body": 2, "alpha1": 4, "alpha2": 4}
-        assert (data["mu"] > 0.0).all()
-        assert (data["error"] > 0.0).all()
-        assert (data["error"] <= 1e-3 * data["mu"]).all(), "the tolerance asked for"
-        for model in ("exact", "translational", "spatial"):
-            mu = data["mu"].sel(model=model, scene="fig3-I", body=1)
-            assert float(mu.max() - mu.min()) > 0.1, "no surface is one number everywhere"
 
 
 PLAIN = load_scene("fig3-I")

@@ -15,7 +15,7 @@ from fake_models import errors_in, fake_hierarchy
 from numpy.typing import NDArray
 from studies import solved
 
-from comparison.study.batches import execute_batch
+from comparison.study.batches import execute_batch, imported
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import checked_limits
@@ -25,7 +25,7 @@ from comparison.surfaces.steps import RESOLVED
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.unanswered import unanswered
 from comparison.surfaces.waterfall import waterfall
-from reference.problem import load_scene
+from reference.problem import builtin_scenes, load_scene
 
 GRID = 8
 
@@ -292,3 +292,28 @@ def test_a_mistake_beside_the_like_for_like_step_is_found(sound: Solved, mistake
     assert broken(sound) == []
     lines = broken(_with(sound, mistake))
     assert any(f"body {mistake.body}: acceptance.ratio" in line for line in lines), lines
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", builtin_scenes())
+def test_a_real_step_is_known_to_a_fifth_of_itself(name: str) -> None:
+    """Held against the same step from runs a hundred times tighter."""
+    scene = load_scene(name)
+    study = Study((scene,), 4, 1e-3, full=True)
+    study = replace(study, hierarchy=[model for model in study.hierarchy if model.side == "reference"])
+    surfaces = solved(study)
+    phases = np.array([(a, b) for a in surfaces["alpha1"].values for b in surfaces["alpha2"].values])
+
+    def tight(model: Model) -> np.ndarray:
+        mu = imported(model.amplification)(scene, phases, **model.settings, tolerance=1e-8).mu
+        return mu.T.reshape(len(scene.bodies), 4, 4)
+
+    truth = {model.key: tight(model) for model in study.hierarchy if model.applies(scene)}
+    real = 0
+    for body in range(1, len(scene.bodies) + 1):
+        for step in steps(study, surfaces, name, body):
+            first, second = truth[step.first.key][body - 1], truth[step.second.key][body - 1]
+            size = (second - first) / truth["small"][body - 1]
+            assert (np.abs(step.size - size)[step.real] <= 0.2 * np.abs(size[step.real])).all(), (step.key, body)
+            real += int(step.real.sum())
+    assert real > 16, "many are called so"

@@ -116,15 +116,8 @@ def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
     (lacking,) = unanswered(study, surfaces)
     assert (lacking.model, lacking.used, lacking.points == lacking.asked) == (silent, False, True)
     assert lacking.why == WHY
-
-
-def test_like_for_like_is_never_said_of_other_models() -> None:
-    for silent in ("regularised", "translational"):
-        study = _solved(silent)
-        surfaces = solved(study)
-        assert "like-for-like" not in {pair.key for pair in compared_study(study, surfaces).pairs(study.scenes[0])}, (
-            silent
-        )
+    alike = "like-for-like" in {pair.key for pair in study.pairs(scene)}
+    assert alike == (silent in ("spatial", "resolved", "small")), "never said of other models"
 
 
 def test_page_summary_and_terminal_say_which_model_is_refused(command: Callable[..., Run]) -> None:
