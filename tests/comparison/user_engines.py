@@ -33,7 +33,7 @@ def off(scene: Scene, phases: np.ndarray) -> np.ndarray:
 
 
 def off_with_error(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    return 1.021 * plain(scene, phases), 1e-3 * plain(scene, phases)
+    return 1.021 * plain(scene, phases), 7e-3 * plain(scene, phases)
 
 
 def with_one_error(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

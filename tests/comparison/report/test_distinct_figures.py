@@ -28,6 +28,7 @@ from distinct_models import (
 )
 from known_analyses import analyses_are
 from known_results import FOUND
+from matplotlib.colors import to_hex
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from places import limited_scene
 from report_texts import summary_of
@@ -36,6 +37,7 @@ from runs import quick_figures
 from comparison.analyses.assumptions.figure import draw_assumptions
 from comparison.analyses.assumptions.validity import AssumptionCell, Variation
 from comparison.analyses.extremes.figure import draw_extremes
+from comparison.analyses.panels import COLORS, draw_panels, panel
 from comparison.analyses.tradeoff.feature import draw_growth, draw_tradeoff
 from comparison.analyses.tradeoff.growth import SCHEMA, MeasuredGrowth, with_slope
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
@@ -280,6 +282,53 @@ def test_the_trade_off_has_every_curve_in_its_panel(monkeypatch: pytest.MonkeyPa
         assert line.get_ydata() == pytest.approx([entry.most[body] for entry in shown])
         assert axes.get_title() == rf"{question.title}, $μ_{{\mathrm{{{body + 1}}}}}$"
         assert (axes.get_xlabel(), axes.get_ylabel()) == ("processor time per point, s", "relative error, 95 %")
+
+
+def test_a_panel_is_drawn_as_it_is_described(monkeypatch: pytest.MonkeyPatch) -> None:
+    x = {"title": "μ_1", "log": True, "range": (0.5, 40.0)}
+    y = {"title": "share", "ticks": [[1.0, "one"], [3.0, "three"]], "range": (-1.0, 8.0)}
+    about = {"x": [1.0, 10.0], "y": [1.0, 3.0], "low": [0.5, 2.0], "high": [2.0, 5.0]}
+    series = [
+        {**about, "name": "band", "band": True, "color": 1, "width": 2.5},
+        {**about, "name": "bars", "color": "gray", "marks": True, "dash": "4 2"},
+        {"name": "points", "x": [3.0], "y": [2.0], "color": 10, "line": False, "marks": True, "legend": False},
+        *({"name": f"more {number}", "x": [3.0], "y": [None]} for number in range(3)),
+    ]
+    described = panel("title of μ_2", "", x, y, series, bands=[{"from": -9.0, "to": 0.5}])
+    figure = drawn(monkeypatch, draw_panels, UNUSED, "a title", [described] * 2, 3)
+    assert (figure.get_suptitle(), len(figure.axes)) == ("a title", 2)
+    axes = figure.axes[0]
+    band, bars = axes.collections
+    corners = band.get_paths()[0].vertices
+    assert {tuple(corner) for corner in corners} == {(1.0, 0.5), (1.0, 2.0), (10.0, 2.0), (10.0, 5.0)}
+    assert [segment.tolist() for segment in bars.get_segments()] == [  # type: ignore[attr-defined]
+        [[1.0, 0.5], [1.0, 2.0]],
+        [[10.0, 2.0], [10.0, 5.0]],
+    ]
+    first, second, third, *_ = axes.lines
+    assert [tuple(line.get_xydata().ravel()) for line in (first, second, third)] == [  # type: ignore[union-attr]
+        (1.0, 1.0, 10.0, 3.0), (1.0, 1.0, 10.0, 3.0), (3.0, 2.0),
+    ]  # fmt: skip
+    looks = [(line.get_color(), line.get_linestyle(), line.get_marker(), line.get_linewidth()) for line in axes.lines]
+    assert looks[:4] == [
+        (COLORS[1], "-", "", 2.5), ("0.5", "--", "o", 1.4), (COLORS[2], "None", "o", 1.4), (COLORS[0], "-", "", 1.4),
+    ]  # fmt: skip
+    assert to_hex(band.get_facecolor()[0]) == COLORS[1]  # type: ignore[index]
+    assert tuple(bars.get_color()[0][:3]) == (0.5, 0.5, 0.5)  # type: ignore[attr-defined]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == (r"$μ_{\mathrm{1}}$", "share")
+    assert axes.get_title() == r"title of $μ_{\mathrm{2}}$"
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
+    assert (axes.get_xlim(), axes.get_ylim()) == ((0.5, 40.0), (-1.0, 8.0))
+    assert list(zip(axes.get_yticks(), (tick.get_text() for tick in axes.get_yticklabels()))) == [
+        (1, "one"),
+        (3, "three"),
+    ]
+    [shade] = axes.patches
+    assert shade.get_extents().transformed(axes.transData.inverted()).intervaly == pytest.approx((-1.0, 0.5))
+    legend = axes.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.texts] == ["band", "bars", "more 0", "more 1", "more 2"]
+    assert legend._ncols == 2, "five names are more than a column holds"  # type: ignore[attr-defined]
 
 
 def test_growth_and_extremes_are_drawn_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -41,7 +41,7 @@ from comparison.registry import report_of
 from comparison.report.page_data import page_data
 from comparison.report.pdf import map_tasks
 from comparison.run import main
-from comparison.surfaces.distribution import grid_maxima
+from comparison.surfaces.distribution import distributions, grid_maxima
 from comparison.surfaces.figures import pairs, print_maps
 
 EFFECTS = (
@@ -317,6 +317,10 @@ def test_a_largest_value_names_its_grid_and_the_search() -> None:
     ]
     for each in grid_maxima(study, surfaces.assign(error=1e-3 * (100.0 - surfaces["mu"])), study.scenes[0]):
         assert each.error == pytest.approx(1e-3 * (100.0 - each.mu))
+    for row in distributions(study, surfaces, study.scenes[0]):
+        mu = surfaces["mu"].sel(model=row.model, body=row.body).values.ravel()
+        expected = np.percentile(mu[np.isfinite(mu)], np.linspace(1.0, 99.0, 50), method="hazen")
+        assert row.curve == pytest.approx(expected), "rising, from 1 % to 99 %"
     report = report_of(study, surfaces, {"worst_phases": searched}, [], RUN)
     [(about, _)] = map_tasks(report)
     fine, coarse = heights("small", 1, GRID).max(), heights("spatial", 1, COARSE).max()
