@@ -1,4 +1,4 @@
-"""What the engine's answers cost: formulations and solvers, one point against one plain run, memory of many runs."""
+"""What the engine's answers cost: one point against one plain run, memory of many runs."""
 
 import multiprocessing
 import resource
@@ -8,48 +8,43 @@ from typing import Any
 
 import numpy as np
 import pytest
-from formulations import FORMULATIONS, PENETRATION, rigid_body, run
 
 import multibody
 from multibody.integration import level
-from multibody.integration.constant_step import INTEGRATORS, Engine
-from reference.problem import load_scene
+from multibody.integration.constant_step import MAX_CONTRACTIVITY, SPECTRAL_RADIUS, Engine, silence
+from multibody.models.assembly import assemble
+from multibody.models.engine import exudyn
+from reference.problem import Scene, ground_acceleration, load_scene
 
-PHASE = np.array([0.3, 1.1])
+PENETRATION = 1e-6
 
 
 def short(duration: float) -> Any:
     return load_scene("fig3-I").with_values({"duration": duration})
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("solver", INTEGRATORS)
-@pytest.mark.parametrize("formulation", FORMULATIONS)
-def test_formulation_and_solver(benchmark: Any, formulation: str, solver: str) -> None:
-    scene = short(2.0)
-    candidate = FORMULATIONS[formulation](scene, PENETRATION)
-    peaks, _ = benchmark(run, scene, candidate, PHASE, solver, 1e-3 if solver in INTEGRATORS[:2] else 2e-4)
-    assert np.isfinite(peaks).all()
-
-
-def test_one_point(benchmark: Any) -> None:
-    result = benchmark(multibody.amplification, short(2.0), [PHASE])
-    assert result.status[0] == "ok"
-
-
-def test_both_formulations_are_the_same_system() -> None:
-    scene = short(2.0)
-    peaks = [
-        run(scene, build(scene, PENETRATION), PHASE, "generalized alpha", 1e-3)[0] for build in FORMULATIONS.values()
-    ]
-    # the same equations and steps; Newton's tolerance of 1e-5 on the forces is left
-    np.testing.assert_allclose(peaks[0], peaks[1], rtol=1e-4)
-
-
-PLAIN = {  # what a plain run sets: Exudyn's defaults, or the Newton tolerances and damping of this package
-    "defaults": {"modified": False},
-    "tuned": {"modified": True},
-}
+def plain_run(scene: Scene, model: Any, phase: np.ndarray, kind: str) -> float:
+    """Processor time, s, with Exudyn's defaults, or tuned: with the Newton tolerances and damping of this package."""
+    settings, initial = exudyn.SimulationSettings(), exudyn.ConfigurationType.Initial
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 0.0
+    integration = settings.timeIntegration
+    integration.verboseMode = 0
+    integration.endTime, integration.numberOfSteps = scene.duration / model.units.time, round(1e3 * scene.duration)
+    if kind == "tuned":
+        integration.newton.useModifiedNewton = True
+        integration.newton.modifiedNewtonContractivity = MAX_CONTRACTIVITY
+        integration.newton.relativeTolerance, integration.newton.absoluteTolerance = 1e-5, 1e-8
+        integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
+    model.ground.set_phase(phase)
+    state, data = model.start(None, ground_acceleration(scene, phase, [0.0])[0], PENETRATION), model.mbs.systemData
+    data.SetODE2Coordinates(state.coordinates, configuration=initial)
+    data.SetODE2Coordinates_t(state.velocities, configuration=initial)
+    data.SetDataCoordinates(state.contact, configuration=initial)
+    clock = time.process_time()
+    with silence():
+        model.mbs.SolveDynamic(settings)
+    return time.process_time() - clock
 
 
 @pytest.mark.long
@@ -62,13 +57,14 @@ PLAIN = {  # what a plain run sets: Exudyn's defaults, or the Newton tolerances 
 def test_a_point_costs_at_most_one_plain_run_in_the_median(name: str, model: str, kinds: tuple[str, ...]) -> None:
     """A plain run: the same model, 20 s in 20 000 equal steps, generalized alpha, one call of SolveDynamic."""
     scene = load_scene(name)
-    plain = rigid_body(scene, PENETRATION, model_name=model)
+    plain = assemble(scene, model, 1e-3)
+    plain.set_contact(PENETRATION)
     phases = np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (9, 2))
     multibody.amplification(scene, phases[:1], model=model)  # compiles the loading's peak
     costs: dict[str, list[float]] = {kind: [] for kind in (*kinds, "point")}
     for phase in phases:
         for kind in kinds:
-            costs[kind].append(run(scene, plain, phase, "generalized alpha", 1e-3, **PLAIN[kind])[1])
+            costs[kind].append(plain_run(scene, plain, phase, kind))
         costs["point"].append(multibody.amplification(scene, [phase], model=model).cost)
     ratios = {kind: float(np.median(np.divide(costs["point"], costs[kind]))) for kind in kinds}
     print(f"\n{name} {model}: {np.median(costs['point']):.3f} s a point,", end=" ")

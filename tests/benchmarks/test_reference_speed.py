@@ -1,5 +1,5 @@
 """
-The reference beside LSODA, called by SciPy and by compiled code (numbalsoda): exact equations, v_reg = 1e-3 m/s.
+The reference beside SciPy's LSODA: exact equations, v_reg = 1e-3 m/s.
 
 The accuracy is measured on both, and the reference has to be the better one. LSODA is read well: at its own steps, and
 fifty times as closely around its peaks; on a fixed grid of instants it misses the short peaks at stops.
@@ -11,14 +11,12 @@ import os
 import subprocess
 import sys
 import time
-from functools import cache
 
 import numpy as np
 import pytest
-from numba import carray, cfunc
 
 import reference
-from comparison.analyses.tradeoff.outside import constants_of, factors, motion, slope
+from comparison.analyses.tradeoff.outside import factors, motion
 from reference.solver.error_estimate import MAX_STEP_TOLERANCE, peaks_at, peaks_with_error
 from reference.surface import checked_demand
 
@@ -26,47 +24,9 @@ V_REG = 1e-3  # m/s
 # most a point may cost, in accurate runs to the end of the motion; seen: 1.08, 1.29, 1.59, 1.19
 MOST_RUNS_FOR_A_POINT = {"fig3-I": 1.3, "fig3-II": 1.6, "fig4-dry": 2.0, "fig4-viscous": 1.5}
 LSODA_POINTS = 6  # it is slow
-SAMPLES = 20_001  # of numbalsoda's motion: a smooth peak between two is lost by less than 1e-6
 
 
-def scipy_motion(scene, phase, tolerance):
-    """Times (T,) and states (T, 8) from SciPy's LSODA."""
-    return motion(scene, phase, "LSODA", tolerance, V_REG)
-
-
-def numbalsoda_motion(scene, phase, tolerance):
-    """Times (T,) and states (T, 8) from LSODA called by compiled code."""
-    from numbalsoda import lsoda
-
-    amplitudes, s, alpha, *rest = constants_of(scene, phase, V_REG)
-    data = np.concatenate([amplitudes.ravel(), s.real, s.imag, alpha, *[np.ravel(part) for part in rest]])
-    times = np.linspace(0.0, scene.duration, SAMPLES)
-    states, success = lsoda(compiled_slope(), np.zeros(8), times, data, rtol=tolerance, atol=tolerance * 1e-2)
-    assert success
-    return times, states
-
-
-@cache
-def compiled_slope():
-    """Address of `slope` in the form that numbalsoda calls."""
-    from numbalsoda import lsoda_sig
-
-    @cfunc(lsoda_sig)
-    def right_hand_side(t, y, dy, data):
-        p = carray(data, (24,))
-        s = p[6:8] + 1j * p[8:10]
-        below, above = p[12:16].reshape((2, 2)), p[16:20].reshape((2, 2))
-        out = slope(
-            t, carray(y, (8,)), p[:6].reshape((3, 2)), s, p[10:12], below, above, p[20], p[21], p[22], p[23]
-        )  # fmt: skip
-        state = carray(dy, (8,))
-        for i in range(8):
-            state[i] = out[i]
-
-    return right_hand_side.address
-
-
-def compared(solver, their_tolerance, our_tolerance):
+def compared(their_tolerance, our_tolerance):
     """Their processor time over ours for one point; asserts that our mu is nearer to the truth, median and worst."""
     scene = reference.load_scene("fig3-I")
     phases = reference.phase_grid(16)
@@ -76,7 +36,7 @@ def compared(solver, their_tolerance, our_tolerance):
         return reference.amplification(scene, at, regularization=V_REG, tolerance=tolerance)
 
     def theirs(phase):
-        return factors(scene, phase, *solver(scene, phase, their_tolerance), V_REG)
+        return factors(scene, phase, *motion(scene, phase, "LSODA", their_tolerance, V_REG), V_REG)
 
     ours(phases[:1], our_tolerance)  # compiled
     theirs(some[0])
@@ -110,13 +70,7 @@ def compared(solver, their_tolerance, our_tolerance):
     ids=["mu good to 1e-6", "mu good to 1e-8"],
 )
 def test_the_reference_is_faster_than_scipys_lsoda_at_better_accuracy(their_tolerance, our_tolerance, least):
-    assert compared(scipy_motion, their_tolerance, our_tolerance) > least
-
-
-@pytest.mark.long
-def test_the_reference_is_faster_than_a_compiled_lsoda_at_better_accuracy():
-    pytest.importorskip("numbalsoda", reason="needs a C++ and a Fortran compiler to be installed")
-    assert compared(numbalsoda_motion, 1e-8, 1e-6) > 1.0
+    assert compared(their_tolerance, our_tolerance) > least
 
 
 @pytest.mark.long
@@ -153,26 +107,6 @@ def test_a_point_with_its_error_costs_about_one_accurate_run_to_the_end_of_the_m
     run, point = np.array([[seconds(solve) for solve in (plain, peaks_with_error)] for _ in range(5)]).min(axis=0)
     print(f"\none run {1e3 * run / len(phases):.2f} ms, a point {1e3 * point / len(phases):.2f} ms: {point / run:.2f}")
     assert point / run < most
-
-
-@pytest.mark.long
-def test_the_cost_per_step_grows_linearly_with_the_number_of_bodies():
-    base = reference.load_scene("fig3-I").model_dump(exclude_none=True)
-
-    def seconds(bodies: int) -> float:
-        upper = {"mass": 0.01, "stiffness": [4000.0, 5000.0]}
-        scene = reference.Scene.model_validate(
-            {**base, "duration": 2.0, "bodies": [base["bodies"][0]] + [upper] * (bodies - 1)}
-        )
-        reference.trajectory(scene, (0.3, 1.1), times=[0.0, 2.0])
-        begin = time.process_time()
-        found = reference.amplification(scene, [(0.3, 1.1)], tolerance=1e-4)
-        assert found.status[0] == "ok"
-        return time.process_time() - begin
-
-    few, many = seconds(30), seconds(300)
-    print(f"\n30 bodies {few:.3f} s, 300 bodies {many:.3f} s, ratio {many / few:.1f} for 10 times the bodies")
-    assert many / few < 40.0  # a longer chain also vibrates more slowly, so that the number of steps differs
 
 
 FIRST_CALL = """

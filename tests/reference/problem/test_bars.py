@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-import reference
 from reference.problem import Scene, in_plane, load_scene, planar
 
 BARS = {"count": 4, "bending_stiffness": 0.75, "length": 1.25}
@@ -31,16 +30,3 @@ def test_a_scene_with_bars_is_turned_into_its_plane():
     assert Scene.model_validate(scene.model_dump(exclude_none=True)) == scene
     assert scene.digest() != linked(stiffness=[STIFFNESS] * 2).digest()
     assert hash(scene) == hash(Scene.model_validate(scene.model_dump(exclude_none=True)))
-
-
-def test_a_family_runs_over_the_length_of_the_bars(tmp_path):
-    file = tmp_path / "bars.toml"
-    file.write_text(
-        'title = "bars"\nduration = 2.0\nisolator = {period = 1.0, friction = 0.1}\n'
-        "excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}\n"
-        "[[bodies]]\nmass = 1.0\n[[bodies]]\nmass = 1.0\n"
-        "[bodies.bars]\ncount = 4\nbending_stiffness = 0.75\nlength = {values = [1.0, 2.0]}\n"
-    )
-    family = reference.problem.load_family(file)
-    first, second = (scene.stiffness[0, 0] for scene in family.scenes)
-    assert first == pytest.approx(8.0 * second)

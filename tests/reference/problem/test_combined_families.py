@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import reference
-from reference.problem import SceneError, load_family, load_scene
+from reference.problem import SceneError, load_family
 
 SCENE = """{top}
 title = "combined"
@@ -50,27 +50,9 @@ def test_keys_of_a_product_are_axes_of_its_results(written, top, dims):
     family = load_family(written(f'combine = "{top}"', friction=TWO, scale="{values = [3.0, 1.0]}"))
     data = family.to_xarray([reference.amplification(scene, (0.0, 0.0), tolerance=1e-3) for scene in family.scenes])
     assert dict(data["mu"].isel(body=0).sizes) == dims
+    assert (family.scenes[-1].friction_coefficient, float(family.scenes[-1].record[1, 1])) == (0.1, 1.0)
     last = data["mu"].sel(friction=0.1, scale=1.0) if top == "product" else data["mu"].isel(scene=1)
     np.testing.assert_array_equal(last, reference.amplification(family.scenes[-1], (0.0, 0.0), tolerance=1e-3).mu)
-
-
-def test_a_zip_takes_the_values_in_step(written):
-    family = load_family(written('combine = "zip"', friction=TWO, scale="{values = [1.0, 3.0]}"))
-    assert [scene.friction_coefficient for scene in family.scenes] == [0.05, 0.1]
-    assert [float(scene.record[1, 1]) for scene in family.scenes] == [1.0, 3.0]
-
-
-def test_three_keys_may_run(written):
-    top = 'combine = "product"'
-    family = load_family(written(top, friction=TWO, record=SUITE, scale="{values = [1.0, 3.0]}"))
-    assert len(family.scenes) == 12
-    assert len(set(family.scenes)) == 12
-
-
-def test_all_motions_of_a_suite_are_a_family(written):
-    family = load_family(written(record=SUITE))
-    assert (family.key, family.values) == ("excitation.record.motion", (1, 2, 3))
-    np.testing.assert_array_equal([scene.record[1, 1] for scene in family.scenes], [1.0, 2.0, 3.0])
 
 
 @pytest.mark.parametrize(
@@ -102,8 +84,3 @@ def test_keys_that_cannot_run_together_are_refused_in_one_line(written, options,
         load_family(written(**options))
     assert (refusal.value.key, "\n" in str(refusal.value)) == (key, False)
     assert rule in refusal.value.rule
-
-
-def test_one_scene_of_a_file_with_combined_keys_is_refused(written):
-    with pytest.raises(SceneError, match="makes a family of scenes, and one scene is asked for"):
-        load_scene(written('combine = "zip"', friction=TWO, scale=TWO))

@@ -80,15 +80,11 @@ def test_the_amplitude_scales_every_member(tmp_path: Path) -> None:
 
 WRONG = [  # what runs, and the line behind isolator.friction
     ("{range = [0.1, 0.2]}", " = {'range': [0.1, 0.2]}: must be {range = [lowest, highest]"),
-    ("{steps = 3}", " = {'steps': 3}: must be {range = "),
     ("{range = [0.1, 0.2], step = 3}", " = {'range': [0.1, 0.2], 'step': 3}: must be"),
     ("{range = [0.1, 0.2, 0.3], steps = 3}", ".range = [0.1, 0.2, 0.3]: must be two"),
     ("{range = [0.2, 0.1], steps = 3}", ".range = [0.2, 0.1]: must be two finite numbers"),
-    ("{range = [0.2, inf], steps = 3}", ".range = [0.2, inf]: must be two finite numbers"),
     ("{range = [-1e308, 1e308], steps = 5}", ".range = [-1e+308, 1e+308]: must be two finite numbers"),
-    ("{range = [0.2, true], steps = 3}", ".range = [0.2, True]: must be two finite numbers"),
     ("{range = [0.1, 0.2], steps = 1}", ".steps = 1: must be a whole number from 2 to 1000"),
-    ("{range = [0.1, 0.2], steps = 2.5}", ".steps = 2.5: must be a whole number"),
     ("{range = [-0.1, 0.2], steps = 4}", " = -0.1: must be greater than"),
     ("{values = []}", ".values = []: must be a list of 1 to 1000 finite numbers"),
     ("{values = [1, 'a']}", ".values = [1, 'a']: must be a list of 1 to 1000 finite"),
@@ -103,27 +99,6 @@ def test_what_is_no_range_is_one_line(tmp_path: Path, table: str, line: str) -> 
         load_family(file)
     assert str(fault.value).startswith(f"{file}: isolator.friction{line}")
     assert "\n" not in str(fault.value)
-
-
-def test_bodies_of_a_family_are_counted_before_a_scene_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("reference.problem.families.validated_scene", None)
-    body = "\n[[bodies]]\nmass = 1.0\nperiod = [1.0, 1.0]\n"
-    file = _file(tmp_path, "friction = 0.1", "friction = {range = [0.02, 0.2], steps = 60}")
-    file.write_text(file.read_text(encoding="utf-8") + 9_998 * body, encoding="utf-8")
-    with pytest.raises(SceneError) as fault:
-        load_family(file)
-    assert str(fault.value) == (
-        f"{file}: bodies: 10000 in each of 60 scenes = 600000: must be at most 50000 bodies in all scenes of a family: "
-        "take fewer values, or fewer bodies"
-    )
-
-
-def test_keys_that_run_are_counted(tmp_path: Path) -> None:
-    bodies = "".join(f"[[bodies]]\nmass = {{values = [1.0, 2.0]}}\nperiod = [{n}.0, 1.0]\n" for n in range(1, 22))
-    file = _file(tmp_path, "duration = 20.0", 'combine = "zip"\nduration = 20.0')
-    file.write_text(file.read_text(encoding="utf-8") + bodies, encoding="utf-8")
-    with pytest.raises(SceneError, match=r"bodies\.22\.mass = .*: at most 20 keys may run"):
-        load_family(file)
 
 
 def test_one_scene_of_a_file_with_a_range_is_refused(tmp_path: Path) -> None:

@@ -1,14 +1,12 @@
 """Files that somebody else may have written: regular ones of a stated size are read, others are one line at once."""
 
 import os
-import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from reference.problem import SceneError, load_family, load_scene
-from reference.problem import scene_file as scenes
 from reference.problem.files import read_file
 
 SECRET = "xK7-of-somebody-else"
@@ -24,33 +22,12 @@ RECORDS = {
 }
 
 
-def fifo(path: Path) -> None:
-    os.mkfifo(path)
-
-
-def device(path: Path) -> None:
-    path.symlink_to("/dev/zero")
-
-
-def sparse(path: Path) -> None:
-    with open(path, "wb") as stream:
-        stream.truncate(2**40)
-
-
-def folder(path: Path) -> None:
-    path.mkdir()
-
-
-def link_to_itself(path: Path) -> None:
-    path.symlink_to(path.name)
-
-
-NONE: dict[str, tuple[Callable[[Path], None], str]] = {
-    "pipe": (fifo, "not a regular file"),
-    "device": (device, "not a regular file"),
-    "large": (sparse, "larger than "),
-    "folder": (folder, "Is a directory"),
-    "link to itself": (link_to_itself, "symbolic links"),
+NONE: dict[str, tuple[Callable[[Path], object], str]] = {
+    "pipe": (lambda path: os.mkfifo(path), "not a regular file"),
+    "device": (lambda path: path.symlink_to("/dev/zero"), "not a regular file"),
+    "large": (lambda path: (path.touch(), os.truncate(path, 2**40)), "larger than "),
+    "folder": (Path.mkdir, "Is a directory"),
+    "link to itself": (lambda path: path.symlink_to(path.name), "symbolic links"),
 }
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no such files")
 
@@ -58,7 +35,7 @@ pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system ha
 @pytest.mark.parametrize(("make", "rule"), NONE.values(), ids=NONE.keys())
 @pytest.mark.parametrize("load", [load_scene, load_family])
 def test_a_scene_is_a_regular_file_of_a_stated_size(
-    tmp_path: Path, make: Callable[[Path], None], rule: str, load: Callable[[Path], object]
+    tmp_path: Path, make: Callable[[Path], object], rule: str, load: Callable[[Path], object]
 ) -> None:
     make(tmp_path / "mine.toml")
     with pytest.raises(SceneError, match=rule) as refusal:
@@ -69,7 +46,7 @@ def test_a_scene_is_a_regular_file_of_a_stated_size(
 @pytest.mark.parametrize(("make", "rule"), NONE.values(), ids=NONE.keys())
 @pytest.mark.parametrize(("record", "name"), RECORDS.values(), ids=RECORDS.keys())
 def test_a_record_is_a_regular_file_of_a_stated_size(
-    tmp_path: Path, make: Callable[[Path], None], rule: str, record: str, name: str
+    tmp_path: Path, make: Callable[[Path], object], rule: str, record: str, name: str
 ) -> None:
     (tmp_path / "suite").mkdir()
     make(tmp_path / name)
@@ -78,17 +55,6 @@ def test_a_record_is_a_regular_file_of_a_stated_size(
         load_scene(tmp_path / "mine.toml")
     assert refusal.value.key.startswith("excitation.record")
     assert "\n" not in str(refusal.value)
-
-
-@pytest.mark.parametrize(("record", "name"), RECORDS.values(), ids=RECORDS.keys())
-def test_a_link_to_another_file_shows_nothing_of_it(tmp_path: Path, record: str, name: str) -> None:
-    (tmp_path / "suite").mkdir()
-    (tmp_path / "key").write_text(f"{SECRET}\n", encoding="utf-8")
-    (tmp_path / name).symlink_to(tmp_path / "key")
-    (tmp_path / "mine.toml").write_text(SCENE.format(record=record), encoding="utf-8")
-    with pytest.raises(SceneError) as refusal:
-        load_scene(tmp_path / "mine.toml")
-    assert SECRET not in str(refusal.value)
 
 
 @pytest.mark.parametrize("text", [f'[registry]\ntoken = "{SECRET}"\n', f"{SECRET}\n", f"token: {SECRET}\n"])
@@ -109,17 +75,11 @@ def test_a_link_to_a_regular_file_is_followed(tmp_path: Path) -> None:
     assert load_scene(tmp_path / "mine.toml").duration == 1.0
 
 
-@pytest.mark.parametrize("size", [0, 9, 10])
-def test_a_file_is_read_up_to_the_largest_size(tmp_path: Path, size: int) -> None:
-    (tmp_path / "file").write_bytes(size * b"x")
-    assert read_file(tmp_path / "file", 10) == size * b"x"
-
-
-@pytest.mark.parametrize("largest", [9, 0])
-def test_a_file_above_the_largest_size_is_not_read(tmp_path: Path, largest: int) -> None:
+def test_a_file_is_read_up_to_the_largest_size(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(10 * b"x")
+    assert read_file(tmp_path / "file", 10) == 10 * b"x"
     with pytest.raises(OSError, match="larger than"):
-        read_file(tmp_path / "file", largest)
+        read_file(tmp_path / "file", 9)
 
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="a file whose size the system does not state")
@@ -127,13 +87,3 @@ def test_a_file_of_unstated_size_is_bounded_too() -> None:
     assert read_file("/proc/self/status", 2**20).startswith(b"Name:")
     with pytest.raises(OSError, match="larger than"):
         read_file("/proc/self/status", 16)
-
-
-@pytest.mark.parametrize(
-    "text", ["a" + 100_000 * ".a" + " = 1\n", "[a" + 100_000 * ' . "b.\\""' + "]\n", "a" + 100_000 * ".'='" + " = 1\n"]
-)
-def test_a_key_of_many_parts_is_refused_at_once(text: str) -> None:
-    begin = time.process_time()
-    with pytest.raises(SceneError, match="must have at most 10 tables and lists within one another"):
-        scenes.parse_scene(text.encode(), "mine.toml")
-    assert time.process_time() - begin < 2.0, "minutes where the parser meets it"

@@ -1,13 +1,10 @@
 """`excitation.scale` of the two-frequency loading: the same as larger amplitudes, everywhere."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-import reference
 from comparison.analyses.scaling.analysis import scaled
-from reference.problem import Scene, SceneError, builtin_scenes, in_plane, load_family, load_scene
+from reference.problem import Scene, SceneError, builtin_scenes, in_plane, load_scene
 
 
 def both(name: str) -> tuple[Scene, Scene]:
@@ -35,16 +32,6 @@ def test_a_scale_that_is_not_given_changes_no_digest() -> None:
     scene = load_scene("fig3-I")
     assert "scale" not in scene.model_dump(exclude_none=True)["excitation"]
     assert scene.with_values({"excitation.scale": 2.0}).digest() != scene.digest()
-
-
-def test_a_family_runs_over_the_scale_of_the_loading(tmp_path: Path) -> None:
-    text = (Path(reference.problem.__file__).parent / "scenes" / "fig3-I.toml").read_text()
-    file = tmp_path / "scales.toml"
-    file.write_text(
-        text.replace("periods = [0.9, 1.1]", "scale = {range = [0.5, 2.0], steps = 4}\nperiods = [0.9, 1.1]")
-    )
-    largest = [float(scene.amplitudes.max()) for scene in load_family(file).scenes]
-    assert largest == [0.5, 1.0, 1.5, 2.0]
 
 
 def test_a_scale_beyond_double_precision_is_refused_in_one_line() -> None:

@@ -73,13 +73,3 @@ def test_a_record_has_no_phases():
         load_scene("synthetic-pair").with_values({"measured": [peak]})
     del peak["phases"]
     assert load_scene("synthetic-pair").with_values({"measured": [peak]}).measured[0].phases is None
-
-
-def test_no_measured_peaks_is_no_empty_list():
-    with pytest.raises(SceneError, match="measured"):
-        load_scene("fig3-I").with_values({"measured": []})
-
-
-def test_scenes_with_measured_peaks_may_be_keys_of_a_dict():
-    assert {measured(): 1}[measured()] == 1
-    assert measured() != measured(value=2.4)

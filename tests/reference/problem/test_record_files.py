@@ -99,11 +99,6 @@ def test_a_cell_that_is_no_plain_number_is_refused(cell):
         csv_samples(PLAIN.replace("0.2", cell))
 
 
-@pytest.mark.parametrize("cell", ["1", "-1.", ".5", "+1e-3", "1E2", "0.100"])
-def test_plain_numbers_are_read(cell):
-    assert csv_samples(PLAIN.replace("0.2", cell))[1, 1] == GRAVITY * float(cell)
-
-
 NO_CSV = [
     ("", "empty"),
     ("# only a comment\n", "empty"),
@@ -136,8 +131,6 @@ NO_AT2 = [
 ]
 NO_DOUBLE = [
     (csv_samples, PLAIN.replace("0.2", "9" * 140_000)),
-    (csv_samples, PLAIN.replace("0.2", '"' + "x" * 140_000 + '"')),
-    (csv_samples, PLAIN.replace("ax", "x" * 140_000)),
     (csv_samples, PLAIN.replace("0.01", "1e-300")),
     (at2_samples, {"x": at2([1.0, 2.0], count=0).replace(" 0,", " " + "9" * 5000 + ",")}),
     (at2_samples, {"x": at2([1e308, 2.0])}),

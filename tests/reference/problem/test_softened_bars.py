@@ -144,7 +144,7 @@ def test_both_sides_agree_like_for_like_with_softened_bars() -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("masses", "bars"), CHAINS)
+@pytest.mark.parametrize(("masses", "bars"), CHAINS[2:4])
 def test_both_sides_agree_with_softened_bars_on_64_phases(masses: list[float], bars: dict[str, Any]) -> None:
     phases = np.stack(np.meshgrid(*[np.arange(8) * np.pi / 4.0] * 2, indexing="ij"), axis=-1).reshape(-1, 2)
     _agree(chain(masses, bars, duration=6.0).with_amplitude(2.0), phases)
