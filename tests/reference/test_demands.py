@@ -99,7 +99,7 @@ def test_both_sides_have_the_demands_of_a_scene_of_the_paper(name, regularizatio
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", ["fig3-II", "fig4-dry", "synthetic-pair", "synthetic-triple"])
+@pytest.mark.parametrize("name", ["synthetic-pair", "synthetic-triple"])
 def test_the_two_sides_agree_within_their_errors_in_every_scene(name) -> None:
     agree(reference.load_scene(name), 1e-3)
 
@@ -129,12 +129,6 @@ def agree(scene: Scene, regularization: float | None) -> None:
     for balance in (ours.energy_balance, theirs.energy_balance):
         assert balance is not None
         assert abs(balance.value) <= balance.error, "energy is created or lost"
-
-
-def test_the_share_of_the_cap_is_that_of_the_surface() -> None:
-    scene = reference.load_scene("fig3-I")
-    found = demands(reference.trajectory(scene, PHASE)).cap_share
-    assert found.value == pytest.approx(reference.amplification(scene, [PHASE]).cap_share[0], rel=1e-6)
 
 
 @pytest.mark.parametrize("count", [150, 400])
@@ -198,8 +192,8 @@ def test_a_residual_after_creep_is_that_of_coulomb_friction() -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("motion", ["synthetic-pair", "synthetic-triple"])
-@pytest.mark.parametrize("v_reg", [1e-2, 1e-3, 1e-4])
-@pytest.mark.parametrize("friction", [0.02, 0.05, 0.1])
+@pytest.mark.parametrize("v_reg", [1e-2, 1e-4])
+@pytest.mark.parametrize("friction", [0.02, 0.1])
 def test_the_error_of_a_residual_covers_regularization(motion: str, v_reg: float, friction: float) -> None:
     scene = reference.load_scene(motion).with_values({"isolator.friction": friction})
     truth, found = (demands(reference.trajectory(scene, PHASE, regularization=law)).residual for law in (None, v_reg))
@@ -290,26 +284,6 @@ def test_the_error_of_every_demand_is_what_the_other_runs_say() -> None:
     for name, (value, error) in expected.items():
         assert found[name].value == pytest.approx(value), name
         assert found[name].error == pytest.approx(error), name
-
-
-@pytest.mark.parametrize(
-    ("phase", "tolerance", "amplitude"),
-    [
-        ((2.0, 0.7), 1e-2, 11.448066711425781),
-        ((4.0, 5.5), 1e-3, 12.094459533691406),
-        ((1.0, 3.0), 1e-3, 12.03369140625),
-    ],
-)
-def test_a_motion_close_to_the_rim_that_is_ok_has_errors(
-    phase: tuple[float, float], tolerance: float, amplitude: float
-) -> None:
-    """A run with a looser tolerance reaches the rim there."""
-    scene = reference.load_scene("fig3-I").with_amplitude(amplitude)
-    motion = reference.trajectory(scene, phase, tolerance=tolerance)
-    answer = demands(motion)
-    assert answer.status in ("ok", "rim reached")
-    assert np.isfinite(answer.base_shear.error) == (answer.status == "ok")
-    assert np.isfinite(answer.acceleration[0].error) == (answer.status == "ok")
 
 
 def test_a_single_run_has_values_and_no_errors() -> None:

@@ -9,14 +9,10 @@ import numpy as np
 import pytest
 from numpy._core._multiarray_umath import __cpu_features__  # what this processor has, by NumPy's names
 
-import reference
 from reference.build_cache import build_folder
-from reference.problem import load_scene, phase_grid
 from reference.solver import chain, collocation
 
 ROOT = Path(__file__).parents[2]
-SCENES = ("fig3-I", "fig4-dry", "fig4-viscous")
-TOLERANCE = 1e-7
 NAMES = ("NODES", "A", "A2", "AT_START", "MONOMIALS", "EIGENVALUES", "TO_CHANNELS", "FROM_CHANNELS")
 NAMES_OF_CHAIN = ("ONES_IN_CHANNELS", "NODES_IN_CHANNELS", "THROUGH_REAL", "THROUGH_IMAGINARY")
 # kernels of OpenBLAS, and what a processor must have to run them
@@ -28,35 +24,6 @@ for module, names in ((collocation, {NAMES}), (chain, {NAMES_OF_CHAIN})):
     for name in names:
         sys.stdout.buffer.write(getattr(module, name).tobytes())
 """
-ASKED = f"""
-import sys
-import numpy as np
-import reference
-from reference.problem import load_scene, phase_grid
-laws = [("exact", None), ("exact", 1e-3), ("small", None)]
-np.save(sys.argv[1], [
-    reference.amplification(load_scene(name), phase_grid(3), *law, tolerance={TOLERANCE}, full=True).mu
-    for name in {SCENES} for law in laws
-])
-"""
-
-
-def computed(file: Path, **environment: str) -> np.ndarray:
-    """What another process computes, mu of every scene and law."""
-    words = [sys.executable, "-c", ASKED, str(file)]
-    subprocess.run(words, cwd=ROOT, env={**os.environ, "PYTHONPATH": str(ROOT), **environment}, check=True)
-    return np.load(file)
-
-
-@pytest.fixture(scope="module")
-def here() -> np.ndarray:
-    return np.array(
-        [
-            reference.amplification(load_scene(name), phase_grid(3), *law, tolerance=TOLERANCE, full=True).mu
-            for name in SCENES
-            for law in (("exact", None), ("exact", 1e-3), ("small", None))
-        ]
-    )
 
 
 def lacking(kernels: str) -> list[str]:
@@ -84,23 +51,6 @@ def test_the_constants_of_the_method_are_accurate_to_rounding() -> None:
     powers = np.arange(1, 13)  # the quadrature of the last stage has order 13
     moments = (collocation.NODES[:, None] ** (powers - 1)).T @ collocation.A[-1]
     np.testing.assert_allclose(moments, 1.0 / powers, rtol=0.0, atol=1e-15)
-
-
-@pytest.mark.long
-def test_a_generic_processor_gives_the_same_factors(tmp_path: Path, here: np.ndarray) -> None:
-    """Not a bit differs where the C library computes alike; 1e-9 is what a user may count on."""
-    other = computed(tmp_path / "mu.npy", NUMBA_CPU_NAME="generic", NUMBA_CACHE_DIR=str(tmp_path / "build"))
-    np.testing.assert_allclose(other, here, rtol=1e-9)
-
-
-@pytest.mark.long
-def test_compiling_and_loading_agree_to_the_last_bit(tmp_path: Path) -> None:
-    build = tmp_path / "build"
-    compiling, loading = (
-        computed(tmp_path / f"{name}.npy", NUMBA_CACHE_DIR=str(build)) for name in ("first", "second")
-    )
-    assert list(build.glob("*/*/*.nbc")), "the first left a build"
-    np.testing.assert_array_equal(loading, compiling)
 
 
 def test_no_part_of_the_solver_may_reorder_sums() -> None:

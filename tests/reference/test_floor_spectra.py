@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 import multibody
 import reference
 from reference import factor_for_spectrum
-from reference.problem import Accuracy, Scene, Trajectory
+from reference.problem import Accuracy, Trajectory
 
 PHASE = (2.0, 0.7)
 DAMPING = 0.05
@@ -37,14 +37,6 @@ def test_an_oscillator_in_resonance_amplifies_by_1_over_2_zeta() -> None:
     assert spectra.acceleration[0, 1, 0] == pytest.approx(2.0 / (2.0 * DAMPING), rel=1e-4), "the other direction"
 
 
-def test_a_jump_of_a_rigid_floor_is_twice_amplified() -> None:
-    """u'' + w^2 u = -1 from rest swings up to 2 / w^2."""
-    time = np.array([0.0, 1.0, np.nextafter(1.0, 2.0), 5.0])
-    step = np.array([0.0, 0.0, 1.0, 1.0])
-    spectra = reference.floor_spectra(floor(time, np.stack([step, -step], axis=1)), [0.3, 1.7], 0.0)
-    np.testing.assert_allclose(spectra.acceleration[0], 2.0, rtol=1e-4)
-
-
 @pytest.mark.parametrize("period", [0.4, 2.0])
 def test_between_two_samples_the_motion_is_exact(period) -> None:
     """u'' + w^2 u = -t from rest: w^2 u = -(t - sin(w t) / w)."""
@@ -53,13 +45,6 @@ def test_between_two_samples_the_motion_is_exact(period) -> None:
     spectra = reference.floor_spectra(ramp, [period], 0.0)
     expected = 3.0 - np.sin(3.0 * natural) / natural
     np.testing.assert_allclose(spectra.acceleration[0, :, 0], expected, rtol=1e-9)
-
-
-def test_a_much_stiffer_oscillator_follows_the_floor() -> None:
-    motion = reference.trajectory(reference.load_scene("fig4-viscous"), PHASE)
-    spectra = reference.floor_spectra(motion, [0.01])
-    largest = np.abs(motion.absolute_acceleration[:, :, :2]).max(axis=0)
-    np.testing.assert_allclose(spectra.acceleration[:, 0, 0], largest[:, 0], rtol=2e-2)
 
 
 @pytest.mark.parametrize("name", ["fig3-I", "synthetic-pair"])
@@ -83,16 +68,7 @@ def test_the_floors_of_a_motion_agree_with_scipy(name) -> None:
 
 @pytest.mark.parametrize(("name", "regularization"), [("fig3-I", 1e-3), ("fig4-viscous", None)])
 def test_the_spectra_of_the_two_sides_agree_within_their_errors(name, regularization) -> None:
-    agree(reference.load_scene(name), regularization)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", ["fig3-II", "fig4-dry", "synthetic-pair"])
-def test_both_sides_have_the_spectra_of_every_scene(name) -> None:
-    agree(reference.load_scene(name), 1e-3)
-
-
-def agree(scene: Scene, regularization: float | None) -> None:
+    scene = reference.load_scene(name)
     ours = reference.floor_spectra(reference.trajectory(scene, PHASE, regularization=regularization))
     theirs = reference.floor_spectra(multibody.trajectory(scene, PHASE, regularization=regularization))
     assert (np.abs(ours.acceleration - theirs.acceleration) <= ours.error + theirs.error).all()

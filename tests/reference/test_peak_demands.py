@@ -8,17 +8,10 @@ from scipy.integrate import solve_ivp
 import multibody
 import reference
 from reference.measures import Estimate, PeakDemands, demands
-from reference.problem import Scene, phase_grid
+from reference.problem import phase_grid
 
 V_REG = 1e-3
 SHARED = ("displacement", "base_shear", "acceleration", "drift", "contact_force_min", "contact_force_max")
-
-
-def frame() -> Scene:
-    """Six bodies under a recorded pair."""
-    bodies = [{"mass": 50.0}] + [{"mass": 40.0, "period": [0.5, 0.6]} for _ in range(5)]
-    values = {"duration": 8.0, "isolator": {"radius": 1.0, "friction": 0.04}, "bodies": bodies}
-    return reference.load_scene("synthetic-pair").with_values(values)
 
 
 def same(first: PeakDemands, second: PeakDemands) -> None:
@@ -73,23 +66,13 @@ def test_the_accelerations_are_those_of_the_factors() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"])
 def test_the_two_sides_agree_within_their_errors_at_64_phases(name) -> None:
-    both_sides(name, 8)
-
-
-def both_sides(name: str, points: int) -> None:
     scene = reference.load_scene(name)
     law = None if scene.lubricated else V_REG
-    phases = phase_grid(points) + 0.1
+    phases = phase_grid(8) + 0.1
     same(
         reference.peak_demands(scene, phases, regularization=law),
         multibody.peak_demands(scene, phases, regularization=law),
     )
-
-
-@pytest.mark.long
-def test_both_sides_have_the_demands_under_a_record() -> None:
-    scene, phase = frame(), [(0.0, 0.0)]
-    same(reference.peak_demands(scene, phase, regularization=V_REG), multibody.peak_demands(scene, phase))
 
 
 @pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])

@@ -120,19 +120,6 @@ def test_every_outcome_has_advice():
     assert all("\n" not in text and text for text in ADVICE.values())
 
 
-@pytest.mark.parametrize(
-    ("initial", "words"),
-    [
-        (State(np.zeros((1, 2)), np.zeros((1, 2))), "shape"),
-        (State(np.full((2, 2), np.nan), np.zeros((2, 2))), "finite"),
-        (State(np.array([[0.3, 0.0], [0.0, 0.0]]), np.zeros((2, 2))), "rim"),
-    ],
-)
-def test_impossible_initial_states_are_refused(initial, words):
-    with pytest.raises(ValueError, match=words):
-        reference.trajectory(load_scene("fig3-I"), PHASE, initial=initial)
-
-
 @pytest.mark.parametrize("times", [[1.0, 0.5], [0.0, 21.0], [-1.0, 0.0], [[0.0, 1.0]], [np.nan]])
 def test_impossible_times_are_refused(times):
     with pytest.raises(ValueError, match="times"):

@@ -8,7 +8,6 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 import reference
-from comparison.analyses.scaling.analysis import scaled
 from reference.analytical.frictionless import frictionless_motion
 from reference.problem import GRAVITY, Outcome, Scene, SceneError, State, load_scene, phase_grid
 
@@ -88,15 +87,6 @@ def test_a_travel_that_is_not_needed_changes_no_number() -> None:
     np.testing.assert_allclose(narrow.mu[~ended], free.mu[~ended], rtol=1e-6)
 
 
-def test_a_travel_between_two_tolerances_is_settled() -> None:
-    """The displacement is known to 1e-7 or so: within 1e-4 of it the outcome is no matter of luck."""
-    scene = load_scene("fig4-dry")
-    share = reference.amplification(scene, [PHASE], tolerance=1e-9).cap_share[0]
-    for factor, outcome in ((1.0 - 1e-4, Outcome.TRAVEL_REACHED), (1.0 + 1e-4, Outcome.OK)):
-        found = reference.amplification(limited(scene, factor * share * scene.radius), [PHASE])
-        assert found.status.tolist() == [outcome]
-
-
 def test_a_displacement_that_grows_late_is_not_lost() -> None:
     """A burst first, then beats of weak friction: the largest accelerations come long before the displacement."""
     scene = chain(
@@ -142,19 +132,3 @@ def test_the_demands_state_the_share_of_the_travel() -> None:
     assert reference.demands(reference.trajectory(scene, PHASE)).travel_share is None
     ended = reference.demands(reference.trajectory(limited(scene, 0.01), PHASE))
     assert (ended.status, np.isnan(ended.travel_share.value)) == ("travel reached", True)
-
-
-@pytest.mark.parametrize("s", [0.5, 0.125])
-def test_scaled_loading_friction_and_travel_end_at_one_instant(s: float) -> None:
-    """Frictionless small equations are linear, so the instant is the same; with friction it tends to that like s^2."""
-    scene = limited(chain(0.25, 0.0, **TWO), 0.06)
-    instants = [
-        reference.amplification(each, [PHASE], "small", tolerance=1e-9).instant[0] for each in (scene, scaled(scene, s))
-    ]
-    assert instants[0] == pytest.approx(instants[1], rel=1e-8)
-    dry = limited(chain(0.25, 0.05, **TWO), 0.06)
-    small, exact = (
-        reference.amplification(scaled(dry, 0.02), [PHASE], equations, tolerance=1e-9).instant[0]
-        for equations in ("small", "exact")
-    )
-    assert exact == pytest.approx(small, rel=1e-4)

@@ -88,36 +88,6 @@ def test_every_kept_function_is_kept_in_the_user_s_cache() -> None:
     assert [name for name, place in kept.items() if parent not in place.parents] == []
 
 
-def test_numbas_settings_do_not_say_where_builds_are(tmp_path: Path) -> None:
-    pytest.importorskip("yaml")  # without it numba reads no such file
-    (tmp_path / ".numba_config.yaml").write_text(f"cache_dir: {tmp_path}\n", encoding="utf-8")
-    ask = "from reference import build_cache as b; print(b.build_folder(b.Path(b.__file__)))"
-    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
-    environment |= {"PYTHONPATH": str(ROOT), "PYTHONSAFEPATH": "1"}
-    run = subprocess.run(
-        [sys.executable, "-c", ask], cwd=tmp_path, env=environment, check=True, capture_output=True, text=True
-    )
-    assert tmp_path not in Path(run.stdout.strip()).parents
-
-
-@pytest.mark.long  # it compiles
-def test_a_first_call_leaves_the_package_as_it_was(tmp_path: Path) -> None:
-    package = tmp_path / "site" / "reference"
-    for file in sorted((ROOT / "reference").rglob("*")):
-        if file.is_file() and "__pycache__" not in file.parts:
-            copy = package / file.relative_to(ROOT / "reference")
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            copy.write_bytes(file.read_bytes())
-    before = sorted(package.rglob("*"))
-    call = "from reference.problem import ground_peak, load_scene; ground_peak(load_scene('fig3-I'), [(0.1, 0.2)])"
-    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
-    environment |= {"PYTHONPATH": str(tmp_path / "site"), "PYTHONDONTWRITEBYTECODE": "1", "PYTHONSAFEPATH": "1"}
-    environment["XDG_CACHE_HOME"] = str(tmp_path / "cache")
-    subprocess.run([sys.executable, "-c", call], cwd=tmp_path, env=environment, check=True)
-    assert sorted(package.rglob("*")) == before
-    assert sys.platform != "linux" or list((tmp_path / "cache" / "phase-resonance").rglob("*.nbc"))
-
-
 def test_a_first_call_says_once_that_it_compiles(tmp_path: Path) -> None:
     program = (
         "from reference.build_cache import cached_on_disk\n"

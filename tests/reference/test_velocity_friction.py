@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from chains import chain
-from oracle_law import Law
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -157,28 +156,6 @@ def test_as_the_rate_grows_friction_tends_to_the_fast_one(cutoff):
     assert (slope[1] > slope[0]).all()
     scaled = gap * np.array(rates)[:, None]
     np.testing.assert_allclose(scaled[2] - scaled[1], scaled[1] - scaled[0], rtol=0.1)
-
-
-def test_the_supremum_tends_to_that_of_the_fast_friction():
-    """
-    On the way into the stop the slip direction turns like v^(F / (fast N - F)); below 1 / rate it does so otherwise.
-
-    F is the force that holds the platform at that stop: the fourth, of which the supremum is the one-sided limit.
-    """
-    scene = load_scene("fig3-I").with_values({"duration": 5.0})
-    motion = reference.trajectory(scene, PHASES[0], tolerance=1e-9)
-    stop = motion.stick[4][0]
-    at = reference.trajectory(scene, PHASES[0], tolerance=1e-9, times=[stop])
-    law = Law(scene, PHASES[0], "exact")
-    place = at.position[0, :, :2].ravel().tolist()
-    share = float(np.hypot(*law.holding(stop, place[0], place[1], law.link_forces(place, 4 * [0.0]))))
-    rates = [1e6, 1e7, 1e8, 1e9, 1e10]
-    gap = plain(0.1, 1e-6) - answers(rates, RISING, 1e-6)
-    slope = -slopes(rates, gap)[:, 0]
-    expected = share / (0.1 - share)
-    assert expected == pytest.approx(0.1136, abs=1e-4)
-    assert (np.diff(slope) > 0.0).all()
-    assert slope[-1] == pytest.approx(expected, rel=0.06)
 
 
 def test_small_equations_keep_mu_when_all_is_scaled():

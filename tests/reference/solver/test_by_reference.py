@@ -45,14 +45,6 @@ def test_fields_are_read_and_set_where_they_are() -> None:
     assert np.array_equal(values, np.arange(1000.0))
 
 
-def test_the_fields_are_not_spelled_out_in_the_code() -> None:
-    made(3)
-    (built,) = changed.overloads.values()
-    assert "PairType" in built.fndesc.mangled_name
-    assert "values" not in built.fndesc.mangled_name
-    assert built.fndesc.mangled_name.count("Array") == 1  # the argument
-
-
 class RoomType(ByReference):
     """Numba's type of a structure that is made without values."""
 

@@ -114,31 +114,6 @@ def test_operators_give_a_part_what_they_give_python() -> None:
             entry_of_wrong(1.0)
 
 
-BUILDS = """
-import re, sys
-from numba.core.dispatcher import Dispatcher
-import reference
-reference.amplification(reference.load_scene("fig3-I"), [(0.3, 1.1)], full=True)
-solver = [vars(module) for name, module in list(sys.modules.items()) if name.startswith("reference.solver")]
-parts = {part for names in solver for part in names.values() if isinstance(part, Dispatcher)}
-assert len(parts) > 100
-for part in parts:
-    for asked in part.overloads:
-        # by which arguments are rows, and the number of columns of a block, which is a literal
-        rows, literals = ["Row" in str(each) for each in asked], re.findall(r"Literal\\[.*?\\]\\(.*?\\)", str(asked))
-        print(part.__name__, *rows, *literals, sep="_")
-"""
-
-
-@pytest.mark.long
-def test_every_part_is_compiled_for_floats_and_for_rows(tmp_path: Path) -> None:
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-    run = subprocess.run([sys.executable, "-c", BUILDS], env=environment, check=True, capture_output=True, text=True)
-    kinds = run.stdout.split()
-    assert len(kinds) == len(set(kinds))
-    assert "Literal[bool]" not in run.stdout
-
-
 UNKNOWN_NUMBA = """
 import reference.solver.compiled.parts as parts
 parts.NEWEST_KNOWN = 0, 0
