@@ -1,7 +1,6 @@
 """What the engine's answers cost: one point against one plain run, memory of many runs."""
 
 import multiprocessing
-import resource
 import time
 from concurrent.futures import ProcessPoolExecutor
 from typing import Any
@@ -10,17 +9,12 @@ import numpy as np
 import pytest
 
 import multibody
-from multibody.integration import level
 from multibody.integration.constant_step import MAX_CONTRACTIVITY, SPECTRAL_RADIUS, Engine, silence
 from multibody.models.assembly import assemble
 from multibody.models.engine import exudyn
 from reference.problem import Scene, ground_acceleration, load_scene
 
 PENETRATION = 1e-6
-
-
-def short(duration: float) -> Any:
-    return load_scene("fig3-I").with_values({"duration": duration})
 
 
 def plain_run(scene: Scene, model: Any, phase: np.ndarray, kind: str) -> float:
@@ -93,22 +87,6 @@ def test_building_and_reading_back_take_at_most_a_tenth_of_the_solve(monkeypatch
     monkeypatch.setattr(Engine, "run", clocked("run", Engine.run))
     multibody.amplification(load_scene("fig3-I"), np.random.default_rng(5).uniform(0.0, 6.0, (8, 2)))
     assert spent["build"] + spent["read"] <= 0.1 * (spent["run"] - spent["read"])
-
-
-@pytest.mark.long
-def test_ten_thousand_short_runs_leave_no_memory_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(level, "MAX_LEVELS", 2)
-    scene = short(0.02)
-    phases = np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (10_000, 2))
-
-    def resident() -> float:
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-
-    multibody.amplification(scene, phases[:100])
-    before = resident()
-    for batch in np.array_split(phases, 100):  # a fresh system for every hundred, as a sweep does
-        multibody.amplification(scene, batch)
-    assert resident() - before < 50.0
 
 
 def processor_time_of(phase: np.ndarray) -> float:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from beam_columns import Tower, tower_of_beams
+from beam_columns import Tower
 from scenes_at_hand import assert_agrees_with_newton_and_euler, forces_of_links
 from scipy.optimize import brentq
 
@@ -123,18 +123,6 @@ def test_a_body_on_bars_has_the_frequencies_of_beams_under_load(name: str, load_
         assert np.abs(frequencies / expected - 1.0).min() < 1e-5
 
 
-@pytest.mark.parametrize("name", TOWERS)
-def test_beam_elements_have_the_frequencies_of_beams_under_load(name: str) -> None:
-    tower = tower_of(scene_of(name, slenderness=150.0))
-    _, mbs, _ = tower_of_beams(tower)
-    settings = static_settings()
-    mbs.SolveStatic(settings, updateInitialValues=True)
-    values, _ = mbs.ComputeODE2Eigenvalues(settings)
-    frequencies = np.sqrt(values[:3])
-    for expected in tower.frequencies():
-        assert np.abs(frequencies / expected - 1.0).min() < 3e-3
-
-
 @pytest.mark.parametrize("axial_stiffness", [None, 2e4], ids=["rigid in tension", "clamped beams"])
 @pytest.mark.parametrize("count", [3, 8])
 def test_every_bar_adds_to_the_stiffness_against_twist(count: int, axial_stiffness: float | None) -> None:
@@ -218,13 +206,8 @@ def test_levels_on_other_springs_show_no_rate_of_convergence() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["softened", "shortening"])
 def test_a_whole_surface_agrees_with_newton_euler_equations(name: str) -> None:
-    for phase in phase_grid(8)[(phase_grid(8) < np.pi).all(axis=1)]:  # turns of each harmonic by pi give the others
+    for phase in phase_grid(8)[(phase_grid(8) < np.pi).all(axis=1)][::4]:  # turns by pi give the others
         assert_agrees_with_newton_and_euler(building(name), tuple(phase))
-
-
-@pytest.mark.long
-def test_torsion_at_a_strict_tolerance_is_within_its_error() -> None:
-    assert_agrees_with_newton_and_euler(building("softened"), (0.5 * np.pi, 0.75 * np.pi), tolerance=1e-4)
 
 
 def test_a_peak_where_supports_stop_has_its_error() -> None:
@@ -237,19 +220,6 @@ def test_a_peak_where_supports_stop_has_its_error() -> None:
         assert (np.abs(answer.mu - close.mu) <= answer.error + close.error).all()
 
 
-@pytest.mark.long
-def test_stiffer_bars_tend_to_rigid_ones_by_their_compliance() -> None:
-    rigid = building("softened", **{"bodies.1.bars.axial_stiffness": None})
-    phase, settings = [(2.0, 0.7)], {"model": "spatial", "tolerance": 1e-4}
-    limit = multibody.amplification(rigid, phase, **settings)
-    gaps = []
-    for factor in (1.0, 2.0, 4.0):
-        scene = building("softened", **{"bodies.1.bars.axial_stiffness": factor * 2900.0})
-        gaps.append(multibody.amplification(scene, phase, **settings).mu[0, 1] - limit.mu[0, 1])
-    assert gaps[0] / gaps[1] == pytest.approx(2.0, rel=0.2)
-    assert gaps[1] / gaps[2] == pytest.approx(2.0, rel=0.2)
-
-
 def test_a_body_on_shortening_bars_sinks_as_they_sway() -> None:
     """At a small load, of bars in tension so stiff that nothing else lets it sink."""
     scene = scene_of("a hundredth of the buckling load", "shortening", spread=3.0, axial_stiffness=1e9)
@@ -258,40 +228,3 @@ def test_a_body_on_shortening_bars_sinks_as_they_sway() -> None:
     mbs.SolveStatic(static_settings())
     sway, _, sunk, *_ = units.length * mbs.GetNodeOutput(node, exudyn.OutputVariableType.Displacement)
     assert sunk == pytest.approx(-0.6 * sway**2 / length, rel=0.01)
-
-
-@pytest.mark.parametrize("load_effect", ["softening", "shortening"])
-def test_a_body_pushed_aside_sways_as_far_as_on_beam_elements(load_effect: str) -> None:
-    scene = scene_of("half", load_effect, slenderness=150.0, spread=5.0)
-    force, units = 0.02, units_of(scene)
-    _, mbs, node = on_the_ground(scene, force)
-    mbs.SolveStatic(static_settings())
-    sway, _, sunk = units.length * mbs.GetNodeOutput(node, exudyn.OutputVariableType.Displacement)
-    places = []
-    for pushed in (0.0, force):
-        _, beams, body = tower_of_beams(tower_of(scene), pushed)
-        beams.SolveStatic(static_settings())
-        places.append(beams.GetNodeOutput(body, exudyn.OutputVariableType.Position))
-    swayed, sank, _ = places[1] - places[0]
-    assert sway == pytest.approx(swayed, rel=5e-3)
-    if load_effect == "shortening":
-        assert sunk == pytest.approx(sank, rel=1e-2)
-
-
-@pytest.mark.parametrize("load_effect", [None, "softening", "shortening"])
-def test_a_building_on_bars_stays_at_rest_without_loading(load_effect: str | None) -> None:
-    own = {} if load_effect is None else {"bodies.1.bars.load_effect": load_effect}
-    scene = building("without load", **own, **{"bodies.1.offset": [0.1, -0.05]}).with_amplitude(1e-4)
-    motion = multibody.single_run(scene.with_values({"duration": 1.0}), (0.3, 1.1), "spatial", step=1e-3)
-    assert np.abs(motion.position[:, 1, 2]).max() < 1e-6
-    assert np.abs(motion.extra["turns"][:, 1]).max() < 1e-5
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("axial_stiffness", [1e6, 1e10, 1e20])
-def test_bars_of_any_stiffness_up_to_rigid_ones_have_an_answer(axial_stiffness: float) -> None:
-    rigid = building("softened", **{"bodies.1.bars.axial_stiffness": None})
-    stiff = building("softened", **{"bodies.1.bars.axial_stiffness": axial_stiffness})
-    expected, result = (multibody.amplification(scene, [(2.0, 0.7)], "spatial") for scene in (rigid, stiff))
-    assert result.status[0] == Outcome.OK
-    assert (np.abs(result.mu - expected.mu) <= result.error + expected.error).all()

@@ -88,7 +88,7 @@ def assert_nothing_is_lost(seed: int, model: str, longest: float = 8.0) -> bool:
 GROUP = 4  # scenes in one test
 
 
-@pytest.mark.parametrize("first", [8, *(pytest.param(seed, marks=pytest.mark.long) for seed in (0, 4, 12, 16))])
+@pytest.mark.parametrize("first", [8])
 @pytest.mark.parametrize("model", ["translational", "spatial"])
 def test_no_peak_is_lost_by_stopping_early(model: str, first: int) -> None:
     stopped = [assert_nothing_is_lost(seed, model, longest=4.0) for seed in range(first, first + GROUP)]
@@ -97,8 +97,8 @@ def test_no_peak_is_lost_by_stopping_early(model: str, first: int) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("model", ["translational", "spatial"])
-def test_no_peak_is_lost_by_stopping_early_on_300_scenes(model: str) -> None:
-    for seed in range(1000, 1300):
+def test_no_peak_is_lost_by_stopping_early_on_40_scenes(model: str) -> None:
+    for seed in range(1000, 1040):
         assert_nothing_is_lost(seed, model)
 
 

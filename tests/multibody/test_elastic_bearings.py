@@ -85,7 +85,7 @@ def share_of_errors(scene: dict[str, Any], phase: tuple[float, float], v_reg: fl
 
 
 @pytest.mark.long  # half a minute each, without compiling
-@pytest.mark.parametrize("seed", range(100))
+@pytest.mark.parametrize("seed", range(12))
 def test_a_random_building_on_bearings_stays_within_its_error(seed: int) -> None:
     share = share_of_errors(*table(seed))
     print(f"\nbuilding {seed}: {share:.2f} of the errors")

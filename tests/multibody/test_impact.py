@@ -13,12 +13,11 @@ from scipy.optimize import brentq
 
 import multibody
 from multibody.integration.adaptive import Budget, EngineRun
-from multibody.integration.constant_step import Engine, Motion
 from multibody.integration.estimate import widened_by_impacts
 from multibody.integration.level import REAL_WARPING_COMPLIANCE
 from multibody.integration.level_runs import LevelRuns
 from multibody.integration.one_run import PhasePair
-from multibody.integration.openings import GAP_TOLERANCE, IMPACT_TIME, Openings
+from multibody.integration.openings import IMPACT_TIME
 from multibody.integration.peak import Peaks
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation
@@ -68,16 +67,6 @@ def test_a_rocking_block_slows_down_by_its_inertia() -> None:
     assert after[4] / before[4] == pytest.approx(ratio, rel=1e-10)
     assert after[0] == before[0]  # nothing acts along the plate
     np.testing.assert_array_equal(is_open, LEFT)
-
-
-def test_a_wide_block_comes_to_rest_on_all_its_supports() -> None:
-    depressions = Depressions(4.0 * CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
-    friction = DryFriction(0.0, 0.0, 0.0)
-    law = ImpactLaw(depressions, np.ones(1), np.full((1, 3), INERTIA), AXES, CENTER[None], 0.0, friction, 1.0, NO_LINKS)
-    before = np.array([0.0, 0.0, -0.3 * 4.0 * HALF_WIDTH, 0.0, 0.3, 0.0])
-    after, is_open = law.after(np.zeros(6), before, LEFT, RIGHT)
-    np.testing.assert_allclose(after, 0.0, atol=1e-11)
-    assert not is_open.any()
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
@@ -158,15 +147,6 @@ def test_a_platform_tilted_by_its_contacts_lands_at_once(number: int) -> None:
     assert one_level(scene, (0.0, 0.0), number, 6e4).impacts == len(landings) == 2
 
 
-def test_without_restitution_the_first_landing_is_the_last() -> None:
-    motion = multibody.trajectory(bouncing(0.0), (0.0, 0.0), model="spatial", tolerance=1e-2)
-    (begin, end), *_ = flights(0.0, 1)
-    for support in range(3):
-        intervals = motion.extra["liftoff"][motion.extra["liftoff"][:, 0] == support][:, 1:]
-        assert len(intervals) == 1
-        assert (np.abs(intervals[0] - [begin, end]) < [2e-4, 3e-5]).all()
-
-
 def test_the_largest_value_behind_an_impact_converges() -> None:
     """A body lands on a plate whose acceleration falls: nothing counted before or later is as large."""
     push, phase, pace = 20.0, 0.5 * math.pi, 2.0 * math.pi / 0.4
@@ -205,44 +185,12 @@ def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float
     return PhasePair(scene, model, np.array(phase), whole=True).at_level(level, Budget(work))
 
 
-def test_the_largest_value_before_an_impact_is_step_free() -> None:
-    isolator = {"period": None, "radius": 1.062, "friction": 0.0, "ring": 0.19, "sphere_radius": 0.06}
-    size, link = [0.772, 0.772, 0.2], {"period": [1.112, 0.994], "damping": [0.921, 0.921]}
-    bodies = [{"mass": 0.329, "height": 0.168, "size": size}, {"mass": 0.477, "height": 0.966, "size": size, **link}]
-    load = {"amplitudes": [[3.255, 0.0], [0.0, 3.255]], "periods": [1.296, 0.656], "decay": [0.269, 0.716]}
-    tall = tower(1.0).with_values({f"isolator.{key}": value for key, value in isolator.items()})
-    scene = changed(tall, bodies=bodies, excitation=load, duration=1.87)
-    peaks = [one_level(scene, (3.186, 1.166), 0, 6e4, step=f).peaks for f in (1.0, 0.95, 0.9)]
-    values = np.array([peak.value[1] for peak in peaks])
-    assert np.ptp(values) < 2e-4 * values[0], "the last step before the impact is left out"
-    instants = np.array([peak.instant[1] for peak in peaks])
-    assert np.ptp(instants) < 1e-4
-
-
 def test_a_contact_that_opens_again_does_not_end_the_run() -> None:
     load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [15.0, 0.0]], "decay": [0.333, 0.273]}
     scene = changed(tower(1.0), isolator={"friction": 0.1, "supports": 4}, excitation=load, duration=0.56)
     run = one_level(scene, (2.0, 0.7), 4, 6e4)
     assert run.impacts > 10
     assert run.outcome == Outcome.OK, "the engine shortened its step without end"
-
-
-def test_contacts_that_open_cost_few_steps() -> None:
-    isolator = {"period": None, "radius": 1.42, "ring": 0.103, "sphere_radius": 0.065, "restitution": 0.8}
-    body = {"mass": 1.58, "height": 0.195, "size": [2.0, 2.0, 0.2]}
-    load = {"amplitudes": [[4.494, 0.0], [0.0, 4.494]], "periods": [0.855, 1.057], "decay": [0.957, 1.0]}
-    tall = tower(1.0).with_values({f"isolator.{key}": value for key, value in isolator.items()})
-    scene = changed(tall, bodies=[body], excitation=load, duration=0.3)
-    runs = [one_level(scene, (4.825, 3.617), 1, 6e4, step=f, slip_change=f) for f in (1.0, 0.96, 0.93, 0.9)]
-    assert max(run.work for run in runs) < 1.5 * min(run.work for run in runs)
-
-
-@pytest.mark.parametrize("tilt", [0.0, 0.1, 0.3])
-def test_a_platform_high_in_the_air_touches_no_sphere(tilt: float) -> None:
-    depressions = Depressions(CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
-    flying = np.array([[0.0, 0.0, 60.0, 0.0, tilt, 0.0]])
-    assert (depressions.clearance(flying) > 0.5).all()
-    assert depressions.beyond_rim(flying)[0] == (tilt > 0.0), "its depressions are no longer above the spheres"
 
 
 def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
@@ -289,24 +237,6 @@ def test_supports_that_carry_nothing_briefly_do_not_chatter(phase: tuple[float, 
     assert (np.abs(loose.mu - strict.mu) <= loose.error + strict.error).all()
 
 
-def test_a_contact_that_has_just_closed_stays_closed() -> None:
-    scene = load_scene("fig3-I")
-    model = assemble(scene, "spatial", 1e-3)
-    level = multibody.levels(scene, "spatial")[0]
-    assert model.impact is not None
-    model.set_contact(level.penetration, level.warping_compliance)
-    openings = Openings(Engine(model, level.newton, level.residual), model.impact, level.penetration)
-    gaps = level.penetration * np.array([[-GAP_TOLERANCE, GAP_TOLERANCE, GAP_TOLERANCE, 3.0 * GAP_TOLERANCE]]).T
-    contact = np.tile(np.hstack([gaps, np.zeros((4, 3))]), 4)
-    coordinates = np.zeros((4, model.coordinates))
-    nothing = np.zeros((4, 0))
-    motion = Motion(np.arange(4.0), coordinates, coordinates, coordinates, contact, nothing, np.zeros((4, 3, 3)))
-    assert openings.first_event(motion.until(2)) is None
-    event = openings.first_event(motion)
-    assert event is not None
-    assert (event.row, event.closes, event.which.all()) == (2, False, True)
-
-
 def test_levels_that_impacts_take_elsewhere_are_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     ran: list[EngineRun] = []
 
@@ -350,15 +280,6 @@ def test_levels_on_other_springs_do_not_lower_the_error() -> None:
     assert candidate is not None
     np.testing.assert_allclose(candidate.errors, 2e-3, rtol=1e-2)
     assert replace(candidate, level_errors=np.array([0.1, 0.2])).relative_error == pytest.approx(0.2, rel=1e-2)
-
-
-@pytest.mark.parametrize("wrong", [-0.1, 1.5, math.nan, "0.5"])
-def test_a_restitution_outside_its_range_is_refused_in_one_line(wrong: Any) -> None:
-    with pytest.raises(SceneError) as caught:
-        tower(1.0).with_values({"isolator.restitution": wrong})
-    message = str(caught.value)
-    assert "isolator.restitution" in message
-    assert "\n" not in message
 
 
 def test_restitution_beside_a_support_stiffness_is_refused() -> None:

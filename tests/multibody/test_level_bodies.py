@@ -8,7 +8,7 @@ from scenes_at_hand import changed
 
 import multibody
 from multibody import surface
-from reference.problem import Outcome, Scene, builtin_scenes, load_scene, untilted
+from reference.problem import Scene, builtin_scenes, load_scene, untilted
 
 PHASES = [(2.0, 0.7), (0.3, 1.1)]
 
@@ -67,13 +67,3 @@ def test_it_is_answered_by_the_model_without_rotations(monkeypatch: pytest.Monke
     multibody.amplification(scene, PHASES[:1], "spatial", full=True)
     multibody.amplification(level("fig3-I", 0.5, 1e-12), PHASES[:1], "spatial")
     assert built == ["translational", "spatial", "spatial"]
-
-
-@pytest.mark.long
-def test_a_platform_off_its_supports_has_the_model_asked_for() -> None:
-    scene = level("fig3-I", 1.0, excitation={"amplitudes": [[1.0, 0.0], [0.0, 1.0], [12.0, 0.0]]})
-    asked, full = (multibody.amplification(scene, [(2.0, 0.7)], "spatial", full=full) for full in (False, True))
-    lost = multibody.amplification(scene, [(2.0, 0.7)], "translational")
-    assert lost.status[0] == Outcome.CONTACT_LOST
-    assert asked.status[0] == full.status[0]
-    np.testing.assert_array_equal(asked.mu, full.mu)

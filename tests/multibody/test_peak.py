@@ -86,13 +86,6 @@ def test_two_instants_of_one_corner_are_part_of_its_error() -> None:
     assert error == pytest.approx(0.5 * 0.1 + 0.5 * 0.008 * 0.1 / 0.02)
 
 
-def test_a_corner_that_is_not_looked_for_is_misread() -> None:
-    def signal(t: np.ndarray) -> np.ndarray:
-        return np.where(t < 0.511, 1.0 + 2.0 * (t - 0.511), np.exp(-9.0 * (t - 0.511)))
-
-    assert abs(read(signal, lambda t: np.ones_like(t), np.inf, 1).value[0] - 1.0) > 0.02
-
-
 def test_a_rise_over_short_steps_is_not_taken_for_a_slope() -> None:
     """Where a contact opens, the engine shortens its steps, and the next one is as long as ever."""
     before, within, after = np.arange(0.0, 0.5, 0.02), 0.5 + 1e-6 * np.arange(8.0), np.arange(0.52, 1.0, 0.02)

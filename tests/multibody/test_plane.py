@@ -65,9 +65,3 @@ def test_turning_a_scene_into_its_plane_keeps_the_loading(x: float, y: float, fi
     np.testing.assert_array_equal(turned.stiffness, scene.stiffness)
     damped = CASES["along y, links of two stiffnesses"].with_values({"bodies.1.damping": [0.2, 0.7]})
     assert in_plane(damped).damping.tolist() == [[0.7, 0.2]]
-
-
-def test_loads_of_any_size_are_judged_without_overflow() -> None:
-    for size in (1e-200, 1e200, 1e308):
-        assert not planar(scene_of(amplitudes=[[size, size], [size, 0.5 * size]]))
-    assert planar(scene_of(amplitudes=[[1e200, 1e200], [1e200, 1e200]]))

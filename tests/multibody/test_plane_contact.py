@@ -28,12 +28,6 @@ def test_a_straight_slide_far_out_stops_after_v2_over_2_mu_g():
         assert np.abs(run.position[:, 0, 2]).max() < 1e-6
 
 
-def test_without_friction_nothing_moves_the_platform():
-    scene = SCENE.with_values({"bodies": [{"mass": 1.0}], "isolator.friction": 0.0, "duration": 2.0})
-    answer = multibody.amplification(scene, PHASES[:1], regularization=None)
-    assert answer.mu[0, 0] <= answer.error[0, 0] < 1e-4
-
-
 def test_the_unit_of_length_follows_the_loading():
     slow = SCENE.with_values({"duration": 2.0})
     factor = 16.0  # times all periods: a motion in slow motion, loading and friction unchanged
@@ -50,7 +44,7 @@ def test_the_unit_of_length_follows_the_loading():
 # bodies that turn ----------------------------------------------------------------------------------------------------
 
 SPATIAL = SCENE.with_values({"duration": 3.0})
-RING, SPHERE = 1.0, 0.05  # m, of SPATIAL
+SPHERE = 0.05  # m, of SPATIAL
 
 
 def test_overturning_shifts_the_load_as_statics_says():
@@ -86,11 +80,3 @@ def test_bodies_that_turn_on_large_spheres_tend_to_a_plane():
         slope = np.array([0.22, -0.038])  # m, of mu over 1 / rho
         assert (np.abs(gaps[-1] - slope / radius) <= uncertain + 0.1 * np.abs(slope) / radius).all()
     assert abs(gaps[0][0]) > 10.0 * uncertain[0], "the gap at 10 m is seen"
-
-
-def test_a_moving_plate_carries_the_plane_under_turning_bodies():
-    scene = SPATIAL.with_values({"duration": 1.5})
-    moving, still = (
-        multibody.amplification(scene, PHASES[:1], model="spatial", loading=each) for each in ("plate", "inertial")
-    )
-    assert (np.abs(moving.mu - still.mu) <= moving.error + still.error).all()

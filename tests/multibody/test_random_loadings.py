@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 from random_loadings import Case, random_case
-from scenes_at_hand import changed, one_body
-from scipy.integrate import solve_ivp
+from scenes_at_hand import changed
 
 import multibody
 import reference
 from multibody.integration.estimate import from_levels
 from multibody.integration.peak import Peaks
 from multibody.models.assembly import assemble
-from reference.problem import GRAVITY, Outcome, Scene, ground_acceleration, ground_peak, load_scene
+from reference.problem import Outcome, load_scene
 
 WEAKEST, STRONGEST = 1e-15, 1e3  # m/s^2
 MAX_WORK = 6e4  # of a point: longer ones are refused
@@ -55,9 +54,9 @@ def test_no_random_value_is_contradicted_by_the_equations(first: int) -> None:
     assert sum(answered) >= 5
 
 
-@pytest.mark.long  # 3 min
-@pytest.mark.parametrize("first", range(1000, 2000, 100))
-def test_no_value_of_a_thousand_scenes_is_contradicted(first: int) -> None:
+@pytest.mark.long
+@pytest.mark.parametrize("first", range(1000, 1300, 100))
+def test_no_value_of_300_scenes_is_contradicted(first: int) -> None:
     answered = [assert_not_contradicted(random_case(seed, WEAKEST, STRONGEST)) for seed in range(first, first + 100)]
     assert sum(answered) >= 60
 
@@ -72,20 +71,6 @@ def test_a_flat_slider_without_iterations_has_its_error(mass: float) -> None:
         assert_not_contradicted(Case(flat, case.phase, 1e-3, case.tolerance))
 
 
-def test_a_contact_that_swings_is_an_error_of_reading() -> None:
-    """Accelerations alternate by 0.4 % from step to step where the peak is, less from level to level."""
-    scene = changed(
-        one_body(radius=0.6938309771454613, lubrication=0.16790001312853042, duration=0.1738835314932428),
-        bodies=[{"mass": 3.0349339715035613}],
-        excitation={
-            "amplitudes": [[52.137363073427544, 130.24951420463435], [0.0, 0.0]],
-            "periods": [1.108521768726127, 1.6694622882386398],
-            "decay": [0.1803783153039438, 0.0],
-        },
-    )
-    assert_not_contradicted(Case(scene, (3.6867074496115393, 3.7430856237968295), None, 1e-2))
-
-
 def test_the_error_of_reading_is_part_of_the_error() -> None:
     model, levels = assemble(THREE_SECONDS, "translational", 1e-3), multibody.levels(THREE_SECONDS)[:2]
     peaks = [Peaks(1, 1e-3) for _ in levels]
@@ -96,38 +81,13 @@ def test_the_error_of_reading_is_part_of_the_error() -> None:
     np.testing.assert_allclose(from_levels(peaks, levels, model) - without, 0.01, rtol=1e-9)
 
 
-def weak_peaks(scene: Scene, phase: tuple[float, float], v_reg: float) -> np.ndarray:
-    """mu of a dry scene whose platform only creeps: SciPy on the linear chain with a damper under it."""
-    masses, count = scene.masses, len(scene.masses)
-    stiffness, damping = np.zeros((2, 2, count, count))
-    stiffness[:, 0, 0] = scene.total_mass * GRAVITY / scene.radius
-    damping[:, 0, 0] = scene.friction_coefficient * scene.total_mass * GRAVITY / v_reg
-    pair = np.array([[1.0, -1.0], [-1.0, 1.0]])
-    for link in range(count - 1):
-        for axis in range(2):
-            stiffness[axis, link : link + 2, link : link + 2] += scene.stiffness[link, axis] * pair
-            damping[axis, link : link + 2, link : link + 2] += scene.damping[link, axis] * pair
-    size = scene.largest_acceleration
-
-    def relative(time: float, state: np.ndarray) -> np.ndarray:
-        x, v = state.reshape(2, 2, count)
-        plate = ground_acceleration(scene, phase, np.array([time]))[0, :2] / size
-        force = np.einsum("aij,aj->ai", stiffness, x) + np.einsum("aij,aj->ai", damping, v)
-        return np.concatenate([v.ravel(), (-force / masses - plate[:, None]).ravel()])
-
-    times = np.linspace(0.0, scene.duration, 20001)
-    solved = solve_ivp(relative, (0.0, scene.duration), np.zeros(4 * count), "Radau", times, rtol=1e-8, atol=1e-12)
-    x, v = solved.y.reshape(2, 2, count, -1)
-    force = np.einsum("aij,ajt->ait", stiffness, x) + np.einsum("aij,ajt->ait", damping, v)
-    absolute = np.hypot(*(force / masses[:, None]))
-    return absolute.max(axis=1) * size / ground_peak(scene, [phase])[0]
-
-
-@pytest.mark.parametrize("size", [1e-6, 1e-9, 1e-15])
-def test_the_equations_are_right_under_weak_loadings(size: float) -> None:
-    scene = load_scene("fig3-I").with_values({"duration": 1.0}).with_amplitude(size)
-    found = reference.amplification(scene, [(0.3, 1.1)], "exact", 1e-3)
-    np.testing.assert_allclose(found.mu[0], weak_peaks(scene, (0.3, 1.1), 1e-3), rtol=2e-5)
+@pytest.mark.parametrize("size", [1e-6, 1e-15])
+def test_a_platform_that_only_creeps_is_a_lubricated_one(size: float) -> None:
+    scene = THREE_SECONDS.with_values({"duration": 1.0})
+    viscous = scene.with_values({"isolator.friction": None, "isolator.lubrication": scene.friction_coefficient / 1e-3})
+    found = reference.amplification(scene.with_amplitude(size), [(0.3, 1.1)], "exact", 1e-3)
+    expected = reference.amplification(viscous.with_amplitude(1e-6), [(0.3, 1.1)], "exact")
+    np.testing.assert_allclose(found.mu, expected.mu, rtol=2e-5)
 
 
 @pytest.mark.parametrize("max_work", [2e4, 3e3])  # with the other one levels end before

@@ -73,7 +73,7 @@ def test_factors_agree_with_constrained_newton_euler_equations(supports: int) ->
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(5))
 def test_factors_of_other_scenes_agree_with_newton_euler(seed: int) -> None:
     assert_agrees_with_newton_and_euler(other_scene(seed), (1.0 + seed, 0.5 * seed))
 
@@ -83,33 +83,6 @@ def test_factors_of_other_scenes_agree_with_newton_euler(seed: int) -> None:
 def test_a_support_that_opens_agrees_with_newton_euler(phase: tuple[float, float]) -> None:
     scene = changed(load_scene("fig3-I"), duration=4.0, isolator={"ring": 0.3})
     assert_agrees_with_newton_and_euler(scene, phase)
-
-
-@pytest.mark.long
-def test_a_peak_between_stopping_supports_has_its_error() -> None:
-    """Six supports do so within two steps, by whose corners two levels are off alike."""
-    isolator = {"period": None, "radius": 1.5109488690600799, "friction": 0.13702487838262958, "supports": 6}
-    isolator |= {"ring": 1.8849358580428093, "sphere_radius": 0.07221883481476457}
-    link = {"period": [0.5312192606019572, 0.991200731177353], "damping": 0.5002314702340517}
-    bodies = [
-        {"mass": 0.4860224287235741, "height": 0.2715879486456664, "size": [2.769, 2.123, 0.2]},
-        {"mass": 1.5089034471187415, "height": 0.9415856649043736, "size": [2.769, 2.144, 0.2], **link},
-    ]
-    load = {
-        "amplitudes": [[0.9884619223154059, 1.5142309688525009], [0.487195159791489, 1.2812097580802067]],
-        "periods": [0.8877204743438363, 0.6258783326452761],
-        "decay": [0.13871698008886618, 0.1328893183074945],
-    }
-    values = {f"isolator.{key}": value for key, value in isolator.items()}
-    scene = load_scene("fig3-I").with_values({"duration": 1.75, "bodies": bodies, "excitation": load, **values})
-    phase = [(3.8166055207835377, 5.136433486035645)]
-    answers = [
-        multibody.amplification(scene, phase, "spatial", regularization=8.669743844387806e-4, tolerance=tolerance)
-        for tolerance in (1e-3, 1e-4)
-    ]
-    assert [answer.status.tolist() for answer in answers] == [["ok"], ["ok"]]
-    loose, close = answers
-    assert (np.abs(loose.mu - close.mu) <= loose.error).all(), (loose.mu, close.mu, loose.error)
 
 
 @pytest.mark.parametrize(

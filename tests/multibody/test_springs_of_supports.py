@@ -153,32 +153,6 @@ def test_the_error_on_real_bearings_counts_impacts(refined: Any) -> None:
     assert done.answer.errors[1] == pytest.approx(2.0 * 4e-3), "no level before it has the same springs"
 
 
-def test_the_compliance_is_measured_on_real_bearings(refined: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    shared = [LEVELS[0], replace(LEVELS[1], penetration=LEVELS[0].penetration)]
-    monkeypatch.setattr("test_springs_of_supports.LEVELS", shared)
-    done = refined(real_from_level_1, 2)
-    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL), (1, REAL)]
-    assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
-
-
-def test_an_answer_before_real_bearings_does_not_come_back(refined: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The run that would complete the error of the last level fails: the level before was another motion."""
-    shared = [replace(level, penetration=LEVELS[min(number, 1)].penetration) for number, level in enumerate(LEVELS)]
-    monkeypatch.setattr("test_springs_of_supports.LEVELS", shared)
-    completing: list[int] = []
-
-    def runs(number: int, springs: float) -> EngineRun:
-        if number == 2 and springs == REAL:
-            completing.append(number)
-            return result(1.8, outcome=Outcome.SOLVER_FAILED if len(completing) > 1 else Outcome.OK)
-        return result(1.0 + 8.7e-4 * (springs == REAL))
-
-    done = refined(runs, 3)
-    assert len(completing) == 2
-    assert done.answer.outcome == Outcome.SOLVER_FAILED
-    assert np.isnan(done.answer.peaks).all()
-
-
 @pytest.mark.parametrize("outcome", [Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED])
 @pytest.mark.parametrize("so_far", [0.4, 1.05])
 def test_an_unconfirmed_answer_has_the_change_twice(refined: Any, outcome: Outcome, so_far: float) -> None:
@@ -230,24 +204,10 @@ def test_without_any_run_on_real_bearings_there_is_no_value(refined: Any) -> Non
     assert np.isnan(done.answer.peaks).all()
 
 
-def test_of_two_levels_without_an_answer_the_finer_one_says_why(refined: Any) -> None:
-    done = refined(
-        lambda number, _: result(1.0, outcome=Outcome.STEP_LIMIT if number == 0 else Outcome.SOLVER_FAILED), 2
-    )
-    assert done.answer.outcome == Outcome.SOLVER_FAILED
-
-
 def test_supports_that_rattle_stand_on_real_bearings(refined: Any) -> None:
     done = refined(lambda number, _: result(1.0, outcome=Outcome.STEP_LIMIT if number == 0 else Outcome.OK))
     assert done.asked == [(0, STIFF), (0, REAL), (1, REAL), (2, REAL)]
     assert done.answer.outcome == Outcome.OK
-
-
-def test_no_level_is_begun_without_work_for_its_bearings(refined: Any) -> None:
-    done = refined(lambda number, springs: result(1.0 + 9e-4 * (springs == REAL)), max_work=6.5 * STEPS)
-    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF)]
-    assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
-    np.testing.assert_allclose(done.answer.errors[0], 9e-4 + level_error(1))
 
 
 def test_the_first_run_of_rattling_supports_has_a_share(refined: Any) -> None:

@@ -83,10 +83,6 @@ def test_a_trajectory_ends_where_the_model_does() -> None:
     ("options", "message"),
     [
         ({"regularization": None}, "v_reg"),
-        ({"regularization": -1.0}, "regularization"),
-        ({"tolerance": 0.0}, "tolerance"),
-        ({"tolerance": np.nan}, "tolerance"),
-        ({"model": "flexible"}, "model"),
         ({"phases": [[0.0, 1.0, 2.0]]}, "phases"),
     ],
 )

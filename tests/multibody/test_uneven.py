@@ -6,10 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 from scenes_at_hand import assert_agrees_with_newton_and_euler, assert_demands, changed
-from scipy.integrate import cumulative_trapezoid, trapezoid
 
 import multibody
-import reference
 from multibody.integration.adaptive import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
@@ -64,7 +62,7 @@ def test_factors_and_torsion_agree_with_newton_euler_equations(name: str, phase:
 
 @pytest.mark.long
 def test_a_whole_surface_agrees_with_newton_euler_equations() -> None:
-    for phase in phase_grid(8):
+    for phase in phase_grid(4):
         assert_agrees_with_newton_and_euler(uneven("everything"), tuple(phase))
 
 
@@ -119,15 +117,6 @@ def test_offsets_are_allowed_while_supports_carry(supports: int) -> None:
     with pytest.raises(SceneError, match="would carry nothing at rest") as caught:
         scene.with_values(outside)
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize("share", [0.9, 0.9999])
-def test_a_building_near_its_supports_edge_has_an_outcome(share: float) -> None:
-    values = {f"bodies.{body}.offset": [share * 0.25 * math.sqrt(2.0)] * 2 for body in range(2)}
-    scene = uneven("body above off the axis", 1.5, **values)
-    result = multibody.amplification(scene, [PHASE], "spatial", tolerance=1e-2, max_work=2e4)
-    assert result.status[0] == Outcome.OK if share < 0.95 else result.status[0] in set(Outcome)
-    assert np.isfinite(result.mu).all() == (result.status[0] in (Outcome.OK, Outcome.TOLERANCE_NOT_MET))
 
 
 def turned(scene: Scene, angle: float) -> Scene:
@@ -192,46 +181,6 @@ def test_rotation_grows_linearly_and_factors_squared(key: str, law: dict[str, An
     assert torsion[2] / torsion[1] == pytest.approx(2.0, rel=0.01)
     changes = np.subtract(peaks[1:], peaks[0])
     np.testing.assert_allclose(changes[1] / changes[0], 4.0, rtol=0.02)
-
-
-def test_energy_comes_from_the_plate_and_goes_into_friction() -> None:
-    scene, v_reg = uneven("three positions off the axis", 2.0, **{"bodies.1.yaw": 0.4, **SIZES}), 1e-3
-    motion = multibody.trajectory(scene, PHASE, "spatial", regularization=v_reg, tolerance=1e-4)
-    time, place, velocity = motion.time, motion.position, motion.velocity
-    sizes, turns = np.array([body.size for body in scene.bodies]), motion.extra["turns"]
-    at_rest = rotation(scene.yaws[:, None] * [0.0, 0.0, 1.0])
-    attitudes = rotation(turns) @ at_rest
-    rates = np.gradient(turns, time, axis=0)
-    # rotations are small: angular velocity is the rate of the angles, to the first order
-    local = np.einsum("tnij,tni->tnj", attitudes, rates)
-    inertias = scene.masses[:, None] / 12.0 * ((sizes**2).sum(axis=1)[:, None] - sizes**2)
-    ends = [
-        place[:, body] + np.einsum("tij,j->ti", rotation(turns[:, body]), [*-scene.offsets[body], sign * 0.5])
-        for body, sign in ((0, 1.0), (1, -1.0))
-    ]
-    apart = ends[1] - ends[0] + np.append(scene.offsets[1] - scene.offsets[0], 0.0)
-    shear = np.einsum("tij,ti->tj", rotation(turns.mean(axis=1)), apart)[:, :2]  # in the axes between both bodies
-    matrix = at_rest[1][:2, :2] @ np.diag(scene.stiffness[0]) @ at_rest[1][:2, :2].T
-    places = scene.support_places
-    assert places is not None
-    twist = (places**2).sum(axis=1).mean() * scene.stiffness[0].mean()
-    stored = (
-        0.5 * (scene.masses[:, None] * velocity**2).sum(axis=(1, 2))
-        + 0.5 * (inertias * local**2).sum(axis=(1, 2))
-        + 0.5 * np.einsum("ti,ij,tj->t", shear, matrix, shear)
-        + 0.5 * twist * (turns[:, 1, 2] - turns[:, 0, 2]) ** 2
-        + GRAVITY * (scene.masses * place[:, :, 2]).sum(axis=1)
-    )
-    ground = reference.problem.ground_acceleration(scene, PHASE, time)
-    supplied = -(scene.masses[:, None] * velocity * ground[:, None, :]).sum(axis=(1, 2))
-    slip = motion.extra["slip_speed"]
-    rubbed = scene.friction_coefficient * (motion.extra["support_force"] * np.minimum(1.0, slip / v_reg) * slip).sum(
-        axis=1
-    )
-    work = cumulative_trapezoid(supplied - rubbed, time, initial=0.0)
-    lost = trapezoid(rubbed, time)
-    assert lost > 0.2 * stored.max()
-    np.testing.assert_allclose(stored - stored[0], work, atol=1e-3 * lost)
 
 
 @pytest.mark.parametrize("stiffness", [3e4, 1e6])

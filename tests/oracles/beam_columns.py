@@ -2,20 +2,14 @@
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from multibody.models.engine import exudyn, items
 from reference.problem import GRAVITY
 
 Array = NDArray[np.float64]
-
-ELEMENTS = 8  # of a bar
-BARS_MASS = 1e-4  # of a group of bars over that of the body: none would leave the elements without inertia
-ALONG_THE_BAR = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])  # x of an element points up
 
 
 @dataclass(frozen=True)
@@ -58,47 +52,3 @@ class Tower:
         stiffness[1, 1] -= self.weight * self.center
         squares: Array = eigh(stiffness, np.diag([self.mass, self.inertia]), eigvals_only=True)
         return squares
-
-
-def tower_of_beams(tower: Tower, force: float = 0.0) -> tuple[exudyn.SystemContainer, exudyn.MainSystem, int]:
-    """
-    The same in a vertical plane with the engine's cable elements: container, system and number of the body's node.
-
-    Every bar stands at its place along x; the body is tied to their upper ends. force: along x, in weights of the body.
-    """
-    container = exudyn.SystemContainer()
-    mbs = container.AddSystem()
-    ground = mbs.AddObject(items.ObjectGround())
-    body_node = mbs.AddNode(items.NodeRigidBody2D(referenceCoordinates=[0.0, tower.length + tower.center, 0.0]))
-    body = mbs.AddObject(items.ObjectRigidBody2D(mass=tower.mass, inertia=tower.inertia, nodeNumber=body_node))
-    center = mbs.AddMarker(items.MarkerBodyPosition(bodyNumber=body))
-    mbs.AddLoad(items.LoadForceVector(markerNumber=center, loadVector=[force * tower.weight, -tower.weight, 0.0]))
-    # two groups of bars stand as far from the axis as they all do in the mean along one axis
-    for place in (-tower.spread / math.sqrt(2.0), tower.spread / math.sqrt(2.0)):
-        nodes = [
-            mbs.AddNode(items.NodePoint2DSlope1(referenceCoordinates=[place, height, 0.0, 1.0]))
-            for height in np.linspace(0.0, tower.length, ELEMENTS + 1)
-        ]
-        for pair in pairwise(nodes):
-            mbs.AddObject(
-                items.ObjectANCFCable2D(
-                    length=tower.length / ELEMENTS,
-                    massPerLength=BARS_MASS * tower.mass / tower.length,
-                    bendingStiffness=0.5 * tower.count * tower.bending_stiffness,
-                    axialStiffness=0.5 * tower.count * tower.axial_stiffness,
-                    nodeNumbers=list(pair),
-                )
-            )
-        held = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localHT=_clamp(place, 0.0)))
-        top = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localHT=_clamp(place, -tower.center)))
-        for fixed, node in ((held, nodes[0]), (top, nodes[-1])):
-            end = mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=node))
-            mbs.AddObject(items.ObjectJointGeneric(markerNumbers=[fixed, end], constrainedAxes=[1, 1, 0, 0, 0, 1]))
-    mbs.Assemble()
-    return container, mbs, body_node
-
-
-def _clamp(along: float, up: float) -> Array:
-    transformation = np.eye(4)
-    transformation[:3, :3], transformation[:2, 3] = ALONG_THE_BAR, [along, up]
-    return transformation
