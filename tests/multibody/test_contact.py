@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scenes_at_hand import CONSTANT, one_body
 from scipy.integrate import solve_ivp
-from scipy.special import ellipk
 
 import multibody
 from multibody.integration.constant_step import Engine, silence
@@ -77,17 +76,6 @@ def test_planar_sliding_follows_the_closed_form(within: Callable[[float, float],
     assert angle[falling].min() < -0.5
     # h^2 of 3.5 ms steps against the swing of 1 s
     within(abs(speeds[falling] / expected[falling] - 1.0).max(), 1e-4)
-
-
-def test_a_frictionless_swing_has_the_large_angle_period() -> None:
-    radius, begin = 0.25, 1.0
-    scene = one_body(radius=radius, friction=0.0, duration=1.3)
-    motion = started(scene, (radius * np.sin(begin), 0.0), (0.0, 0.0), tolerance=1e-5)
-    x, time = motion.position[:, 0, 0], motion.time
-    rows = np.flatnonzero(x[1:] * x[:-1] < 0.0)[:2]
-    zeros = time[rows] - x[rows] * np.diff(time)[rows] / np.diff(x)[rows]
-    half = 2.0 * np.sqrt(radius / GRAVITY) * ellipk(np.sin(begin / 2.0) ** 2)
-    assert zeros[1] - zeros[0] == pytest.approx(half, rel=1e-5)
 
 
 def test_a_conical_pendulum_keeps_its_circle_at_its_own_rate(within: Callable[[float, float], None]) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes_at_hand import CONSTANT, assert_agrees_with_newton_and_euler, changed, one_body
+from scenes_at_hand import assert_agrees_with_newton_and_euler, changed, one_body
 
 import multibody
 from multibody.integration.adaptive import Budget
@@ -16,17 +16,6 @@ from multibody.models.engine import exudyn, items
 from multibody.models.links import add_link, set_link_stiffness
 from reference.measures import demands
 from reference.problem import GRAVITY, Outcome, Scene, ground_acceleration, load_scene
-
-SIZE = [1.0, 1.0, 0.2]
-
-
-def pushed(push: float, *, ring: float, height: float, duration: float = 0.3) -> Scene:
-    """One held body on four supports under a steady push along x."""
-    scene = one_body(
-        friction=0.2, duration=duration, amplitudes=[[-push, 0.0], [0.0, 0.0]], periods=(CONSTANT, CONSTANT)
-    )
-    isolator: dict[str, Any] = {"supports": 4, "ring": ring, "sphere_radius": 0.05}
-    return changed(scene, isolator=isolator, bodies=[{"mass": 1.0, "height": height, "size": SIZE}])
 
 
 def towers(supports: int) -> Scene:
@@ -222,30 +211,6 @@ def test_a_start_without_weight_is_in_balance_at_every_level(supports: int) -> N
         assert np.abs(run.chunks[0].accelerations[0]).max() < 1e-2
 
 
-def test_supports_share_the_load_of_overturning() -> None:
-    push, ring, height, lever = 0.5, 1.0, 0.6, 0.25 + 0.05
-    motion = multibody.trajectory(pushed(push, ring=ring, height=height), (0.0, 0.0), model="spatial")
-    forces = motion.extra["support_force"][-1]
-    places = ring * np.cos(2.0 * np.pi * (np.arange(4) + 0.5) / 4.0)
-    assert forces.sum() == pytest.approx(GRAVITY, rel=1e-4)
-    # about the plane in which the spheres touch, a radius R = rho + r above the depressions' centers
-    assert forces @ places == pytest.approx(push * (height - lever), rel=1e-2)
-
-
-@pytest.mark.long
-def test_a_body_on_a_narrow_ring_lifts_off_and_comes_back() -> None:
-    # the push turns from 1.5 m/s^2 to its opposite within 0.5 s; tipping starts at g * (ring / sqrt 2) / lever
-    scene = pushed(1.5, ring=0.1, height=1.2, duration=0.5)
-    rocking = changed(scene, excitation={"periods": [0.5, 0.5]})
-    motion = multibody.trajectory(rocking, (0.0, 0.0), model="spatial", tolerance=1e-2)
-    lifted = motion.extra["liftoff"]
-    assert len(lifted) > 0
-    assert motion.extra["support_force"].min() == 0.0
-    assert motion.extra["tilt"].max() > 1e-4
-    wide = changed(rocking, isolator={"ring": 2.0})
-    assert len(multibody.trajectory(wide, (0.0, 0.0), model="spatial").extra["liftoff"]) == 0
-
-
 @pytest.mark.long
 def test_the_torsion_has_its_error_where_supports_open() -> None:
     """That of rigid_chain.py. Which support is hit first depends on rounding: two levels agreed by chance."""
@@ -253,19 +218,6 @@ def test_the_torsion_has_its_error_where_supports_open() -> None:
     torsion = demands(multibody.trajectory(scene, (2.0, 0.7), "spatial")).torsion
     assert torsion is not None
     assert abs(torsion[0].value - 4.424657e-3) <= torsion[0].error < 1e-2 * torsion[0].value
-
-
-def test_unequal_loads_turn_the_platform_about_the_vertical() -> None:
-    scene = changed(load_scene("fig3-I"), duration=2.0)
-    tower = multibody.trajectory(scene, (2.0, 0.7), model="spatial")
-    low = changed(scene, bodies=[{**body, "height": 0.0} for body in scene.model_dump(exclude_none=True)["bodies"]])
-    shifted = multibody.trajectory(low, (2.0, 0.7), model="spatial")
-    alone = changed(scene, bodies=scene.model_dump(exclude_none=True)["bodies"][:1])
-    single = multibody.trajectory(alone, (2.0, 0.7), model="spatial")
-    assert np.abs(tower.extra["yaw"]).max() > 1e-3
-    assert np.abs(shifted.extra["yaw"]).max() > 1e-4  # by the weight of the body above, which shifts
-    # the forces on a body that does not turn are parallel, whatever its height
-    assert np.abs(single.extra["yaw"]).max() < 1e-7
 
 
 def test_a_scene_without_spatial_data_is_refused() -> None:

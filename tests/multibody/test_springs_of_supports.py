@@ -104,32 +104,54 @@ def test_an_answer_hardly_changed_by_bearings_stays(refined: Any) -> None:
     assert (real.peaks.value[0], share) == (1.0005, 1.0), "any number of the motion has its change as an error"
 
 
-def test_a_change_without_room_asks_for_another_level(refined: Any) -> None:
-    done = refined(lambda number, springs: result(1.0 + 9e-4 * (springs == REAL)))
-    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (2, STIFF), (2, REAL)]
-    assert done.answer.outcome == Outcome.OK
-    np.testing.assert_allclose(done.answer.errors[0], 9e-4 + level_error(2))
-
-
-def test_where_bearings_change_the_peaks_levels_have_them(refined: Any) -> None:
-    done = refined(lambda number, springs: result(1.893 if springs == STIFF else 1.826))
-    assert done.asked == [(0, STIFF), (0, REAL), (1, REAL)]
-    assert done.answer.outcome == Outcome.OK
-    np.testing.assert_allclose(done.answer.peaks, [1.826, 2.0])
-    np.testing.assert_allclose(done.answer.errors, [1.826 * level_error(1), 2.0 * level_error(1)])
-
-
 def real_from_level_1(number: int, springs: float) -> EngineRun:
     """Real bearings change nothing at level 0, and the order of impacts at all others."""
     return result(1.826 if number > 0 and springs == REAL else 1.893, steps=STEPS + STEPS // 2 * (springs == REAL))
 
 
-def test_an_answer_that_real_bearings_change_is_dropped(refined: Any) -> None:
-    done = refined(real_from_level_1)
-    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL), (2, REAL)]
-    assert done.answer.outcome == Outcome.OK
-    np.testing.assert_allclose(done.answer.peaks, [1.826, 2.0])
-    np.testing.assert_allclose(done.answer.errors[0], 1.826 * level_error(2))
+def failing(outcome: Outcome, where: Callable[[int, float], bool], change: float = 0.0) -> Callable[..., EngineRun]:
+    """Runs with a peak of 1, which real bearings change, that end with an outcome somewhere."""
+    return lambda number, springs: result(
+        1.0 + change * (springs == REAL), outcome=outcome if where(number, springs) else Outcome.OK
+    )
+
+
+# runs; number of the level and springs of those asked for; outcome, peak of the platform and its error
+PATHS: dict[str, tuple[Any, list[tuple[int, float]], Outcome, float, float]] = {
+    "a change without room asks for another level": (
+        lambda number, springs: result(1.0 + 9e-4 * (springs == REAL)),
+        [(0, STIFF), (0, REAL), (1, STIFF), (2, STIFF), (2, REAL)], Outcome.OK, 1.0, 9e-4 + level_error(2),
+    ),
+    "where bearings change the peaks levels have them": (
+        lambda number, springs: result(1.893 if springs == STIFF else 1.826),
+        [(0, STIFF), (0, REAL), (1, REAL)], Outcome.OK, 1.826, 1.826 * level_error(1),
+    ),
+    "an answer that real bearings change is dropped": (
+        real_from_level_1,
+        [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL), (2, REAL)], Outcome.OK, 1.826, 1.826 * level_error(2),
+    ),
+    "a level whose run on bearings ends is confirmed": (
+        failing(Outcome.SOLVER_FAILED, lambda number, springs: number == 1 and springs == REAL, 1e-4),
+        [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL), (2, STIFF), (2, REAL)], Outcome.OK, 1.0, 1e-4 + level_error(2),
+    ),
+    "no run on real bearings": (
+        failing(Outcome.SOLVER_FAILED, lambda number, springs: springs == REAL),
+        [(0, STIFF), (0, REAL), (1, REAL)], Outcome.SOLVER_FAILED, math.nan, math.nan,
+    ),
+    "supports that rattle stand on real bearings": (
+        failing(Outcome.STEP_LIMIT, lambda number, springs: number == 0),
+        [(0, STIFF), (0, REAL), (1, REAL), (2, REAL)], Outcome.OK, 1.0, level_error(2),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("runs", "asked", "outcome", "platform", "error"), PATHS.values(), ids=PATHS)
+def test_levels_and_springs_follow_from_what_runs_say(
+    refined: Any, runs: Any, asked: list[tuple[int, float]], outcome: Outcome, platform: float, error: float
+) -> None:
+    done = refined(runs)
+    assert (done.asked, done.answer.outcome) == (asked, outcome)
+    np.testing.assert_allclose([done.answer.peaks[0], done.answer.errors[0]], [platform, error])
 
 
 @pytest.mark.parametrize(("levels", "max_work"), [(2, 1e9), (6, 7.0 * STEPS)], ids=["last level", "end of the work"])
@@ -170,17 +192,6 @@ def test_an_unconfirmed_answer_has_the_change_twice(refined: Any, outcome: Outco
     np.testing.assert_allclose(done.answer.errors[0], change + level_error(1))
 
 
-def test_a_level_whose_run_on_bearings_ends_is_confirmed(refined: Any) -> None:
-    def runs(number: int, springs: float) -> EngineRun:
-        outcome = Outcome.SOLVER_FAILED if number == 1 and springs == REAL else Outcome.OK
-        return result(1.0 + 1e-4 * (springs == REAL), outcome=outcome)
-
-    done = refined(runs)
-    assert done.asked[-2:] == [(2, STIFF), (2, REAL)]
-    assert done.answer.outcome == Outcome.OK
-    np.testing.assert_allclose(done.answer.errors[0], 1e-4 + level_error(2))
-
-
 def test_a_motion_that_ends_on_bearings_alone_has_no_value(refined: Any) -> None:
     def runs(number: int, springs: float) -> EngineRun:
         tips = number > 0 and springs == REAL
@@ -192,22 +203,6 @@ def test_a_motion_that_ends_on_bearings_alone_has_no_value(refined: Any) -> None
         assert done.answer.outcome == Outcome.RIM_REACHED
         assert done.answer.instant == 0.7
         assert np.isnan(done.answer.peaks).all()
-
-
-def test_without_any_run_on_real_bearings_there_is_no_value(refined: Any) -> None:
-    def runs(number: int, springs: float) -> EngineRun:
-        return result(1.0, outcome=Outcome.SOLVER_FAILED if springs == REAL else Outcome.OK)
-
-    done = refined(runs)
-    assert done.asked == [(0, STIFF), (0, REAL), (1, REAL)]
-    assert done.answer.outcome == Outcome.SOLVER_FAILED
-    assert np.isnan(done.answer.peaks).all()
-
-
-def test_supports_that_rattle_stand_on_real_bearings(refined: Any) -> None:
-    done = refined(lambda number, _: result(1.0, outcome=Outcome.STEP_LIMIT if number == 0 else Outcome.OK))
-    assert done.asked == [(0, STIFF), (0, REAL), (1, REAL), (2, REAL)]
-    assert done.answer.outcome == Outcome.OK
 
 
 def test_the_first_run_of_rattling_supports_has_a_share(refined: Any) -> None:
