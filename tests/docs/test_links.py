@@ -27,21 +27,3 @@ def test_the_links_of_a_page_lead_to_files_and_headings(page: Path) -> None:
         assert place.exists(), target
         if heading:
             assert heading in anchors(place), target
-
-
-def test_every_page_is_reached_from_the_first_one() -> None:
-    """A page that no list of contents names would never be read."""
-    tables = re.compile(r"```\{toctree\}\n(?P<options>(?::[^\n]*\n)*)\n?(?P<entries>.*?)```", flags=re.DOTALL)
-    first = ROOT / "docs" / "index.md"
-    reached, waiting = {first}, [first]
-    while waiting:
-        page = waiting.pop()
-        for table in tables.finditer(page.read_text(encoding="utf-8")):
-            for line in table["entries"].splitlines():
-                entry = line.rpartition("<")[2].rstrip(">").strip()  # name, or title <name>
-                for found in page.parent.glob(f"{entry}.md"):
-                    if found not in reached:
-                        reached.add(found)
-                        waiting.append(found)
-    lost = sorted(set((ROOT / "docs").rglob("*.md")) - reached)
-    assert lost == [], "name it in a toctree, such as that of docs/evidence.md"

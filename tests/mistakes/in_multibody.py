@@ -124,7 +124,7 @@ MISTAKES = (
             (TESTS + "test_damped_links.py::test_a_damper_takes_its_link_s_power_and_keeps_momentum",)),
     Mistake(MODELS + "links.py", "useIntrinsicFormulation=True", "useIntrinsicFormulation=False",
             "A link acts on its bodies at two points and changes their angular momentum.",
-            (TESTS + "test_spatial.py::test_a_free_chain_keeps_momentum_and_loses_energy",)),
+            (TESTS + "test_damped_links.py::test_a_link_keeps_the_momentum_of_its_bodies",)),
     Mistake(MODELS + "links.py", "axis = [[-center[0], -center[1], 0.0] for center in centers]",
             "axis = [[center[0], center[1], 0.0] for center in centers]",
             "Eccentric bodies stand on the wrong side of their link.",

@@ -1,10 +1,8 @@
 """The run_adaptively: smaller steps at stops and nowhere else, and restarts that the contact does not notice."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
-import pytest
 from scenes_at_hand import changed, one_body
 
 import multibody
@@ -68,10 +66,3 @@ def test_every_level_at_least_halves_the_error_at_an_onset() -> None:
         run = pair.at_level(level, Budget(1e6), math.inf)
         errors.append(abs(run.peaks.value[0] * model.units.acceleration / ground / truth - 1.0))
     assert (np.array(errors[1:]) < np.array(errors[:-1]) / 2.0).all(), errors
-
-
-@pytest.mark.parametrize("slip_change", [math.inf, 20.0, pytest.param(1e-4, marks=pytest.mark.long)])
-def test_a_run_ends_whatever_change_of_slip_is_allowed(slip_change: float) -> None:
-    scene = changed(load_scene("fig3-I"), duration=1.5)
-    level = replace(multibody.levels(scene)[1], slip_change=slip_change)
-    assert multibody.single_run(scene, (0.3, 1.1), level=level).status == "ok"

@@ -1,7 +1,6 @@
 """The film of a run is written without a display, and shows the motion that was computed."""
 
 import dataclasses
-import io
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,8 +18,8 @@ import multibody
 from multibody import animate
 from multibody import film as film_module
 from multibody.animate import main
-from multibody.film import Look, box_corners, contact_paths, drawing, film, frames, magnified
-from reference.problem import Scene, Trajectory, load_scene
+from multibody.film import Look, box_corners, contact_paths, film, frames, magnified
+from reference.problem import load_scene
 
 SHORT = """
 title = "short"
@@ -150,44 +149,6 @@ def test_the_film_of_the_spatial_model_shows_its_turns(monkeypatch: pytest.Monke
     assert factor >= 10.0
     # to the square of the tilt drawn, which is 0.3 at most
     assert np.arctan2(edge[1], edge[0]) == pytest.approx(factor * yaw, rel=0.1)
-
-
-def tall(heights: list[float]) -> Scene:
-    """Six bodies on a cap whose radius is as large as a story."""
-    bodies: list[dict[str, Any]] = [{"mass": 40.0, **({"period": [0.5, 0.6]} if body else {})} for body in range(6)]
-    isolator = {"radius": 2.24, "friction": 0.05, "supports": 4, "ring": 4.0, "sphere_radius": 0.05}
-    bodies = [body | {"height": height, "size": [8.0, 8.0, 0.6]} for body, height in zip(bodies, heights)]
-    return Scene.model_validate(
-        {
-            "title": "tall",
-            "duration": 2.0,
-            "isolator": isolator,
-            "bodies": bodies,
-            "excitation": {"amplitudes": [[1.5, 0.5], [0.5, 1.5]], "periods": [0.9, 1.3], "decay": [0.2, 0.2]},
-        }
-    )
-
-
-EVEN, UNEVEN = [2.4, 5.4, 8.4, 11.4, 14.4, 17.4], [2.4, 3.1, 3.8, 4.5, 5.2, 30.0]
-
-
-@pytest.mark.parametrize("heights", [EVEN, UNEVEN], ids=["even", "uneven"])
-def test_boxes_of_a_tall_frame_stay_apart_and_above_their_poles(heights: list[float]) -> None:
-    """Under tilts of every body that would be drawn as large as allowed, and of opposite signs."""
-    scene = tall(heights)
-    instants = np.linspace(0.0, 2.0, 21)
-    swing = np.sin(3.0 * instants)[:, None, None] * np.ones((1, 6, 3))
-    turns = 1e-3 * swing * np.array([1.0, -1.0] * 3)[None, :, None]
-    motion = Trajectory(
-        instants, swing * [0.1, 0.1, 0.0], swing, swing, swing[:, 0, 0], [], "ok", np.nan, scene, {"turns": turns}
-    )
-    drawn = drawing(scene, motion, 5.0, 21)
-    lowest, highest = drawn.corners[..., 2].min(axis=(0, 2)), drawn.corners[..., 2].max(axis=(0, 2))
-    assert (lowest[1:] > highest[:-1]).all(), "no two boxes touch in any frame"
-    assert (highest[-1] - lowest[0]) < 1.5 * 2.0 * drawn.reach, "the frame is not a needle"
-    content = film(scene, motion, "spatial", Look(size=(800, 400)), 2)
-    with Image.open(io.BytesIO(content)) as written:
-        assert written.size == (800, 400)
 
 
 def test_contact_points_move_against_the_platform() -> None:

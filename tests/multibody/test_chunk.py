@@ -5,8 +5,6 @@ import pytest
 
 from multibody.integration.chunk import (
     absolute_sizes,
-    any_larger,
-    distances,
     first_ends,
     largest_distance,
     last_near,
@@ -52,11 +50,6 @@ def test_the_first_rows_at_the_rim_and_without_contact_are_found(rim: float) -> 
     assert first_ends(ACCELERATIONS, 2, rim, -np.abs(CONTACT))[1] == STEPS
 
 
-def test_distances_are_lengths_of_the_two_coordinates() -> None:
-    axes = BODIES[0, :2]
-    assert np.array_equal(distances(ACCELERATIONS, axes), _length(ACCELERATIONS[:, axes]))
-
-
 def test_the_largest_distance_is_that_between_the_instants_too() -> None:
     axes, between = BODIES[0, :2], 0
     for _ in range(20):
@@ -75,12 +68,3 @@ def test_the_last_row_near_a_largest_value_is_found(share: float) -> None:
     sizes, far = share * size.max(axis=0), share * float(distance.max())
     near = np.flatnonzero((size >= sizes).any(axis=1) | (distance >= far))
     assert last_near(size, sizes, distance, far) == (near[-1] if len(near) else -1)
-
-
-def test_an_entry_counts_as_larger_in_its_own_column() -> None:
-    size = np.array([[5.0, 1.0], [1.0, 2.0], [3.0, 2.0]])
-    assert any_larger(size, 0, np.array([4.0, 4.0]))
-    assert not any_larger(size, 1, np.array([4.0, 4.0]))
-    assert not any_larger(size, 1, np.array([3.0, 2.0])), "as large is not larger"
-    assert any_larger(size, 1, np.array([3.0, 1.9]))
-    assert not any_larger(size[:0], 0, np.zeros(2))

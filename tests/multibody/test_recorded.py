@@ -45,15 +45,6 @@ def test_a_loose_tolerance_begins_a_level_earlier_under_a_record() -> None:
         assert LevelRuns._levels_on_the_same_springs(runs) == before  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("model", ["translational", pytest.param("spatial", marks=pytest.mark.long)])
-def test_a_moving_plate_gives_the_factors_of_inertial_forces(model):
-    """The plate is a million times as heavy as all bodies: 1e-6 of the force, and refinement's own errors."""
-    scene = example("synthetic-triple", duration=2.5)
-    fixed, moving = (multibody.amplification(scene, [ANY], model=model, loading=kind) for kind in ("inertial", "plate"))
-    assert list(moving.status) == ["ok"]
-    assert moving.mu == pytest.approx(fixed.mu, rel=1e-5)
-
-
 def test_the_plate_moves_as_the_integral_of_the_record_says():
     """Frictionless and very slow, a pendulum stays behind: its motion against the plate is minus the plate's."""
     data = example("synthetic-pair", duration=6.0).model_dump(exclude_none=True)

@@ -217,15 +217,6 @@ def test_a_residual_that_is_none_says_why(isolator: dict[str, float], duration: 
     assert not any(found.reason for name, found in estimates(answer).items() if name != "residual")
 
 
-def test_a_residual_needs_samples_of_the_last_rest() -> None:
-    scene = shaken_then_still()
-    motion = reference.trajectory(scene, PHASE, times=np.linspace(0.0, 1.0, 101))
-    assert motion.stick[-1][1] == scene.duration
-    residual = demands(motion).residual
-    assert np.isnan(residual.value)
-    assert residual.reason == "no samples of the last rest"
-
-
 def unknown(answer: Demands) -> bool:
     return all(np.isnan(found.value) and np.isnan(found.error) for found in estimates(answer).values())
 

@@ -63,22 +63,6 @@ def test_a_sliding_rigid_block_is_accelerated_by_mu_g():
     assert (expected < 1.0).all()
 
 
-def test_regularized_friction_of_a_turning_slide_is_mu_g():
-    """Creep that begins a little above v_reg would have more friction than that: up to 2e-4 of it."""
-    scene = block(2.0, 0.264, 4.4).with_values(
-        {
-            "excitation.amplitudes": [[1.95, 2.06], [2.05, 3.46]],
-            "excitation.periods": [0.127, 0.1826],
-            "excitation.decay": [0.707, 0.397],
-        }
-    )
-    phases = np.random.default_rng(6).uniform(0.0, 2.0 * np.pi, (24, 2))
-    for tolerance in (1e-4, 1e-6):
-        answer = reference.amplification(scene, phases, regularization=1.16e-3, tolerance=tolerance)
-        friction = scene.friction_coefficient * GRAVITY / ground_peak(scene, phases)
-        np.testing.assert_allclose(answer.mu[:, 0], friction, rtol=tolerance)
-
-
 @pytest.mark.parametrize("share", [0.75, 0.9, 0.99])
 def test_a_block_under_a_harmonic_slides_as_newmark_says(share):
     """From its largest value on a cosine drives the block until sin z / z = share; it stays within the half cycle."""
@@ -122,16 +106,6 @@ def test_the_closed_form_without_friction_is_the_run_s():
     np.testing.assert_allclose(run.velocity[:, :, :2], velocity, atol=1e-8)
 
 
-def test_the_modes_on_a_plane_begin_with_rigid_motion():
-    natural = reference.modes(flat(bodies=[{"mass": 2.0}, {"mass": 1.0, "stiffness": [30.0, 12.0]}]))
-    np.testing.assert_array_equal(natural.frequency[:, 0], 0.0)
-    np.testing.assert_array_equal(natural.period[:, 0], np.inf)
-    np.testing.assert_allclose(natural.frequency[:, 1], np.sqrt(np.array([30.0, 12.0]) * 1.5), rtol=1e-13)
-    np.testing.assert_allclose(natural.effective_mass, [[3.0, 0.0], [3.0, 0.0]], atol=1e-13)
-    np.testing.assert_allclose(natural.shape[:, :, 0], 1.0 / math.sqrt(3.0), rtol=1e-13)
-    assert reference.modes(flat(bodies=[{"mass": 2.0}])).frequency.tolist() == [[0.0], [0.0]]
-
-
 def test_the_damped_modes_on_a_plane_begin_with_rigid_motion():
     """The others are those of an oscillator with the reduced mass 2/3 kg."""
     bodies = [{"mass": 2.0}, {"mass": 1.0, "stiffness": [30.0, 12.0], "damping": [0.4, 0.3]}]
@@ -159,15 +133,6 @@ def test_a_large_radius_tends_to_the_plane_with_slope_one(equations):
         assert (curved.error + limit.error < 0.05 * np.abs(curved.mu - limit.mu)).all()
     np.testing.assert_allclose(gaps[:2], [gaps[2]] * 2, rtol=0.02)
     assert (np.abs(gaps[2]) > 1e-2).all()
-
-
-@pytest.mark.parametrize("scale", [1e-3, 30.0])
-def test_scaled_loading_and_friction_scale_the_motion(scale):
-    scene = flat(duration=6.0)
-    scaled = scene.with_values({"excitation.scale": scale, "isolator.friction": scale * scene.friction_coefficient})
-    once, again = reference.amplification(scene, PHASES), reference.amplification(scaled, PHASES)
-    np.testing.assert_allclose(again.mu, once.mu, rtol=1e-7)
-    np.testing.assert_allclose(again.displacement, scale * once.displacement, rtol=1e-3)
 
 
 # the scene and its numbers -------------------------------------------------------------------------------------------
