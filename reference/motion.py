@@ -96,16 +96,16 @@ def trajectory(
         demand = demand._replace(unit=demand.unit + _acceleration(system, x, v))
     if not loads_are_finite(system):
         nothing = np.full(bodies, np.nan)
-        no_run = _Run(Outcome.NON_FINITE_LOAD, 0.0, record_of(0, bodies), nothing, nothing)
+        no_run = _Run(Outcome.NON_FINITE_LOAD, 0.0, record_of(0, bodies), nothing, nothing, system)
         return _motion(scene, pair, system, no_run, asked)
     run = _recorded(system, pair, x, v, demand)
     motion = _motion(scene, pair, system, run, asked)
     if run.outcome != Outcome.OK:
         return motion
-    other = _recorded(system, pair, x, v, demand._replace(tolerance=TOLERANCE_RATIO * demand.tolerance))
+    other = _recorded(run.system, pair, x, v, demand._replace(tolerance=TOLERANCE_RATIO * demand.tolerance))
     if other.outcome != Outcome.OK:  # as close to the rim: a tighter run has the last word, and shows the error
         tighter = max(demand.tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
-        run, other = _recorded(system, pair, x, v, demand._replace(tolerance=tighter)), run
+        run, other = _recorded(run.system, pair, x, v, demand._replace(tolerance=tighter)), run
         motion = _motion(scene, pair, system, run, asked)
         if run.outcome != Outcome.OK:
             return motion
@@ -123,12 +123,13 @@ class _Run(NamedTuple):
     record: Record
     peak: Array  # (N,), m/s^2
     reading_error: Array  # (N,), m/s^2, of the peaks inside their steps
+    system: System  # with the k_T that the run leaves
 
 
 def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> _Run:
     """The run from x, v with all its steps."""
-    run, record = recorded(x, v, system, phase, demand)
-    return _Run(OUTCOMES[int(run.code[0])], float(run.instant[0]), record, run.value[0], run.error[0])
+    run, record, system = recorded(x, v, system, phase, demand)
+    return _Run(OUTCOMES[int(run.code[0])], float(run.instant[0]), record, run.value[0], run.error[0], system)
 
 
 def _motion(scene: Scene, phase: Array, system: System, run: _Run, asked: Array | None) -> Trajectory:

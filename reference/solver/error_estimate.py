@@ -43,9 +43,11 @@ STEP_TOLERANCE_FACTOR = 10.0
 EVENT_MARGIN = 0.01
 
 FIRST_CAPACITY, STEPS_PER_KNOT = 1024, 2  # steps, to begin with: so many, and of every knot of a record
-# With heating the last run changes peaks, displacement and mean k_T by less than this share of the tolerance,
-SETTLED = 0.02
-CONTRACTION, SMALLEST = 0.5, 1e-300  # or above this share of the change before: what is left is the steps' own error
+# With heating the last run changes peaks and mean k_T by less than this share of the tolerance, or by less than the
+# tolerance and more than a share of the change before: what is left is the steps' own error. Before that a change may
+# be larger than the one before it: runs agree up to an instant that comes later with each run.
+SETTLED, CONTRACTION = 0.02, 0.5
+MOST_RUNS, SMALLEST = 30, 1e-300
 
 NOT_MET = 100  # code of a run whose error stays above the tolerance; system.py has the other codes
 
@@ -73,8 +75,7 @@ def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, un
     rest = np.zeros((len(system.below), 2))
     demand = demand._replace(tolerance=tolerance)
     if len(system.heat) and len(phases):
-        each = [recorded(rest, rest, system, pair, demand)[0] for pair in phases]
-        return Peaks(*map(np.concatenate, zip(*each)))
+        return recorded(rest, rest, system, phases[0], demand)[0]
     return peaks_from(rest, rest, system, phases, demand, record_of(0, len(rest)), until)
 
 
@@ -89,14 +90,17 @@ def peaks_from(
     return Peaks(value, error, *ends)
 
 
-def recorded(x: Array, v: Array, system: System, phase: Array, demand: Demand) -> tuple[Peaks, Record]:
+def recorded(x: Array, v: Array, system: System, phase: Array, demand: Demand) -> tuple[Peaks, Record, System]:
     """
-    One run with all its steps, however many.
+    One run with all its steps, however many, and the system with the k_T that it leaves.
 
-    With heating, k_T in a run follows from the run before, until the two agree; the last change counts as error.
+    With heating, k_T in a run follows from the run before, until the two agree; the last change counts as error. The
+    first run has the k_T of `system`, or without one that of the initial temperature.
     """
     capacity = FIRST_CAPACITY + STEPS_PER_KNOT * len(system.record)
-    system, known, before = uniform(system) if len(system.heat) else system, np.array(np.inf), np.inf
+    known, before, made = np.array(np.inf), np.inf, 0
+    if len(system.heat) and not len(system.k_t):
+        system = uniform(system)
     while True:
         record = record_of(capacity, len(x))
         peaks = peaks_from(x, v, system, phase[None], demand, record)
@@ -104,13 +108,13 @@ def recorded(x: Array, v: Array, system: System, phase: Array, demand: Demand) -
             capacity = int(record.made.max())
             continue
         if not len(system.heat) or peaks.code[0] in (UNSOLVED, STEP_LIMIT) or record.made[0] == 0:
-            return peaks, record
-        following = heated(system, record, peaks.instant[0])
-        now = np.array([*peaks.value[0], peaks.reach[0], mean(following)])
+            return peaks, record, system
+        system, made = heated(system, record, peaks.instant[0]), made + 1
+        now = np.array([*peaks.value[0], mean(system)])
         change = np.abs(now - known)
-        known, system, worst = now, following, (change / np.maximum(now, SMALLEST)).max()
-        if not SETTLED * demand.tolerance < worst <= CONTRACTION * before:
-            return peaks._replace(error=peaks.error + change[:-2]), record
+        known, worst = now, (change / np.maximum(now, SMALLEST)).max() / demand.tolerance
+        if not worst > SETTLED or CONTRACTION * before < worst <= 1.0 or made == MOST_RUNS:
+            return peaks._replace(error=peaks.error + change[:-1]), record, system
         before = worst
 
 
@@ -128,6 +132,11 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
     early = not whole and system.rest_condition == CONSISTENT and not len(system.heat)
     demand = demand._replace(early=early)
     tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * demand.tolerance, MIN_STEP_TOLERANCE))
+    if len(system.heat) and len(phases) and not len(system.k_t):  # every pair has a k_T, which a coarse run begins
+        rest, coarse = np.zeros((len(system.below), 2)), demand._replace(tolerance=TOLERANCE_RATIO * tolerance)
+        begun = [recorded(rest, rest, system, pair, coarse)[2] for pair in phases]
+        each = [peaks_with_error(its, pair[None], demand, whole) for its, pair in zip(begun, phases)]
+        return Peaks(*map(np.concatenate, zip(*each)))
     after = peaks_at(system, phases, demand, tolerance)
     known = demand.early & (after.code == SOLVED)
     until = np.where(known, after.peaked + EVENT_MARGIN * demand.period, system.duration)

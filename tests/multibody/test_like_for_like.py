@@ -106,11 +106,8 @@ def test_factors_lie_within_their_errors_at_any_scale(name: str, scale: float) -
     compare(load_scene(name).with_values({"excitation.scale": scale}), PHASES[:1])
 
 
-UNSETTLED = pytest.mark.xfail(strict=True, reason="heat and motion do not settle at 10 of 64: tolerance not met")
-
-
 @pytest.mark.long
-@pytest.mark.parametrize("name", [pytest.param(name, marks=[UNSETTLED] * (name == "heated, plane")) for name in SCENES])
+@pytest.mark.parametrize("name", SCENES)
 def test_64_points_of_a_surface_lie_within_their_errors(name: str) -> None:
     strict = 1e-5 if "heated" in name else 1e-6  # one of the 64 misses 1e-6
     compare(SCENES[name], np.random.default_rng(7).uniform(0.0, 2.0 * np.pi, (64, 2)), strict=strict)

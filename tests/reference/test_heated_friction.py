@@ -140,6 +140,15 @@ def test_what_heat_changes_falls_with_slope_one_in_the_conductivity(v_reg):
     np.testing.assert_allclose(far - mu, 2.0 * (near - mu), atol=0.03 * np.abs(far - mu).max())
 
 
+def test_heat_and_motion_on_a_plane_settle():
+    """Without a restoring force the first runs differ by more from one to the next."""
+    scene = heated(SCENE.with_values({"isolator.period": None, "isolator.radius": np.inf}))
+    phases = [PHASE, (1.886, 5.489), (5.008, 2.94)]
+    rough, fine = (reference.amplification(scene, phases, tolerance=tolerance) for tolerance in (1e-5, 1e-7))
+    assert rough.status.tolist() == fine.status.tolist() == ["ok"] * 3
+    assert (np.abs(rough.mu - fine.mu) <= rough.error + fine.error).all()
+
+
 def test_a_large_contact_stays_cold():
     scenes = heated(contact_radius=10.0), SCENE.with_values({"isolator.friction": 0.1 * 0.79 * (0.7**0.4 + 0.4)})
     large, mu = (reference.amplification(scene, [PHASE], tolerance=1e-6).mu for scene in scenes)
