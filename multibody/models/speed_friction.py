@@ -58,6 +58,7 @@ class SpeedFriction:
         self._load_rate = nothing if state.load is None or state.load_rate is None else state.load_rate.tolist()
         self._start = self._end = time
         if self._heat is not None and not self._heat.begin(time):
+            self._set(mbs, 0.0)  # k_T there
             self._heat.step_to(time, self._power(self._cold(0.0), 0.0), math.hypot(*state.coordinates[:2]))
         self._set(mbs, 0.0)
 

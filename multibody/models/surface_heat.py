@@ -43,10 +43,11 @@ class SurfaceHeat:
         self._kept: list[_Memory] = []
 
     def begin(self, time: float) -> bool:
-        """Forget what came after `time`; whether it is known what the contacts remember there."""
+        """Forget what came after `time`; whether the power there is known, too."""
         if time == 0.0:
             nothing = np.zeros((self._count, len(self._rates)))
             self._kept = [_Memory(0.0, nothing, nothing[:, 0], 0.0)]
+            return False
         near = time * (1.0 + 1e-12)
         while self._kept[-1].time > near:
             self._kept.pop()

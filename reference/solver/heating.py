@@ -50,7 +50,7 @@ def heated(system: System, record: Record, end: float) -> System:
             step = _outside(system, motion) / (2.0 * (motion.x[:, 0] * motion.v[:, 0]).sum(axis=1))
         step[np.isnan(step)] = 0.0
         instants = np.clip(instants - step, times[changes], times[changes + 1])
-    starts = np.flatnonzero(np.diff(record.contact[: len(start)] == REST)) + 1
+    starts = np.flatnonzero(np.diff(record.contact[: len(start)] == REST, prepend=True))
     behind = np.append(np.diff(times)[changes], np.diff(bounds)[starts])
     graded = np.append(instants, start[starts])[:, None] + behind[:, None] * GRADED
     bounds = np.unique(np.concatenate([bounds, graded.ravel()]))

@@ -5,6 +5,7 @@ import pytest
 from scenes_at_hand import CONSTANT, changed, one_body
 
 import multibody
+import reference
 from multibody.integration.constant_step import silence
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
@@ -32,6 +33,17 @@ def test_a_straight_slide_slows_down_as_its_friction_says(law: DryFriction) -> N
     sliding = v > 0.05
     assert v[sliding].min() < 0.4
     np.testing.assert_allclose(passed(np.array(speed)) - passed(v[sliding]), motion.time[sliding], atol=2e-4)
+
+
+def test_a_motion_that_begins_moving_heats_from_its_start() -> None:
+    heating = {"contact_radius": 0.06, "conductivity": 0.02, "diffusivity": 1e-3}
+    scene = changed(one_body(radius=np.inf, duration=0.05), isolator={"friction": {"slow": 0.1, "heating": heating}})
+    start = State(np.zeros((1, 2)), np.array([[1.0, 0.0]]))
+    motion = multibody.trajectory(scene, (0.0, 0.0), initial=start)
+    other = reference.trajectory(scene, (0.0, 0.0), regularization=1e-3, initial=start, times=motion.time)
+    accelerations, expected = (each.absolute_acceleration[:, 0, 0] for each in (motion, other))
+    np.testing.assert_allclose(accelerations, expected, atol=2e-5)
+    assert np.ptp(expected) > 0.02
 
 
 def test_a_force_between_frictions_makes_a_steady_creep() -> None:
