@@ -44,7 +44,7 @@ def distribution_panels(results: Results, scene: str, quantity: str, unit: str, 
     return [panel(title, label, *axes, series)] if series else []
 
 
-def draw_panels(path: Path, title: str, panels: Sequence[Panel], columns: int = 3) -> None:
+def draw_panels(path: Path, title: str, panels: Sequence[Panel], columns: int = 3, height: float = 4.0) -> None:
     """Write the panels below a title to `path`, PNG, and as PDF."""
     from matplotlib.figure import Figure  # matplotlib: only what draws needs it
 
@@ -52,7 +52,7 @@ def draw_panels(path: Path, title: str, panels: Sequence[Panel], columns: int = 
 
     columns = min(columns, max(len(panels), 1))
     rows = -(-len(panels) // columns) or 1
-    figure = Figure(figsize=(5.0 * columns, 4.0 * rows + 0.6), dpi=110, layout="constrained")
+    figure = Figure(figsize=(5.0 * columns, height * rows + 0.6), dpi=110, layout="constrained")
     figure.suptitle(verbatim(title), fontsize=12)
     for axes, each in zip_longest(figure.subplots(rows, columns, squeeze=False).flat, panels):
         if each is None:

@@ -9,6 +9,7 @@ from importlib.util import find_spec
 from math import isfinite
 from pathlib import Path
 
+from comparison.analyses.ensemble.feature import draw_profiles
 from comparison.analyses.worst_phases.analysis import nearest_search
 from comparison.report.drawings import drawn, map_task
 from comparison.report.pdf_data import largest_headlines, pdf_data, short_title, size_of
@@ -44,6 +45,8 @@ def write_pdf(path: Path, report: Report) -> None:
         for number, (_, content) in enumerate(maps):
             (folder / f"map{number}.svg").write_bytes(content)
         data = pdf_data(results, shown, [{**about, "file": f"map{n}.svg"} for n, (about, _) in enumerate(maps)])
+        if data["ensemble"] and data["ensemble"]["drawn"]:
+            draw_profiles(folder / "ensemble.svg", results.of("ensemble"))
         (folder / "data.json").write_text(json.dumps(data, ensure_ascii=False), encoding="utf-8")
         typst.compile(str(folder / TEMPLATE), output=str(path), root=str(folder))
 

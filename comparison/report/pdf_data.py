@@ -7,6 +7,9 @@ from typing import Any
 
 from comparison.analyses.assumptions.validity import ASSUMPTIONS
 from comparison.analyses.demands.feature import HEADINGS, demand_rows, demands_note
+from comparison.analyses.ensemble.feature import agreement_sentence, heading, isolator_sentence
+from comparison.analyses.ensemble.feature import demand_rows as ensemble_rows
+from comparison.analyses.ensemble.result import EnsembleResult
 from comparison.report.results import VALIDATED, ModelDescription, Results
 from comparison.report.scene_result import ModelOutcome, SceneResult
 from comparison.surfaces.headline import Headline
@@ -15,6 +18,7 @@ from comparison.surfaces.waterfall_chart import Scale, bars_of, scale_of
 from comparison.wording import percent, shortened, significant
 
 MAX_ALERTS, MAX_SENTENCES, MAX_WATERFALLS, MAX_LINES, MAX_ROWS = 5, 10, 8, 8, 16  # what fits on four pages
+MAX_STRUCTURES = 2  # of an ensemble
 MAX_TITLE, MAX_ALERT, MAX_COMMAND, MAX_NAME, MAX_CELL = 110, 500, 300, 60, 40  # letters
 
 
@@ -70,6 +74,7 @@ def pdf_data(results: Results, shown: Sequence[Headline], maps: Sequence[dict[st
         "demand_headings": list(HEADINGS),
         "demands": demands[:MAX_ROWS],
         "demands_note": f"{demands_note(results)} {_more('first rows', len(demands), min(len(demands), MAX_ROWS))}",
+        "ensemble": _ensemble(results.of("ensemble")),
         "models": [_model(results, model) for model in results.models if _outcomes(results, model)],
         "assumptions": [[a.number, a.statement, a.engine, a.relaxed] for a in ASSUMPTIONS],
         **_limits(results),
@@ -127,6 +132,21 @@ def _record(scene: SceneResult, body: int, keys: Sequence[str]) -> list[str]:
     values = {value.model: value for value in scene.values if value.body == body}
     cells = [significant(values[key].mu) or values[key].status if key in values else "" for key in keys]
     return [shortened(scene.name, MAX_CELL), str(body), *cells]
+
+
+def _ensemble(ensemble: EnsembleResult | None) -> dict[str, Any] | None:
+    """Demands of the first structures at the largest scale: of the isolator, the platform and the uppermost body."""
+    if ensemble is None:
+        return None
+    shown, top = ensemble.structures[:MAX_STRUCTURES], max(ensemble.scales)
+    tables = []
+    for each in shown:
+        rows = [row for row in ensemble_rows(ensemble, each, top) if row["stripe"].body in (None, 1, each.bodies)]
+        cells = [[f"{r['name']}, {r['unit']}".removesuffix(", "), *r["cells"], str(r["stripe"].answered)] for r in rows]
+        title = shortened(heading(ensemble, each, top), MAX_TITLE)
+        tables.append({"title": title, "rows": cells, "note": isolator_sentence(each)})
+    note = f"{agreement_sentence(ensemble)} {_more('first structures', len(ensemble.structures), len(shown))}"
+    return {"tables": tables, "note": note, "drawn": bool(ensemble.spectra)}
 
 
 def _outcomes(results: Results, model: ModelDescription) -> list[ModelOutcome]:

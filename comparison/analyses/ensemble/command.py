@@ -160,9 +160,8 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
         for one in result.target.motions:
             table.add_row(one.motion, f"{one.factor:.4g}")
         console.print(table)
-    rows = [row for row in demand_rows(result) if row["scale"] == top]
     for structure in result.structures:
-        own = [row for row in rows if row["scene"] == structure.name]
+        own = demand_rows(result, structure, top)
         console.print(f"{heading(result, structure, top)}:", soft_wrap=True, markup=False)
         shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
         table = new_table("quantity", "unit", "mean", *shares, "largest", "motions")

@@ -63,6 +63,12 @@ def draw_ensemble(path: Path, ensemble: EnsembleResult) -> None:
     draw_panels(path, f"{names}\n{_motions(ensemble)}: median, 16 % to 84 %", ensemble_panels(ensemble))
 
 
+def draw_profiles(path: Path, ensemble: EnsembleResult) -> None:
+    """Write profiles and floor spectra to `path`, for report.pdf."""
+    title = f"{_motions(ensemble)}: median, 16 % to 84 %"
+    draw_panels(path, title, [*_profiles(ensemble), *_spectra(ensemble)], columns=2, height=2.8)
+
+
 def _motions(ensemble: EnsembleResult) -> str:
     return f"{ensemble.motions} motion{'' if ensemble.motions == 1 else 's'}"
 
@@ -246,18 +252,14 @@ def _scaled(value: float | None, factor: float) -> float | None:
     return None if value is None else factor * value
 
 
-def demand_rows(ensemble: EnsembleResult) -> list[dict[str, Any]]:
-    """Rows of the table of demands: those of every structure at the largest scale first, then the other scales."""
+def demand_rows(ensemble: EnsembleResult, structure: Structure, scale: float) -> list[dict[str, Any]]:
+    """Rows of the table of demands of a structure at a scale."""
     rows = []
-    for scale in sorted(ensemble.scales, reverse=True):
-        for structure in ensemble.structures:
-            for stripe in shown_stripes(ensemble.stripes, structure.name, scale):
-                unit, factor = unit_for_reading(stripe.quantity, structure.weight)
-                name = title_of(stripe.quantity, stripe.body)
-                model = "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
-                cells = [text_of(each, factor) for each in stripe.statistics]
-                about = {"scene": structure.name, "name": f"{name}{model}", "unit": unit, "scale": scale}
-                rows.append({**about, "cells": cells, "stripe": stripe})
+    for stripe in shown_stripes(ensemble.stripes, structure.name, scale):
+        unit, factor = unit_for_reading(stripe.quantity, structure.weight)
+        model = "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
+        name, cells = title_of(stripe.quantity, stripe.body), [text_of(each, factor) for each in stripe.statistics]
+        rows.append({"name": f"{name}{model}", "unit": unit, "cells": cells, "stripe": stripe})
     return rows
 
 
@@ -295,7 +297,7 @@ FEATURE = Feature(
         "python -m comparison.ensemble SCENE makes it, beside the report; the next run of the study shows it",
         lambda report, figures: {
             "ensemble_panels": ensemble_panels(report.results.of("ensemble")),
-            "ensemble_rows": demand_rows(report.results.of("ensemble")),
+            "demand_rows": demand_rows,
             "agreement_sentence": agreement_sentence,
             "heading": heading,
             "isolator_sentence": isolator_sentence,

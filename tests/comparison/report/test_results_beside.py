@@ -12,7 +12,7 @@ import xarray as xr
 from fake_models import fake_hierarchy
 from known_analyses import analyses_are
 from known_results import FOUND, MADE, known_trade
-from report_texts import Tables, both_pages, page_of, schema_errors, summary_of
+from report_texts import Tables, both_pages, flat, page_of, schema_errors, summary_of, text_of
 from runs import SMALL, Run, quick_figure, quick_figures
 
 from comparison.analyses.assumptions import figure as assumptions
@@ -74,10 +74,11 @@ def known_ensemble() -> ensemble.EnsembleResult:
     none, named = ensemble.Statistic(None, None), ("tower", "displacement", None, "exact", "m")
     stripes = [ensemble.Stripe(*named, 1.0, 3, mean, low, largest, smallest),
                ensemble.Stripe(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
+    spectrum = ensemble.Spectrum("tower", 1, 2.0, 0.05, (0.1, 1.0), (mean,) * 2, [(mean,) * 2] * 3, (largest,) * 2)
     difference = ensemble.Difference("tower", "displacement", None, 0.02, 1e-4, 2e-3, 1)
     return ensemble.EnsembleResult(
         schema=ensemble.SCHEMA, structures=[ensemble.Structure("tower", "Tower & <town>", 1, 9.81e3)],
-        scales=(1.0, 2.0), spectra=[],
+        scales=(1.0, 2.0), spectra=[spectrum],
         motions=3, outcomes={"ok": 5, "rim reached": 1}, stripes=stripes, curves=[*curves, engine],
         engine=ensemble.Engine("translational", [{"scene": "tower[2]", "status": "ok"}], [difference]), run=MADE,
     )  # fmt: skip
@@ -152,6 +153,16 @@ def test_results_beside_a_report_are_in_its_summary(beside: tuple[str, Path, dic
     assert summary["tradeoff"][0]["entries"][0]["pareto_front"] == [True, True]
     assert summary["growth"]["series"][1]["slope"] is None
     assert summary["ensemble"]["curves"][2]["values"] == [0.3, None]
+
+
+def test_the_pdf_has_the_demands_of_an_ensemble(beside: tuple[str, Path, dict[str, bytes]]) -> None:
+    """The largest scale alone, every number in its column, and how closely the codes agree."""
+    pages, text = text_of(beside[1] / "report.pdf")
+    assert 2 <= pages <= 4
+    words = f"Tower & <town> (tower): 3 motions, scale 2 mean 16 % 50 % 84 % largest smallest motions {ISOLATOR}, mm "
+    for seen in (f"{words} none 296 500 none none 200 ± 1 2", "The translational engine computed 1 of the motions"):
+        assert flat(seen) in flat(text), seen
+    assert flat("scale 1 mean") not in flat(text)
 
 
 def test_a_panel_of_an_ensemble_is_in_the_unit_of_its_axis(beside: tuple[str, Path, dict[str, bytes]]) -> None:
