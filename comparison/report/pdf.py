@@ -1,4 +1,4 @@
-"""report.pdf: two to four pages for a client or a supplement, typeset by typst, which is an optional extra."""
+"""report.pdf: two to five pages for a client or a supplement, typeset by typst, which is an optional extra."""
 
 import json
 import shutil

@@ -1,4 +1,4 @@
-"""What report.pdf shows, as texts and numbers for its template; as much as fits on four pages."""
+"""What report.pdf shows, as texts and numbers for its template: what fits on four pages, and one of an ensemble."""
 
 import math
 from collections.abc import Sequence

@@ -21,7 +21,7 @@ from comparison.analyses.ensemble.result import (
 from comparison.analyses.panels import draw_panels, panel
 from comparison.report.plots import Panel
 from comparison.report.section import Feature, Section
-from comparison.study.models import EXACT
+from comparison.study.models import EXACT, SPATIAL
 from comparison.wording import percent
 from reference.measures.peak_demands import QUANTITIES, unit_of
 from reference.problem import GRAVITY
@@ -221,7 +221,10 @@ def agreement_sentence(ensemble: EnsembleResult) -> str:
     if not known:
         return title
     size, name = max(known)
-    return f"{title} Given the same friction law, the two codes agree to {percent(size)} or better (worst: {name})."
+    agreement = f"Given the same friction law, the two codes agree to {percent(size)} or better"
+    if engine.model == SPATIAL.key:
+        agreement = f"Its bodies turn; given the same friction law, it is within {percent(size)} of the equations"
+    return f"{title} {agreement} (worst: {name})."
 
 
 def _matched(ensemble: EnsembleResult) -> list[Panel]:

@@ -326,11 +326,14 @@ duration = 20.0
 """
 
 
-def test_the_spatial_engine_adds_demands_of_supports(folder: Path, undrawn: None) -> None:
+def test_the_spatial_engine_adds_demands_of_supports(
+    folder: Path, undrawn: None, capsys: pytest.CaptureFixture[str]
+) -> None:
     (folder / "mine.toml").write_text(SPATIAL)
     assert run("mine.toml", "--suite", "suite", "--engine", "all", "--model", "spatial") == 0
     summary = content()
     assert (summary["engine"]["model"], len(summary["engine"]["points"])) == ("spatial", 3)
+    assert "Its bodies turn; given the same friction law, it is within" in capsys.readouterr().out
     found = {(s["quantity"], s["model"]): s for s in summary["stripes"]}
     assert found["support_force_max", "spatial"]["answered"] == 3
     assert found["torsion", "spatial"]["answered"] == 3
