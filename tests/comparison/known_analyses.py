@@ -62,7 +62,7 @@ class Known(Analysis[Any]):
 def analyses_are(patch: pytest.MonkeyPatch, **known: Any) -> None:
     """A study runs the analyses that ask its own models; the others have known answers, or none."""
     analyses = [
-        analysis if analysis.key in ASKED else Known(analysis, known.get(analysis.key))
+        analysis if analysis.key in {*ASKED} - {*known} else Known(analysis, known.get(analysis.key))
         for analysis in comparison.registry.ANALYSES
     ]
     patch.setattr(comparison.registry, "ANALYSES", analyses)

@@ -218,6 +218,15 @@ def test_a_value_that_says_nothing_is_not_confirmed() -> None:
         assert analysis.answers(analysis.Reply(mu, share * mu, (status.value,))) == says, (status, share)
 
 
+def test_the_body_that_is_farthest_beyond_its_own_error_fails() -> None:
+    reply, known = (
+        analysis.Reply(np.array([[10.0 + off, 1.0 + 0.1 * off]]), np.array([[error, 0.01 * error]]), ("ok",))
+        for off, error in ((0.05, 0.1), (0.0, 0.0))
+    )
+    entry = analysis.judged(reply, [known], 1e-1, False, ())
+    assert (entry.verdict, entry.reason[:14]) == ("FAILED", "mu_2 is off by"), "mu_1 is off by more, and allowed to be"
+
+
 @pytest.mark.parametrize(
     ("off", "claimed", "finer", "verdict"),
     [

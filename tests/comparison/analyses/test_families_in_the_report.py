@@ -61,6 +61,9 @@ def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
     for numbers, known in ((small.lowest, 1.0), (small.mean, 3.0), (small.highest, 5.0)):
         assert numbers == pytest.approx([known] * 3)
     assert np.isnan([engine.mean[1], engine.lowest[1], engine.error[1]]).all()
+    errors = surfaces["error"].sel(scene=family.scenes[0].name, model="small", body=1)
+    assert errors.max() > 1.5 * errors.mean()
+    assert small.error[0] == pytest.approx(float(errors.mean()))
     assert [engine.mean[0], engine.mean[2]] == pytest.approx([3.03, 3.03])
     steps = {(step.model, step.body): step for step in results.families[0].steps}
     assert [steps["total", 1].size[0], steps["total", 2].size[2]] == pytest.approx([0.01, 0.01])

@@ -17,7 +17,7 @@ from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.analyses.validation import frame, pendulum, table
 from comparison.analyses.validation.command import compared, main
 from comparison.analyses.validation.files import DECAY, LARGE, Swing, read_folder
-from comparison.analyses.validation.table import LAW, VALID, recorded
+from comparison.analyses.validation.table import COVERAGE, LAW, VALID, recorded
 
 MASS, STIFFNESS, DAMPING, RATIO = 3.0799, 1191.0, 0.6690, 0.24
 FREQUENCY, AMPLITUDE, RATE, GRAVITY = 1.003, 1.8e-3, 250.0, 9.80665
@@ -117,6 +117,10 @@ def test_losses_and_later_turns_of_a_known_swing_are_met():
     assert float(found.inputs[1].split("swing ")[1].split(" ")[0]) == pytest.approx(loss, abs=3e-5)
     for each in found.quantities[:4]:
         assert {side.verdict for side in each.sides.values()} == {VALID}, each
+
+
+def test_a_mean_is_known_to_its_scatter_over_the_root_of_the_count() -> None:
+    assert pendulum._of_mean(np.array([1.0, 3.0, 1.0, 3.0])) == pytest.approx(COVERAGE * np.sqrt(4.0 / 3.0) / 2.0)
 
 
 def test_half_periods_are_those_of_elliptic_integrals():

@@ -187,6 +187,9 @@ def test_every_map_of_the_budget_is_under_its_title(body: int, monkeypatch: pyte
     study, surfaces = distinct_study()
     figure = drawn(monkeypatch, budget_figure.draw_budget, UNUSED, study, surfaces, study.scenes[0], body)
     *maps, bar = figure.axes
+    most = 100.0 * max(np.abs(part(key, body)[0]).max() for key in (*KEYS[1:], TOTAL))
+    for axes in maps:
+        assert axes.collections[0].get_clim() == pytest.approx((-most, most))
     assert [axes.get_title().split("\n")[0] for axes in maps] == TITLES
     for axes, key in zip(maps, [*KEYS[1:], TOTAL], strict=True):
         size, error = part(key, body)

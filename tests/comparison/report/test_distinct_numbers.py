@@ -36,6 +36,7 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from report_texts import Tables, data_of, flat, page_of, summary_of, text_of
 from runs import RUN, Run, quick_figures
 
+from comparison.analyses.measured.analysis import ComputedPeak, MeasuredPeak
 from comparison.analyses.worst_phases.analysis import Worst
 from comparison.registry import report_of
 from comparison.report.page_data import page_data
@@ -69,12 +70,17 @@ SEARCHED = [
 ]
 
 
+MEASURED = [
+    MeasuredPeak("fig3-I", "mu", 1, (1.0, 2.0), 4.0, 0.25, "run 7", [ComputedPeak("exact", 5.0, 1e-3, 1.0, True, "ok")])
+]
+
+
 @pytest.fixture(scope="module")
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("distinct") / "report"
     with pytest.MonkeyPatch.context() as patch:
         quick_figures(patch)
-        analyses_are(patch, motions=[], worst_phases=SEARCHED)
+        analyses_are(patch, motions=[], worst_phases=SEARCHED, measured=MEASURED)
         words = ["fig3-I", "--grid", str(GRID), "--skip", "assumptions", "--out", str(place)]
         assert main(words, distinct_hierarchy(), ThreadPoolExecutor) == 0
     return place
@@ -283,6 +289,8 @@ def test_a_pair_of_surfaces_has_each_under_its_title(monkeypatch: pytest.MonkeyP
     sizes = 100.0 * by_phase(pair_sizes("translational", 2))
     np.testing.assert_allclose(mesh.get_array().reshape(COARSE + 1, COARSE + 1), sizes.T, rtol=1e-9)
     assert f"largest of 4 × 4: {np.abs(sizes).max():.2g} %" in difference.get_title()
+    limit = np.percentile(np.abs(sizes[:-1, :-1]), 98.0)
+    assert mesh.get_clim() == pytest.approx((-limit, limit)), "white is zero"
 
 
 def test_maps_for_print_have_each_model_under_its_title(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -348,12 +356,15 @@ def test_outcomes_costs_and_largest_values_are_in_their_columns(tables: Tables) 
         ["7.321", "3.0e-04", "5.0000", "6.0000", "beside a jump, approached from (+0.25, -0.75)", "7.1", "7 of 8"],
     ]
     assert [row["quantity"] for row in shown] == ["μ1", "displacement, m", "μ2"]
+    [row] = tables.headed("measured", "D, relative")
+    assert list(row.values())[3:] == ["1, 2", "4 ± 0.25", "exact equations", "5 ± 0.001", "+1", "+25 %", "yes"]
 
 
 def test_the_page_draws_the_surfaces_under_their_models(report: Path) -> None:
     [scene] = data_of(report)["scenes"]
     for key in KEYS:
         count = COARSE if key in ("translational", "spatial") else GRID
+        assert scene["models"][key]["phases"] == count
         for body in (1, 2):
             shown = np.array(scene["models"][key]["mu"][body - 1])
             np.testing.assert_allclose(shown, heights(key, body, count)[:-1, :-1], rtol=1e-6)  # 7 digits

@@ -16,8 +16,9 @@ from comparison.report.plots import MAX_CURVES
 
 def _entry(method: str, seconds: float, error: float | None, value: float = 1e-3) -> Entry:
     sizes = (error, error)
+    half = tuple(None if size is None else 1e-3 * size for size in sizes)  # of the points, within less
     return Entry(
-        "exact", method, "tolerance", "", value, True, False, 4, 4, seconds, sizes, sizes, sizes, None, (True,) * 2
+        "exact", method, "tolerance", "", value, True, False, 4, 4, seconds, half, sizes, half, None, (True,) * 2
     )
 
 

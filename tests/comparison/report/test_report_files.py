@@ -21,9 +21,10 @@ import xarray as xr
 from jsonschema import Draft202012Validator
 from places import ROOT
 from pydantic import TypeAdapter
-from report_texts import page_of, summary_of
+from report_texts import Tables, both_pages, page_of, summary_of
 
 from comparison.registry import StudyResults
+from comparison.report.pdf_data import _limits, _model
 from comparison.report.verification import CHECKS, Check
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.surfaces.waterfall import WaterfallBar
@@ -185,6 +186,30 @@ def test_junit_fails_the_broken_limits_of_every_scene(finished: Path) -> None:
         assert suite.get("failures") == "3"
         text = str(failed[0].findtext("failure"))
         assert [line.split(": ")[1] for line in text.splitlines()] == ["body 1", "body 2"], "both bodies break it"
+
+
+def test_the_pdf_counts_broken_limits_and_adds_the_costs_of_all_scenes(finished: Path) -> None:
+    summary = summary_of(finished)
+    for scene, cost in zip(summary["scenes"], (10.0, 20.0), strict=True):
+        scene["models"]["small"]["cost"] = cost
+    results = StudyResults.model_validate(summary)
+    assert _model(results, results.models[0])["seconds"] == "30.0"
+    assert _limits(results)["limits_line"].strip() == "6 of 10 acceptance limits are broken."
+
+
+def test_every_assumption_is_one_row_of_the_models(finished: Path) -> None:
+    [table] = [table for table in Tables(page_of(finished)).tables if table[0][:2] == ["model", "small equations"]]
+    names = [row[0] for row in table]
+    assert len(names) == len(set(names)) > 3
+
+
+def test_the_contact_force_of_the_scene_is_the_weight(finished: Path) -> None:
+    rows = Tables(both_pages(finished)).headed("contact force, N", "total mass, kg")
+    weights = [
+        (float(row["contact force, N"]), float(row["total mass, kg"])) for row in rows if row["model"] == "as stated"
+    ]
+    assert [force for force, _ in weights] == pytest.approx([9.81 * mass for _, mass in weights], rel=2e-3)
+    assert weights
 
 
 def _objects(schema: dict[str, Any]) -> Iterator[dict[str, Any]]:

@@ -193,6 +193,22 @@ def test_the_tables_of_an_ensemble_have_every_number_in_its_column(beside: tuple
     assert list(engine.values()) == [ISOLATOR, "tower", "2 %", "0.01 %", "0.2 %", "1"]
 
 
+def test_the_tables_of_errors_have_every_number_in_its_column(beside: tuple[str, Path, dict[str, bytes]]) -> None:
+    tables = Tables(both_pages(beside[1]))
+    trades = [table for table in tables.tables if table[0][-3:] == ["median error", "95 %", "95 % of the estimates"]]
+    for row in (row for table in trades for row in table[1:]):
+        assert row[-3:] == ["1.0e-09, 2.0e-09", "3.0e-08, 4.0e-08", "none, none"]
+    assert len(trades) == 2
+    [table] = [table for table in tables.tables if table[0][:3] == ["experiment", "quantity", "use"]]
+    for row, each in zip(table[1:], validation.recorded().quantities, strict=True):
+        numbers = [each.data, each.inputs]
+        assert row[3:6] == [f"{each.measured:.5g}", *(f"{number:.2g}" for number in numbers)]
+        for first, side in ((6, "equations"), (10, "engine")):
+            number = each.sides[side]
+            sizes = number.error, number.numerical, number.validation
+            assert row[first : first + 3] == ["none" if size is None else f"{size:.2g}" for size in sizes]
+
+
 @pytest.mark.parametrize("name", [*FILES, TRADES])
 def test_a_file_that_is_no_result_is_refused_at_the_start(
     command: Callable[..., Run], tmp_path: Path, name: str

@@ -29,6 +29,17 @@ def test_a_broken_limit_names_body_phase_values_and_errors(monkeypatch: pytest.M
         assert part in lines[0]
 
 
+def test_the_phases_named_are_alpha_1_and_alpha_2_in_this_order() -> None:
+    def engine(scene, phases, regularization, tolerance):  # type: ignore[no-untyped-def]
+        result = reference.amplification(scene, phases, regularization=regularization, tolerance=1e-6)
+        there = (phases[:, 0] > 3.0) & (phases[:, 1] < 1.0)
+        return np.where(there[:, None], 1.01, 1.0) * result.mu
+
+    scene = reference.load_scene("fig3-I").with_values({"duration": 2.0})
+    with pytest.raises(AssertionError, match=r"at \(3\.1416, 0\.0000\) rad"):
+        assert_consistent(scene, like_for_like_maximum=1e-3, grid=2, law="exact", engine=engine)
+
+
 def test_a_difference_within_its_errors_never_fails(monkeypatch: pytest.MonkeyPatch) -> None:
     with_engine_off_by(monkeypatch, 1.01, error=0.02)
     assert_consistent("fig3-I", like_for_like=0.0, total=0.0, like_for_like_maximum=0.0, total_maximum=0.0)

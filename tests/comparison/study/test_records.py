@@ -9,12 +9,13 @@ from browsers import CHROMIUM, FLAGS, OVERLAPS, PHONE, opened, unfolded, until
 from fake_models import fake_hierarchy, known_motions
 from known_analyses import analyses_are
 from playwright.sync_api import sync_playwright
+from runs import RUN
 from studies import solved
 
 import multibody
 from comparison.analyses.assumptions.command import main as assumptions
 from comparison.analyses.motions.analysis import chosen_places
-from comparison.registry import ANALYSES, first_tasks
+from comparison.registry import ANALYSES, first_tasks, report_of
 from comparison.run import main
 from comparison.study.batches import refusal_of
 from comparison.study.costs import seconds_per_point
@@ -53,6 +54,12 @@ def test_a_record_is_one_point_beside_the_grid_of_others(study):
     total = next(entry for entry in entries if (entry.body, entry.step) == (1, "total"))
     assert (total.asked, total.median) == (1, pytest.approx(0.01))
     assert np.isnan([*total.phases, total.peak_moves]).all()
+    values = report_of(study, surfaces, {}, [], RUN).results.scenes[0].values
+    assert {(each.model, each.body): each.error for each in values} == {
+        (model.key, body): record["error"].sel(model=model.key, body=body).values[0, 0]
+        for model in study.hierarchy
+        for body in (1, 2)
+    }
 
 
 def test_what_needs_phases_is_not_asked_of_a_record(study):
@@ -129,6 +136,8 @@ def test_a_softened_step_has_phases_and_cost_of_its_model() -> None:
     *_, spatial, softened = with_softened_bars(MODEL_HIERARCHY, [scene])
     assert softened.most == spatial.most
     assert seconds_per_point(scene, softened) == seconds_per_point(scene, spatial)
+    taller = PLAIN.with_values({"bodies": [*PLAIN.bodies, PLAIN.bodies[-1]]})
+    assert seconds_per_point(taller, spatial) == pytest.approx(1.5 * seconds_per_point(PLAIN, spatial))
 
 
 def test_bars_that_buckle_cost_no_other_model() -> None:

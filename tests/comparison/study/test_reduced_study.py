@@ -5,8 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fake_models import fake_hierarchy
+from runs import RUN
 
 import multibody
+from comparison.registry import report_of
 from comparison.study.batches import execute_batch
 from comparison.study.models import (
     EXACT,
@@ -165,6 +168,16 @@ def test_just_outside_the_condition_nothing_is_saved() -> None:
         table["excitation"]["amplitudes"] = amplitudes
         study = Study((Scene.model_validate(table),), GRID, 1e-3, [EXACT])
         assert len(study.solved(study.scenes[0], EXACT)) == computed
+
+
+def test_the_report_counts_what_a_model_computed() -> None:
+    study = Study(
+        (load_scene("fig3-I"),), GRID, 1e-3, [replace(model, symmetric=mirror_symmetric) for model in fake_hierarchy()]
+    )
+    batches = study.batches()
+    data = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+    [scene] = report_of(study, data, {}, [], RUN).results.scenes
+    assert {(row.points, row.computed) for row in scene.models.values()} == {(16, 4)}
 
 
 def test_an_odd_grid_is_computed_in_full() -> None:

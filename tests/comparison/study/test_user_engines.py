@@ -327,6 +327,8 @@ def test_a_value_with_an_error_as_large_as_itself_is_missing(command: Callable[.
     assert (run.code, "4 points without an answer (vague 4 of 4)" in run.err) == (1, True)
     assert "vague: only values with errors above half of them at any of 4 phase pairs" in run.out
     assert 'failures="1"' in (run.report / "junit.xml").read_text(encoding="utf-8")
+    [alert] = [each for each in summary_of(run.report)["alerts"] if each["text"].startswith("vague")]
+    assert (alert["level"], alert["kind"]) == ("red", "refused")
 
 
 def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import pytest
 from studies import GRID, KEYS, planted_study, scattered
 
 from comparison.report.page_data import crossings
+from comparison.report.pdf_data import _points
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.waterfall import WaterfallBar, independent_phases, waterfall
@@ -25,6 +26,7 @@ def test_the_bars_add_up_to_the_total() -> None:
         largest = bars.largest
         assert abs(sum(bar.size for bar in largest.bars) - largest.total.size) < 1e-15
         assert abs(largest.total.size) > abs(bars.total.size)
+        assert _points(replace(bars, independent=4)).startswith("mean over 16 phase pairs, 4 independent; ")
 
 
 def test_every_bar_is_the_planted_step_with_its_sign() -> None:
