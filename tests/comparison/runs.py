@@ -16,7 +16,7 @@ RUN: dict[str, Any] = {
     "began": "2026", "command": "run `a`", "wall_seconds": 1.0, "processor_seconds": 2.0, "tiles": 1,
     "tiles_stored_before": 0, "parts": {}, "jobs": 1, "provenance": {}, "level": 1, "levels": 1,
 }  # fmt: skip
-QUICK_MAPS = b'<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"/>'
+QUICK_MAPS = b'<svg xmlns="http://www.w3.org/2000/svg" width="8" height="2"/>'
 
 
 @dataclass(frozen=True)
