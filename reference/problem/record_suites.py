@@ -126,7 +126,7 @@ def _paired(files: list[Path]) -> list[Mapping[str, Path]]:
     for name, (level, upright) in motions.items():
         if len(level) != 2 or len(upright) > 1:
             found = f"{len(level)} horizontal and {len(upright)} vertical"
-            rule = "must have 2 and at most 1: move the others out, or give files by axis in scenes"
+            rule = "must have 2, and 0 or 1: complete the motion, move its files out, or give files by axis in scenes"
             raise SuiteError("suite", f"{brief(name)} has {found} components: {rule}")
     return [dict(zip("xyz", (*level, *upright))) for level, upright in motions.values()]
 
