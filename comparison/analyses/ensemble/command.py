@@ -94,15 +94,12 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 
     def show_equations(results: TaskResults, display: Display) -> None:
         show(equations, results)
-        console.print(
-            f"Next: {engine} motions by the {model.title}, about {display.left:.0f} s; then all tables again."
-        )
+        count = f"{engine} of {len(members)} motions"
+        console.print(f"Next: {count} by the {model.title}, about {display.left:.0f} s; then all tables again.")
 
     equations = replace(ensemble, subset=0)
-    show(
-        ensemble,
-        computed("ensemble", options, argv, tasks, MODELS, console, executor, equations.tasks(), show_equations),
-    )
+    first = equations.tasks(), show_equations
+    show(ensemble, computed("ensemble", options, argv, tasks, MODELS, console, executor, *first))
     return 0
 
 
