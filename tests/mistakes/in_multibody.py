@@ -230,5 +230,8 @@ MISTAKES = (
     Mistake(INTEGRATION + "level_runs.py", "if compliances[0] != compliances[-2]:", "if False:",
             "The estimate takes a change of springs for a rate of convergence.",
             (TESTS + "test_bars_in_space.py::test_levels_on_other_springs_show_no_rate_of_convergence",)),
+    Mistake("multibody/motion.py", "contact_force=support_force.sum(axis=1)", "contact_force=support_force.max(axis=1)",
+            "The largest force of a support is called that of the contact.",
+            (TESTS + "test_spatial.py::test_the_overturning_moment_is_that_of_inertia",)),
 )
 # fmt: on

@@ -248,5 +248,15 @@ MISTAKES = (
     Mistake(PROBLEM + "bar_links.py", "0.25 * link.load * link.pendulum", "0.5 * link.load * link.pendulum",
             "Bars that shorten hold a body upright too well.",
             (TESTS + "problem/test_softened_bars.py::test_bars_that_cannot_hold_the_bodies_upright_are_refused",)),
+    # found alive by hand
+    Mistake(MEASURES + "demands.py", "rise = np.divide(before**2,", "rise = 0.5 * np.divide(before**2,",
+            "Between two samples a displacement rises half as far.",
+            (DEMANDS + "test_a_displacement_between_two_samples_is_found",)),
+    Mistake(MEASURES + "local_maxima.py", "may_reach = high + 0.5 * (high - low)", "may_reach = high - 0.5 * (high - low)",
+            "Maxima in smooth places are climbed first.",
+            (TESTS + "test_worst_phases.py::test_a_maximum_in_a_rougher_place_is_climbed_first",)),
+    Mistake(PROBLEM + "reductions.py", "(used.sum(axis=0) <= 1).all() and (used.sum(axis=1) <= 1).all()",
+            "(used.sum(axis=0) <= 1).all()", "Two harmonics along one axis are said to have their own.",
+            (TESTS + "test_symmetries.py::test_two_harmonics_along_one_axis_do_not_have_their_own",)),
 )
 # fmt: on

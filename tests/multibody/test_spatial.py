@@ -36,6 +36,7 @@ def test_a_support_that_opens_agrees_with_newton_euler(phase: tuple[float, float
 def test_the_overturning_moment_is_that_of_inertia(supports: int) -> None:
     scene, phase = changed(towers(supports), duration=2.0), (2.0, 0.7)
     motion = multibody.trajectory(scene, phase, model="spatial")
+    np.testing.assert_allclose(motion.contact_force, motion.extra["support_force"].sum(axis=1), rtol=1e-12)
     angles = 2.0 * np.pi * (np.arange(supports) + 0.5) / supports
     ring = np.column_stack([np.cos(angles), np.sin(angles)])  # of 1 m
     heights = np.array([body.height for body in scene.bodies])

@@ -11,6 +11,7 @@ from chains import chain
 import multibody
 import reference
 from reference.measures import Demands, Estimate, demands
+from reference.measures.demands import largest_displacement
 from reference.problem import GRAVITY, Accuracy, Scene, State, Trajectory, ground_peak
 
 PHASE = (2.0, 0.7)
@@ -129,6 +130,13 @@ def agree(scene: Scene, regularization: float | None) -> None:
     for balance in (ours.energy_balance, theirs.energy_balance):
         assert balance is not None
         assert abs(balance.value) <= balance.error, "energy is created or lost"
+
+
+def test_a_displacement_between_two_samples_is_found() -> None:
+    time = np.array([-0.3, 0.5])
+    place = np.stack([np.sqrt(1.0 - time**2), np.zeros(2)], axis=1)  # its square is the parabola 1 - t^2
+    velocity = np.stack([-time / place[:, 0], np.zeros(2)], axis=1)
+    assert largest_displacement(time, place, velocity) == pytest.approx(1.0, rel=1e-12)
 
 
 @pytest.mark.parametrize("count", [150, 400])

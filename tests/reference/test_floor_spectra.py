@@ -97,6 +97,9 @@ def test_the_error_of_a_spectrum_counts_the_other_runs() -> None:
         for others, shares in (((), ()), ((larger,), (0.5,)))
     )
     np.testing.assert_allclose((beside.error - alone.error)[:, 0], 0.05 * alone.acceleration[:, 0], rtol=1e-9)
+    exact = replace(motion, accuracy=Accuracy(np.zeros(1), (), (), 0.0))
+    rounded = alone.error - reference.floor_spectra(exact, [0.3, 0.9]).error
+    np.testing.assert_allclose(rounded, 0.01 * alone.acceleration, rtol=1e-9)
 
 
 def test_a_motion_that_ended_early_has_no_spectra() -> None:

@@ -6,6 +6,7 @@ from chains import chain
 
 import reference
 from reference.problem import load_scene
+from reference.problem.reductions import own_axes
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (5.1, 3.3), (1.0, 2.0), (0.0, 0.0)])
 LAWS = pytest.mark.parametrize(("equations", "regularization"), [("exact", None), ("small", None), ("exact", 1e-3)])
@@ -55,6 +56,20 @@ def test_motion_under_proportional_loading_stays_in_its_plane(beta, equations, r
     size = np.abs(run.position[:, :, :2]).max()
     assert size > 1e-3
     np.testing.assert_allclose(run.position[:, :, 0], beta * run.position[:, :, 1], atol=1e-9 * size)
+
+
+def test_two_harmonics_along_one_axis_do_not_have_their_own() -> None:
+    for amplitudes, own in (
+        ([[1.0, 0.0], [0.0, 1.4]], True),
+        ([[1.0, 1.4], [0.0, 0.0]], False),
+        ([[1.0, 0.0], [1.4, 0.0]], False),
+    ):
+        scene = chain(masses=[1.0, 1.0], stiffness=[[20.0, 30.0]], amplitudes=amplitudes)
+        assert bool(own_axes(scene)) == own
+        here, there = (
+            reference.amplification(scene, [(0.3, phase)], tolerance=1e-6).mu for phase in (1.1, 1.1 + np.pi)
+        )
+        assert np.allclose(here, there, rtol=1e-5) == (own or amplitudes[1][0] != 0.0)
 
 
 def test_axes_can_be_exchanged():

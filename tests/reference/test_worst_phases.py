@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 import reference
 from reference import phase_maximum
 from reference.measures import local_search
+from reference.measures.local_maxima import local_maxima
 from reference.problem import Amplification, Scene, phase_grid
 from reference.problem.symmetry import half_turns
 
@@ -55,6 +56,15 @@ def scene_with(monkeypatch: pytest.MonkeyPatch, numerator: Surface, denominator:
 
 def level(phases: Array) -> Array:
     return np.ones(len(phases))
+
+
+def test_a_maximum_in_a_rougher_place_is_climbed_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two maxima the lower one stands higher above its neighbors, so that there may be more beside it."""
+    surface = np.full((8, 8), 0.5)
+    surface[:3, 1:4] = 1.1
+    surface[1, 2], surface[5, 3] = 1.2, 1.15
+    starts = local_maxima(surface, scene_with(monkeypatch, level, level))
+    assert starts[:2].tolist() == (phase_grid(8)[[5 * 8 + 3, 1 * 8 + 2]]).tolist()
 
 
 def test_a_smooth_maximum_is_found_to_its_error(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -56,33 +56,6 @@ def test_an_impossible_amplitude_names_the_scene(command: Callable[..., Run], tm
     assert run.err.count("\n") == 1
 
 
-def test_out_never_destroys_what_is_not_a_report(
-    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    foreign = tmp_path / "thesis"
-    foreign.mkdir()
-    (foreign / "chapter1.txt").write_text("years of work", encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    run = command("fig3-I", "--grid", "2", "--out", "thesis")
-    assert run.code == 2
-    assert run.err == (
-        "command line: --out = 'thesis': exists and is not a report of this study: "
-        "give another directory, or empty this one\n"
-    )
-    assert (foreign / "chapter1.txt").read_text(encoding="utf-8") == "years of work"
-
-
-def test_out_refuses_the_working_directory(
-    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "here").mkdir()
-    monkeypatch.chdir(tmp_path / "here")
-    for place in (".", str(tmp_path / "here"), ".."):
-        run = command("--out", place)
-        assert run.code == 2
-        assert "is the directory you work in" in run.err
-
-
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
 def test_out_that_cannot_be_written_is_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:
     locked = tmp_path / "locked"

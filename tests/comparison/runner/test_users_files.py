@@ -309,6 +309,9 @@ PLACES: Mapping[str, tuple[str, str]] = {
     "below a file": ("page.html/below", "cannot be written: Not a directory"),
     "a mount point": ("mount", "is a mount point, which cannot be replaced"),
     "the root": ("/", "is the root directory: give a directory inside it"),
+    "files of others": ("elsewhere.tiles", "is not a report of this study: give another directory, or empty this one"),
+    "the directory of the work": ("here", "is the directory you work in"),
+    "one above it": ("", "is the directory you work in"),
     "two slashes": ("//", "is the root directory: give a directory inside it"),
 }
 
@@ -318,6 +321,8 @@ def test_an_odd_place_is_refused_at_the_start_in_one_line(
     command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, rule: str
 ) -> None:
     (tmp_path / "mount").mkdir()
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
     (tmp_path / "page.html").write_text("mine", encoding="utf-8")
     (tmp_path / "loop").symlink_to(tmp_path / "loop")
     (tmp_path / "elsewhere").mkdir()

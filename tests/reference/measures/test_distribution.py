@@ -46,6 +46,11 @@ def test_errors_of_mu_widen_every_number() -> None:
     exact, blurred = (phase_distribution(mu, np.full_like(mu, error)) for error in (0.0, 0.1))
     pairs = zip((exact.mean, *exact.fractiles), (blurred.mean, *blurred.fractiles))
     assert all(wide.error == pytest.approx(narrow.error + 0.1) for narrow, wide in pairs)
+    steps = np.arange(576.0).reshape(24, 24)
+    uncertain = phase_distribution(steps, np.where(steps < 300.0, 0.0, 290.0))  # the larger half may be far below
+    for probability, fractile in zip(FRACTILES, uncertain.fractiles):
+        below = fractile.value - np.quantile(np.where(steps < 300.0, steps, steps - 290.0), probability, method="hazen")
+        assert fractile.error >= below
 
 
 def test_unknown_values_widen_the_fractiles_that_they_can_reach() -> None:

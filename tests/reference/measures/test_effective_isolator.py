@@ -6,7 +6,7 @@ import pytest
 import reference
 from reference.problem import GRAVITY
 
-ISOLATOR = {"radius": 2.0, "friction": {"slow": 0.03, "fast": 0.06, "rate": 100.0}}
+ISOLATOR = {"radius": 2.0, "friction": {"slow": 0.09, "fast": 0.06, "rate": 100.0}}
 SCENE = reference.load_scene("fig3-I").with_values({"isolator": ISOLATOR})
 WEIGHT = SCENE.total_mass * GRAVITY
 
