@@ -11,7 +11,7 @@ import pytest
 from exudyn.rigidBodyUtilities import RotXYZ2RotationMatrix
 from numpy.typing import NDArray
 from PIL import Image
-from scenes_at_hand import changed
+from scenes_at_hand import changed, one_body
 from scipy.spatial import ConvexHull
 
 import multibody
@@ -193,3 +193,29 @@ def test_wrong_options_end_with_one_line_before_anything_is_run(
     message = capsys.readouterr().err
     assert said in message
     assert message.count("\n") == 1
+
+
+def test_size_and_rate_are_those_asked_for(words: list[str]) -> None:
+    assert main([*words, "--rate", "50", "--size", "640", "400"]) == 0
+    with Image.open(words[-1]) as film:
+        assert film.n_frames == 11
+        assert film.size == (640, 400)
+        assert film.info["duration"] == 20  # ms
+
+
+def test_frames_follow_the_motion() -> None:
+    motion = multibody.trajectory(one_body(amplitudes=[[3.0, 0.0], [0.0, 0.0]]), (0.0, 0.0))
+    shown = frames(motion.time, motion.position, 11)
+    assert shown.shape == (11, 1, 3)
+    np.testing.assert_allclose(shown[-1], motion.position[-1])
+    middle = np.array([np.interp(0.5, motion.time, motion.position[:, 0, axis]) for axis in range(3)])
+    np.testing.assert_allclose(shown[5, 0], middle)
+
+
+def test_the_picture_names_the_model_and_the_factors(monkeypatch: pytest.MonkeyPatch) -> None:
+    titles: list[str] = []
+    monkeypatch.setattr(film_module.Figure, "suptitle", lambda figure, text, **style: titles.append(text))
+    scene = changed(load_scene("fig3-I"), duration=0.5)
+    film(scene, multibody.trajectory(scene, (2.0, 0.7), tolerance=1e-2), "translational", Look(), 2)
+    assert "translational model of the engine" in titles[0]
+    assert "displacements x 5" in titles[0]

@@ -5,6 +5,7 @@ import pytest
 
 from multibody.integration.chunk import (
     absolute_sizes,
+    any_larger,
     first_ends,
     largest_distance,
     last_near,
@@ -68,3 +69,12 @@ def test_the_last_row_near_a_largest_value_is_found(share: float) -> None:
     sizes, far = share * size.max(axis=0), share * float(distance.max())
     near = np.flatnonzero((size >= sizes).any(axis=1) | (distance >= far))
     assert last_near(size, sizes, distance, far) == (near[-1] if len(near) else -1)
+
+
+def test_an_entry_counts_as_larger_in_its_own_column() -> None:
+    size = np.array([[5.0, 1.0], [1.0, 2.0], [3.0, 2.0]])
+    assert any_larger(size, 0, np.array([4.0, 4.0]))
+    assert not any_larger(size, 1, np.array([4.0, 4.0]))
+    assert not any_larger(size, 1, np.array([3.0, 2.0])), "as large is not larger"
+    assert any_larger(size, 1, np.array([3.0, 1.9]))
+    assert not any_larger(size[:0], 0, np.zeros(2))

@@ -171,3 +171,16 @@ def test_changes_of_opposite_sign_show_no_rate_of_convergence() -> None:
             each.value[:] = value
         errors.append(float(from_levels(peaks, levels, model)[0]))
     assert errors == pytest.approx([3.0 * errors[1], errors[1], 6.0 * errors[1]], rel=1e-3)
+
+
+def test_iterations_in_vain_are_work_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    ran = Engine.run
+
+    def vain(self: Engine, *given: Any) -> Any:
+        motion = ran(self, *given)
+        self.iterations = 10**6
+        return motion
+
+    monkeypatch.setattr(Engine, "run", vain)
+    result = multibody.amplification(strong(duration=0.5), PHASE)
+    assert result.status[0] == Outcome.STEP_LIMIT

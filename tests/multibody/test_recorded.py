@@ -77,11 +77,7 @@ def test_steps_end_at_every_knot_passed(time, step, count, expected):
 
 @pytest.mark.parametrize("parts", [8, 11, 15, 29])
 def test_knots_do_not_make_the_chunks_behind_them_short(parts: int) -> None:
-    """
-    A run starts anew with every chunk, which costs accuracy.
-
-    Chunks of 1, 2, 4 and 8 steps up to each knot, of 15 between two, left a weak record 2.5 stated errors off.
-    """
+    """Chunks of 1, 2, 4 and 8 steps up to each knot, of 15 between two, left a weak record 2.5 stated errors off."""
     scene = example("synthetic-pair", 0.16, 3.0)
     with silence():
         model = assemble(scene, "translational", 1e-3)

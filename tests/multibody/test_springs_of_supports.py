@@ -1,8 +1,4 @@
-"""
-Which springs the supports of an answer stand on, and what that leaves open, with runs whose results are stated here.
-
-A run of the engine is replaced by a function of the level, so that every path is reached without a step.
-"""
+"""Which springs the supports of an answer stand on, with a function of the level in place of runs of the engine."""
 
 import math
 from collections.abc import Callable
@@ -138,6 +134,10 @@ PATHS: dict[str, tuple[Any, list[tuple[int, float]], Outcome, float, float]] = {
         failing(Outcome.SOLVER_FAILED, lambda number, springs: springs == REAL),
         [(0, STIFF), (0, REAL), (1, REAL)], Outcome.SOLVER_FAILED, math.nan, math.nan,
     ),
+    "of two levels without an answer the finer one says why": (
+        lambda number, _: result(1.0, outcome=Outcome.STEP_LIMIT if number == 0 else Outcome.SOLVER_FAILED),
+        [(0, STIFF), (0, REAL), (1, REAL)], Outcome.SOLVER_FAILED, math.nan, math.nan,
+    ),
     "supports that rattle stand on real bearings": (
         failing(Outcome.STEP_LIMIT, lambda number, springs: number == 0),
         [(0, STIFF), (0, REAL), (1, REAL), (2, REAL)], Outcome.OK, 1.0, level_error(2),
@@ -240,3 +240,10 @@ def test_load_that_warping_takes_is_an_error_of_all_numbers(refined: Any, load: 
     assert done.asked == [(0, STIFF), (1, COMPLIANCE_OF_CLOSED), (1, REAL)]
     np.testing.assert_allclose(done.answer.errors[0], level_error(1) + ERROR_PER_WARPING_LOAD * load)
     assert done.answer.floor == max(load, LEVELS[1].error_floor)
+
+
+def test_no_level_is_begun_without_work_for_its_bearings(refined: Any) -> None:
+    done = refined(lambda number, springs: result(1.0 + 9e-4 * (springs == REAL)), max_work=6.5 * STEPS)
+    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF)]
+    assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
+    np.testing.assert_allclose(done.answer.errors[0], 9e-4 + level_error(1))

@@ -30,12 +30,12 @@ compiled = njit(cache=True, error_model="numpy")
 
 
 @compiled
-def _skew(v):
+def skew(v):
     return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
 @compiled
-def _cross(a, b):
+def cross(a, b):
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
@@ -43,7 +43,7 @@ def _cross(a, b):
 def _exponential(v):
     """Rotation matrix of a rotation vector, and the matrix (3, 3) of its angular velocity over its rates."""
     square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
-    k = _skew(v)
+    k = skew(v)
     kk = k @ k
     if square < 1e-6:
         first, second = 1.0 - square / 6.0, 0.5 - square / 24.0
@@ -81,7 +81,7 @@ def _kinematics(q, free, centers):
         spun[i, :, own + 3 : own + 6] += axes[i - 1] @ rates
         spin_between = spun[i - 1].copy()
         spin_between[:, own + 3 : own + 6] += 0.5 * (axes[i - 1] @ middle_rates)
-        moved[i] = moved[i - 1] - _skew(lower) @ spun[i - 1] - _skew(apart) @ spin_between + _skew(upper) @ spun[i]
+        moved[i] = moved[i - 1] - skew(lower) @ spun[i - 1] - skew(apart) @ spin_between + skew(upper) @ spun[i]
         moved[i, :, own : own + 3] += between
     keep = np.zeros(size)
     for k in range(size):
@@ -108,7 +108,7 @@ def _forces(q, rates, ground, masses, tensors, centers, free, stiffness, damping
         bias = (moved_later[i] - moved_before[i]) @ rates / (2.0 * ALONG)
         turned = (spun_later[i] - spun_before[i]) @ rates / (2.0 * ALONG)
         pull = -masses[i] * (ground + np.array([0.0, 0.0, GRAVITY]) + bias)
-        force += moved[i].T @ pull - spun[i].T @ (tensor @ turned + _cross(omega, tensor @ omega))
+        force += moved[i].T @ pull - spun[i].T @ (tensor @ turned + cross(omega, tensor @ omega))
         mass += masses[i] * (moved[i].T @ moved[i]) + spun[i].T @ (tensor @ spun[i])
     for i in range(1, bodies):
         own = 6 * i
@@ -121,7 +121,7 @@ def _forces(q, rates, ground, masses, tensors, centers, free, stiffness, damping
             upper = axes[i] @ np.array([-centers[i, 0], -centers[i, 1], -half])
             span = places[i] + upper - places[i - 1] - lower
             direction = span / math.sqrt(span @ span)
-            over = moved[i] - _skew(upper) @ spun[i] - moved[i - 1] + _skew(lower) @ spun[i - 1]
+            over = moved[i] - skew(upper) @ spun[i] - moved[i - 1] + skew(lower) @ spun[i - 1]
             stretch = direction @ over
             force -= stretch * (along * (math.sqrt(span @ span) - rods[i - 1, 3]) + lag * along * (stretch @ rates))
     supports = np.zeros(len(ring))
@@ -139,7 +139,7 @@ def _forces(q, rates, ground, masses, tensors, centers, free, stiffness, damping
             normal = away / distance
             penetration = distance - rho + pressed
             touching = arm + normal * (sphere + rho + 0.5 * penetration)
-        over = moved[0] - _skew(touching) @ spun[0]
+        over = moved[0] - skew(touching) @ spun[0]
         gap_rates[k] = normal @ over
         if penetration <= 0.0:
             continue
@@ -170,6 +170,15 @@ def beam_column(beam: float, length: float, load: float) -> tuple[float, float, 
     return sway(load), beam / length * x / math.tan(x), slope
 
 
+def ring_of(isolator: dict[str, Any]) -> Array:
+    """Places of the supports (K, 2), m."""
+    if isinstance(isolator["supports"], list):
+        return np.array(isolator["supports"], float)
+    angles = 2.0 * np.pi * (np.arange(isolator["supports"]) + 0.5) / isolator["supports"]
+    ring: Array = isolator["ring"] * np.column_stack([np.cos(angles), np.sin(angles)])
+    return ring
+
+
 @dataclass(frozen=True)
 class Motion:
     """Peaks of the absolute accelerations, (N,), m/s^2, with their instants, and what else was read."""
@@ -192,11 +201,7 @@ class ElasticBuilding:
         masses = np.array([body["mass"] for body in bodies], float)
         self.masses = masses
         rho = isolator["radius"] if "radius" in isolator else GRAVITY * (isolator["period"] / (2.0 * math.pi)) ** 2
-        if isinstance(isolator["supports"], list):
-            ring = np.array(isolator["supports"], float)
-        else:
-            angles = 2.0 * np.pi * (np.arange(isolator["supports"]) + 0.5) / isolator["supports"]
-            ring = isolator["ring"] * np.column_stack([np.cos(angles), np.sin(angles)])
+        ring = ring_of(isolator)
         weight, spring = GRAVITY * masses.sum(), isolator["support_stiffness"]
         pressed = weight / (len(ring) * spring)
         ratio = isolator.get("support_damping", 1.0)

@@ -16,8 +16,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from elastic_chain import beam_column
-from numba import njit
+from elastic_chain import beam_column, compiled, cross, ring_of, skew
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import Radau
 
@@ -29,9 +28,6 @@ Array = NDArray[np.float64]
 STABILIZATION = 40.0  # 1/s, rate at which a violated constraint returns to zero (Baumgarte)
 STEP = 1e-5  # s, of the difference quotient along the motion for the links' constraints
 PER_STEP = 12  # instants per step at which accelerations are read
-
-
-compiled = njit(cache=True, error_model="numpy")
 
 
 # written out: numba compiles loops in a tenth of the time of array functions
@@ -63,20 +59,10 @@ def _product(a, b):
 
 
 @compiled
-def _cross(a, b):
-    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
-
-
-@compiled
-def _skew(v):
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
-
-
-@compiled
 def _rotation(theta):
     """Rotation matrix of a rotation vector."""
     square = _dot(theta, theta)
-    k = _skew(theta)
+    k = skew(theta)
     if square < 1e-8:
         first, second = 1.0 - square / 6.0, 0.5 - square / 24.0
     else:
@@ -98,7 +84,7 @@ def _rotation_vector(r):
 def _rate(theta, omega):
     """Rate of a rotation vector of a body that turns with omega, in fixed axes."""
     square = _dot(theta, theta)
-    k = _skew(theta)
+    k = skew(theta)
     second = 1.0 / 12.0 + square / 720.0
     if square > 1e-4:
         angle = math.sqrt(square)
@@ -122,8 +108,8 @@ def _link(place, turn, centers, i):
 def _link_rates(place, turn, velocity, omega, centers, i):
     """Rates of the three constraints of link i: distance along the bars, tilt about two axes."""
     middle, axes, _, _ = _link(place, turn, centers, i)
-    upper = velocity[i + 1] + _cross(omega[i + 1], middle - place[i + 1])
-    lower = velocity[i] + _cross(omega[i], middle - place[i])
+    upper = velocity[i + 1] + cross(omega[i + 1], middle - place[i + 1])
+    lower = velocity[i] + cross(omega[i], middle - place[i])
     spin = omega[i + 1] - omega[i]
     return np.array([_dot(axes[:, 2], upper - lower), _dot(axes[:, 0], spin), _dot(axes[:, 1], spin)])
 
@@ -159,7 +145,7 @@ def _solved(
         matrix[6 * i : 6 * i + 3, 6 * i : 6 * i + 3] = masses[i] * np.eye(3)
         matrix[6 * i + 3 : 6 * i + 6, 6 * i + 3 : 6 * i + 6] = tensor
         right[6 * i : 6 * i + 3] = -masses[i] * (ground + np.array([0.0, 0.0, GRAVITY]))
-        right[6 * i + 3 : 6 * i + 6] = -_cross(omega[i], _turned(tensor, omega[i]))
+        right[6 * i + 3 : 6 * i + 6] = -cross(omega[i], _turned(tensor, omega[i]))
     platform = _rotation(turn[0])
     first = 6 * bodies
     upward = np.ones(supports)  # vertical force of each support over its normal force
@@ -171,18 +157,18 @@ def _solved(
         away = np.array([ring[k, 0], ring[k, 1], radius]) - place[0] - arm
         length = math.sqrt(_dot(away, away))
         normal = away / length
-        center = velocity[0] + _cross(omega[0], arm)
+        center = velocity[0] + cross(omega[0], arm)
         touching = arm + normal * (radius + sphere)
-        slip = velocity[0] + _cross(omega[0], touching)
+        slip = velocity[0] + cross(omega[0], touching)
         slip = slip - normal * _dot(normal, slip)
         speed = math.sqrt(_dot(slip, slip))
         force = normal - friction * slip / max(speed, corner)
-        moment = _cross(arm, normal) + _cross(touching, force - normal)
+        moment = cross(arm, normal) + cross(touching, force - normal)
         upward[k] = force[2]
-        along = _cross(arm, normal)
+        along = cross(arm, normal)
         gap, rate = length - radius, -_dot(normal, center)
         bend = _dot(center, center) - rate**2
-        turning = _cross(omega[0], _cross(omega[0], arm))
+        turning = cross(omega[0], cross(omega[0], arm))
         for j in range(3):
             matrix[0:3, first + j] -= shape[j] * force / force[2]
             matrix[3:6, first + j] -= shape[j] * moment / force[2]
@@ -212,16 +198,16 @@ def _solved(
                 length = math.sqrt(_dot(span, span))
                 thrust = span / length * (load - tension * (length - rod))
                 right[6 * i : 6 * i + 3] -= thrust
-                right[6 * i + 3 : 6 * i + 6] -= _cross(below, thrust)
+                right[6 * i + 3 : 6 * i + 6] -= cross(below, thrust)
                 right[6 * i + 6 : 6 * i + 9] += thrust
-                right[6 * i + 9 : 6 * i + 12] += _cross(above, thrust)
+                right[6 * i + 9 : 6 * i + 12] += cross(above, thrust)
         for sign, body in ((1.0, i + 1), (-1.0, i)):
             arm = middle - place[body]
             right[6 * body : 6 * body + 3] += sign * pull
-            right[6 * body + 3 : 6 * body + 6] += sign * (_cross(arm, pull) + wring)
+            right[6 * body + 3 : 6 * body + 6] += sign * (cross(arm, pull) + wring)
             if tension > 0.0:
                 continue
-            along = _cross(arm, axes[:, 2])
+            along = cross(arm, axes[:, 2])
             matrix[row, 6 * body : 6 * body + 3] += sign * axes[:, 2]
             matrix[row, 6 * body + 3 : 6 * body + 6] += sign * along
             matrix[6 * body : 6 * body + 3, row] -= sign * axes[:, 2]
@@ -290,11 +276,7 @@ def _beams(scene: Scene, link: int, bars: Bars) -> tuple[Array, float, tuple[flo
 def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolerance: float = 1e-8) -> SpatialMotion:
     """The motion from rest for one phase pair; the supports must stay loaded (RuntimeError otherwise)."""
     isolator, bodies = scene.isolator, len(scene.bodies)
-    if isinstance(isolator.supports, list):
-        ring = np.array(isolator.supports)
-    else:
-        angles = 2.0 * np.pi * (np.arange(isolator.supports) + 0.5) / isolator.supports
-        ring = isolator.ring * np.column_stack([np.cos(angles), np.sin(angles)])
+    ring = ring_of(isolator.model_dump())
     sizes = np.array([body.size for body in scene.bodies])
     inertia = scene.masses[:, None] / 12.0 * ((sizes**2).sum(axis=1)[:, None] - sizes**2)
     centers = np.array([[*(body.offset or (0.0, 0.0)), body.height] for body in scene.bodies])

@@ -84,12 +84,7 @@ def test_swing_down_and_up_the_cap_with_friction(friction, within):
 @pytest.mark.parametrize("speed", [0.02, 2.0])
 @pytest.mark.parametrize("radius", [1e4, 1e6, 3e7, 1e8])
 def test_a_straight_slide_on_a_nearly_flat_cap_stops_in_time(radius, speed, equations):
-    """
-    Nothing drives these slides but their own speed: gravity along the slope is 1e-4 to 1e-13 of the friction.
-
-    A straight slide under the small equations is an oscillation about -mu rho; the exact ones add the centripetal part
-    of the contact force, of relative order v^2/(rho g).
-    """
+    """An oscillation about -mu rho; the exact equations add a contact force of relative order v^2/(rho g)."""
     friction, count = 0.3, 5
     scene = chain(radius, friction, amplitudes=STILL, duration=1.0)
     frequency = np.sqrt(GRAVITY / radius)
@@ -148,12 +143,7 @@ def test_conical_pendulum_turns_at_its_frequency(circle, within):
 @BOTH
 @pytest.mark.parametrize(("ratio", "dead_zone"), [(0.6, 0.3), (1.4, 0.2), (2.0, 0.15), (0.8, 0.5)])
 def test_den_hartog_s_oscillation_goes_on_as_it_was_begun(ratio, dead_zone, equations, within):
-    """
-    Started at a turning point of the steady motion, six loading periods long, in a direction that is no axis.
-
-    The loading is so weak (1e-4 m/s^2) that what the isolator adds to Den Hartog's oscillator, of relative order
-    (x/rho)^2 and mu x u/(rho g), is below 1e-7.
-    """
+    """From a turning point, under so weak a loading that the isolator's terms (x/rho)^2, mu x u/(rho g) are < 1e-7."""
     radius, ground = 0.25, 1e-4
     steady = den_hartog(ratio, dead_zone)
     own = np.sqrt(GRAVITY / radius)

@@ -41,15 +41,6 @@ def asked(isolator: dict, bodies: list, amplitudes: list, periods: list, decay: 
 
 # what an error would lack: scene, phases, law, tolerance
 LACKING = {
-    # the next slide begins within the first step at rest, which is made again up to there
-    "start of a short rest": (
-        asked(
-            {"radius": 0.2959160976407856, "friction": 0.03265811695708547}, [{"mass": 1.0}],
-            [[-0.446462258848715, -0.43464461928925835], [0.0, 0.0], [0.0, 0.0]],
-            [1.2366178483466048, 0.6610917633217478], [0.05, 0.05], 4.0,
-        ),
-        (6.032843094784534, 2.7332843318055944), {"cutoff": 0.18222927461028254}, 1e-6,
-    ),
     # the stiff link on top of four bodies vibrates undamped, by less than the tolerance inside a step
     "vibration that both runs damp": (
         asked(

@@ -163,3 +163,13 @@ def test_infinity_survives_json_as_a_word():
     assert Scene.model_validate(scene.model_dump(exclude_none=True)) == scene
     digests = {flat().digest(), load_scene("fig3-I").digest(), flat().with_values({"isolator.radius": 1e12}).digest()}
     assert len(digests) == 3
+
+
+def test_the_modes_on_a_plane_begin_with_rigid_motion():
+    natural = reference.modes(flat(bodies=[{"mass": 2.0}, {"mass": 1.0, "stiffness": [30.0, 12.0]}]))
+    np.testing.assert_array_equal(natural.frequency[:, 0], 0.0)
+    np.testing.assert_array_equal(natural.period[:, 0], np.inf)
+    np.testing.assert_allclose(natural.frequency[:, 1], np.sqrt(np.array([30.0, 12.0]) * 1.5), rtol=1e-13)
+    np.testing.assert_allclose(natural.effective_mass, [[3.0, 0.0], [3.0, 0.0]], atol=1e-13)
+    np.testing.assert_allclose(natural.shape[:, :, 0], 1.0 / math.sqrt(3.0), rtol=1e-13)
+    assert reference.modes(flat(bodies=[{"mass": 2.0}])).frequency.tolist() == [[0.0], [0.0]]

@@ -88,14 +88,3 @@ def test_a_friction_that_takes_too_much_breaks_the_balance() -> None:
     answer = demands(replace(motion, friction_power=1.01 * motion.friction_power))
     assert answer.energy_balance is not None
     assert abs(answer.energy_balance.value) > answer.energy_balance.error
-
-
-@pytest.mark.long
-def test_every_support_of_the_spatial_model_counts() -> None:
-    scene = reference.load_scene("fig3-I")
-    one, many = (demands(multibody.trajectory(scene, PHASE, model=model)) for model in ("translational", "spatial"))
-    assert many.energy_balance is None, "its bodies turn"
-    assert many.friction_energy.value == pytest.approx(one.friction_energy.value, rel=1e-2)
-    assert many.uplift is not None
-    assert many.uplift.value == 0.0
-    assert one.uplift is None

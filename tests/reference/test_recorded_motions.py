@@ -28,10 +28,7 @@ def random_record(spacing: float, duration: float = 8.0) -> np.ndarray:
 @pytest.mark.parametrize("law", [{"friction": 0.0}, {"lubrication": 0.5}])
 @pytest.mark.parametrize("spacing", [0.8, 0.37])
 def test_kinks_do_not_lower_the_order_of_convergence(law, spacing):
-    """
-    Error of the peaks against steps made, between knots far enough apart for several steps: the error estimate of a
-    step is of order 7 and what is left of the run behind it falls at least as fast. A step over a kink has order 2.
-    """
+    """Several steps between two knots: the error estimate of a step is of order 7; a step over a kink has order 2."""
     scene = recorded(EXAMPLES["synthetic-pair"], random_record(spacing), duration=8.0, isolator={"period": 1.0, **law})
     system, demand = checked_demand(scene, "exact", None, 1e-6, None, "consistent")
     point = np.array([ANY])
@@ -44,10 +41,7 @@ def test_kinks_do_not_lower_the_order_of_convergence(law, spacing):
 
 @pytest.mark.parametrize("phase", [(4.0, 5.5), (2.0, 0.7)])
 def test_samples_of_two_frequencies_tend_to_them_at_second_order(phase):
-    """
-    The chord of a curve is off by h^2/12 of its curvature in the mean, so halving the sampling interval divides the
-    change of every peak by four. Below v_reg a motion is smooth; the peaks, not mu: the largest sample jumps about.
-    """
+    """The chord of a curve is off by h^2/12 of its curvature in the mean; peaks, as the largest sample jumps about."""
     scene = reference.load_scene("fig3-I")
     asked = {"regularization": 1e-3, "tolerance": 1e-8}
     truth = reference.amplification(scene, [phase], **asked).mu * ground_peak(scene, [phase])[0]

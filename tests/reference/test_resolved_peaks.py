@@ -12,7 +12,6 @@ CREEP = {"slow": 0.0430860971356464, "fast": 0.14661134550366858, "rate": 519.69
 CASES = {
     # a slide begins slowly, within a step at whose end it is fast
     "slow onset": (0.10910562657543134, (3.5046219150036997, 3.352310473684884)),
-    "slow onset, light friction": (0.036390330570276505, (2.008068456080429, 4.11840469120612)),
     # creep is faster than the cutoff only between the ends of a step
     "brief creep": (CREEP, (2.6638527317708944, 3.9343328551500085)),
 }

@@ -91,12 +91,7 @@ def test_only_mass_ratios_matter():
 
 @pytest.mark.parametrize("equations", ["exact", "small"])
 def test_scaled_loading_and_friction_leave_the_factors_alone(equations):
-    """
-    Loading and mu times s: the motion scales by s up to terms of relative order (x/rho)^2 and mu x xi''/(rho g).
-
-    So the gap to s -> 0 falls like s^2, in the exact equations and, for the friction terms with xi'' x that (4.3)
-    keeps, in the small ones too. Resolved peak, because a supremum at a stop follows a limit of its own.
-    """
+    """The gap to s -> 0 falls like s^2, by terms of order (x/rho)^2 and mu x xi''/(rho g); resolved peaks."""
     scene = load_scene("fig3-I")
 
     def factors(scale: float) -> np.ndarray:

@@ -8,6 +8,7 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 import reference
+from comparison.analyses.scaling.analysis import scaled
 from reference.analytical.frictionless import frictionless_motion
 from reference.problem import GRAVITY, Outcome, Scene, SceneError, State, load_scene, phase_grid
 
@@ -132,3 +133,13 @@ def test_the_demands_state_the_share_of_the_travel() -> None:
     assert reference.demands(reference.trajectory(scene, PHASE)).travel_share is None
     ended = reference.demands(reference.trajectory(limited(scene, 0.01), PHASE))
     assert (ended.status, np.isnan(ended.travel_share.value)) == ("travel reached", True)
+
+
+def test_loading_and_travel_scaled_together_end_at_one_instant() -> None:
+    """Frictionless small equations are linear."""
+    scene = limited(chain(0.25, 0.0, **TWO), 0.06)
+    one, other = (
+        reference.amplification(each, [PHASE], "small", tolerance=1e-9).instant[0]
+        for each in (scene, scaled(scene, 0.5))
+    )
+    assert one == pytest.approx(other, rel=1e-8)

@@ -102,12 +102,6 @@ def test_arrays_that_are_no_record_are_refused_in_one_line(time, acceleration, r
         recorded(time, acceleration)
 
 
-@pytest.mark.parametrize("samples", [[[0.0, 1.0, 0.0, 0.0]], [[0.0, 1.0], [1.0, 0.0]], [[1, 0, 0, 0], [0, 0, 0, 0]]])
-def test_samples_that_are_no_record_are_refused(samples):
-    with pytest.raises(ValidationError, match="sample"):
-        Scene.model_validate(table(record="x.csv", samples=samples) | {"duration": 1.0})
-
-
 def test_equal_scenes_have_equal_hashes_and_others_do_not():
     for make in (recorded, lambda: two_frequencies(np.eye(2)), lambda: load_scene("fig3-I")):
         assert make() == make()
