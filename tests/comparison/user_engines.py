@@ -132,6 +132,19 @@ def leaves(scene: Scene, phases: np.ndarray) -> None:
     os._exit(7)
 
 
+def computes_for_ever(scene: Scene, phases: np.ndarray) -> None:
+    while True:
+        pass
+
+
+def spoils_its_process(scene: Scene, phases: np.ndarray) -> np.ndarray:
+    mu = plain(scene, phases)
+    os.chdir("/")
+    os.environ.clear()
+    np.linspace = None  # type: ignore[assignment]
+    return mu
+
+
 def as_reference(scene: Scene, phases: np.ndarray) -> np.ndarray:
     """The equations with friction linear below 1e-3 m/s, off by 1e-3."""
     import reference
