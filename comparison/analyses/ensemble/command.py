@@ -171,8 +171,7 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
             if line:
                 console.print(line, soft_wrap=True, markup=False)
     ended = ", ".join(f"{count} {name}" for name, count in result.outcomes.items())
-    count = sum(result.outcomes.values())
-    console.print(f"{count} motions by the equations: {ended}. {seconds:.0f} s of compute.", soft_wrap=True)
+    console.print(f"Outcomes by the equations: {ended}. {seconds:.0f} s of compute in all.", soft_wrap=True)
     if result.engine.points:
         table = new_table("quantity", "largest difference", "like for like", "errors")
         for name, *sizes in largest_differences(result):

@@ -256,25 +256,19 @@ def _scaled(value: float | None, factor: float) -> float | None:
 
 
 def demand_rows(ensemble: EnsembleResult, structure: Structure, scale: float) -> list[dict[str, Any]]:
-    """Rows of the table of demands of a structure at a scale."""
-    rows = []
-    for stripe in shown_stripes(ensemble.stripes, structure.name, scale):
+    """The table of demands of a structure at a scale, in the order of QUANTITIES; by the engine what is its alone."""
+
+    def place(stripe: Stripe) -> tuple[int, int]:
+        return [*QUANTITIES].index(stripe.quantity), stripe.body or 0
+
+    own, rows = [each for each in ensemble.stripes if (each.structure, each.scale) == (structure.name, scale)], []
+    known = {place(each): each for each in reversed(own)}  # by the equations, which come first, if they have it
+    for stripe in (known[key] for key in sorted(known)):
         unit, factor = unit_for_reading(stripe.quantity, structure.weight)
         model = "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
         name, cells = title_of(stripe.quantity, stripe.body), [text_of(each, factor) for each in stripe.statistics]
         rows.append({"name": f"{name}{model}", "unit": unit, "cells": cells, "stripe": stripe})
     return rows
-
-
-def shown_stripes(stripes: Sequence[Stripe], structure: str, scale: float) -> list[Stripe]:
-    """Those of one structure at one scale, in the order of QUANTITIES: by the engine what the equations do not have."""
-
-    def place(stripe: Stripe) -> tuple[int, int]:
-        return [*QUANTITIES].index(stripe.quantity), stripe.body or 0
-
-    own = [stripe for stripe in stripes if (stripe.structure, stripe.scale) == (structure, scale)]
-    known = {place(stripe) for stripe in own if stripe.model == EXACT.key}
-    return sorted((each for each in own if each.model == EXACT.key or place(each) not in known), key=place)
 
 
 def text_of(number: Statistic, factor: float) -> str:

@@ -502,7 +502,7 @@ def test_the_equations_are_shown_before_the_engine_runs(
         patch.setattr(Runner, "run", interrupted)
         assert run("mine.toml", "--suite", "suite", "--engine", "1") == 130
     said = capsys.readouterr()
-    assert "3 motions by the equations: 3 ok" in said.out
+    assert "Outcomes by the equations: 3 ok. " in said.out
     assert "Next: 1 of 3 motions by the translational engine, about" in said.out
     assert "interrupted: 3 results are kept" in said.err
     assert (content()["outcomes"], content()["engine"]["points"]) == ({"ok": 3}, [])
