@@ -160,6 +160,10 @@ def test_contact_points_move_against_the_platform() -> None:
     yawed = contact_paths(scene, np.zeros((1, 3)), np.array([[0.0, 0.0, 1e-3]]))[0]
     # the supports of a ring of 1 m stand at 45 degrees: each goes along the ring, the first towards (-, +)
     np.testing.assert_allclose(yawed[0], -lever * 1e-3 * np.sqrt(0.5) * np.array([-1.0, 1.0]), rtol=1e-3)
+    aside = scene.with_values({"bodies.0.offset": [0.1, 0.05]})  # it turns about its center of mass
+    [yawed] = contact_paths(aside, np.zeros((1, 3)), np.array([[0.0, 0.0, 1e-3]]))
+    arm = np.sqrt(0.5) - np.array([0.1, 0.05])
+    np.testing.assert_allclose(yawed[0], -lever * 1e-3 * np.array([-arm[1], arm[0]]), rtol=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -77,6 +77,15 @@ def test_a_level_block_rebounds_by_the_restitution(restitution: float) -> None:
     assert is_open.all() == (restitution > 0.0)
 
 
+def test_the_friction_of_an_impact_is_that_of_the_whole_speed() -> None:
+    law = block(0.0, DryFriction(0.02, 0.2, 1.0), 1e-3)
+    along, across = (
+        law.after(np.zeros(6), np.array([x, y, -0.7, 0.0, 0.0, 0.0]), NONE, ALL)[0] for x, y in ((0.4, 0.0), (0.0, 0.4))
+    )
+    assert along[0] == pytest.approx(across[1], rel=1e-6)
+    assert along[0] < 0.38, "friction acts"
+
+
 @pytest.mark.parametrize("varying", [False, True], ids=["constant", "of the velocity"])
 @pytest.mark.parametrize("seed", range(20))
 def test_no_impact_adds_energy_or_breaks_the_laws_of_contact(seed: int, varying: bool) -> None:

@@ -56,6 +56,14 @@ def test_the_equations_balance_energy_within_the_error(name, regularization, equ
     assert abs(answer.energy_balance.value) <= answer.energy_balance.error < 2e-4 * answer.friction_energy.value
 
 
+@pytest.mark.parametrize("equations", ["exact", "small"])
+def test_vertical_loading_does_its_work_too(equations: str) -> None:
+    scene = reference.load_scene("fig3-I").with_values({"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [2.0, 2.0]]})
+    answer = demands(reference.trajectory(scene, PHASE, equations))
+    assert answer.energy_balance is not None
+    assert abs(answer.energy_balance.value) <= answer.energy_balance.error < 1e-3 * answer.friction_energy.value
+
+
 @pytest.mark.parametrize(("name", "regularization"), [("fig3-I", None), ("fig3-I", V_REG), ("fig4-viscous", None)])
 def test_friction_power_is_the_law_times_normal_force_and_speed(name, regularization) -> None:
     scene = reference.load_scene(name)

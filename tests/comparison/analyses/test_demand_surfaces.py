@@ -14,8 +14,9 @@ from runs import Run
 
 import reference
 from comparison.analyses.demands.analysis import PREFIX, DemandSurfaces, demand_statistics, with_demands
-from comparison.analyses.demands.feature import demand_panels
+from comparison.analyses.demands.feature import _cell, demand_panels
 from comparison.report.plots import DEMANDS
+from comparison.result_types import UncertainNumber
 from comparison.study.models import EXACT, REGULARIZED, SMALL
 from comparison.study.study import Study
 from reference.measures import Demands
@@ -160,3 +161,9 @@ def test_panels_are_in_the_units_of_their_axes(study: Study, demands: xr.Dataset
         row = next(row for row in rows if (row.model, row.quantity, row.body) == ("small", quantity, body))
         assert panel["plot"]["series"][0]["x"] == pytest.approx([factor * value for value in row.curve])
         assert panel["plot"]["series"][0]["name"] == "small equations"
+
+
+def test_the_least_force_of_a_support_is_the_smallest_of_all_phases() -> None:
+    numbers = [UncertainNumber(value=value, error=0.01) for value in (5.0, 3.0, float("nan"), 4.0)]
+    assert (_cell("support_force_min", numbers, 10.0), _cell("support_force", numbers, 10.0)) == ("30", "50")
+    assert _cell("residual", numbers, 10.0) == "50 ± 0.1"

@@ -118,6 +118,10 @@ def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
     assert lacking.why == WHY
     alike = "like-for-like" in {pair.key for pair in study.pairs(scene)}
     assert alike == (silent in ("spatial", "resolved", "small")), "never said of other models"
+    surfaces["mu"].loc[{"model": left[1:]}] = np.nan
+    alone = compared_study(study, surfaces)
+    assert alone.left_out(scene) == (), "nothing would be left to compare"
+    assert not any(lacking.used for lacking in unanswered(alone, surfaces))
 
 
 def test_page_summary_and_terminal_say_which_model_is_refused(command: Callable[..., Run]) -> None:
