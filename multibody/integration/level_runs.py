@@ -134,6 +134,7 @@ class LevelRuns:
             if run.outcome != Outcome.OK:
                 return None
             errors = widened_by_impacts(errors + change, [], run, self._levels_on_the_same_springs())
+        confirmed = confirmed and not (run.impacts and before.is_loose)  # forces behind impacts differ from level 1 on
         coarser = [(self.runs[-2], share_of_change(before, model))]
         if self.on_real is not None:
             coarser.append((self.on_real[0], 1.0))

@@ -14,6 +14,7 @@ from multibody.integration.level import levels_of
 from multibody.integration.level_runs import LevelRuns
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import Peaks
+from multibody.integration.refine import refine
 from multibody.models.assembly import assemble
 from multibody.models.recorded import align_steps
 from reference.problem import Scene, ground_velocity
@@ -43,6 +44,28 @@ def test_a_loose_tolerance_begins_a_level_earlier_under_a_record() -> None:
     for levels, before in ((loose, 0), (usual, 1)):
         runs = SimpleNamespace(levels=levels, runs=[None, None])
         assert LevelRuns._levels_on_the_same_springs(runs) == before  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("push", "impacts"), [(-5.0, False), (-20.0, True)])
+def test_behind_impacts_a_loose_tolerance_goes_on_to_level_1(push: float, impacts: bool) -> None:
+    """A plate that falls faster than a body under gravity, for 0.05 s, and one that does not."""
+    scene = Scene.model_validate(
+        {
+            "title": "a plate that falls",
+            "duration": 0.3,
+            "isolator": {"radius": 1.0, "friction": 0.05, "supports": 3, "ring": 0.5, "sphere_radius": 0.05},
+            "bodies": [{"mass": 1e3, "height": 0.1, "size": [1.0, 1.0, 0.1]}],
+            "excitation": {
+                "record": "falls.csv",
+                "samples": [[0.0, 1.0, 0.0, 0.0], [0.1, 1.0, 0.0, push], [0.15, 1.0, 0.0, 0.0], [0.3, 1.0, 0.0, 0.0]],
+            },
+        }
+    )
+    with silence():
+        built = assemble(scene, "spatial", 1e-3, contact_force=True)
+        point = refine(scene, built, np.zeros(2), 1e-2)
+    assert (point.outcome, point.finest.impacts > 0) == ("ok", impacts)
+    assert point.floor <= (2e-3 if impacts else 8e-4)  # at level 0 it is 4e-3 and 8e-4
 
 
 def test_the_plate_moves_as_the_integral_of_the_record_says():
