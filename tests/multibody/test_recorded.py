@@ -65,7 +65,8 @@ def test_behind_impacts_a_loose_tolerance_goes_on_to_level_1(push: float, impact
         built = assemble(scene, "spatial", 1e-3, contact_force=True)
         point = refine(scene, built, np.zeros(2), 1e-2)
     assert (point.outcome, point.finest.impacts > 0) == ("ok", impacts)
-    assert point.floor <= (2e-3 if impacts else 8e-4)  # at level 0 it is 4e-3 and 8e-4
+    low, high = (1e-3, 2e-3) if impacts else (8e-4, 8e-4)  # at level 0 4e-3 and 8e-4
+    assert low <= point.floor <= high
 
 
 def test_the_plate_moves_as_the_integral_of_the_record_says():
