@@ -1,11 +1,19 @@
-"""Known results of extremes and of a trade-off, and columns whose models fail in known ways."""
+"""Known results that commands leave beside a report, and columns whose models fail in known ways."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
+from comparison.analyses.benchmarks import table as benchmarks
+from comparison.analyses.ensemble import result as ensemble
+from comparison.analyses.extremes import matrix as extremes
 from comparison.analyses.extremes.matrix import Entry, Extreme, Matrix
 from comparison.analyses.extremes.rows import Column, Row, scene
+from comparison.analyses.measured.analysis import ComputedPeak, MeasuredPeak
+from comparison.analyses.tradeoff import growth
 from comparison.analyses.tradeoff.trade import Answered, Trade, with_pareto_fronts
 from comparison.analyses.tradeoff.trade import Entry as Setting
+from comparison.analyses.validation import table as validation
+from comparison.analyses.worst_phases.analysis import Worst
 from reference.problem import load_scene
 
 MADE = {"command": "made <by a test>", "began": "then", "seconds": 1.0, "compute_seconds": 1.0, "jobs": 1,
@@ -21,6 +29,14 @@ FOUND = Matrix(
     {"command": "made by a test", "began": "then", "seconds": 1.0, "cpu_seconds": 2.0, "jobs": 1, "limit": 90.0,
      "reduced": False, "provenance": {"commit": "abc"}},
 )  # fmt: skip
+SEARCHED = [
+    Worst("fig3-I", "exact", "amplification", 1, 8.765, 1e-4, (1.0, 2.0), "smooth", runner_up=8.5, climbs=4, reached=3),
+    Worst("fig3-I", "exact", "displacement", 1, 0.123, 2e-5, (3.0, 4.0), "kink", runner_up=0.11, climbs=6, reached=5),
+    Worst("fig3-I", "exact", "amplification", 2, 7.321, 3e-4, (5.0, 6.0), "jump", (0.25, -0.75), 7.1, 8, 7),
+]
+MEASURED = [
+    MeasuredPeak("fig3-I", "mu", 1, (1.0, 2.0), 4.0, 0.25, "run 7", [ComputedPeak("exact", 5.0, 1e-3, 1.0, True, "ok")])
+]
 
 
 def fake(model: str, finer: str = "") -> Column:
@@ -37,3 +53,64 @@ def known_trade(name: str) -> Trade:
     entries = [one, replace(one, value=1e-2, seconds=0.003, most=(1e-3, 1e-3), error_message="<b>")]
     question = Answered("exact", "exact equations", 3, "the reference", 1e-10, ["it agrees <with itself>"])
     return Trade(scene.name, scene.title, scene.digest(), 2, [question], with_pareto_fronts(entries, 2), MADE)
+
+
+def known_benchmarks() -> benchmarks.Benchmarks:
+    """One number, which the engine does not answer."""
+    numbers = {
+        "equations": benchmarks.Number(2.02423, 2e-8, benchmarks.Verdict.MET.value),
+        "smoothed": benchmarks.Number(2.02425, 3e-8, benchmarks.Verdict.MET.value),
+        "engine": benchmarks.Number(None, None, benchmarks.Verdict.NONE.value),
+    }
+    rows = [benchmarks.Row("isolation period", "s", 2.0242, 5e-5, numbers)]
+    about = "frame", "a <frame>", "a book", "links", 1e-4, "theirs is heated"
+    return benchmarks.Benchmarks([benchmarks.Benchmark(*about, rows, {"engine": "it broke"}, {"engine": 1.0})], MADE)
+
+
+def known_growth() -> growth.MeasuredGrowth:
+    """One series without a value."""
+    series = [
+        growth.with_slope("bodies", "", "engine", (2.0, 4.0, 8.0), (1.0, 4.0, 16.0)),
+        growth.with_slope("bodies", "", "slow engine", (2.0, 4.0, 8.0), (1.0, float("nan"), 16.0)),
+    ]
+    return growth.MeasuredGrowth(growth.SCHEMA, "fig3-I", "a scene", series, MADE)
+
+
+def known_ensemble() -> ensemble.EnsembleResult:
+    """Displacements of three motions at two scales: the third reaches the rim at the larger one."""
+    known = {"motion 1": (0.1, 0.2), "motion 2": (0.2, 0.5), "motion 3": (0.3, None)}
+    curves = [
+        ensemble.Curve(
+            "tower", "displacement", None, "exact", motion, (1.0, 2.0), values, (0.0, 0.0 if values[1] else None)
+        )
+        for motion, values in known.items()
+    ]
+    engine = ensemble.Curve("tower", "displacement", None, "translational", "motion 2", (2.0,), (0.51,), (1e-3,))
+    low, high = (
+        [
+            ensemble.Fractile(value, None if value is None else 0.0, share)
+            for share, value in zip((0.16, 0.5, 0.84), values)
+        ]
+        for values in ((0.132, 0.2, 0.268), (0.296, 0.5, None))
+    )
+    mean, largest, smallest = (ensemble.Statistic(value, 0.0) for value in (0.21, 0.3, 0.1))
+    none, named = ensemble.Statistic(None, None), ("tower", "displacement", None, "exact", "m")
+    stripes = [ensemble.Stripe(*named, 1.0, 3, mean, low, largest, smallest),
+               ensemble.Stripe(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
+    spectrum = ensemble.Spectrum("tower", 1, 2.0, 0.05, (0.1, 1.0), (mean,) * 2, [(mean,) * 2] * 3, (largest,) * 2)
+    difference = ensemble.Difference("tower", "displacement", None, 0.02, 1e-4, 2e-3, 1)
+    return ensemble.EnsembleResult(
+        schema=ensemble.SCHEMA, structures=[ensemble.Structure("tower", "Tower & <town>", 1, 9.81e3)],
+        scales=(1.0, 2.0), spectra=[spectrum],
+        motions=3, outcomes={"ok": 5, "rim reached": 1}, stripes=stripes, curves=[*curves, engine],
+        engine=ensemble.Engine("translational", [{"scene": "tower[2]", "status": "ok"}], [difference]), run=MADE,
+    )  # fmt: skip
+
+
+FILES: Mapping[str, bytes] = {
+    extremes.FILE: extremes.STORED.as_json(FOUND),
+    benchmarks.FILE: benchmarks.STORED.as_json(known_benchmarks()),
+    growth.FILE: growth.STORED.as_json(known_growth()),
+    ensemble.FILE: ensemble.STORED.as_json(known_ensemble()),
+    validation.STORED.name: validation.STORED.as_json(replace(validation.recorded(), facts=["a <fact>"])),
+}

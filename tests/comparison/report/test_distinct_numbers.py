@@ -32,11 +32,11 @@ from distinct_models import (
     step,
 )
 from known_analyses import analyses_are
+from known_results import MEASURED, SEARCHED
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from report_texts import Tables, data_of, flat, page_of, summary_of, text_of
 from runs import RUN, Run, quick_figures
 
-from comparison.analyses.measured.analysis import ComputedPeak, MeasuredPeak
 from comparison.analyses.worst_phases.analysis import Worst
 from comparison.registry import report_of
 from comparison.report.page_data import page_data
@@ -61,18 +61,6 @@ def with_error(size: float, error: float) -> str:
     digits = max(0, -int(np.floor(np.log10(100.0 * error))))
     sign = "−" if size < 0.0 else "+"
     return f"{sign}{100.0 * abs(size):.{digits}f} ± {100.0 * error:.{digits}f} %"
-
-
-SEARCHED = [
-    Worst("fig3-I", "exact", "amplification", 1, 8.765, 1e-4, (1.0, 2.0), "smooth", runner_up=8.5, climbs=4, reached=3),
-    Worst("fig3-I", "exact", "displacement", 1, 0.123, 2e-5, (3.0, 4.0), "kink", runner_up=0.11, climbs=6, reached=5),
-    Worst("fig3-I", "exact", "amplification", 2, 7.321, 3e-4, (5.0, 6.0), "jump", (0.25, -0.75), 7.1, 8, 7),
-]
-
-
-MEASURED = [
-    MeasuredPeak("fig3-I", "mu", 1, (1.0, 2.0), 4.0, 0.25, "run 7", [ComputedPeak("exact", 5.0, 1e-3, 1.0, True, "ok")])
-]
 
 
 @pytest.fixture(scope="module")

@@ -2,26 +2,22 @@
 
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import xarray as xr
 from fake_models import fake_hierarchy
 from known_analyses import analyses_are
-from known_results import FOUND, MADE, known_trade
+from known_results import FILES, known_trade
 from report_texts import Tables, both_pages, flat, page_of, schema_errors, summary_of, text_of
 from runs import SMALL, Run, quick_figure, quick_figures
 
 from comparison.analyses.assumptions import figure as assumptions
-from comparison.analyses.benchmarks import table as benchmarks
 from comparison.analyses.ensemble import result as ensemble
 from comparison.analyses.ensemble.feature import ensemble_panels
-from comparison.analyses.extremes import matrix as extremes
 from comparison.analyses.tradeoff import command as tradeoff
-from comparison.analyses.tradeoff import growth
 from comparison.analyses.tradeoff.trade import FILE as TRADES
 from comparison.analyses.tradeoff.trade import MeasuredTrade
 from comparison.analyses.validation import table as validation
@@ -32,65 +28,6 @@ from comparison.runner.output import publish
 ISOLATOR = "largest displacement of the isolator"
 
 
-def known_benchmarks() -> benchmarks.Benchmarks:
-    """One number, which the engine does not answer."""
-    numbers = {
-        "equations": benchmarks.Number(2.02423, 2e-8, benchmarks.Verdict.MET.value),
-        "smoothed": benchmarks.Number(2.02425, 3e-8, benchmarks.Verdict.MET.value),
-        "engine": benchmarks.Number(None, None, benchmarks.Verdict.NONE.value),
-    }
-    rows = [benchmarks.Row("isolation period", "s", 2.0242, 5e-5, numbers)]
-    about = "frame", "a <frame>", "a book", "links", 1e-4, "theirs is heated"
-    return benchmarks.Benchmarks([benchmarks.Benchmark(*about, rows, {"engine": "it broke"}, {"engine": 1.0})], MADE)
-
-
-def known_growth() -> growth.MeasuredGrowth:
-    """One series without a value."""
-    series = [
-        growth.with_slope("bodies", "", "engine", (2.0, 4.0, 8.0), (1.0, 4.0, 16.0)),
-        growth.with_slope("bodies", "", "slow engine", (2.0, 4.0, 8.0), (1.0, float("nan"), 16.0)),
-    ]
-    return growth.MeasuredGrowth(growth.SCHEMA, "fig3-I", "a scene", series, MADE)
-
-
-def known_ensemble() -> ensemble.EnsembleResult:
-    """Displacements of three motions at two scales: the third reaches the rim at the larger one."""
-    known = {"motion 1": (0.1, 0.2), "motion 2": (0.2, 0.5), "motion 3": (0.3, None)}
-    curves = [
-        ensemble.Curve(
-            "tower", "displacement", None, "exact", motion, (1.0, 2.0), values, (0.0, 0.0 if values[1] else None)
-        )
-        for motion, values in known.items()
-    ]
-    engine = ensemble.Curve("tower", "displacement", None, "translational", "motion 2", (2.0,), (0.51,), (1e-3,))
-    low, high = (
-        [
-            ensemble.Fractile(value, None if value is None else 0.0, share)
-            for share, value in zip((0.16, 0.5, 0.84), values)
-        ]
-        for values in ((0.132, 0.2, 0.268), (0.296, 0.5, None))
-    )
-    mean, largest, smallest = (ensemble.Statistic(value, 0.0) for value in (0.21, 0.3, 0.1))
-    none, named = ensemble.Statistic(None, None), ("tower", "displacement", None, "exact", "m")
-    stripes = [ensemble.Stripe(*named, 1.0, 3, mean, low, largest, smallest),
-               ensemble.Stripe(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
-    spectrum = ensemble.Spectrum("tower", 1, 2.0, 0.05, (0.1, 1.0), (mean,) * 2, [(mean,) * 2] * 3, (largest,) * 2)
-    difference = ensemble.Difference("tower", "displacement", None, 0.02, 1e-4, 2e-3, 1)
-    return ensemble.EnsembleResult(
-        schema=ensemble.SCHEMA, structures=[ensemble.Structure("tower", "Tower & <town>", 1, 9.81e3)],
-        scales=(1.0, 2.0), spectra=[spectrum],
-        motions=3, outcomes={"ok": 5, "rim reached": 1}, stripes=stripes, curves=[*curves, engine],
-        engine=ensemble.Engine("translational", [{"scene": "tower[2]", "status": "ok"}], [difference]), run=MADE,
-    )  # fmt: skip
-
-
-FILES: Mapping[str, bytes] = {
-    extremes.FILE: extremes.STORED.as_json(FOUND),
-    benchmarks.FILE: benchmarks.STORED.as_json(known_benchmarks()),
-    growth.FILE: growth.STORED.as_json(known_growth()),
-    ensemble.FILE: ensemble.STORED.as_json(known_ensemble()),
-    validation.STORED.name: validation.STORED.as_json(replace(validation.recorded(), facts=["a <fact>"])),
-}
 MAKES = ("extremes", "benchmarks", "tradeoff SCENE", "ensemble SCENE", "validation FOLDER")
 
 
