@@ -35,10 +35,9 @@ from comparison.run import main
 from comparison.runner.output import publish
 
 RECORD = Path(__file__).parent / "report" / "recorded_report.txt"
-HIDDEN = re.compile(r"<(script|style)\b.*?</\1>", re.DOTALL)
+HIDDEN = re.compile(r'<(script|style)\b.*?</\1>|<th scope="row">phase-resonance.*?</table>', re.DOTALL)
 CHANGING = re.compile(  # from run to run and from machine to machine
-    r"\.run\.|wall time|processor time in s|\d{4}-\d\d-\d\dT|\bnumpy|\bcommit|\bLinux|digest"
-    r"|: (command|python|numba|scipy|xarray|h5netcdf|matplotlib|exudyn|processor|system|phase-resonance) \|"
+    r"\.run\.|wall time|processor time in s|\d{4}-\d\d-\d\dT|\bnumpy|\bLinux|digest"
 )
 CLOSING = re.compile(r"/\w+>")
 FEW = {"motions": 1, "places": 1, "demands": 2}  # items of long lists; 6 of others
