@@ -57,7 +57,9 @@ def lines_of(place: Path) -> list[str]:
     lines += items("page", data_of(place)) + items("summary", summary_of(place))
     for name in ("summary.md", "junit.xml", "terminal"):
         lines += [f"{name}: {line}" for line in (place / name).read_text(encoding="utf-8").splitlines() if line.strip()]
-    lines += [f"report.pdf: {part}" for part in re.split(r"(?<=[.%]) ", text_of(place / "report.pdf")[1])]
+    printed = re.sub(r"Computed \S+|Provenance.*", "", text_of(place / "report.pdf")[1])
+    printed = re.sub(r"[\s-]", "", printed)  # a reader of the file adds them where lines break
+    lines += [f"report.pdf: {part}" for part in re.split(r"(?<=[;:%])", printed)]
     return [line for line in lines if not CHANGING.search(line)]
 
 
