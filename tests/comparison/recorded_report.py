@@ -13,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import redirect_stdout
 from dataclasses import replace
 from html import unescape
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -22,17 +23,20 @@ import xarray as xr
 from distinct_models import GRID, distinct_hierarchy
 from fake_models import known_motions
 from known_analyses import analyses_are, known_others
-from known_results import FILES, MEASURED, SEARCHED, known_trade
+from known_results import FILES, MEASURED, SEARCHED, known_ensemble, known_trade
 from places import scene_text
 from report_texts import data_of, page_of, summary_of, text_of
 from runs import quick_figure, quick_figures
 
 from comparison.analyses.assumptions import figure as assumptions
+from comparison.analyses.ensemble import result as ensemble
+from comparison.analyses.ensemble.analysis import FRACTILES
 from comparison.analyses.errata.analysis import ERRATA, Effect
 from comparison.analyses.tradeoff import command as tradeoff
 from comparison.analyses.tradeoff.trade import MeasuredTrade
 from comparison.run import main
 from comparison.runner.output import publish
+from reference.measures.peak_demands import unit_of
 
 RECORD = Path(__file__).parent / "report" / "recorded_report.txt"
 HIDDEN = re.compile(r'<(script|style)\b.*?</\1>|<th scope="row">phase-resonance.*?</table>', re.DOTALL)
@@ -44,7 +48,37 @@ FEW = {"motions": 1, "places": 1, "demands": 2}  # items of long lists; 6 of oth
 PAGES = "index.html", "verification.html"
 EFFECTS = Effect("fig3-I", 0, ((0.5, -0.25), (None, 0.125))), Effect("fig3-I", 1, error_message="it <broke>")
 ERRATA_FOUND = [replace(each, effects=EFFECTS[:number]) for number, each in enumerate(ERRATA[:3])]
+DEMANDS: list[tuple[str, int | None]] = [
+    *((name, None) for name in ("displacement", "base_shear", "residual", "support_force_min", "uplift")),
+    *((name, body) for name in ("acceleration", "drift", "torsion") for body in (1, 2)),
+]
 FAMILY = "friction = {range = [0.1, 0.2], steps = 2}"
+
+
+def full_ensemble() -> ensemble.EnsembleResult:
+    """Two structures of two bodies with every demand, profiles, floor spectra and a target; all numbers differ."""
+    known, number = known_ensemble(), count(1)
+
+    def next_number() -> ensemble.Statistic:
+        return ensemble.Statistic(0.0137 * next(number), 0.0001 * next(number))
+
+    def fractiles() -> list[ensemble.Fractile]:
+        each = [next_number() for _ in FRACTILES]
+        return [ensemble.Fractile(one.value, one.error, share) for one, share in zip(each, FRACTILES)]
+
+    structures, stripes, spectra = [], [], []
+    for name in ("tower", "office"):
+        isolator = ensemble.Isolator(*(next_number().value for _ in range(4)))  # type: ignore[arg-type]
+        structures.append(ensemble.Structure(name, f"The {name}", 2, 9.81e3, isolator))
+        for quantity, body in DEMANDS:
+            of = name, quantity, body, "exact", unit_of(quantity), 2.0, next(number)
+            stripes.append(ensemble.Stripe(*of, next_number(), fractiles(), next_number(), next_number(), {"rim": 1}))
+        for body in (1, 2):
+            rows = [[next_number(), next_number()] for _ in range(5)]
+            spectra.append(ensemble.Spectrum(name, body, 2.0, 0.05, (0.1, 1.0), rows[0], rows[1:4], rows[4]))
+    motions = [ensemble.MatchedMotion(motion, 0.31 * next(number), (1.5, 2.5)) for motion in ("motion 1", "motion 2")]
+    target = ensemble.Target(0.2, 1.7, (0.1, 1.0), (3.5, 4.5), motions)
+    return replace(known, structures=structures, stripes=[*known.stripes, *stripes], spectra=spectra, target=target)
 
 
 def lines_of(place: Path) -> list[str]:
@@ -90,7 +124,7 @@ def report_in(place: Path) -> Path:
             errata=ERRATA_FOUND,
             **known_others(),
         )
-        publish(place, FILES, "a test")
+        publish(place, {**FILES, ensemble.FILE: ensemble.STORED.as_json(full_ensemble())}, "a test")
         trade = MeasuredTrade(known_trade("fig3-I"), xr.Dataset({"mu": ("point", [1.0])}))
         patch.setattr(tradeoff, "measured_trades", lambda *rest: [trade])
         assert tradeoff.main(["fig3-I", "--out", str(place)]) == 0
