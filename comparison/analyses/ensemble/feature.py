@@ -280,7 +280,7 @@ def text_of(number: Statistic, factor: float) -> str:
     return (
         digits
         if number.error is None or factor * number.error <= UNSEEN * abs(value)
-        else f"{digits} ± {factor * number.error:.1g}"
+        else f"{digits} ± {float(f'{factor * number.error:.1g}'):g}"
     )
 
 
