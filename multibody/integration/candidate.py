@@ -33,7 +33,7 @@ class Candidate:
     rounding: Array  # likewise, that rounding of the contact forces leaves
     least: Array  # (N,), errors that the noise of the contact force leaves, however well runs agree
     coarser: tuple[tuple[EngineRun, float], ...]  # other runs, and the share of their difference to this one
-    confirmed: bool = True  # whether what it needs of runs on real bearings' springs and after level 0 ended
+    confirmed: bool = True  # whether the runs that confirm it ended: on real bearings, after level 0
     compliance: Array | None = None  # errors (N,) that the contact's compliance leaves, once a run has shown them
     floor: float = 0.0  # lower bound of the relative error of any number of the run
 

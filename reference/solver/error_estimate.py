@@ -75,7 +75,8 @@ def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, un
     rest = np.zeros((len(system.below), 2))
     demand = demand._replace(tolerance=tolerance)
     if len(system.heat) and len(phases):
-        return recorded(rest, rest, system, phases[0], demand)[0]
+        (pair,) = phases  # each has a k_T of its own
+        return recorded(rest, rest, system, pair, demand)[0]
     return peaks_from(rest, rest, system, phases, demand, record_of(0, len(rest)), until)
 
 

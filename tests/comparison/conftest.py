@@ -11,7 +11,6 @@ from fake_models import fake_hierarchy, known_motions
 from known_analyses import analyses_are, known_others
 from runs import Here, Run, quick_figure, quick_figures
 
-from comparison.analyses.assumptions import figure as assumptions
 from comparison.analyses.errata.analysis import Effect, with_effects
 from comparison.cli import user_models
 from comparison.run import main
@@ -27,7 +26,6 @@ except ImportError:  # on Windows every process makes its own
 @pytest.fixture
 def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
     """The command line with fake models in threads of this process and quick figures; --out in an empty directory."""
-    monkeypatch.setattr(assumptions, "draw_assumptions", quick_figure)
     quick_figures(monkeypatch)
     monkeypatch.setattr(user_models, "Workers", Here)
     analyses_are(monkeypatch, motions=[])

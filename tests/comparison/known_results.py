@@ -2,6 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import xarray as xr
 
 from comparison.analyses.benchmarks import table as benchmarks
 from comparison.analyses.ensemble import result as ensemble
@@ -9,11 +13,13 @@ from comparison.analyses.extremes import matrix as extremes
 from comparison.analyses.extremes.matrix import Entry, Extreme, Matrix
 from comparison.analyses.extremes.rows import Column, Row, scene
 from comparison.analyses.measured.analysis import ComputedPeak, MeasuredPeak
+from comparison.analyses.tradeoff import command as tradeoff
 from comparison.analyses.tradeoff import growth
-from comparison.analyses.tradeoff.trade import Answered, Trade, with_pareto_fronts
+from comparison.analyses.tradeoff.trade import Answered, MeasuredTrade, Trade, with_pareto_fronts
 from comparison.analyses.tradeoff.trade import Entry as Setting
 from comparison.analyses.validation import table as validation
 from comparison.analyses.worst_phases.analysis import Worst
+from comparison.runner.output import publish
 from reference.problem import load_scene
 
 MADE = {"command": "made <by a test>", "began": "then", "seconds": 1.0, "compute_seconds": 1.0, "jobs": 1,
@@ -114,3 +120,13 @@ FILES: Mapping[str, bytes] = {
     ensemble.FILE: ensemble.STORED.as_json(known_ensemble()),
     validation.STORED.name: validation.STORED.as_json(replace(validation.recorded(), facts=["a <fact>"])),
 }
+
+
+def leave_beside(place: Path, files: Mapping[str, bytes], *scenes: str) -> None:
+    """What other commands leave beside a report: these files, and a known trade-off of every scene."""
+    publish(place, files, "a test")
+    for name in scenes:
+        trade = MeasuredTrade(known_trade(name), xr.Dataset({"mu": ("point", [1.0])}))
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(tradeoff, "measured_trades", lambda *rest, trade=trade: [trade])
+            assert tradeoff.main([name, "--out", str(place)]) == 0

@@ -19,23 +19,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray as xr
 from distinct_models import GRID, distinct_hierarchy
 from fake_models import known_motions
 from known_analyses import analyses_are, known_others
-from known_results import FILES, MEASURED, SEARCHED, known_ensemble, known_trade
+from known_results import FILES, MEASURED, SEARCHED, known_ensemble, leave_beside
 from places import scene_text
 from report_texts import data_of, page_of, summary_of, text_of
-from runs import quick_figure, quick_figures
+from runs import quick_figures
 
-from comparison.analyses.assumptions import figure as assumptions
 from comparison.analyses.ensemble import result as ensemble
 from comparison.analyses.ensemble.analysis import FRACTILES
 from comparison.analyses.errata.analysis import ERRATA, Effect
-from comparison.analyses.tradeoff import command as tradeoff
-from comparison.analyses.tradeoff.trade import MeasuredTrade
 from comparison.run import main
-from comparison.runner.output import publish
 from reference.measures.peak_demands import unit_of
 
 RECORD = Path(__file__).parent / "report" / "recorded_report.txt"
@@ -114,7 +109,6 @@ def items(path: str, value: Any) -> list[str]:
 def report_in(place: Path) -> Path:
     """A report of pairwise different numbers, with what every other command leaves beside it."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(assumptions, "draw_assumptions", quick_figure)
         quick_figures(patch)
         analyses_are(
             patch,
@@ -124,10 +118,7 @@ def report_in(place: Path) -> Path:
             errata=ERRATA_FOUND,
             **known_others(),
         )
-        publish(place, {**FILES, ensemble.FILE: ensemble.STORED.as_json(full_ensemble())}, "a test")
-        trade = MeasuredTrade(known_trade("fig3-I"), xr.Dataset({"mu": ("point", [1.0])}))
-        patch.setattr(tradeoff, "measured_trades", lambda *rest: [trade])
-        assert tradeoff.main(["fig3-I", "--out", str(place)]) == 0
+        leave_beside(place, {**FILES, ensemble.FILE: ensemble.STORED.as_json(full_ensemble())}, "fig3-I")
         family = place.with_name("family.toml")
         family.write_text(scene_text().replace("friction = 0.1", FAMILY), encoding="utf-8")
         words = ["fig3-I", str(family), "synthetic-pair", "--grid", str(GRID), "--skip", "assumptions"]

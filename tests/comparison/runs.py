@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from PIL import Image
 
+from comparison.analyses.assumptions import figure as assumptions
 from comparison.surfaces.figures import budget, pairs, paper, print_maps
 
 SMALL = ["fig3-I", "--grid", "2"]
@@ -48,7 +49,8 @@ def quick_figure(path: Path, *rest: object) -> None:
 
 
 def quick_figures(patch: pytest.MonkeyPatch) -> None:
-    """Every picture of the surfaces is one dot."""
+    """Every picture of the surfaces and of the assumptions is one dot."""
+    patch.setattr(assumptions, "draw_assumptions", quick_figure)
     patch.setattr(pairs, "draw_pair", quick_figure)
     patch.setattr(budget, "draw_budget", quick_figure)
     patch.setattr(paper, "draw_paper_figure", quick_figure)

@@ -79,7 +79,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         lengths = [member.scene.duration for member in members]
         console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
         return 0
-    begin = time.monotonic()
+    begin, equations = time.monotonic(), replace(ensemble, subset=0)
 
     def show(part: Ensemble, results: TaskResults) -> None:
         points, cost = part.collect(None, None, results), results.parts[part.stage].seconds
@@ -97,7 +97,6 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         count = f"{engine} of {len(members)} motions"
         console.print(f"Next: {count} by the {model.title}, about {display.left:.0f} s; then all tables again.")
 
-    equations = replace(ensemble, subset=0)
     first = equations.tasks(), show_equations
     show(ensemble, computed("ensemble", options, argv, tasks, MODELS, console, executor, *first))
     return 0

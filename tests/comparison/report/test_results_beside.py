@@ -7,19 +7,15 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-import xarray as xr
 from fake_models import fake_hierarchy
 from known_analyses import analyses_are
-from known_results import FILES, known_trade
+from known_results import FILES, leave_beside
 from report_texts import Tables, both_pages, flat, page_of, schema_errors, summary_of, text_of
-from runs import SMALL, Run, quick_figure, quick_figures
+from runs import SMALL, Run, quick_figures
 
-from comparison.analyses.assumptions import figure as assumptions
 from comparison.analyses.ensemble import result as ensemble
 from comparison.analyses.ensemble.feature import ensemble_panels
-from comparison.analyses.tradeoff import command as tradeoff
 from comparison.analyses.tradeoff.trade import FILE as TRADES
-from comparison.analyses.tradeoff.trade import MeasuredTrade
 from comparison.analyses.validation import table as validation
 from comparison.registry import StudyResults
 from comparison.run import main
@@ -33,7 +29,6 @@ MAKES = ("extremes", "benchmarks", "tradeoff SCENE", "ensemble SCENE", "validati
 
 def studied(place: Path, patch: pytest.MonkeyPatch, *words: str) -> int:
     """A small study by fake models; its exit code."""
-    patch.setattr(assumptions, "draw_assumptions", quick_figure)
     quick_figures(patch)
     analyses_are(patch, motions=[])
     return main([*SMALL, *words, "--out", str(place)], fake_hierarchy(), ThreadPoolExecutor)
@@ -46,13 +41,7 @@ def beside(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path, dict[st
     with pytest.MonkeyPatch.context() as patch:
         assert studied(place, patch) == 0
         alone = both_pages(place)
-        publish(place, FILES, "a test")
-        data = xr.Dataset({"mu": ("point", [1.0])})
-        for name in ("fig3-I", "fig3-II"):
-            patch.setattr(
-                tradeoff, "measured_trades", lambda *rest, name=name: [MeasuredTrade(known_trade(name), data)]
-            )
-            assert tradeoff.main([name, "--out", str(place)]) == 0
+        leave_beside(place, FILES, "fig3-I", "fig3-II")
         diagrams = {f"fig3-I-tradeoff.{ending}" for ending in ("nc", "png", "pdf")}
         kept = {name: (place / name).read_bytes() for name in (*FILES, TRADES, *diagrams)}
         assert studied(place, patch) == 0
