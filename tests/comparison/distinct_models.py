@@ -13,13 +13,17 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from fake_models import known_motions
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from studies import solved
 
+from comparison.analyses.motions.analysis import StoredMotion
 from comparison.study.models import MODEL_HIERARCHY, Model, never
 from comparison.study.study import Study
-from reference.problem import Amplification, Scene, load_scene
+from reference.measures import Estimate
+from reference.measures.peak_demands import PER_BODY, QUANTITIES
+from reference.problem import Amplification, Outcome, Scene, load_scene
 
 Array = NDArray[np.float64]
 
@@ -75,7 +79,114 @@ def distinct(scene: Scene, phases: Array, tolerance: float, key: str) -> Amplifi
         [first_mu(body, phases) * (1.0 + share * differences_of(key, body, phases)) for body in bodies], axis=1
     )
     points = len(phases)
-    return Amplification(mu, STEPS[key][-1] * mu, np.full(points, "ok"), np.full(points, np.nan), 0.001 * points)
+    moved = 0.011 * scene.radius * (1.0 + KEYS.index(key) + 0.3 * np.cos(phases[:, 0] - 0.7)) * share
+    return Amplification(
+        mu, STEPS[key][-1] * mu, np.full(points, "ok"), np.full(points, np.nan), 0.001 * points,
+        displacement=moved if np.isfinite(scene.radius) else 0.01 * (40.0 + KEYS.index(key)) * np.ones(points),
+    )  # fmt: skip
+
+
+# of a model: the row and column on a grid of 8 x 8 phases, and the outcome there
+GAPS = {
+    "resolved": (1, 2, Outcome.RIM_REACHED),
+    "regularised": (4, 6, Outcome.OK),  # with an error of 60 %
+    "translational": (2, 4, Outcome.CONTACT_LOST),
+}
+
+
+def lacking(
+    scene: Scene, phases: Array, tolerance: float, key: str, full: bool = False, model: str = ""
+) -> Amplification:
+    """As `distinct`, with gaps; the spatial model fails at one phase pair, and refuses a scene without its supports."""
+    answer = distinct(scene, phases, tolerance, key)
+    mu, error, status = answer.mu.copy(), answer.error.copy(), answer.status.astype("U32")
+    row, column = np.rint(phases * 8.0 / (2.0 * np.pi)).astype(int).T
+    if key == "spatial" and (scene.flat or (row == 6).any()):
+        if not scene.flat:
+            raise RuntimeError("the matrix is <singular>")
+        status[:], mu[:] = Outcome.STEP_LIMIT, np.nan
+    if key == "translational":
+        status[row == 0] = Outcome.TOLERANCE_NOT_MET
+    if key in GAPS:
+        *place, outcome = GAPS[key]
+        there = (row == place[0]) & (column == place[1])
+        status[there], error[there] = outcome, 0.6 * mu[there]
+        mu[there & (outcome != Outcome.OK)] = np.nan
+    moved = answer.displacement * (9.3 if scene.lubricated else 1.0)
+    return replace(answer, mu=mu, error=error, status=status, displacement=moved)
+
+
+def why_lacking(scene: Scene, tolerance: float, **settings: object) -> str:
+    return "refused before any step: 3 times the work, shorten the duration to 7 s" if scene.flat else ""
+
+
+def lacking_hierarchy() -> tuple[Model, ...]:
+    """The models of `distinct_hierarchy` with gaps; the translational one has every phase."""
+    return tuple(
+        replace(
+            model,
+            amplification="distinct_models:lacking",
+            refusal="distinct_models:why_lacking" if model.key == "spatial" else None,
+            settings={"key": model.key, **({"model": "spatial"} if model.key == "spatial" else {})},
+            most={"translational": GRID, "spatial": COARSE}.get(model.key),
+            batch=4,
+        )
+        for model in distinct_hierarchy()
+    )
+
+
+def distinct_motions(study: Study, surfaces: xr.Dataset) -> list[StoredMotion]:
+    """The known motions with demands and spectra that all differ; one has failed, every second one comes to rest."""
+
+    def scaled(value: Any, factor: float) -> Any:
+        if isinstance(value, tuple):
+            return tuple(scaled(each, factor) for each in value)
+        return replace(value, value=factor * value.value, error=factor * value.error) if value else value
+
+    found = []
+    for number, motion in enumerate(known_motions(study, surfaces)):
+        factor, demands, spectra = 1.0 + 0.0171 * number, motion.demands, motion.spectra
+        assert demands is not None
+        assert spectra is not None
+        values = {name: scaled(value, factor) for name, value in vars(demands).items() if name != "status"}
+        if number % 2:
+            values["residual"] = Estimate(0.0034 * factor, 0.0002 * factor)
+        spectra = replace(spectra, acceleration=factor * spectra.acceleration, error=factor * spectra.error)
+        if number == 3:
+            none = {"demands": None, "spectra": None, "status": Outcome.SOLVER_FAILED.value}
+            found.append(replace(motion, **none, error_message="RuntimeError: it <broke>"))
+        else:
+            found.append(replace(motion, demands=replace(demands, **values), spectra=spectra))
+    return found
+
+
+def known_demand_surfaces(study: Study, surfaces: xr.Dataset) -> xr.Dataset:
+    """Demands of every phase pair of the scenes without a family; the first model lacks one, and one error."""
+    names = [scene.name for scene in study.scenes if "[" not in scene.name]
+    models, bodies, grid = [model.key for model in study.hierarchy], surfaces["body"].values, study.grid
+    axis = surfaces["alpha1"].values
+    alpha1, alpha2 = np.meshgrid(axis, axis, indexing="ij")
+    variables: dict[str, Any] = {}
+    for number, (name, (meaning, unit)) in enumerate(QUANTITIES.items()):
+        of_bodies = (*([bodies] if name in PER_BODY else []),)
+        dims = ("scene", "model", *(["body"] if of_bodies else []), "alpha1", "alpha2")
+        values = np.empty([len(names), len(models), *map(len, of_bodies), grid, grid])
+        for index in np.ndindex(values.shape[:-2]):
+            scene, model, body = (*index, 0)[:3]
+            swing = (
+                0.31 * np.cos(alpha1 - 0.4 * model + body) + 0.17 * np.sin(alpha2 + number) + 0.05 * np.cos(2 * alpha2)
+            )
+            values[index] = (1.0 + number) * (1.0 + 0.07 * model + 0.33 * body + 0.6 * scene) * (1.0 + swing)
+            between = np.arange(grid) % study.stride(study.hierarchy[model]) != 0
+            values[index][between] = values[index][:, between] = np.nan
+            if models[model] not in ("small", "translational", "spatial")[:: 1 if number % 3 == 0 else 2]:
+                values[index] = np.nan
+        error = (0.001 + 0.002 * np.cos(alpha1 + 0.5 * alpha2) ** 2) * values
+        values[0, 0, ..., 5, 1], error[0, 0, ..., 2, 3] = np.nan, np.nan if number % 2 else 0.1
+        variables[name] = dims, values, {"units": unit, "long_name": meaning}
+        variables[f"{name}_error"] = dims, error, {"units": unit, "long_name": f"estimated absolute error: {meaning}"}
+    variables["status"] = ("scene", "model", "alpha1", "alpha2"), np.full([len(names), len(models), grid, grid], "ok")
+    return xr.Dataset(variables, {"scene": names, "model": models, "alpha1": axis, "alpha2": axis, "body": bodies})
 
 
 def distinct_hierarchy() -> tuple[Model, ...]:

@@ -7,6 +7,15 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
+from comparison.analyses.assumptions.validity import (
+    ASSUMPTIONS,
+    DURATION,
+    PHASES,
+    AssumptionCell,
+    Validity,
+    Variation,
+    ranges,
+)
 from comparison.analyses.benchmarks import table as benchmarks
 from comparison.analyses.ensemble import result as ensemble
 from comparison.analyses.extremes import matrix as extremes
@@ -43,6 +52,21 @@ SEARCHED = [
 MEASURED = [
     MeasuredPeak("fig3-I", "mu", 1, (1.0, 2.0), 4.0, 0.25, "run 7", [ComputedPeak("exact", 5.0, 1e-3, 1.0, True, "ok")])
 ]
+
+
+def known_assumptions() -> Validity:
+    """Rings and heights of which the last ones tell, and bodies off the axis or turned; every number differs."""
+    scene, cells = load_scene("fig3-I"), []
+    usual = [Variation(ring, height) for ring in (0.5, 1.0, 2.0) for height in (0.5, 1.0)]
+    uneven = [Variation(offset=0.1), Variation(offset=0.3), Variation(yaw=0.2), Variation(supports=3)]
+    for number, variation in enumerate([*usual, *uneven, Variation(bars="softening")]):
+        sizes = [0.0013 * (1.7 * number + 1.0) * (1.0 + 0.5 * pair) for pair in range(3)]
+        change = tuple((size, -0.83 * size) for size in sizes)
+        uncertainty = tuple((1e-4 * (1 + number), 2e-4 * (1 + number)) for _ in sizes)
+        cells.append(AssumptionCell(scene.name, variation, change, uncertainty, ("ok",) * 3, cost=0.1 * number))
+    none = ((float("nan"),) * 2,) * 3
+    cells.append(AssumptionCell(scene.name, Variation(height=3.0), none, none, ("rim reached",) * 3, "it <broke>"))
+    return Validity(ASSUMPTIONS, tuple(map(tuple, PHASES)), DURATION, tuple(cells), tuple(ranges(scene, cells)))
 
 
 def fake(model: str, finer: str = "") -> Column:

@@ -1,45 +1,55 @@
 """
-A report with every section, of known results, as lines: headings, tables, plots and texts.
+Two reports of known results as lines: all that pages, texts, files and figures show.
 
     PYTHONPATH=. python tests/comparison/recorded_report.py
 
-writes report/recorded_report.txt anew. Read its difference before it is committed: each line is what a user sees.
+writes report/recorded_report.txt anew. Read its difference before it is committed: each line is what a user sees. The
+first report has every section; the second one is early, and lacks values. Of it are the lines that the first has not.
 """
 
 import io
-import math
+import json
 import re
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
 from html import unescape
 from itertools import count
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pytest
-from distinct_models import GRID, distinct_hierarchy
-from fake_models import known_motions
+import xarray as xr
+from distinct_models import GRID, distinct_hierarchy, distinct_motions, known_demand_surfaces, lacking_hierarchy
 from known_analyses import analyses_are, known_others
-from known_results import FILES, MEASURED, SEARCHED, known_ensemble, leave_beside
+from known_results import FILES, MEASURED, SEARCHED, known_assumptions, known_ensemble, leave_beside
 from places import scene_text
+from recorded_figures import figures_are_told
 from report_texts import data_of, page_of, summary_of, text_of
-from runs import quick_figures
+from runs import Here, quick_figures
 
+import comparison.run
 from comparison.analyses.ensemble import result as ensemble
 from comparison.analyses.ensemble.analysis import FRACTILES
 from comparison.analyses.errata.analysis import ERRATA, Effect
-from comparison.run import main
+from comparison.cli import user_models
+from comparison.study import user_models as called
+from comparison.study.levels import Level, levels_of
 from reference.measures.peak_demands import unit_of
 
 RECORD = Path(__file__).parent / "report" / "recorded_report.txt"
 HIDDEN = re.compile(r'<(script|style)\b.*?</\1>|<th scope="row">phase-resonance.*?</table>', re.DOTALL)
 CHANGING = re.compile(  # from run to run and from machine to machine
-    r"\.run\.|wall time|processor time in s|\d{4}-\d\d-\d\dT|\bnumpy|\bLinux|digest"
+    r"[\"'.{ ](command|began|wall_seconds|processor_seconds|seconds|provenance)\b: [^,}]*|\{command .*|wall time|"
+    r"processor time in s|tasks, about|\d{4}-\d\d-\d\dT|\bnumpy|\bLinux|digest"
 )
-CLOSING = re.compile(r"/\w+>")
-FEW = {"motions": 1, "places": 1, "demands": 2}  # items of long lists; 6 of others
+BLOCKS = re.compile(r"\s*(?=<(?:tr|p|h\d|li|summary|figure|article|section|details|nav|header|caption|option|div)\b)")
+PLOT = re.compile(r"data-plot='(.*?)'", re.DOTALL)
+REPEATED = re.compile(r'<line class="(?:grid|zero)"[^>]*>| data-tip="[^"]*"| class="number"')  # once is enough
+LONG_NUMBER = re.compile(r"-?\d\.\d{8,}(?:e[-+]\d+)?")
+LONGEST = 600  # letters of an item on one line
+FEW = {"motions": 3, "places": 2, "demands": 4}  # items of long lists
 PAGES = "index.html", "verification.html"
 EFFECTS = Effect("fig3-I", 0, ((0.5, -0.25), (None, 0.125))), Effect("fig3-I", 1, error_message="it <broke>")
 ERRATA_FOUND = [replace(each, effects=EFFECTS[:number]) for number, each in enumerate(ERRATA[:3])]
@@ -48,6 +58,35 @@ DEMANDS: list[tuple[str, int | None]] = [
     *((name, body) for name in ("acceleration", "drift", "torsion") for body in (1, 2)),
 ]
 FAMILY = "friction = {range = [0.1, 0.2], steps = 2}"
+LIMITS = """[acceptance]
+median = 1e-6
+maximum = 2e-6
+ratio = 1.0
+closure = 1.0
+failed = 3
+[acceptance.total]
+maximum = 3e-6
+[acceptance.translational]
+median = 0.9
+[acceptance.mine]
+maximum = 1e-7
+"""
+FLAT = """title = "a flat <slider>"
+duration = 2.0
+isolator = {radius = inf, friction = 0.1, travel = 0.5}
+excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}
+[[bodies]]
+mass = 1.0
+[[bodies]]
+mass = 1.0
+period = [1.5, 1.2]
+"""
+
+
+class Early(Level):
+    """A level before the last whose report is as complete as that of the last."""
+
+    last = True  # type: ignore[assignment]
 
 
 def full_ensemble() -> ensemble.EnsembleResult:
@@ -77,13 +116,21 @@ def full_ensemble() -> ensemble.EnsembleResult:
 
 
 def lines_of(place: Path) -> list[str]:
-    """What the report says, a line for each row, heading, plot and item."""
-    lines = []
+    """What a report says, a line for each row, heading, plot and item."""
+    lines, seen = [], set()
+
+    def first(found: re.Match[str]) -> str:
+        known = found[0] in seen
+        seen.add(found[0])
+        return "" if known else found[0]
+
     for name in PAGES:
-        shown = HIDDEN.sub("", unescape(page_of(place, name)).replace(str(place.parent), ""))
-        parts = (" ".join(part.split()) for part in shown.split("<"))
-        lines += [f"{name}: <{part}" for part in parts if part and not CLOSING.fullmatch(part)]
-    lines += items("page", data_of(place)) + items("summary", summary_of(place))
+        page = PLOT.sub(lambda plot: f"data-plot={compact(json.loads(unescape(plot[1])))}", page_of(place, name))
+        shown = HIDDEN.sub("", unescape(page).replace(str(place.parent), ""))
+        shown = REPEATED.sub(first, re.sub(r"</(?!strong|code|a\b)\w+>", "", shown))
+        shown = LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", shown)
+        lines += [f"{name}: {' '.join(part.split())}" for part in BLOCKS.split(shown) if part.strip()]
+    lines += [*items("page", data_of(place)), *items("summary", summary_of(place))]
     for name in ("summary.md", "junit.xml", "terminal"):
         lines += [f"{name}: {line}" for line in (place / name).read_text(encoding="utf-8").splitlines() if line.strip()]
     printed = re.sub(r"Computed \S+|Provenance.*", "", text_of(place / "report.pdf")[1])
@@ -92,45 +139,87 @@ def lines_of(place: Path) -> list[str]:
     return [line for line in lines if not CHANGING.search(line)]
 
 
-def items(path: str, value: Any) -> list[str]:
-    """A line for every text and number of nested data; numbers in six digits, long lists by a few of their items."""
+def compact(value: Any) -> str:
+    """Nested data in one line; numbers in six digits, a few of long lists."""
     if isinstance(value, dict):
-        return [line for key, inner in value.items() for line in items(f"{path}.{key}", inner)]
+        return "{" + ", ".join(f"{key}: {compact(inner)}" for key, inner in value.items()) + "}"
     if isinstance(value, list):
-        if value and all(isinstance(each, int | float | None) and not isinstance(each, bool) for each in value):
-            numbers = np.array([math.nan if each is None else each for each in value], dtype=float)
-            seen = " ".join(f"{number:.6g}" for number in (*numbers[:8], *numbers[8::37]))
-            return [f"{path}: {seen}"]
-        few = value[: FEW.get(path.rsplit(".", 1)[-1], 6)]
-        return [line for number, inner in enumerate(few) for line in items(f"{path}.{number}", inner)]
-    return [f"{path}: {value:.6g}" if isinstance(value, float) else f"{path}: {value}"]
+        every = [compact(each) for each in value]
+        shown = [*every[:8], *every[8::37]] if all(isinstance(each, int | float | None) for each in value) else every
+        return f"[{' '.join(shown)}]"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def report_in(place: Path) -> Path:
-    """A report of pairwise different numbers, with what every other command leaves beside it."""
-    with pytest.MonkeyPatch.context() as patch:
-        quick_figures(patch)
-        analyses_are(
-            patch,
-            motions=known_motions,
-            worst_phases=SEARCHED,
-            measured=MEASURED,
-            errata=ERRATA_FOUND,
-            **known_others(),
-        )
-        leave_beside(place, {**FILES, ensemble.FILE: ensemble.STORED.as_json(full_ensemble())}, "fig3-I")
-        family = place.with_name("family.toml")
-        family.write_text(scene_text().replace("friction = 0.1", FAMILY), encoding="utf-8")
-        words = ["fig3-I", str(family), "synthetic-pair", "--grid", str(GRID), "--skip", "assumptions"]
-        words += ["--out", str(place)]
-        with redirect_stdout(io.StringIO()) as printed:
-            assert main(words, distinct_hierarchy(), ThreadPoolExecutor) == 0
+def items(path: str, value: Any) -> Iterator[str]:
+    """Lines of nested data: what is short stands on one."""
+    whole = compact(value)
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    if len(whole) <= LONGEST or not inner:
+        yield f"{path}: {whole}"
+        return
+    parts = dict([*inner][: FEW.get(path.rsplit(".", 1)[-1]) if isinstance(value, list) else None])
+    short = {key: each for key, each in parts.items() if len(compact(each)) <= 60}
+    if short:
+        yield f"{path}: {compact(short)}"
+    for key, each in parts.items():
+        if key not in short:
+            yield from items(f"{path}.{key}", each)
+
+
+def reported(place: Path, words: Sequence[str], hierarchy: Sequence[Any]) -> list[str]:
+    """The lines of the report and of the terminal."""
+    with redirect_stdout(io.StringIO()) as printed, redirect_stderr(printed):
+        comparison.run.main([*words, "--out", str(place)], hierarchy, ThreadPoolExecutor)
     (place / "terminal").write_text(printed.getvalue().replace(str(place.parent), ""), encoding="utf-8")
-    return place
+    return lines_of(place)
+
+
+def recorded_lines(folder: Path) -> list[str]:
+    """The lines of both reports, and of the figures of the first."""
+    with pytest.MonkeyPatch.context() as patch:
+        figures = figures_are_told(patch)
+        known = {"motions": distinct_motions, "worst_phases": SEARCHED, "measured": MEASURED, "errata": ERRATA_FOUND}
+        known |= {"assumptions": known_assumptions(), "demands": known_demand_surfaces, **known_others()}
+        analyses_are(patch, **known)
+        full = folder / "full" / "report"
+        leave_beside(full, {**FILES, ensemble.FILE: ensemble.STORED.as_json(full_ensemble())}, "fig3-I")
+        (full.parent / "family.toml").write_text(scene_text().replace("friction = 0.1", FAMILY), encoding="utf-8")
+        scenes = ["fig3-I", str(full.parent / "family.toml"), "synthetic-pair"]
+        words = [*scenes, "--grid", str(GRID), "--also", "demands", "--tolerance", "4e-3"]
+        first = reported(full, words, distinct_hierarchy())
+        first += [f"figure {name}: {line}" for name, lines in sorted(figures.items()) for line in lines]
+        first += variables(full)
+
+        quick_figures(patch)
+        analyses_are(patch, motions=distinct_motions)
+        patch.setattr(user_models, "Workers", Here)
+        patch.setattr(called, "_processor_time", lambda: 0.0)
+        patch.setattr(comparison.run, "levels", lambda study: [Early(levels_of(study, {})[-1].study, 2, 3)])
+        lacking = folder / "lacking" / "report"
+        lacking.parent.mkdir()
+        for name, text in {"limited": scene_text().split("[acceptance]")[0] + LIMITS, "flat": FLAT}.items():
+            (lacking.parent / f"{name}.toml").write_text(text, encoding="utf-8")
+        scenes = [str(lacking.parent / "limited.toml"), "fig4-viscous", str(lacking.parent / "flat.toml")]
+        words = [*scenes, "--grid", str(GRID), "--model", "mine=user_engines:off_with_error", "--check"]
+        second = reported(lacking, words, lacking_hierarchy())
+    return [*first, *(f"lacking {line}" for line in second if line not in {*first})]
+
+
+def variables(place: Path) -> list[str]:
+    """What surfaces.nc holds: dimensions, attributes and a few numbers of every variable."""
+    with xr.open_dataset(place / "surfaces.nc", engine="h5netcdf") as data:
+        lines = []
+        for name, each in data.variables.items():
+            values = each.values.ravel()
+            shown = compact(values.tolist()) if values.dtype.kind in "fi" else sorted({*map(str, values)})
+            lines.append(
+                f"surfaces.nc {name}: {each.dims} {each.attrs.get('units')} {each.attrs.get('long_name')} {shown}"
+            )
+        return lines
 
 
 if __name__ == "__main__":
     import tempfile
 
-    with tempfile.TemporaryDirectory() as folder:
-        RECORD.write_text("\n".join(lines_of(report_in(Path(folder) / "report"))) + "\n", encoding="utf-8")
+    with tempfile.TemporaryDirectory() as name:
+        RECORD.write_text("\n".join(recorded_lines(Path(name))) + "\n", encoding="utf-8")

@@ -1,11 +1,11 @@
-"""A report with every section, of known results: headings, tables, plots and texts are those that were last read."""
+"""Reports of known results: headings, tables, plots, texts, files and figures are those that were last read."""
 
 import math
 import re
 from difflib import unified_diff
 from pathlib import Path
 
-from recorded_report import RECORD, lines_of, report_in
+from recorded_report import RECORD, recorded_lines
 
 NUMBER = re.compile(r"[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
@@ -19,6 +19,6 @@ def alike(before: str, now: str) -> bool:
 
 
 def test_the_report_says_what_was_last_read(tmp_path: Path) -> None:
-    before, now = RECORD.read_text(encoding="utf-8").splitlines(), lines_of(report_in(tmp_path / "report"))
+    before, now = RECORD.read_text(encoding="utf-8").splitlines(), recorded_lines(tmp_path)
     same = len(before) == len(now) and all(map(alike, before, now))
     assert same, "\n".join(line for line in unified_diff(before, now, lineterm="", n=0))
