@@ -82,7 +82,7 @@ def distinct(scene: Scene, phases: Array, tolerance: float, key: str) -> Amplifi
     moved = 0.011 * scene.radius * (1.0 + KEYS.index(key) + 0.3 * np.cos(phases[:, 0] - 0.7)) * share
     return Amplification(
         mu, STEPS[key][-1] * mu, np.full(points, "ok"), np.full(points, np.nan), 0.001 * points,
-        displacement=moved if np.isfinite(scene.radius) else 0.01 * (40.0 + KEYS.index(key)) * np.ones(points),
+        displacement=0.01 * (43.0 + KEYS.index(key)) * np.cos(phases[:, 0]) ** 2 if scene.flat else moved,
     )  # fmt: skip
 
 
@@ -97,14 +97,12 @@ GAPS = {
 def lacking(
     scene: Scene, phases: Array, tolerance: float, key: str, full: bool = False, model: str = ""
 ) -> Amplification:
-    """As `distinct`, with gaps; the spatial model fails at one phase pair, and refuses a scene without its supports."""
+    """As `distinct`, with gaps; the spatial model fails at a phase pair, the other engine refuses a flat slider."""
     answer = distinct(scene, phases, tolerance, key)
     mu, error, status = answer.mu.copy(), answer.error.copy(), answer.status.astype("U32")
     row, column = np.rint(phases * 8.0 / (2.0 * np.pi)).astype(int).T
-    if key == "spatial" and (scene.flat or (row == 6).any()):
-        if not scene.flat:
-            raise RuntimeError("the matrix is <singular>")
-        status[:], mu[:] = Outcome.STEP_LIMIT, np.nan
+    if key == "spatial" and (row == 6).any():
+        raise RuntimeError("the matrix is <singular>")
     if key == "translational":
         status[row == 0] = Outcome.TOLERANCE_NOT_MET
     if key in GAPS:
@@ -112,6 +110,8 @@ def lacking(
         there = (row == place[0]) & (column == place[1])
         status[there], error[there] = outcome, 0.6 * mu[there]
         mu[there & (outcome != Outcome.OK)] = np.nan
+    if key == "translational" and scene.flat:
+        status[:], mu[:] = Outcome.STEP_LIMIT, np.nan
     moved = answer.displacement * (9.3 if scene.lubricated else 1.0)
     return replace(answer, mu=mu, error=error, status=status, displacement=moved)
 
@@ -126,12 +126,13 @@ def lacking_hierarchy() -> tuple[Model, ...]:
         replace(
             model,
             amplification="distinct_models:lacking",
-            refusal="distinct_models:why_lacking" if model.key == "spatial" else None,
+            refusal="distinct_models:why_lacking" if model.key == "translational" else None,
             settings={"key": model.key, **({"model": "spatial"} if model.key == "spatial" else {})},
+            symmetric=model.symmetric if model.key in ("small", "exact") else never,
             most={"translational": GRID, "spatial": COARSE}.get(model.key),
             batch=4,
         )
-        for model in distinct_hierarchy()
+        for model in MODEL_HIERARCHY
     )
 
 

@@ -102,6 +102,7 @@ def known_growth() -> growth.MeasuredGrowth:
     series = [
         growth.with_slope("bodies", "", "engine", (2.0, 4.0, 8.0), (1.0, 4.0, 16.0)),
         growth.with_slope("bodies", "", "slow engine", (2.0, 4.0, 8.0), (1.0, float("nan"), 16.0)),
+        growth.with_slope("workers", "", "equations", (1.0, 2.0), (2.0, 1.5)),
     ]
     return growth.MeasuredGrowth(growth.SCHEMA, "fig3-I", "a scene", series, MADE)
 
