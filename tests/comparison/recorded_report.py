@@ -62,9 +62,10 @@ FAMILY = "friction = {range = [0.1, 0.2], steps = 2}"
 LIMITS = """[acceptance]
 median = 1e-6
 maximum = 2e-6
-ratio = 1.0
 closure = 1.0
 failed = 7
+[acceptance.like_for_like]
+ratio = 7.0
 [acceptance.total]
 maximum = 3e-6
 [acceptance.translational]

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,9 +10,9 @@ from report_texts import flat, page_of, text_of
 from runs import RUN, Run, quick_figures
 from studies import solved
 
-from comparison.analyses.demands.feature import HEADINGS, demand_rows
 from comparison.registry import report_of
 from comparison.report import pdf
+from comparison.report.pdf_data import largest_headlines, pdf_data
 from comparison.report.section import Report
 from comparison.study.models import Model
 from comparison.study.study import Study
@@ -104,65 +103,31 @@ def test_without_the_package_one_line_says_how_to_get_it(
     assert run.err == ""
 
 
-def test_the_demands_of_the_stored_motions_are_in_a_table(tmp_path: Path) -> None:
-    report = studied([load_scene("fig3-I")], fake_hierarchy(), 4)
-    motions = known_motions(report.study, report.surfaces)
-    report = report_of(report.study, report.surfaces, {"motions": motions}, [], RUN)
-    at = [(0.5 * np.pi * motion.place.row, 0.5 * np.pi * motion.place.column) for motion in motions]
-    assert any(alpha1 != alpha2 for alpha1, alpha2 in at)
-    np.testing.assert_allclose([motion.phases for motion in report.results.scenes[0].demands], at)
-    numbers = ["150", "", "5.2", "2.1", "2.31", "37", "17"]  # lengths in mm; the residual is not known
-    rows = demand_rows(report.results)
-    assert [row[2:] for row in rows] == [numbers, numbers]
-    assert [row[1] for row in rows] == ["small equations", "spatial engine"]
-    pdf.write_pdf(tmp_path / "report.pdf", report)
-    pages, text = text_of(tmp_path / "report.pdf")
-    assert 2 <= pages <= 4
-    assert flat("Largest values over the stored motions") in flat(text)
-    assert "base shear, N" in text
-
-
-@pytest.mark.long
-def test_what_the_pdf_leaves_out_it_counts(tmp_path: Path) -> None:
+def test_what_the_pdf_leaves_out_it_counts() -> None:
     record = load_scene("synthetic-pair")
     scenes = [_called(record, f"{'long-' * 20}{number}", "A record") for number in range(9)]
-    scenes += [_called(load_scene("fig3-I"), f"phased{number}", "Phases") for number in range(6)]
+    scenes += [_called(load_scene("fig3-I"), f"phased{number}", "A long title. " * 20) for number in range(6)]
     report = studied(scenes, fake_hierarchy(gap=0.01), 2)
-    motions = known_motions(report.study, report.surfaces)
-    report = report_of(report.study, report.surfaces, {"motions": motions}, [], RUN)
-    pdf.write_pdf(tmp_path / "report.pdf", report)
-    text = flat(text_of(tmp_path / "report.pdf")[1])
-    for words in (
-        "The 16 first rows of 18 are shown; the others are in index.html.",  # values under the records
-        "The 16 first rows of 30 are shown",  # demands, of two models each
-        "The 4 scenes with the largest differences of 6 are shown",  # maps
-        "The 10 largest differences of 30 are shown",  # sentences
-        "The 8 largest differences of 30 are shown",  # bars
-        "The 8 first scenes with limits of",
-        "The 8 first scenes of 15 are shown",  # provenance
+    found = {"motions": known_motions(report.study, report.surfaces)}
+    faults = [
+        Alert(level="amber", kind="fault", scene="", text=f"fault {number} {'x' * 600}", help="") for number in range(7)
+    ]
+    report = report_of(report.study, report.surfaces, found, faults, RUN)
+    shown = largest_headlines(report.results)
+    data = pdf_data(report.results, shown, [about for about, _ in pdf.map_tasks(report)])
+    first, largest = "The {} first {} of {} are shown", "The {} largest differences of 30 are shown"
+    for key, words, kept, rows in (
+        ("more_alerts", "2 more of these in index.html.", "alerts", 5),
+        ("more_scenes", largest.format(10), "", 10),
+        ("waterfall_note", largest.format(8), "waterfalls", 8),
+        ("maps_note", "The 4 scenes with the largest differences of 6 are shown", "maps", 4),
+        ("more_records", first.format(16, "rows", 18), "records", 16),
+        ("demands_note", first.format(16, "rows", 30), "demands", 16),
+        ("limits_line", first.format(8, "scenes with limits", 15), "limits", 8),
     ):
-        assert flat(words) in text, words
+        assert words in data[key], key
+        assert (len(data[kept]) if kept else sum(len(scene["sentences"]) for scene in data["scenes"])) == rows, key
+    assert first.format(8, "scenes", 15) in data["provenance"][-1][1]
     name = report.results.scenes[0].name
-    data = pdf.pdf_data(report.results, [], [])
-    assert data["records"][0][0] == f"{name[:39]}…"
-    assert data["demands"][0][0] == f"{name[:39]}…"
-
-
-def test_demands_over_phases_have_their_columns_and_units() -> None:
-    values = {("displacement", 0): 0.12, ("residual", 0): 0.034, ("base_shear", 0): 5.6, ("acceleration", 1): 7.8,
-              ("acceleration", 2): 9.1, ("drift", 2): 0.023, ("contact_force_min", 0): 45.0}  # fmt: skip
-    rows = [
-        SimpleNamespace(
-            model="small", quantity=quantity, body=body,
-            highest=SimpleNamespace(value=value, error=0.002), lowest=SimpleNamespace(value=0.5 * value, error=0.002),
-        )
-        for (quantity, body), value in values.items()
-    ]  # fmt: skip
-    scene = SimpleNamespace(name="mine", of={"demand_statistics": rows, "demands": []}.get, bodies=2)
-    models = [SimpleNamespace(key="small", title="small equations")]
-    [cells] = demand_rows(SimpleNamespace(scenes=[scene], models=models))  # type: ignore[arg-type]
-    assert dict(zip(HEADINGS, cells, strict=True)) == {
-        "scene": "mine", "model": "small equations", "isolator, mm": "120", "residual, mm": "34 ± 2",
-        "base shear, N": "5.6", "platform, m/s²": "7.8", "top, m/s²": "9.1", "drift, mm": "23",
-        "contact force, N": "22.5",
-    }  # fmt: skip
+    assert data["records"][0][0] == data["demands"][0][0] == f"{name[:39]}…"
+    assert (len(data["maps"][0]["title"]), len(data["alerts"][0]["line"])) == (110, 501)
