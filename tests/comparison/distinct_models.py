@@ -2,28 +2,23 @@
 A study in which no two numbers are the same: every model, body, phase pair, statistic and sign can be told apart.
 
 mu of the first model and the relative differences of the others are closed forms; `differences_of` gives them to tests,
-which make every statistic of them with NumPy alone.
+which make every statistic of them with NumPy alone. `lacking` are the same models with gaps.
 """
 
-from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 from typing import Any
 
 import numpy as np
-import pytest
 import xarray as xr
 from fake_models import known_motions
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
-from studies import solved
 
 from comparison.analyses.motions.analysis import StoredMotion
 from comparison.study.models import MODEL_HIERARCHY, Model, never
 from comparison.study.study import Study
 from reference.measures import Estimate
 from reference.measures.peak_demands import PER_BODY, QUANTITIES
-from reference.problem import Amplification, Outcome, Scene, load_scene
+from reference.problem import Amplification, Outcome, Scene
 
 Array = NDArray[np.float64]
 
@@ -39,7 +34,6 @@ STEPS = {
 }
 KEYS = tuple(STEPS)
 GRID, COARSE = 8, 4  # phases per axis of the equations, and of the engine
-ROWS = [(pair, body) for body in (1, 2) for pair in ("total", "translational", "like for like")]
 
 
 def first_mu(body: int, phases: Array) -> Array:
@@ -174,9 +168,8 @@ def known_demand_surfaces(study: Study, surfaces: xr.Dataset) -> xr.Dataset:
         values = np.empty([len(names), len(models), *map(len, of_bodies), grid, grid])
         for index in np.ndindex(values.shape[:-2]):
             scene, model, body = (*index, 0)[:3]
-            swing = (
-                0.31 * np.cos(alpha1 - 0.4 * model + body) + 0.17 * np.sin(alpha2 + number) + 0.05 * np.cos(2 * alpha2)
-            )
+            swing = 0.31 * np.cos(alpha1 - 0.4 * model + body) + 0.17 * np.sin(alpha2 + number)
+            swing += 0.05 * np.cos(2.0 * alpha2)
             values[index] = (1.0 + number) * (1.0 + 0.07 * model + 0.33 * body + 0.6 * scene) * (1.0 + swing)
             between = np.arange(grid) % study.stride(study.hierarchy[model]) != 0
             values[index][between] = values[index][:, between] = np.nan
@@ -203,62 +196,3 @@ def distinct_hierarchy() -> tuple[Model, ...]:
         )
         for model in MODEL_HIERARCHY
     )
-
-
-@cache
-def distinct_study() -> tuple[Study, xr.Dataset]:
-    """A study of one scene by these models, and its surfaces."""
-    study = Study((load_scene("fig3-I"),), GRID, 1e-3, distinct_hierarchy())
-    return study, solved(study)
-
-
-def step(key: str, body: int, count: int = COARSE) -> Array:
-    """What a model adds to the one before it on a grid."""
-    before = KEYS[KEYS.index(key) - 1]
-    return differences_of(key, body, grid_phases(count)) - differences_of(before, body, grid_phases(count))
-
-
-def pair_sizes(pair: str, body: int, count: int = COARSE) -> Array:
-    """The signed differences of a pair of models, relative to its own first model."""
-    first, second = {
-        "total": ("small", "spatial"),
-        "translational": ("small", "translational"),
-        "like for like": ("regularised", "translational"),
-    }[pair]
-    phases = grid_phases(count)
-    size = (1.0 + differences_of(second, body, phases)) / (1.0 + differences_of(first, body, phases)) - 1.0
-    return np.asarray(size)
-
-
-def of_sizes(pair: str, body: int) -> dict[str, float]:
-    """The statistics of the table of differences, made with NumPy alone."""
-    signed, size = pair_sizes(pair, body), np.abs(pair_sizes(pair, body))
-    return {
-        "mean": signed.mean(), "standard deviation": signed.std(), "95 %": np.percentile(size, 95.0, method="hazen"),
-        "maximum": size.max(), "median size": np.median(size),
-    }  # fmt: skip
-
-
-def in_percent(value: float, plus: str = "") -> str:
-    """Two digits, or whole percents from 10 % on."""
-    size = 100.0 * abs(value)
-    return ("−" if value < 0.0 else plus) + (f"{size:.0f} %" if size >= 10.0 else f"{size:.2g} %")
-
-
-def drawn(patch: pytest.MonkeyPatch, draw: Callable[..., object], *arguments: Any) -> Figure:
-    """The figure that a function draws."""
-    figures: list[Figure] = []
-    patch.setattr(Figure, "savefig", lambda figure, *rest, **options: figures.append(figure))
-    draw(*arguments)
-    return figures[0]
-
-
-def by_phase(values: Array) -> Array:
-    """Values on a grid, alpha1 along the rows, closed at 2 pi."""
-    count = round(len(values) ** 0.5)
-    return np.pad(values.reshape(count, count), ((0, 1), (0, 1)), mode="wrap")
-
-
-def heights(key: str, body: int, count: int) -> Array:
-    phases = grid_phases(count)
-    return by_phase(first_mu(body, phases) * (1.0 + differences_of(key, body, phases)))

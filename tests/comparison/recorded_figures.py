@@ -44,7 +44,7 @@ def figures_are_told(patch: pytest.MonkeyPatch) -> dict[str, list[str]]:
 def numbers(values: Any) -> str:
     """A few of the numbers, in six digits."""
     flat = np.ma.filled(np.ma.asarray(values, dtype=float), np.nan).ravel()
-    return " ".join(f"{value:.6g}" for value in (*flat[:6], *flat[6::23]))
+    return " ".join(f"{value:.6g}" for value in (*flat[:6], *flat[6::13]))
 
 
 def _told(figure: Figure) -> Iterator[str]:
@@ -67,7 +67,7 @@ def _parts(axes: Axes) -> Iterator[str]:
     if isinstance(axes, Axes3D):
         yield from (axes.get_zlabel(), *(f"surface {numbers(each)}" for each in axes.heights))
     for line in axes.lines:
-        look = line.get_color(), line.get_marker(), line.get_linestyle()
+        look = line.get_color(), line.get_marker(), line.get_linestyle(), line.get_linewidth()
         yield f"line {line.get_label()} {look} x {numbers(line.get_xdata())} y {numbers(line.get_ydata())}"
     for each in axes.collections:
         shown, clim = each.get_array(), each.get_clim()
