@@ -29,7 +29,7 @@ STEPS = {
     "exact": (0.033, 0.010, -0.0077, 0.0027, 1.7e-5),
     "resolved": (-0.039, 0.11, 0.011, -0.017, 2.3e-5),
     "regularised": (-0.0075, 0.0085, -0.0036, 0.0066, 3.1e-5),
-    "translational": (0.0022, -0.0019, 0.0011, 0.0017, 7.3e-4),
+    "translational": (0.0022, -0.0019, 0.0011, 0.0047, 7.3e-4),
     "spatial": (-0.057, -0.088, 0.021, 0.026, 1.9e-4),
 }
 KEYS = tuple(STEPS)
@@ -108,6 +108,12 @@ def lacking(
         status[:], mu[:] = Outcome.STEP_LIMIT, np.nan
     moved = answer.displacement * (9.3 if scene.lubricated else 1.0)
     return replace(answer, mu=mu, error=error, status=status, displacement=moved)
+
+
+def near(scene: Scene, phases: Array) -> tuple[Array, Array]:
+    """An engine of a user, off by 1.5 u_D in the platform and by 0.5 u_D in body 2."""
+    answer = distinct(scene, phases, 1e-3, "regularised")
+    return answer.mu + np.hypot(answer.error, answer.error) * [1.5, 0.5], answer.error
 
 
 def why_lacking(scene: Scene, tolerance: float, **settings: object) -> str:

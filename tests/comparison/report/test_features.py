@@ -6,7 +6,6 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 from places import ROOT
@@ -69,10 +68,10 @@ FEATURE = Feature(
 }
 
 
-@pytest.fixture(scope="module")
-def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
-    """Report of a copy of the package that has the feature `ratio` and not the claims, and what it says."""
-    copy = tmp_path_factory.mktemp("copy")
+@pytest.mark.long
+def test_a_folder_and_its_entry_are_a_feature(tmp_path: Path) -> None:
+    """A copy of the package has the feature `ratio` and not the claims: in file, page and figures."""
+    copy = tmp_path
     for name in ("reference", "multibody"):
         (copy / name).symlink_to(ROOT / name)
     shutil.copytree(ROOT / "comparison", copy / "comparison", ignore=shutil.ignore_patterns("__pycache__"))
@@ -99,23 +98,13 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any
         [*command, "--out", str(copy / "report")], cwd=copy, env=environment, text=True, capture_output=True
     )
     assert done.returncode == 0, done.stderr
-    return copy / "report", summary_of(copy / "report")
-
-
-@pytest.mark.long
-def test_a_new_folder_and_its_entry_reach_file_page_and_figures(study: tuple[Path, dict[str, Any]]) -> None:
-    report, summary = study
+    report = copy / "report"
+    summary, page = summary_of(report), page_of(report)
     assert [row["model"] for row in summary["ratio"]] == [model["key"] for model in summary["models"]]
     assert min(row["largest"] for row in summary["ratio"]) > 0.5
-    page = page_of(report)
     assert page.count('<p class="ratio">') == len(summary["models"])
     assert (report / "figures" / "ratio.png").exists()
     schema = json.loads((report / "summary.schema.json").read_text(encoding="utf-8"))
     assert "ratio" in schema["properties"]
-
-
-@pytest.mark.long
-def test_a_deleted_folder_leaves_nothing_behind(study: tuple[Path, dict[str, Any]]) -> None:
-    report, summary = study
     assert "claims" not in summary
     assert 'id="claims"' not in page_of(report, "verification.html")

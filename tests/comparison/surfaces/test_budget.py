@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
@@ -11,42 +11,28 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from fake_models import errors_in, fake_hierarchy
 from numpy.typing import NDArray
-from studies import solved
+from studies import GRID, planted_study, solved
 
-from comparison.study.batches import execute_batch, imported
+from comparison.study.batches import imported
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import checked_limits
 from comparison.surfaces.budget import TOTAL, BudgetEntry, budget, closure, steps
 from comparison.surfaces.differences import differences
 from comparison.surfaces.steps import RESOLVED
-from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.unanswered import unanswered
 from comparison.surfaces.waterfall import waterfall
 from reference.problem import builtin_scenes, load_scene
-
-GRID = 8
-
-
-def _solved(hierarchy: tuple[Model, ...], scene: str = "fig3-I", tolerance: float = 1e-5) -> tuple[Study, xr.Dataset]:
-    study = Study((load_scene(scene),), GRID, tolerance, hierarchy)
-    return study, solved(study)
 
 
 def _table(study: Study, surfaces: xr.Dataset, body: int = 1) -> dict[str, BudgetEntry]:
     return {entry.step: entry for entry in budget(study, surfaces) if entry.body == body}
 
 
-def _means(study: Study, surfaces: xr.Dataset, body: int = 1) -> dict[str, float]:
-    bars = waterfall(study, surfaces, study.scenes[0], body)
-    return {bar.model: bar.size for bar in bars.bars} | {TOTAL: bars.total.size}
-
-
 def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
     """Errors 0.03 and 0.04 make u_D = 0.05; 1.0 to 0.9 is twice that, and 1.43 times their sum. The sign has no say."""
-    study, surfaces = _solved(fake_hierarchy())
+    study, surfaces = planted_study({})
     first, second = {"model": "regularised"}, {"model": "translational"}
     for name, one, other in (("mu", 1.0, 0.9), ("error", 0.03, 0.04)):
         surfaces[name].loc[first], surfaces[name].loc[second] = one, other
@@ -60,7 +46,7 @@ def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
 
 
 def test_a_budget_without_a_step_does_not_close() -> None:
-    study, surfaces = _solved(errors_in({"exact": 0.02, "resolved": 0.02}))
+    study, surfaces = planted_study({"exact": 0.02, "resolved": 0.02})
     steps_and_total = steps(study, surfaces, "fig3-I", 1)
     assert closure(steps_and_total[1:]) == pytest.approx(0.02)
     assert closure([steps_and_total[0], *steps_and_total]) == pytest.approx(0.02)
@@ -70,30 +56,25 @@ def test_a_budget_without_a_step_does_not_close() -> None:
     assert closure([off, *steps_and_total[1:]]) == pytest.approx(0.3)
 
 
-@pytest.mark.parametrize("grid", [12, 34, 48, 50])
 @pytest.mark.parametrize("name", ["fig3-I", "fig3-II"])
-def test_mirrored_phases_are_pi_away_from_computed_ones(grid: int, name: str) -> None:
+def test_mirrored_phases_are_pi_away_from_computed_ones(name: str) -> None:
     """34 and 50 leave the engine an even number of phases that do not divide the period evenly."""
-    study, scene = Study((load_scene(name),), grid, 1e-3), load_scene(name)
-    for model in study.hierarchy:
+    studies = [Study((load_scene(name),), grid, 1e-3) for grid in (12, 34, 48, 50)]
+    for study, model in [(each, model) for each in studies for model in each.hierarchy]:
+        scene, grid = study.scenes[0], study.grid
         apart = np.subtract(np.divmod(study.places(model), grid), np.divmod(study.sources(scene, model), grid))
         assert (2 * apart % grid == 0).all(), model.key
 
 
 def test_a_step_known_to_less_than_a_fifth_is_not_real() -> None:
     for gap, expected in ((0.9, (0.0, 0.0)), (1.1, (0.0, 1.0)), (4.9, (0.0, 1.0)), (5.1, (1.0, 0.0))):
-        study, surfaces = _solved(errors_in({"exact": gap * 1e-3}, error_estimates={"small": 6e-4, "exact": 8e-4}))
+        study, surfaces = planted_study({"exact": gap * 1e-3}, errors={"small": 6e-4, "exact": 8e-4})
         entry = _table(study, surfaces)["exact"]
         assert (entry.real, entry.unresolved) == expected, "u_D is 1e-3, up to the 0.5 % that the step itself adds"
 
 
-def test_uncertainties_of_the_two_models_add_in_quadrature() -> None:
-    study, surfaces = _solved(errors_in({}, error_estimates={"exact": 3e-3, "small": 4e-3}))
-    np.testing.assert_allclose(steps(study, surfaces, "fig3-I", 1)[0].uncertainty, 5e-3, rtol=1e-12)
-
-
 def test_a_point_without_a_value_is_left_out_of_its_steps() -> None:
-    study, surfaces = _solved(errors_in({"translational": 0.02}))
+    study, surfaces = planted_study({"translational": 0.02})
     surfaces["mu"].loc[{"model": "exact", "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][6]}] = np.nan
     table = _table(study, surfaces)
     assert {"exact", "resolved", "translational", TOTAL} <= set(table)
@@ -104,7 +85,7 @@ def test_a_point_without_a_value_is_left_out_of_its_steps() -> None:
 
 
 def test_a_value_not_known_to_half_of_itself_counts_as_missing() -> None:
-    study, surfaces = _solved(errors_in({}))
+    study, surfaces = planted_study({})
     place = {"model": "spatial", "body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][6]}
     for error_estimates, points in ((49.0, 16), (51.0, 15)):
         surfaces["mu"].loc[place], surfaces["error"].loc[place] = 100.0, error_estimates
@@ -112,27 +93,27 @@ def test_a_value_not_known_to_half_of_itself_counts_as_missing() -> None:
 
 
 def test_a_coarse_model_is_compared_where_it_was_asked() -> None:
-    study, surfaces = _solved(errors_in({"spatial": 0.02}))
+    study, surfaces = planted_study({"spatial": 0.02})
     assert study.strides == {**dict.fromkeys(study.strides, 1), "spatial": 2}
     assert (surfaces["status"].sel(model="spatial")[0, ::2, ::2] == "ok").all()
     assert (surfaces["status"].sel(model="spatial")[0, 1::2] == "not asked").all()
     table = _table(study, surfaces)
     assert {key: entry.asked for key, entry in table.items() if entry.asked < GRID**2} == {"spatial": 16, TOTAL: 16}
-    assert _means(study, surfaces)["spatial"] == pytest.approx(0.02, rel=1e-9)
+    assert waterfall(study, surfaces, study.scenes[0], 1).total.size == pytest.approx(0.02, rel=1e-9)
     assert (table["spatial"].real, table["translational"].real) == (1.0, 0.0)
 
 
-@pytest.mark.parametrize("grid", range(2, 65))
-def test_of_two_models_the_coarser_grid_is_part_of_the_finer(grid: int) -> None:
-    study = Study((), grid, 1e-3)
-    axes = [set(study.axis(model)) for model in sorted(study.hierarchy, key=lambda model: model.most or 1000)]
-    assert all(coarse <= fine for coarse, fine in pairwise(axes))
-    for model in study.hierarchy:
-        assert min(model.most or grid, grid) / 3 < len(study.axis(model)) <= (model.most or grid)
+def test_of_two_models_the_coarser_grid_is_part_of_the_finer() -> None:
+    for grid in range(2, 65):
+        study = Study((), grid, 1e-3)
+        axes = [set(study.axis(model)) for model in sorted(study.hierarchy, key=lambda model: model.most or 1000)]
+        assert all(coarse <= fine for coarse, fine in pairwise(axes))
+        for model in study.hierarchy:
+            assert min(model.most or grid, grid) / 3 < len(study.axis(model)) <= (model.most or grid), grid
 
 
 def test_a_scene_without_a_common_point_gives_nan() -> None:
-    study, surfaces = _solved(errors_in({}))
+    study, surfaces = planted_study({})
     surfaces["mu"].loc[{"model": "exact"}] = np.nan
     table = _table(study, surfaces)
     for key in ("exact", "resolved"):
@@ -148,7 +129,7 @@ def _with_peak_at(surfaces: xr.Dataset, model: str, row: int, column: int) -> No
 
 
 def test_the_peak_moves_the_short_way_round_the_torus() -> None:
-    study, surfaces = _solved(fake_hierarchy())
+    study, surfaces = planted_study({})
     for model in study.hierarchy:
         _with_peak_at(surfaces, model.key, 0, 0)
     _with_peak_at(surfaces, "translational", GRID - 1, 1)
@@ -158,7 +139,7 @@ def test_the_peak_moves_the_short_way_round_the_torus() -> None:
 
 
 def test_of_several_equal_peaks_the_nearest_counts() -> None:
-    study, surfaces = _solved(fake_hierarchy())
+    study, surfaces = planted_study({})
     for model in study.hierarchy:
         _with_peak_at(surfaces, model.key, 1, 1)
     other = {"model": "exact", "body": 1, "alpha1": surfaces["alpha1"][5], "alpha2": surfaces["alpha2"][5]}
@@ -166,86 +147,58 @@ def test_of_several_equal_peaks_the_nearest_counts() -> None:
     assert _table(study, surfaces)["exact"].peak_moves == 0.0
 
 
-FEW = 2
-DURATION = 3.0  # s: the loading is strongest then
 SCENE = "fig3-II"  # of the paper's dry scenes the one whose four phase pairs are not all mirror images
+Solved = tuple[Study, xr.Dataset]
 
 
 @dataclass(frozen=True, eq=False)
 class Mistake:
-    """What is wrong, in which models, and the body whose mu tells best."""
+    """The model that is wrong, how, and the body whose mu tells best."""
 
-    what: str
-    models: tuple[str, ...]
-    function: str
+    model: str
     settings: Mapping[str, Any]
     body: int = 2
 
 
-def _misread(what: str, models: str, body: int = 2, **settings: float) -> Mistake:
-    return Mistake(what, tuple(models.split()), "mistakes:misread", settings, body)
+FRICTION = Mistake("small", {"friction": 1.05}, body=1)
+STIFFNESS = Mistake("regularised", {"stiffness": 0.9})
+MASS = Mistake("translational", {"mass": 1.05})  # of body 2
+COARSE = Mistake("translational", {"step": 0.05}, body=1)  # with errors claimed as asked
 
 
-FRICTION = _misread("friction 5 % too large", "small", body=1, friction=1.05)
-HEAVY = _misread("mass of body 2 5 % too large", "exact", mass=1.05)
-SMOOTH = _misread("friction 5 % too small", "resolved", friction=0.95)
-STIFFNESS = _misread("links 10 % too soft", "regularised", stiffness=0.9)
-MASS = _misread("mass of body 2 5 % too large", "translational", mass=1.05)
-COARSE = Mistake(
-    "step of 0.05 s, errors claimed as asked", ("translational",), "mistakes:coarse", {"step": 0.05}, body=1
-)
-SOFT = _misread("links 10 % too soft", "spatial", stiffness=0.9)
-
-
-@dataclass(frozen=True)
-class Solved:
-    """A model hierarchy and its surfaces."""
-
-    study: Study
-    surfaces: xr.Dataset
-
-    @staticmethod
-    def by(hierarchy: tuple[Model, ...]) -> Solved:
-        scene = load_scene(SCENE).with_values({"duration": DURATION})
-        study = Study((scene,), FEW, 1e-3, hierarchy)
-        batches = study.batches()
-        answers = [execute_batch(batch) for batch in batches]
-        assert [answer.error_message for answer in answers if answer.error_message] == []
-        return Solved(study, labeled_surfaces(study, batches, answers))
+def _by(hierarchy: Sequence[Model]) -> Solved:
+    """The loading is strongest in the first three seconds."""
+    study = Study((load_scene(SCENE).with_values({"duration": 3.0}),), 2, 1e-3, hierarchy)
+    surfaces = solved(study)
+    assert np.isfinite(surfaces["mu"]).all()
+    return study, surfaces
 
 
 @pytest.fixture(scope="module")
 def sound() -> Solved:
-    return Solved.by(MODEL_HIERARCHY)
+    return _by(MODEL_HIERARCHY)
 
 
 @cache
 def _altered(mistake: Mistake) -> xr.Dataset:
-    """The surfaces of the models that have the mistake."""
-
-    def of(model: Model) -> dict[str, str]:
-        return {} if mistake.function == "mistakes:coarse" else {"program": model.amplification}
-
-    wrong = tuple(
-        replace(model, amplification=mistake.function, settings={**model.settings, **mistake.settings, **of(model)})
-        for model in MODEL_HIERARCHY
-        if model.key in mistake.models
-    )
-    return Solved.by(wrong).surfaces
+    """The surfaces of the model that has the mistake."""
+    [model] = (model for model in MODEL_HIERARCHY if model.key == mistake.model)
+    coarse = "step" in mistake.settings
+    settings = {**model.settings, **mistake.settings} | ({} if coarse else {"program": model.amplification})
+    return _by([replace(model, amplification=f"mistakes:{'coarse' if coarse else 'misread'}", settings=settings)])[1]
 
 
 def _with(sound: Solved, mistake: Mistake) -> Solved:
-    """The sound surfaces with those of the models that have the mistake in place of their own."""
-    altered = _altered(mistake)
-    surfaces = sound.surfaces.copy(deep=True)
+    """The sound surfaces with those of the model that has the mistake in place of its own."""
+    study, surfaces = sound[0], sound[1].copy(deep=True)
     for name in ("mu", "error"):
-        surfaces[name].loc[{"model": list(mistake.models)}] = altered[name].sel(model=list(mistake.models))
-    return Solved(sound.study, surfaces)
+        surfaces[name].loc[{"model": mistake.model}] = _altered(mistake)[name].sel(model=mistake.model)
+    return study, surfaces
 
 
 def _moved(sound: Solved, wrong: Solved, body: int) -> dict[str, float]:
     """Mean change of every step that changed by more than its uncertainties allow at any phase, by the step's key."""
-    pairs = zip(*(steps(solved.study, solved.surfaces, SCENE, body) for solved in (sound, wrong)))
+    pairs = zip(*(steps(*found, SCENE, body) for found in (sound, wrong)))
     moved = {}
     for before, after in pairs:
         change = after.size - before.size
@@ -256,12 +209,12 @@ def _moved(sound: Solved, wrong: Solved, body: int) -> dict[str, float]:
 
 ALONE = {
     "first model": (FRICTION, ["exact", TOTAL]),  # wrong from the start: it shows where it leaves, and in the total
-    "exact": (HEAVY, ["exact", "resolved"]),
-    "resolved": (SMOOTH, ["resolved", "regularised"]),
+    "exact": (Mistake("exact", {"mass": 1.05}), ["exact", "resolved"]),
+    "resolved": (Mistake("resolved", {"friction": 0.95}), ["resolved", "regularised"]),
     "regularised": (STIFFNESS, ["regularised", "translational"]),
     "engine": (MASS, ["translational", "spatial"]),
     "coarse step": (COARSE, ["translational", "spatial"]),
-    "last model": (SOFT, ["spatial", TOTAL]),  # it never leaves
+    "last model": (Mistake("spatial", {"stiffness": 0.9}), ["spatial", TOTAL]),  # it never leaves
 }
 
 
@@ -271,10 +224,10 @@ def test_a_mistake_moves_the_steps_of_its_model_and_no_other(
 ) -> None:
     wrong = _with(sound, mistake)
     moved = _moved(sound, wrong, mistake.body)
-    if mistake.models[0] == "small":  # the scale of every step moves with it, by less than a hundredth of each
+    if mistake.model == "small":  # the scale of every step moves with it, by less than a hundredth of each
         moved = {key: change for key, change in moved.items() if abs(change) > 1e-3}
-    assert list(moved) == blamed, f"{mistake.what}: {moved}"
-    assert closure(steps(wrong.study, wrong.surfaces, SCENE, mistake.body)) < 1e-14
+    assert list(moved) == blamed, moved
+    assert closure(steps(*wrong, SCENE, mistake.body)) < 1e-14
     if TOTAL not in blamed:
         supplied, left = moved.values()
         assert left == pytest.approx(-supplied, rel=1e-9), "it cancels in the total"
@@ -283,9 +236,8 @@ def test_a_mistake_moves_the_steps_of_its_model_and_no_other(
 
 @pytest.mark.parametrize("mistake", [STIFFNESS, MASS, COARSE], ids=["stiffness", "mass", "coarse step"])
 def test_a_mistake_beside_the_like_for_like_step_is_found(sound: Solved, mistake: Mistake) -> None:
-    def broken(solved: Solved) -> list[str]:
-        rows = differences(solved.study, solved.surfaces)
-        limits = checked_limits(solved.study, solved.surfaces, rows, unanswered(solved.study, solved.surfaces))
+    def broken(found: Solved) -> list[str]:
+        limits = checked_limits(*found, differences(*found), unanswered(*found))
         assert [limit.key for limit in limits] == ["median", "maximum", "ratio", "closure", "failed"]
         return [line for limit in limits for line in limit.broken]
 
