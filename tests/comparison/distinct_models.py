@@ -146,7 +146,7 @@ def distinct_motions(study: Study, surfaces: xr.Dataset) -> list[StoredMotion]:
 
     found = []
     for number, motion in enumerate(known_motions(study, surfaces)):
-        factor, demands, spectra = 1.0 + 0.0171 * number, motion.demands, motion.spectra
+        factor, demands, spectra = 1.0 + 0.0171 * number + 1e-3 * number**2, motion.demands, motion.spectra
         assert demands is not None
         assert spectra is not None
         values = {name: scaled(value, factor) for name, value in vars(demands).items() if name != "status"}

@@ -17,7 +17,7 @@ DOT = '<svg xmlns="http://www.w3.org/2000/svg" width="8" height="2"/>'
 
 
 def figures_are_told(patch: pytest.MonkeyPatch) -> dict[str, list[str]]:
-    """Figures are saved as one dot; returns the lines of each by its name, filled as they are saved; those without a name are "maps"."""
+    """Figures are saved as one dot; returns the lines of each by its name, or "maps", filled as they are saved."""
     told: dict[str, list[str]] = {}
     surface = Axes3D.plot_surface
 

@@ -63,20 +63,15 @@ def test_bars_and_consoles_print_brackets(capsys: pytest.CaptureFixture[str]) ->
     assert "x[/b]" in shown.get()
 
 
-def _odd(scene: Scene) -> Scene:
-    return scene.with_values({"title": r"x $\frac{$ y"})
-
-
 def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
-    scene = _odd(load_scene("fig3-I"))
+    scene = load_scene("fig3-I").with_values({"title": r"x $\frac{$ y"})
     nothing = (tuple([0.01] * 2),) * 3
     cells = [AssumptionCell(scene.name, variation, nothing, nothing, ("ok",) * 3) for variation in FEW]
     draw_assumptions(tmp_path / "assumptions.png", scene, cells)
     axes = {"title": "a$b$", "ticks": [[0.0, r"$\frac{$"]]}, {"title": "$"}
     odd = panel("$c$", "", *axes, [{"name": "$d", "x": [0.0], "y": [1.0]}])
     draw_panels(tmp_path / "family.png", scene.title, [odd])
-    assert (tmp_path / "assumptions.png").stat().st_size > 0
-    assert (tmp_path / "family.png").stat().st_size > 0
+    assert all((tmp_path / f"{name}.png").stat().st_size > 0 for name in ("assumptions", "family"))
 
 
 def test_two_scenes_of_one_name_are_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:
@@ -109,9 +104,11 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
 def test_a_page_of_records_says_nothing_of_phases(command: Callable[..., Run]) -> None:
     run = command("synthetic-pair")
     page = page_of(run.report)
-    top = page[page.index("<h1>") : page.index("<nav")]
+    top = page[page.index("<h1>") : page.index("</nav")]
     assert "initial phases" not in top
     assert "of every body under a recorded motion" in top
+    assert "Values and motions under the records" in top
+    assert "1 scene, one value under each recorded motion" in (run.report / "summary.md").read_text(encoding="utf-8")
     assert "48 ×" not in (run.report / "summary.md").read_text(encoding="utf-8")
     assert "over the phases" not in run.out
     mixed = command("synthetic-pair", "fig3-I", "--grid", "2")
@@ -124,47 +121,29 @@ NAN = float("nan")
 
 
 @pytest.mark.parametrize(
-    ("text", "written"),
+    ("write", "value", "written"),
     [
-        ("exact equations, v_reg", "exact equations, v<sub>reg</sub>"),
-        ("k^x_21 Delta", "k<sup>x</sup><sub>21</sub> Δ"),
-        ("12 n E J / l^3", "12 n E J / l<sup>3</sup>"),
-        ("F_F = -2 mu lambda_1 sign(lambda_1) rho tau", "F<sub>F</sub> = -2 μ λ<sub>1</sub> sign(λ<sub>1</sub>) ρ τ"),
-        ("dPhi_1/dz_i", "dΦ<sub>1</sub>/dz<sub>i</sub>"),
-        ("the maximum of x < y", "the maximum of x &lt; y"),
+        (symbols, "exact equations, v_reg", "exact equations, v<sub>reg</sub>"),
+        (symbols, "k^x_21 Delta", "k<sup>x</sup><sub>21</sub> Δ"),
+        (symbols, "12 n E J / l^3", "12 n E J / l<sup>3</sup>"),
+        (symbols, "F_F = -2 mu lambda_1 sign(lambda_1)", "F<sub>F</sub> = -2 μ λ<sub>1</sub> sign(λ<sub>1</sub>)"),
+        (symbols, "dPhi_1/dz_i", "dΦ<sub>1</sub>/dz<sub>i</sub>"),
+        (symbols, "the maximum of x < y", "the maximum of x &lt; y"),
+        *((percent, *pair) for pair in ((1.0, "100 %"), (0.123, "12 %"), (0.0123, "1.2 %"), (1.31e-4, "0.013 %"))),
+        *((percent, *pair) for pair in ((0.0, "0 %"), (5e-9, "< 0.0001 %"), (-5e-9, "< 0.0001 %"), (NAN, "none"))),
+        (percent, 1e-6, "0.0001 %"),
+        *((signed, *pair) for pair in ((0.123, "+12 %"), (-0.0123, "−1.2 %"), (0.0, "0 %"), (-5e-9, "< 0.0001 %"))),
+        *((scientific, *pair) for pair in ((1.234e-5, "1.2e-05"), (NAN, "none"))),
+        *((significant, *pair) for pair in ((0.24849020288, "0.2484902"), (NAN, ""))),
+        *((degrees, *pair) for pair in ((3.14159265, "180°"), (NAN, "none"))),
+        (mathtext, "exact equations, v_reg", r"exact equations, $v_{\mathrm{reg}}$"),
+        (mathtext, "effects on mu_1 over rho", r"effects on $μ_{\mathrm{1}}$ over ρ"),
+        (mathtext, "effects on μ_1 over ρ", r"effects on $μ_{\mathrm{1}}$ over ρ"),
+        (mathtext, "a $", r"a \$"),
+        (verbatim, "5 $ a_b", r"5 \$ a_b"),
     ],
 )
-def test_names_are_written_with_indices_and_greek_letters(text: str, written: str) -> None:
-    assert symbols(text) == written
-
-
-def test_shares_and_sizes_keep_the_digits_that_matter() -> None:
-    assert [percent(value) for value in (1.0, 0.123, 0.0123, 1.31e-4, 0.0)] == [
-        "100 %",
-        "12 %",
-        "1.2 %",
-        "0.013 %",
-        "0 %",
-    ]
-    assert scientific(1.234e-5) == "1.2e-05"
-    assert significant(0.24849020288) == "0.2484902"
-    assert degrees(3.14159265) == "180°"
-
-
-def test_a_share_below_rounding_has_no_digits() -> None:
-    assert (percent(5e-9), percent(-5e-9), percent(1e-6)) == ("< 0.0001 %", "< 0.0001 %", "0.0001 %")
-    assert [signed(value) for value in (0.123, -0.0123, 0.0, -5e-9)] == ["+12 %", "−1.2 %", "0 %", "< 0.0001 %"]
-
-
-def test_figures_write_indices_and_leave_dollars_alone() -> None:
-    assert mathtext("exact equations, v_reg") == r"exact equations, $v_{\mathrm{reg}}$"
-    assert (
-        mathtext("effects on mu_1 over rho")
-        == mathtext("effects on μ_1 over ρ")
-        == r"effects on $μ_{\mathrm{1}}$ over ρ"
-    )
-    assert (verbatim("5 $ a_b"), mathtext("a $")) == (r"5 \$ a_b", r"a \$")
-
-
-def test_what_is_not_known_is_said_in_words() -> None:
-    assert (percent(NAN), scientific(NAN), degrees(NAN), significant(NAN)) == ("none", "none", "none", "")
+def test_names_and_numbers_are_written_as_the_house_writes_them(
+    write: Callable[..., str], value: object, written: str
+) -> None:
+    assert write(value) == written

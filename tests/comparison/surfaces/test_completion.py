@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from scipy.stats import binom
 from studies import solved
 
-from comparison.report.page_data import _completed
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, TRANSLATIONAL, Model, never
 from comparison.study.study import Study
@@ -24,7 +23,6 @@ from comparison.surfaces.completion import (
     HeldOut,
     completions,
     held_out_places,
-    largest_share,
     with_completed,
 )
 from comparison.surfaces.surfaces import labeled_surfaces
@@ -120,32 +118,31 @@ def test_a_ridge_between_coarse_phases_is_completed(blank: tuple[Study, xr.Datas
 
 
 def test_a_difference_that_is_not_smooth_is_refused(blank: tuple[Study, xr.Dataset]) -> None:
-    rough = 0.1 * np.random.default_rng(0).uniform(-1.0, 1.0, (FINE, FINE))
-    surface = completed(blank, ridge(*ALPHA), rough)
-    assert not surface.accepted
-    assert not surface.difference_accepted
+    rough = np.random.default_rng(0).uniform(-1.0, 1.0, (FINE, FINE))
+    surface = completed(blank, ridge(*ALPHA), 0.1 * rough)
+    assert (surface.accepted, surface.difference_accepted) == (False, False)
     assert "misses held-out phase pairs" in surface.reason
     assert np.isnan(surface.mu).all(), "nothing that could be drawn by mistake"
+    surface = completed(blank, ridge(*ALPHA), 5e-4 * rough, first=1.0)
+    assert (surface.accepted, surface.difference_accepted) == (True, False), "its values may be drawn"
 
 
-def test_a_surface_may_be_drawn_where_its_difference_may_not(blank: tuple[Study, xr.Dataset]) -> None:
-    rough = 5e-4 * np.random.default_rng(0).uniform(-1.0, 1.0, (FINE, FINE))
-    surface = completed(blank, ridge(*ALPHA), rough, first=1.0)
-    assert (surface.accepted, surface.difference_accepted) == (True, False)
-    on_the_page = _completed(surface)
-    assert on_the_page is not None
-    assert not on_the_page["difference"]
-
-
-def test_the_spatial_model_is_never_a_surface_on_few_phases(blank: tuple[Study, xr.Dataset]) -> None:
+def test_a_spatial_model_on_few_phases_is_no_surface(blank: tuple[Study, xr.Dataset]) -> None:
     study, surfaces = blank
     listed = [surface for surface in completions(study, surfaces, study.scenes[0], {}) if surface.model == "spatial"]
     assert [(surface.accepted, surface.computed) for surface in listed] == [(False, 16)] * 2
     assert "16 values" not in listed[0].reason
-    small = Study(study.scenes, 4, 1e-3, tuple(model for model in study.hierarchy))
-    whole = solved(small)
-    listed = completions(small, whole, small.scenes[0], {})
-    assert {surface.model for surface in listed} == set(), "fake models do not say that they are spatial"
+    small = Study(study.scenes, 4, 1e-3, study.hierarchy)
+    assert completions(small, solved(small), small.scenes[0], {}) == [], "fake models do not say that they are spatial"
+    for most, reason in ((8, "8 × 8 phases are too few for a surface"), (16, "its supports stop one by one")):
+        hierarchy = [
+            replace(model, settings={"model": "spatial"}, most=most) if model.key == "spatial" else model
+            for model in study.hierarchy
+        ]
+        spatial = replace(study, hierarchy=hierarchy)
+        found = completions(spatial, surfaces, study.scenes[0], {})
+        assert [each.reason.split(":")[0] for each in found if each.model == "spatial"] == [reason] * 2
+        assert {task.argument[1].key for task in CompletedSurfaces().tasks(spatial)} == {"translational"}
 
 
 def test_points_without_a_value_leave_the_rest_completed(blank: tuple[Study, xr.Dataset]) -> None:
@@ -160,12 +157,11 @@ def test_held_out_phases_without_a_value_weaken_the_statement(blank: tuple[Study
     base, difference = ridge(*ALPHA), gap(*ALPHA)
     (place,) = known = unused(blank[0], base + difference)
     few = known[place].mu.copy()
-    few[:20] = np.nan
-    surface = completed(blank, base, difference, held_out={place: HeldOut(few, 0.0 * few)})
-    assert (surface.accepted, surface.held_out, surface.share) == (True, 39, largest_share(39))
-    few[:40] = np.nan
-    surface = completed(blank, base, difference, held_out={place: HeldOut(few, 0.0 * few)})
-    assert surface.reason == "19 held-out phase pairs with a value are too few"
+    for count, reason in ((30, ""), (31, "28 held-out phase pairs with a value are too few")):
+        few[:count] = np.nan
+        surface = completed(blank, base, difference, held_out={place: HeldOut(few, 0.0 * few)})
+        assert surface.reason == reason, "29 say that at most 10 % are off by more, with 95 % confidence"
+        assert surface.share == pytest.approx(1.0 if reason else 1.0 - 0.05 ** (1 / 29))
     assert not completed(blank, base, difference, held_out={}).accepted, "nor without any"
 
 
@@ -223,13 +219,12 @@ def test_completed_surfaces_have_their_certificate(blank: tuple[Study, xr.Datase
     assert np.isfinite(both["completed"].sel(model="translational")).all()
     assert np.isnan(both["completed"].sel(model=["small", "spatial"])).all()
     assert both["completed"].attrs["confidence"] == 0.95
-    certificate = ["completed_error", "completed_model_error", "completed_share", "completed_held_out"]
+    certificate = ["error", "model_error", "share", "held_out"]
     for name in certificate:
-        assert both[name].dims == ("scene", "model", "body")
-        assert np.isfinite(both[name].sel(model="translational")).all()
-        assert np.isnan(both[name].sel(model="small")).all()
-    assert (both["completed_held_out"].sel(model="translational") == 59).all()
-    xr.testing.assert_identical(both.drop_vars(["completed", *certificate]), surfaces)
+        values = both[f"completed_{name}"].sel(model="translational").values.tolist()
+        assert values == [[getattr(each, name) for each in listed if each.model == "translational"]]
+        assert np.isnan(both[f"completed_{name}"].sel(model="small")).all()
+    xr.testing.assert_identical(both.drop_vars(["completed", *(f"completed_{name}" for name in certificate)]), surfaces)
 
 
 # ---- the statement itself: at most a share of the phase pairs is off by more than the stated error
