@@ -46,13 +46,6 @@ def failing_point(scene: Scene, phases: NDArray[np.float64], tolerance: float, f
     return replace(answer, mu=mu, status=status)
 
 
-def patchy(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
-    """One point has no value, and those at alpha1 = 0 miss the tolerance."""
-    answer = failing_point(scene, phases, tolerance)
-    answer.status[phases[:, 0] == 0.0] = Outcome.TOLERANCE_NOT_MET.value
-    return answer
-
-
 def silent_nan(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
     """Calls a point without a number ok."""
     return replace(failing_point(scene, phases, tolerance), status=np.full(len(phases), "ok"))

@@ -59,19 +59,13 @@ def _until_colored(page: Page, what: str) -> None:
         page.wait_for_timeout(20)
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "texts"),
-    [
+def test_ticks_tell_as_many_digits_as_their_distance_asks_for(visit: Visit) -> None:
+    for low, high, texts in (
         (6.83e5, 6.89e5, ["6.84·10⁵", "6.86·10⁵", "6.88·10⁵"]),
         (-3e-4, 1e-4, ["−2·10⁻⁴", "0"]),
         (0.0, 100.0, ["0", "50", "100"]),
-    ],
-)
-def test_ticks_tell_as_many_digits_as_their_distance_asks_for(
-    low: float, high: float, texts: list[str], visit: Visit
-) -> None:
-    ticks = visit.page.evaluate(f"ticksOf({{}}, [{low}, {high}], 3)")
-    assert [text for _, text in ticks] == texts
+    ):
+        assert [text for _, text in visit.page.evaluate(f"ticksOf({{}}, [{low}, {high}], 3)")] == texts
 
 
 @pytest.mark.parametrize("width", [PHONE, DESKTOP])
@@ -99,22 +93,18 @@ def test_axe_finds_nothing_serious(scheme: Scheme, browser: Browser, finished: P
         page.close()
 
 
-def test_the_first_surface_of_four_scenes_begins_above_1600_px(visit: Visit) -> None:
-    """The page here has two scenes: two more of their height would still leave room."""
-    top = visit.page.evaluate("document.querySelector('canvas.surface').getBoundingClientRect().top + scrollY")
-    heights = visit.page.locator("article.scene").evaluate_all("all => all.map(a => a.getBoundingClientRect().height)")
+def test_every_body_has_its_sentence_and_its_bars_above_the_surfaces(visit: Visit) -> None:
+    """The page here has two scenes: two more of their height would still leave room above 1600 px."""
+    page = visit.page
+    top = page.evaluate("document.querySelector('canvas.surface').getBoundingClientRect().top + scrollY")
+    heights = page.locator("article.scene").evaluate_all("all => all.map(a => a.getBoundingClientRect().height)")
     assert len(heights) == 2
     assert top + sum(heights) < 1600
-
-
-def test_every_body_has_its_sentence_and_its_bars(visit: Visit) -> None:
-    page = visit.page
     assert page.locator(".headline").count() == 4, "two bodies in each of two scenes"
-    assert page.locator("[data-waterfall=mean]:visible").count() == 4
-    assert page.locator("[data-waterfall=largest]:visible").count() == 0
-    page.get_by_role("button", name="at the largest difference").click()
-    assert page.locator("[data-waterfall=largest]:visible").count() == 4
-    page.get_by_role("button", name="mean over the phases").click()
+    for name, shown, hidden in (("at the largest difference", "largest", "mean"), ("mean over", "mean", "largest")):
+        page.get_by_role("button", name=name).click()
+        assert page.locator(f"[data-waterfall={shown}]:visible").count() == 4
+        assert page.locator(f"[data-waterfall={hidden}]:visible").count() == 0
 
 
 def test_every_surface_is_drawn_in_three_dimensions_and_as_a_map(visit: Visit) -> None:
@@ -128,17 +118,14 @@ def test_every_surface_is_drawn_in_three_dimensions_and_as_a_map(visit: Visit) -
     page.locator("[data-part=scene]").select_option(index=0)
 
 
-def test_paper_and_engine_have_one_scale_of_colors(visit: Visit) -> None:
+def test_two_surfaces_have_one_scale_of_colors_and_name_the_grid_of_their_largest(visit: Visit) -> None:
+    """The smooth fake model: mu_1 = 3 + cos a1 + sin a2 is at most 5, at (0, 90 degrees); nothing was searched."""
     first, second, difference = visit.page.locator("div.scale").all()
     assert first.inner_text() == second.inner_text()
     assert "%" in difference.inner_text()
-
-
-def test_a_largest_value_names_its_grid_on_the_page(visit: Visit) -> None:
-    """The smooth fake model: mu_1 = 3 + cos a1 + sin a2 is at most 5, at (0, 90 degrees); nothing was searched."""
-    notes = visit.page.locator("#viewer figure .notes").first
-    assert "largest of 4 × 4 phases: 5 at (0°, 90°) ▾" in notes.inner_text()
-    assert "largest over all phases: not searched" in notes.inner_text()
+    notes = visit.page.locator("#viewer figure .notes").first.inner_text()
+    assert "largest of 4 × 4 phases: 5 at (0°, 90°) ▾" in notes
+    assert "largest over all phases: not searched" in notes
 
 
 def test_a_spatial_model_on_few_phases_is_drawn_as_points(visit: Visit) -> None:
@@ -249,27 +236,18 @@ def test_keys_alone_reach_motions_tips_and_tables(visit: Visit) -> None:
     assert page.evaluate(column) == rising[::-1]
 
 
-def test_a_table_is_copied_as_csv(visit: Visit) -> None:
-    page = visit.page
-    page.evaluate("window.copied = null; copyText = async text => { window.copied = text; }")
-    page.evaluate("document.getElementById('differences').open = true")
-    page.locator("#differences button.copy").first.click()
-    until(page, "window.copied")
-    lines = page.evaluate("window.copied").strip().split("\n")
-    assert lines[0].split(",")[:3] == ["scene", "body", "difference"]
-    assert len(lines) == 1 + page.locator("#differences tbody").first.locator("tr").count()
-    assert page.locator("#differences [role=status]").first.inner_text() == f"{len(lines) - 1} rows copied"
-
-
-def test_the_copy_reaches_the_clipboard(browser: Browser, finished: Path) -> None:
+def test_a_table_is_copied_to_the_clipboard_as_csv(browser: Browser, finished: Path) -> None:
     context = browser.new_context(permissions=["clipboard-read", "clipboard-write"])
     page = context.new_page()
     page.goto((finished / "index.html").as_uri())
     page.wait_for_selector("html[data-ready]", state="attached")
-    page.evaluate("document.getElementById('outcomes').open = true")
-    page.locator("#outcomes button.copy").first.click()
-    until(page, "document.querySelector('#outcomes [role=status]')?.textContent")
-    assert page.evaluate("navigator.clipboard.readText()").startswith("scene,model,")
+    page.evaluate("document.getElementById('differences').open = true")
+    page.locator("#differences button.copy").first.click()
+    until(page, "document.querySelector('#differences [role=status]')?.textContent")
+    lines = page.evaluate("navigator.clipboard.readText()").strip().split("\n")
+    assert lines[0].split(",")[:3] == ["scene", "body", "difference"]
+    assert len(lines) == 1 + page.locator("#differences tbody").first.locator("tr").count()
+    assert page.locator("#differences [role=status]").first.inner_text() == f"{len(lines) - 1} rows copied"
     context.close()
 
 
