@@ -12,54 +12,38 @@ from places import ROOT
 from report_texts import page_of, summary_of
 
 FOLDER = {
-    "__init__.py": '"""Ratio of the amplification factors of body 2 and the platform."""\n',
-    "analysis.py": '''from comparison.result_types import Number, result
-from comparison.runner.analysis import Analysis
+    "__init__.py": "",
+    "feature.py": '''"""Ratio of the amplification factors of body 2 and the platform."""
+
+from comparison.report.section import Feature, Section
+from comparison.result_types import Number, result
 
 
 @result
 class Ratio:
-    """mu_2 over mu_1 of one scene and model."""
+    """mu_2 over mu_1 of one model."""
 
-    scene: str
-    """name of the scene"""
     model: str
     """key of the model"""
     largest: Number
     """largest ratio over the phase pairs"""
 
 
-class Ratios(Analysis):
-    key, stage, level = "ratio", "ratio", 1
+def ratios(findings, scenes):
+    mu = findings.surfaces["mu"].isel(scene=0)
+    largest = (mu.sel(body=2) / mu.sel(body=1)).max(["alpha1", "alpha2"])
+    return [Ratio(str(key), float(largest.sel(model=key))) for key in mu["model"].values]
 
-    def tasks(self, study, surfaces=None):
-        return []
-
-    def collect(self, study, surfaces, results):
-        mu = surfaces["mu"]
-        largest = (mu.sel(body=2) / mu.sel(body=1)).max(["alpha1", "alpha2"])
-        names = [(scene.name, model.key) for scene in study.scenes for model in study.hierarchy]
-        return [Ratio(*name, float(largest.sel(scene=name[0], model=name[1]))) for name in names]
-''',
-    "feature.py": """from comparison.analyses.ratio.analysis import Ratio, Ratios
-from comparison.report.section import Feature, Section
 
 def _draw(figures, report):
     (figures / "ratio.txt").write_text(str(len(report.results.of("ratio"))))
 
 
 FEATURE = Feature(
-    "ratio",
-    list[Ratio],
-    "ratio of the two amplification factors",
-    analysis=Ratios(),
-    section=Section("Ratio of the factors", draw=_draw),
+    "ratio", list[Ratio], "ratio of two factors", summary=ratios, section=Section("Ratio of the factors", draw=_draw)
 )
-""",
-    "section.html.j2": """{% for row in results.ratio %}
-<p class="ratio">{{ row.model }} {{ row.largest }}</p>
-{% endfor %}
-""",
+''',
+    "section.html.j2": '{% for row in results.ratio %}<p class="ratio">{{ row.largest }}</p>{% endfor %}',
 }
 
 

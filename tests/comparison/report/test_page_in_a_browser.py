@@ -13,7 +13,7 @@ from browsers import CHROMIUM, DESKTOP, FLAGS, LAPTOP, OVERLAPS, PATIENCE, PHONE
 from fake_models import fake_hierarchy, known_spectra, silenced
 from known_analyses import analyses_are
 from matplotlib.image import imread
-from playwright.sync_api import Browser, Locator, Page, sync_playwright
+from playwright.sync_api import Browser, Locator, sync_playwright
 from runs import quick_figures
 
 import comparison.run
@@ -49,14 +49,6 @@ def _colored(canvas: Locator) -> bool:
     canvas.scroll_into_view_if_needed()
     picture = np.asarray(imread(BytesIO(canvas.screenshot())))[..., :3]
     return bool((np.ptp(picture, axis=2) > 0.15).mean() > 0.003)
-
-
-def _until_colored(page: Page, what: str) -> None:
-    page.evaluate("() => new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
-    end = time.monotonic() + PATIENCE / 1000
-    while not all(_colored(canvas) for canvas in page.locator("canvas.surface").all()):
-        assert time.monotonic() < end, what
-        page.wait_for_timeout(20)
 
 
 def test_ticks_tell_as_many_digits_as_their_distance_asks_for(visit: Visit) -> None:
@@ -114,7 +106,11 @@ def test_every_surface_is_drawn_in_three_dimensions_and_as_a_map(visit: Visit) -
         page.locator("[data-part=body]").select_option(str(body))
         for view in ("map", "3-D"):
             page.get_by_role("button", name=view).click()
-            _until_colored(page, f"scene {scene}, body {body}, {view}")
+            page.evaluate("() => new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)))")
+            end = time.monotonic() + PATIENCE / 1000
+            while not all(map(_colored, page.locator("canvas.surface").all())):
+                assert time.monotonic() < end, (scene, body, view)
+                page.wait_for_timeout(20)
     page.locator("[data-part=scene]").select_option(index=0)
 
 

@@ -125,17 +125,14 @@ def test_a_missing_number_is_null_in_one_way() -> None:
     assert math.isnan(form.validate_python(written).size)
 
 
-SCRIPT = ROOT / "docs/compare_studies.py"
-
-
-def compare(before: Path, after: Path) -> tuple[int, str]:
-    """Exit code and output of the script."""
-    done = subprocess.run([sys.executable, SCRIPT, before, after], capture_output=True, text=True, check=False)
-    return done.returncode, done.stdout
-
-
 @pytest.mark.long
-def test_a_changed_bit_and_a_changed_number_are_found(finished: Path, tmp_path: Path) -> None:
+def test_the_script_finds_a_changed_bit_and_a_changed_number(finished: Path, tmp_path: Path) -> None:
+    def compare(after: Path) -> tuple[int, list[str]]:
+        command = [sys.executable, ROOT / "docs/compare_studies.py", finished, after]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        return done.returncode, done.stdout.splitlines()
+
+    assert compare(tmp_path)[0] == 2, "a folder without a report"
     other = tmp_path / "other"
     shutil.copytree(finished, other)
     summary = summary_of(other)
@@ -143,8 +140,8 @@ def test_a_changed_bit_and_a_changed_number_are_found(finished: Path, tmp_path: 
     for model in summary["scenes"][0]["models"].values():
         model["cost"] += 1.0
     (other / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
-    code, out = compare(finished, other)
-    assert (code, out.splitlines()[-1].endswith(": 0 differences.")) == (0, True), out
+    code, lines = compare(other)
+    assert (code, lines[-1].endswith(": 0 differences.")) == (0, True), lines
 
     summary["scenes"][0]["differences"][0]["median"] += 1e-15
     (other / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
@@ -152,14 +149,7 @@ def test_a_changed_bit_and_a_changed_number_are_found(finished: Path, tmp_path: 
     mu = surfaces["mu"].values
     mu.flat[0] = np.nextafter(mu.flat[0], np.inf)
     surfaces.to_netcdf(other / "surfaces.nc", engine="h5netcdf")
-    code, out = compare(finished, other)
-    assert code == 1
-    lines = out.splitlines()
-    assert lines[0].startswith("surfaces.nc: mu: 1 of "), out
-    assert lines[1].startswith("summary.json: scenes[0].differences[0].median: "), out
-    assert len(lines) == 3, out
-
-
-@pytest.mark.long
-def test_a_folder_without_a_report_is_refused(finished: Path, tmp_path: Path) -> None:
-    assert compare(finished, tmp_path)[0] == 2
+    code, lines = compare(other)
+    assert (code, len(lines)) == (1, 3), lines
+    assert lines[0].startswith("surfaces.nc: mu: 1 of "), lines
+    assert lines[1].startswith("summary.json: scenes[0].differences[0].median: "), lines

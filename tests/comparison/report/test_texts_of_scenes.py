@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy
-from places import SCENES
+from places import scene_text
 from report_texts import page_of
 from rich.console import Console
 from runs import RUN, Run
@@ -28,10 +28,8 @@ from reference.problem import Scene, load_scene
 
 
 def _written(folder: Path, name: str, title: str = "plain", friction: str = "0.1") -> str:
-    lines = (SCENES / "fig3-I.toml").read_text(encoding="utf-8").splitlines()
-    lines[0] = f"title = '{title}'"
-    text = "\n".join(lines).replace("friction = 0.1", f"friction = {friction}")
-    (folder / name).write_text(text, encoding="utf-8")
+    _, rest = scene_text("fig3-I", ("friction = 0.1", f"friction = {friction}")).split("\n", 1)
+    (folder / name).write_text(f"title = '{title}'\n{rest}", encoding="utf-8")
     return str(folder / name)
 
 

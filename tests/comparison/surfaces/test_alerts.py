@@ -71,7 +71,7 @@ def test_a_motion_close_to_the_rim_is_seen():
 
 def test_the_share_is_stored_and_joined(tmp_path: Path) -> None:
     scene = load_scene("fig3-I").with_values({"isolator.friction": 0.0, "duration": 2.0}).with_amplitude(5.0)
-    study = Study((scene,), 2, 1e-3, MODEL_HIERARCHY[:1])
+    study = Study((scene,), 2, 1e-3, MODEL_HIERARCHY[:1], full=True)
     [task] = surface_tasks(study)
     answer = execute_batch(task.argument)
     TaskResults(Cache(tmp_path)).put(task, TaskResult(answer, 0.0))

@@ -22,7 +22,6 @@ from comparison.surfaces.budget import TOTAL, BudgetEntry, budget, closure, step
 from comparison.surfaces.differences import differences
 from comparison.surfaces.steps import RESOLVED
 from comparison.surfaces.unanswered import unanswered
-from comparison.surfaces.waterfall import waterfall
 from reference.problem import builtin_scenes, load_scene
 
 
@@ -87,20 +86,9 @@ def test_a_point_without_a_value_is_left_out_of_its_steps() -> None:
 def test_a_value_not_known_to_half_of_itself_counts_as_missing() -> None:
     study, surfaces = planted_study({})
     place = {"model": "spatial", "body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][6]}
-    for error_estimates, points in ((49.0, 16), (51.0, 15)):
-        surfaces["mu"].loc[place], surfaces["error"].loc[place] = 100.0, error_estimates
+    for error, points in ((49.0, 16), (51.0, 15)):
+        surfaces["mu"].loc[place], surfaces["error"].loc[place] = 100.0, error
         assert _table(study, surfaces)["spatial"].points == points
-
-
-def test_a_coarse_model_is_compared_where_it_was_asked() -> None:
-    study, surfaces = planted_study({"spatial": 0.02})
-    assert study.strides == {**dict.fromkeys(study.strides, 1), "spatial": 2}
-    assert (surfaces["status"].sel(model="spatial")[0, ::2, ::2] == "ok").all()
-    assert (surfaces["status"].sel(model="spatial")[0, 1::2] == "not asked").all()
-    table = _table(study, surfaces)
-    assert {key: entry.asked for key, entry in table.items() if entry.asked < GRID**2} == {"spatial": 16, TOTAL: 16}
-    assert waterfall(study, surfaces, study.scenes[0], 1).total.size == pytest.approx(0.02, rel=1e-9)
-    assert (table["spatial"].real, table["translational"].real) == (1.0, 0.0)
 
 
 def test_of_two_models_the_coarser_grid_is_part_of_the_finer() -> None:
@@ -128,23 +116,17 @@ def _with_peak_at(surfaces: xr.Dataset, model: str, row: int, column: int) -> No
     surfaces["mu"].loc[{"model": model, "body": 1}] = mu
 
 
-def test_the_peak_moves_the_short_way_round_the_torus() -> None:
+def test_the_peak_moves_the_short_way_round_the_torus_to_the_nearest_of_equals() -> None:
     study, surfaces = planted_study({})
     for model in study.hierarchy:
         _with_peak_at(surfaces, model.key, 0, 0)
     _with_peak_at(surfaces, "translational", GRID - 1, 1)
-    entry = _table(study, surfaces)["translational"]
-    assert entry.peak_moves == pytest.approx(np.sqrt(2.0) * 2.0 * np.pi / GRID, rel=1e-12)
-    assert entry.correlation == pytest.approx(-1.0 / (GRID**2 - 1), rel=1e-9)  # two single peaks apart
-
-
-def test_of_several_equal_peaks_the_nearest_counts() -> None:
-    study, surfaces = planted_study({})
-    for model in study.hierarchy:
-        _with_peak_at(surfaces, model.key, 1, 1)
     other = {"model": "exact", "body": 1, "alpha1": surfaces["alpha1"][5], "alpha2": surfaces["alpha2"][5]}
-    surfaces["mu"].loc[other] = 2.0 * (1.0 + 1e-7)  # higher by less than the error error_estimates
-    assert _table(study, surfaces)["exact"].peak_moves == 0.0
+    surfaces["mu"].loc[other] = 2.0 * (1.0 + 1e-7)  # higher by less than the errors of both
+    table = _table(study, surfaces)
+    assert table["translational"].peak_moves == pytest.approx(np.sqrt(2.0) * 2.0 * np.pi / GRID, rel=1e-12)
+    assert table["translational"].correlation == pytest.approx(-1.0 / (GRID**2 - 1), rel=1e-9)  # single peaks apart
+    assert table["exact"].peak_moves == 0.0
 
 
 SCENE = "fig3-II"  # of the paper's dry scenes the one whose four phase pairs are not all mirror images

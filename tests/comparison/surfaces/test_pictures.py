@@ -34,18 +34,16 @@ def _solved(gap: float = 0.01, grid: int = 4) -> tuple[Study, xr.Dataset]:
     return study, solved(study)
 
 
-@pytest.fixture
-def quick(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture(autouse=True)
+def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     quick_figures(monkeypatch)
 
 
-@pytest.mark.usefixtures("quick")
 def test_what_no_worker_draws_is_drawn_at_home() -> None:
     study, surfaces = _solved()
     assert collected(Pictures(), study, surfaces, lambda jobs: Broken()) == collected(Pictures(), study, surfaces)
 
 
-@pytest.mark.usefixtures("quick")
 def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None:
     def drawn_anew(study: Study, surfaces: xr.Dataset) -> int:
         results = TaskResults(Cache(tmp_path))
