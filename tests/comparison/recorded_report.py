@@ -41,10 +41,14 @@ from reference.measures.peak_demands import unit_of
 
 RECORD = Path(__file__).parent / "report" / "recorded_report.txt"
 HIDDEN = re.compile(r'<(script|style)\b.*?</\1>|<th scope="row">phase-resonance.*?</table>', re.DOTALL)
-CHANGING = re.compile(  # from run to run and from machine to machine
-    r"[\"'.{ ](command|began|wall_seconds|processor_seconds|seconds|provenance)\b: [^,}]*|\{command .*|wall time|"
-    r"processor time in s|tasks, about|\d{4}-\d\d-\d\dT|\bnumpy|\bLinux|digest"
-)
+CHANGING = {  # from run to run and from machine to machine
+    r"\d{4}-\d\d-\d\dT[\d:+]+": "TIME",
+    r"[\d.]+(?= s of (?:wall|processor) time)": "#",
+    r"(?<=TIME; ).*numba \S+": "VERSIONS",
+    r"(?<=\W)[0-9a-f]{16}(?=\W)": "HASH",
+    r"^(index.html: <p>Beside the surfaces, processor time).*": r"\1",
+    r"^(?:summary.run|.*numpy|.*tasks, about).*": "",
+}
 BLOCKS = re.compile(r"\s*(?=<(?:tr|p|h\d|li|summary|figure|article|section|details|nav|header|caption|option|div)\b)")
 PLOT = re.compile(r"data-plot='(.*?)'", re.DOTALL)
 REPEATED = re.compile(r'<line class="(?:grid|zero)"[^>]*>| data-tip="[^"]*"| class="number"')  # once is enough
@@ -130,7 +134,7 @@ def lines_of(place: Path) -> list[str]:
 
     for name in PAGES:
         page = PLOT.sub(lambda plot: f"data-plot={compact(json.loads(unescape(plot[1])))}", page_of(place, name))
-        shown = HIDDEN.sub("", unescape(page).replace(str(place.parent), ""))
+        shown = HIDDEN.sub("", unescape(page))
         shown = REPEATED.sub(first, re.sub(r"</(?!strong|code|a\b)\w+>", "", shown))
         shown = LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", shown)
         lines += [f"{name}: {' '.join(part.split())}" for part in BLOCKS.split(shown) if part.strip()]
@@ -142,7 +146,9 @@ def lines_of(place: Path) -> list[str]:
     printed = re.sub(r"Computed \S+|Provenance.*", "", text_of(place / "report.pdf")[1])
     printed = re.sub(r"[\s-]", "", printed)  # a reader of the file adds them where lines break
     lines += [f"report.pdf: {part}" for part in re.split(r"(?<=[;:%])", printed)]
-    return [line for line in lines if not CHANGING.search(line)]
+    for changing, masked in CHANGING.items():
+        lines = [re.sub(changing, masked, line.replace(str(place.parent), "")) for line in lines]
+    return [*filter(None, lines)]
 
 
 def compact(value: Any) -> str:
@@ -175,8 +181,8 @@ def items(path: str, value: Any) -> Iterator[str]:
 def reported(place: Path, words: Sequence[str], hierarchy: Sequence[Any]) -> list[str]:
     """The lines of the report and of the terminal."""
     with redirect_stdout(io.StringIO()) as printed, redirect_stderr(printed):
-        comparison.run.main([*words, "--out", str(place)], hierarchy, ThreadPoolExecutor)
-    (place / "terminal").write_text(printed.getvalue().replace(str(place.parent), ""), encoding="utf-8")
+        code = comparison.run.main([*words, "--out", str(place)], hierarchy, ThreadPoolExecutor)
+    (place / "terminal").write_text(f"{printed.getvalue()}\nexit code {code}", encoding="utf-8")
     return lines_of(place)
 
 
@@ -210,7 +216,8 @@ def recorded_lines(folder: Path) -> list[str]:
         engines = ["--model", "mine=user_engines:off_with_error", "--model", "near=distinct_models:near"]
         words = [*scenes, "--grid", str(GRID), *engines, "--check"]
         second = reported(lacking, words, lacking_hierarchy())
-    return [*first, *(f"lacking {line}" for line in second if line not in {*first})]
+    known_lines = {*first}
+    return [*first, *(f"lacking {line}" for line in second if line not in known_lines)]
 
 
 def variables(place: Path) -> list[str]:
