@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -118,3 +119,10 @@ def test_what_the_pdf_leaves_out_it_counts() -> None:
     name = report.results.scenes[0].name
     assert data["records"][0][0] == data["demands"][0][0] == f"{name[:39]}…"
     assert (len(data["maps"][0]["title"]), len(data["alerts"][0]["line"])) == (110, 501)
+
+
+def test_the_largest_differences_are_so_by_size_not_by_sign() -> None:
+    maxima = [*(0.01 * number for number in range(1, 11)), -0.5, float("nan")]
+    every = [SimpleNamespace(scene="mine", body=body, maximum=maximum) for body, maximum in enumerate(maxima)]
+    results = SimpleNamespace(scenes=[SimpleNamespace(headlines=every)])
+    assert [each.body for each in largest_headlines(results)] == [*range(1, 11)]  # type: ignore[arg-type]

@@ -5,6 +5,7 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray as xr
 from fake_models import fake_hierarchy
@@ -16,6 +17,7 @@ from comparison.runner.cache import Cache
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
+from comparison.surfaces.figures.pairs import limits_of
 from comparison.surfaces.figures.pictures import Pictures
 from reference.problem import load_scene
 
@@ -55,3 +57,9 @@ def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None
     assert whole > 0
     assert drawn_anew(*_solved()) == 0
     assert drawn_anew(*_solved(gap=0.02)) == whole
+
+
+def test_a_flat_surface_has_room_above_and_below() -> None:
+    flat, nothing = np.full((2, 2), 2.0), np.full((2, 2), np.nan)
+    assert limits_of([flat, nothing]) == pytest.approx((1.7, 2.3))
+    assert (limits_of([flat, 3.0 * flat]), limits_of([nothing])) == ((2.0, 6.0), (0.0, 1.0))
