@@ -127,11 +127,11 @@ MISTAKES = (
     Mistake(SURFACES + "completion.py", "float(missed[checked].max()), float((truth_error",
             "float(missed[checked].mean()), float((truth_error",
             "A certificate states the mean error as the largest.",
-            (TESTS + "surfaces/test_completion.py::test_a_certificate_holds_as_often_as_its_confidence",)),
+            (TESTS + "surfaces/test_completion.py::test_a_ridge_between_coarse_phases_is_completed",)),
     Mistake(SURFACES + "completion.py", "return float(1.0 - (1.0 - CONFIDENCE) ** (1.0 / held_out))",
             "return float(1.0 - CONFIDENCE ** (1.0 / held_out))",
             "A certificate promises more than its phases tell.",
-            (TESTS + "surfaces/test_completion.py::test_a_certificate_holds_as_often_as_its_confidence",)),
+            (TESTS + "surfaces/test_completion.py::test_a_ridge_between_coarse_phases_is_completed",)),
     # figures
     Mistake(FIGURES + "pairs.py", "both, (pair.first, pair.second)):", "both, (pair.second, pair.first)):",
             "The titles of two models are swapped.", (RECORDED,)),
