@@ -89,7 +89,7 @@ def test_how_much_and_why_are_in_bold() -> None:
     assert bold == ["platform: it gives 0.07 % less", "Cause: springs, not rods."]
 
 
-def test_a_panel_is_drawn_as_it_is_described(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_panel_is_drawn_as_it_is_described(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     x = {"title": "μ_1", "log": True, "range": (0.5, 40.0)}
     y = {"title": "share", "ticks": [[1.0, "one"], [3.0, "three"]], "range": (-1.0, 8.0)}
     about = {"x": [1.0, 10.0], "y": [1.0, 3.0], "low": [0.5, 2.0], "high": [2.0, 5.0]}
@@ -100,7 +100,7 @@ def test_a_panel_is_drawn_as_it_is_described(monkeypatch: pytest.MonkeyPatch) ->
     ]
     described = panel("title of μ_2", "", x, y, series, bands=[{"from": -9.0, "to": 0.5}])
     told = figures_are_told(monkeypatch)
-    draw_panels(Path("unused.png"), "a title", [described] * 2, 3)
+    draw_panels(tmp_path / "drawn.png", "a title", [described] * 2, 3)
     shown = [
         *(r"title of $μ_{\mathrm{2}}$", r"$μ_{\mathrm{1}}$", "share", "x log", "y linear"),
         *("x from 0.5 40", "y from -1 8", "y ticks ['one', 'three']"),
@@ -109,4 +109,4 @@ def test_a_panel_is_drawn_as_it_is_described(monkeypatch: pytest.MonkeyPatch) ->
         "line _ ('#2a7f4f', 'o', 'None', 1.4) x 3 y 2",
         *("band 1 2 1 0.5 10 2 10", "bars 1 0.5 1 2 10 2 10", "patch 0.5 -1 40 0.5", "legend ['band', 'bars']"),
     ]
-    assert told["unused"] == ["a title", " | ".join(shown), " | ".join(shown)]
+    assert told["drawn"] == ["a title", " | ".join(shown), " | ".join(shown)]
