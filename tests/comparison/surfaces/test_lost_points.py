@@ -12,7 +12,9 @@ from report_texts import page_of, summary_of
 from runs import Run
 from studies import solved
 
+from comparison.analyses.motions import analysis as motions
 from comparison.analyses.motions.analysis import Motions, moved
+from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.budget import TOTAL, closure, steps
 from comparison.surfaces.unanswered import compared_study, unanswered
@@ -128,6 +130,18 @@ def test_a_motion_that_was_never_begun_has_a_status_and_no_error() -> None:
     task = next(task for task in Motions().arguments(study, surfaces) if task[1].key == "spatial")
     motion = moved(task)
     assert (motion.status, motion.error_message, len(motion.time)) == ("step limit", "", 0)
+
+
+def test_a_motion_is_asked_for_with_the_equations_and_friction_of_its_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[dict[str, object]] = []
+    monkeypatch.setattr(motions, "imported", lambda path: lambda *motion, **settings: asked.append(settings))
+    place = motions.Place("fig3-I", 0, 0, "")
+    for model in MODEL_HIERARCHY[:4]:
+        moved((load_scene("fig3-I"), model, 1e-3, place, (0.0, 0.0)))
+    assert [(settings["equations"], settings["regularization"]) for settings in asked] == [
+        ("small", None), ("exact", None), ("exact", None), ("exact", 1e-3),
+    ]  # fmt: skip
+    assert not any("cutoff" in settings for settings in asked), "a way to read a motion, not to move"
 
 
 def test_a_model_that_answers_somewhere_is_kept_and_named() -> None:
