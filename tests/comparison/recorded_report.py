@@ -35,6 +35,7 @@ from comparison.analyses.ensemble import result as ensemble
 from comparison.analyses.ensemble.analysis import FRACTILES
 from comparison.analyses.errata.analysis import ERRATA, Effect
 from comparison.cli import reports, user_models
+from comparison.runner import progress
 from comparison.study import user_models as called
 from comparison.study.levels import Level, levels_of
 from reference.measures.peak_demands import unit_of
@@ -45,9 +46,9 @@ CHANGING = {  # from run to run and from machine to machine
     r"\d{4}-\d\d-\d\dT[\d:+]+": "TIME",
     r"[\d.]+(?= s of (?:wall|processor) time)": "#",
     r"(?<=TIME; ).*numba \S+": "VERSIONS",
-    r"(?<=\W)[0-9a-f]{16}(?=\W)": "HASH",
+    r"(?<=\W)[0-9a-f]{16}(?=\W)|(?<=sha256-)[\w+/]+=*": "HASH",  # a script is judged by what it draws
     r"^(index.html: <p>Beside the surfaces, processor time).*": r"\1",
-    r"^(?:summary.run|.*numpy|.*tasks, about).*": "",
+    r"^(?:summary.run|.*numpy|terminal: compiling the reference).*": "",
 }
 BLOCKS = re.compile(r"\s*(?=<(?:tr|p|h\d|li|summary|figure|article|section|details|nav|header|caption|option|div)\b)")
 PLOT = re.compile(r"data-plot='(.*?)'", re.DOTALL)
@@ -193,7 +194,8 @@ def recorded_lines(folder: Path) -> list[str]:
         known = {"motions": distinct_motions, "worst_phases": SEARCHED, "measured": MEASURED, "errata": ERRATA_FOUND}
         known |= {"assumptions": known_assumptions(), "demands": known_demand_surfaces, **known_others()}
         analyses_are(patch, **known)
-        patch.setattr(reports, "PATIENCE", math.inf)  # no level before the last has a report, however slow the machine
+        patch.setattr(reports, "PATIENCE", math.inf)  # no level before the last has a report, and no line tells the
+        patch.setattr(progress, "EVERY", math.inf)  # time left, however slow the machine
         full = folder / "full" / "report"
         leave_beside(full, {**FILES, ensemble.FILE: ensemble.STORED.as_json(full_ensemble())}, "fig3-I")
         (full.parent / "family.toml").write_text(scene_text().replace("friction = 0.1", FAMILY), encoding="utf-8")
