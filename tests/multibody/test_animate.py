@@ -2,6 +2,7 @@
 
 import dataclasses
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -9,47 +10,60 @@ from typing import Any
 import numpy as np
 import pytest
 from exudyn.rigidBodyUtilities import RotXYZ2RotationMatrix
-from numpy.typing import NDArray
 from PIL import Image
-from scenes_at_hand import changed, one_body
-from scipy.spatial import ConvexHull
 
-import multibody
 from multibody import animate
 from multibody import film as film_module
 from multibody.animate import main
-from multibody.film import Look, box_corners, contact_paths, film, frames, magnified
+from multibody.film import Look, box_corners, contact_paths, film, magnified
 from reference.problem import load_scene
 
 SHORT = """
 title = "short"
 duration = 0.2
-[isolator]
-period = 1.0
-friction = 0.05
-[[bodies]]
-mass = 1.0
-[[bodies]]
-mass = 1.0
-period = [1.5, 1.2]
-[excitation]
-amplitudes = [[2.0, 0.0], [0.0, 2.0]]
-periods = [0.9, 1.1]
-decay = [0.3, 0.3]
+isolator = {period = 1.0, friction = 0.05}
+bodies = [{mass = 1.0}, {mass = 1.0, period = [1.5, 1.2]}]
+excitation = {amplitudes = [[2.0, 0.0], [0.0, 2.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}
 """
+PHASES = ["--phases", "0.3", "1.1"]
 
 
 @pytest.fixture
 def words(tmp_path: Path) -> list[str]:
     (tmp_path / "short.toml").write_text(SHORT)
-    return [str(tmp_path / "short.toml"), "--phases", "0.3", "1.1", "--out", str(tmp_path / "run.gif")]
+    return [str(tmp_path / "short.toml"), *PHASES, "--out", str(tmp_path / "run.gif")]
 
 
-def test_a_film_is_written_off_screen(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_film_is_made_as_asked_for(
+    words: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out, computed, trajectory = Path(words[-1]), [], animate.trajectory
+    out.write_bytes(b"mine")
+
+    def noted(scene: Any, *given: Any, **more: Any) -> Any:
+        computed.append((scene.amplitudes.max(), *given[1:], more))
+        return trajectory(scene, *given, **more)
+
+    monkeypatch.setattr(animate, "trajectory", noted)
+    of_motion = ["--amplitude", "1.5", "--regularization", "5e-3", "--max-work", "1e5"]
+    assert main([*words, *of_motion, "--rate", "50", "--speed", "0.5", "--size", "640", "400"]) == 0
+    assert computed == [(1.5, "translational", 5e-3, {"max_work": 1e5})]
+    assert out.read_bytes() == b"mine", "a film never takes the place of a file"
+    written, said = out.with_name("run-2.gif"), capsys.readouterr()
+    assert said.err == f"{out} exists and stays: the film is in {written}\n"
+    assert said.out == f"{written}: 0.20 s of motion, status ok\n"
+    with Image.open(written) as film:
+        assert (film.n_frames, film.size) == (21, (640, 400))
+        assert film.info["duration"] == 20  # ms
+
+
+def test_a_motion_that_ends_early_has_a_shorter_film(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    Path(words[0]).write_text(SHORT.replace("friction = 0.05", "friction = 0.0, travel = 0.01"))
     assert main(words) == 0
-    assert "status ok" in capsys.readouterr().out
+    shown, status = capsys.readouterr().out.split(": ")[1].split(" s of motion, status ")
+    assert (status, 0.08 < float(shown) < 0.14) == ("travel reached\n", True)
     with Image.open(words[-1]) as film:
-        assert film.n_frames == 6  # 25 per second and the first
+        assert film.n_frames == round(25 * float(shown)) + 1
 
 
 def test_a_refused_motion_is_one_line(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
@@ -62,51 +76,30 @@ def test_a_refused_motion_is_one_line(words: list[str], capsys: pytest.CaptureFi
     assert not Path(words[-1]).exists()
 
 
-def test_a_film_never_takes_the_place_of_a_file(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    out = Path(words[-1])
-    out.write_bytes(b"mine")
-    assert main(words) == 0
-    assert out.read_bytes() == b"mine"
-    assert capsys.readouterr().err == f"{out} exists and stays: the film is in {out.with_name('run-2.gif')}\n"
-    with Image.open(out.with_name("run-2.gif")) as film:
-        assert film.n_frames == 6
-
-
-class Screen:
-    """Stands in for the engine's renderer and solver: notes what it is asked for."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.calls: list[str] = []
-        self.end: float | None = None
-        built = animate.assemble
-
-        def assemble(*arguments: Any) -> Any:
-            model = built(*arguments)
-            self.model = model
-            self.renderer = SimpleNamespace(
-                Start=lambda: self.calls.append("start"),
-                DoIdleTasks=lambda: self.calls.append("idle"),
-                Stop=lambda: self.calls.append("stop"),
-            )
-            system = SimpleNamespace(SolveDynamic=self.solve, systemData=model.mbs.systemData)
-            system.SetObjectParameter = model.mbs.SetObjectParameter
-            return dataclasses.replace(model, mbs=system, references=(self,))
-
-        monkeypatch.setattr(animate, "assemble", assemble)
-
-    def solve(self, settings: Any) -> None:
-        self.calls.append("solve")
-        self.end = settings.timeIntegration.endTime
-
-
 @pytest.mark.parametrize("model", ["translational", "spatial"])
 def test_the_viewer_shows_the_whole_run_of_the_model_asked_for(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[Any] = []
+    built = animate.assemble
+    renderer = SimpleNamespace(
+        **{name: lambda name=name: calls.append(name) for name in ("Start", "DoIdleTasks", "Stop")}
+    )
+
+    def assemble(*given: Any) -> Any:
+        model = built(*given)
+        system = SimpleNamespace(SolveDynamic=lambda settings: calls.append((model, settings.timeIntegration)))
+        system.systemData, system.SetObjectParameter = model.mbs.systemData, model.mbs.SetObjectParameter
+        return dataclasses.replace(model, mbs=system, references=(SimpleNamespace(renderer=renderer),))
+
+    monkeypatch.setattr(animate, "assemble", assemble)
     monkeypatch.setenv("DISPLAY", ":0")
-    screen = Screen(monkeypatch)
-    assert main(["fig3-I", "--phases", "0.3", "1.1", "--model", model, "--view"]) == 0
-    assert screen.calls == ["start", "idle", "solve", "idle", "stop"]
-    assert screen.end == pytest.approx(20.0 / screen.model.units.time)
-    assert screen.model.allows_liftoff == (model == "spatial")
+    assert main(["fig3-I", *PHASES, "--model", model, "--regularization", "2e-3", "--view"]) == 0
+    start, before, (shown, run), after, stop = calls
+    assert [start, before, after, stop] == ["Start", "DoIdleTasks", "DoIdleTasks", "Stop"]
+    assert shown.allows_liftoff == (model == "spatial")
+    assert shown.corner * shown.units.velocity == pytest.approx(2e-3)
+    assert [phase.Evaluate() for phase in shown.ground.phases] == [0.3, 1.1]
+    assert (run.endTime, run.numberOfSteps) == (pytest.approx(20.0 / shown.units.time), 20_000)
+    assert (run.realtime.active, run.realtime.factor) == (True, pytest.approx(1.0 / shown.units.time))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the screen is not named by a variable")
@@ -114,9 +107,37 @@ def test_without_a_screen_the_viewer_is_refused_in_one_line(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.delenv("DISPLAY", raising=False)
-    assert main(["fig3-I", "--phases", "0.3", "1.1", "--view"]) == 2
+    assert main(["fig3-I", *PHASES, "--view"]) == 2
     message = capsys.readouterr().err
-    assert "--view" in message
+    assert message.startswith("--view: no screen")
+    assert message.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["nowhere.toml"], "nowhere.toml"),
+        (["fig3-I", "--phases", "0", "nan"], "phases"),
+        (["fig3-I", "--model", "flexible"], "model"),
+        (["fig3-I", "--speed", "1e-9"], "--speed: 1e-09: a film of 20 s of motion has 2 to 1500 frames, 25 per second: "
+         "give 0.33 to 5e+02"),
+        (["fig3-I", "--speed", "501"], "give 0.33 to 5e+02"),
+        (["fig3-I", "--stretch", "1e300"], "--stretch"),
+        (["fig3-I", "--rate", "30"], "--rate: 30: must be 1, 2, 4, 5, 10, 20, 25 or 50 per second"),
+        (["fig3-I", "--size", "10", "500"], "--size: 10 500: must be 320 to 4000 pixels each"),
+        (["fig3-I", "--out", "/nowhere/run.gif"], "--out"),
+        (["fig3-I", "--out", "run.mp4"], "must end in .gif"),
+        (["fig3-I", "--out", "/"], "is a folder"),
+    ],
+)  # fmt: skip
+def test_wrong_options_end_with_one_line_before_anything_is_run(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if said not in ("phases", "model"):  # which the run itself refuses, before its first step
+        monkeypatch.setattr(animate, "trajectory", lambda *given: pytest.fail("a motion was computed"))
+    assert main([words[0], *PHASES, *words[1:]]) == 2
+    message = capsys.readouterr().err
+    assert said in message
     assert message.count("\n") == 1
 
 
@@ -127,43 +148,21 @@ def test_the_drawn_corners_turn_with_the_body() -> None:
     np.testing.assert_allclose(np.abs(quarter), np.tile([1.0, 2.0, 0.5], (8, 1)), atol=1e-15)
     np.testing.assert_allclose(quarter[-1], [-1.0, 2.0, 0.5], atol=1e-15)
     angles = np.array([0.3, -0.2, 0.5])
-    turned = box_corners(center, size, angles) - center
-    straight = box_corners(center, size, np.zeros(3)) - center
+    turned, straight = (box_corners(center, size, turns) - center for turns in (angles, np.zeros(3)))
     # the engine's own matrix of its angles
     np.testing.assert_allclose(turned, straight @ RotXYZ2RotationMatrix(angles).T, atol=1e-14)
 
 
-def test_the_film_of_the_spatial_model_shows_its_turns(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = changed(load_scene("fig3-I"), duration=1.5)
-    motion = multibody.trajectory(scene, (2.0, 0.7), model="spatial")
-    turns = motion.extra["turns"]
-    np.testing.assert_array_equal(turns[:, 0, 2], motion.extra["yaw"])
-    assert np.abs(turns[:, 1, 2]).max() > 1e-5  # the body above turns too
-
-    seen: list[NDArray[np.float64]] = []
-    monkeypatch.setattr(film_module, "ConvexHull", lambda flat: seen.append(flat) or ConvexHull(flat))
-    film(scene, motion, "spatial", Look(stretch=1.0), 4)
-    from_above = np.array(seen[-6])  # three views of two bodies in the last frame: the platform in the first
-    edge = from_above[4] - from_above[0]  # along the box's own x
-    yaw, factor = motion.extra["yaw"][-1], magnified(frames(motion.time, turns, 4)[..., 2], 0.3)
-    assert factor >= 10.0
-    # to the square of the tilt drawn, which is 0.3 at most
-    assert np.arctan2(edge[1], edge[0]) == pytest.approx(factor * yaw, rel=0.1)
-
-
 def test_contact_points_move_against_the_platform() -> None:
-    scene = load_scene("fig3-I")
-    shift = np.array([[0.01, -0.02, 0.0]])
-    lever = 0.05 / scene.radius
-    moved = contact_paths(scene, shift, np.zeros((1, 3)))
+    """The supports of a ring of 1 m stand at 45 degrees; a platform turns about its center of mass."""
+    scene, lever = load_scene("fig3-I"), 0.05 / load_scene("fig3-I").radius
+    shift, yaw = np.array([[0.01, -0.02, 0.0]]), np.array([[0.0, 0.0, 1e-3]])
+    moved = contact_paths(scene, shift, 0.0 * yaw)
     np.testing.assert_allclose(moved, np.tile(-lever * shift[:, :2], (1, 4, 1)), atol=1e-15)
-    yawed = contact_paths(scene, np.zeros((1, 3)), np.array([[0.0, 0.0, 1e-3]]))[0]
-    # the supports of a ring of 1 m stand at 45 degrees: each goes along the ring, the first towards (-, +)
-    np.testing.assert_allclose(yawed[0], -lever * 1e-3 * np.sqrt(0.5) * np.array([-1.0, 1.0]), rtol=1e-3)
-    aside = scene.with_values({"bodies.0.offset": [0.1, 0.05]})  # it turns about its center of mass
-    [yawed] = contact_paths(aside, np.zeros((1, 3)), np.array([[0.0, 0.0, 1e-3]]))
-    arm = np.sqrt(0.5) - np.array([0.1, 0.05])
-    np.testing.assert_allclose(yawed[0], -lever * 1e-3 * np.array([-arm[1], arm[0]]), rtol=1e-3)
+    for offset in ([0.0, 0.0], [0.1, 0.05]):
+        [yawed] = contact_paths(scene.with_values({"bodies.0.offset": offset}), 0.0 * shift, yaw)
+        arm = np.sqrt(0.5) - np.array(offset)
+        np.testing.assert_allclose(yawed[0], -lever * 1e-3 * np.array([-arm[1], arm[0]]), rtol=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -173,53 +172,61 @@ def test_turns_are_magnified_by_round_factors_and_never_reduced(largest: float, 
     assert magnified(np.array([0.0, -largest]), 0.3) == factor
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["nowhere.toml", "--phases", "0", "0"], "nowhere.toml"),
-        (["fig3-I", "--phases", "0", "nan"], "phases"),
-        (["fig3-I", "--phases", "0", "0", "--model", "flexible"], "model"),
-        (["fig3-I", "--phases", "0", "0", "--speed", "1e-9"], "--speed"),
-        (["fig3-I", "--phases", "0", "0", "--stretch", "1e300"], "--stretch"),
-        (["fig3-I", "--phases", "0", "0", "--rate", "30"], "--rate"),
-        (["fig3-I", "--phases", "0", "0", "--size", "10", "10"], "--size"),
-        (["fig3-I", "--phases", "0", "0", "--out", "/nowhere/run.gif"], "--out"),
-        (["fig3-I", "--phases", "0", "0", "--out", "run.mp4"], "must end in .gif"),
-        (["fig3-I", "--phases", "0", "0", "--out", "/"], "is a folder"),
-    ],
-)
-def test_wrong_options_end_with_one_line_before_anything_is_run(
-    words: list[str], said: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    if said not in ("phases", "model"):  # which the run itself refuses, before its first step
-        monkeypatch.setattr(animate, "trajectory", lambda *given: pytest.fail("a motion was computed"))
-    assert main(words) == 2
-    message = capsys.readouterr().err
-    assert said in message
-    assert message.count("\n") == 1
+def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two bodies that are 0.3 m apart, less than 0.35 of their width, displaced and turned in proportion."""
+    places = {"bodies.0.offset": [0.1, -0.2], "bodies.1.offset": [-0.3, 0.15], "bodies.1.yaw": 0.6}
+    scene = load_scene("fig3-I").with_values({**places, "bodies.1.height": 0.5, "bodies.1.size": [2.0, 1.0, 0.4]})
+    share = np.array([0.0, 0.5, 1.0])[:, None, None]
+    position = share * [[0.01, -0.02, 0.001], [0.03, 0.04, 0.002]]
+    turns = share * [[1e-3, -2e-3, 4e-3], [2e-3, 1e-3, -3e-3]]
+    motion: Any = SimpleNamespace(time=np.array([0.0, 0.1, 0.4]), position=position, extra={"turns": turns})
+    shown: list[Any] = []
+    made: list[Any] = []
 
+    class Noted(film_module.Figure):
+        def __init__(self, *given: Any, **more: Any) -> None:
+            super().__init__(*given, **more)
+            made.append(self)
 
-def test_size_and_rate_are_those_asked_for(words: list[str]) -> None:
-    assert main([*words, "--rate", "50", "--size", "640", "400"]) == 0
-    with Image.open(words[-1]) as film:
-        assert film.n_frames == 11
-        assert film.size == (640, 400)
-        assert film.info["duration"] == 20  # ms
+    def gif(pictures: Iterator[Any], *rest: Any) -> bytes:
+        for _ in pictures:
+            above, *sides = made[0].axes
+            masts = [np.array(side.lines[-1].get_data()) for side in sides]
+            shown.append((len(above.lines[1].get_xdata()), made[0].texts[-1].get_text(), masts))
+        return b""
 
-
-def test_frames_follow_the_motion() -> None:
-    motion = multibody.trajectory(one_body(amplitudes=[[3.0, 0.0], [0.0, 0.0]]), (0.0, 0.0))
-    shown = frames(motion.time, motion.position, 11)
-    assert shown.shape == (11, 1, 3)
-    np.testing.assert_allclose(shown[-1], motion.position[-1])
-    middle = np.array([np.interp(0.5, motion.time, motion.position[:, 0, axis]) for axis in range(3)])
-    np.testing.assert_allclose(shown[5, 0], middle)
-
-
-def test_the_picture_names_the_model_and_the_factors(monkeypatch: pytest.MonkeyPatch) -> None:
-    titles: list[str] = []
-    monkeypatch.setattr(film_module.Figure, "suptitle", lambda figure, text, **style: titles.append(text))
-    scene = changed(load_scene("fig3-I"), duration=0.5)
-    film(scene, multibody.trajectory(scene, (2.0, 0.7), tolerance=1e-2), "translational", Look(), 2)
-    assert "translational model of the engine" in titles[0]
-    assert "displacements x 5" in titles[0]
+    monkeypatch.setattr(film_module, "Figure", Noted)
+    monkeypatch.setattr(film_module, "_gif", gif)
+    film(scene, motion, "spatial", Look(stretch=3.0, speed=0.5, rate=5), 3)
+    [figure] = made
+    assert figure.get_suptitle().endswith(
+        ": spatial model of the engine\ndisplacements x 3, contact paths x 50, tilt x 20, yaw x 50, heights x 2.3"
+    )
+    labels = [(panel.get_title(), panel.get_xlabel(), panel.get_ylabel()) for panel in figure.axes]
+    assert labels == [("from above", "x [m]", "y [m]"), ("along y", "x [m]", "z"), ("along x", "y [m]", "z")]
+    names = {"platform", "body 2", "support", "path of the contact point", "swing of the center"}
+    assert {text.get_text() for text in figure.legends[0].texts} == names
+    assert [(drawn, clock) for drawn, clock, _ in shown] == [(1, "t = 0.00 s"), (2, "t = 0.10 s"), (3, "t = 0.20 s")]
+    for part, (_, _, masts) in zip((0.0, 2.0 / 3.0, 1.0), shown):  # between samples in proportion
+        np.testing.assert_allclose(
+            masts[0], [[0.1 + part * 0.03, -0.3 + part * 0.09], [part * 0.003, 0.7 + part * 0.006]]
+        )
+        np.testing.assert_allclose(masts[1][0], [-0.2 - part * 0.06, 0.15 + part * 0.12])
+    corners = box_corners(
+        np.array([[0.13, -0.26, 0.003], [-0.21, 0.27, 0.706]]),
+        np.array([[2.0, 2.0, 0.2], [2.0, 1.0, 0.28]]),  # 0.4 of the distance of two boxes
+        np.array([[0.02, -0.04, 0.2], [0.04, 0.02, 0.6 - 0.15]]),
+    )
+    for panel, axes in zip(figure.axes, ([0, 1], [0, 2], [1, 2])):
+        for polygon, box in zip([patch for patch in panel.patches if patch.get_label() in names], corners):
+            apart = np.abs(polygon.get_xy()[:-1, None] - box[:, axes]).max(axis=2)
+            assert len(apart) >= 4
+            assert apart.min(axis=1).max() < 1e-12
+    above, along_y, _ = figure.axes
+    np.testing.assert_allclose(np.array(above.lines[0].get_data()).T, scene.support_places)
+    paths = scene.support_places + 50.0 * contact_paths(scene, position[-1:, 0], turns[-1:, 0])[0]
+    np.testing.assert_allclose([line.get_xydata()[-1] for line in above.lines[1:5]], paths)
+    np.testing.assert_allclose(above.lines[5].get_xydata(), paths)
+    swing = np.array(along_y.lines[-2].get_data())
+    rise = 3.0 * scene.radius * (1.0 - np.sqrt(1.0 - 0.25**2))
+    np.testing.assert_allclose(swing[:, -1], [0.1 + 0.75 * scene.radius, rise])

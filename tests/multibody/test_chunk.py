@@ -20,61 +20,49 @@ CONTACT = DRAW.normal(size=(STEPS, 4 * CONTACTS))
 BODIES = np.array([[0, 1, 2], [6, 7, 2]])
 
 
-def _length(vectors: np.ndarray) -> np.ndarray:
+def length(vectors: np.ndarray) -> np.ndarray:
     square = np.zeros(vectors.shape[:-1])
     for part in np.moveaxis(vectors, -1, 0):  # from the first to the last: sums of three depend on their order
         square = square + part * part
     return np.sqrt(square)
 
 
-def test_sizes_are_those_of_the_sums_with_the_plate_s() -> None:
-    plate = DRAW.normal(size=(STEPS, 3))
-    expected = _length(ACCELERATIONS[:, BODIES] + plate[:, None, :])
+def test_sizes_and_changes_are_those_of_whole_arrays() -> None:
+    plate, of_platform = DRAW.normal(size=(STEPS, 3)), ACCELERATIONS[:, BODIES[0]]
+    expected = length(ACCELERATIONS[:, BODIES] + plate[:, None, :])
     assert np.array_equal(absolute_sizes(ACCELERATIONS, BODIES, plate), expected)
+    size = length(of_platform)
+    size[1:] = np.maximum(size[1:], 2.0 * length(np.diff(of_platform, axis=0)))
+    slip = np.where(CONTACT[:, 0::4] < 0.0, CONTACT[:, 1::4], np.inf).min(axis=1)  # of the slowest loaded contact
+    for corner in (0.3, np.inf):
+        expected = 0.7 * size / np.maximum(slip, corner)
+        assert np.array_equal(slip_changes(ACCELERATIONS, BODIES[0], CONTACT, 0.7, corner), expected)
 
 
-@pytest.mark.parametrize("corner", [0.3, np.inf])
-def test_a_change_is_held_against_the_slowest_loaded_contact(corner: float) -> None:
-    of_platform = ACCELERATIONS[:, BODIES[0]]
-    size = _length(of_platform)
-    size[1:] = np.maximum(size[1:], 2.0 * _length(np.diff(of_platform, axis=0)))
-    slip = np.where(CONTACT[:, 0::4] < 0.0, CONTACT[:, 1::4], np.inf).min(axis=1)
-    expected = 0.7 * size / np.maximum(slip, corner)
-    assert np.array_equal(slip_changes(ACCELERATIONS, BODIES[0], CONTACT, 0.7, corner), expected)
-
-
-@pytest.mark.parametrize("rim", [0.5, 1.5, 100.0])
-def test_the_first_rows_at_the_rim_and_without_contact_are_found(rim: float) -> None:
+@pytest.mark.parametrize(("rim", "share"), [(0.5, 0.5), (1.5, 0.99), (100.0, 1.01)])
+def test_the_first_and_last_rows_of_what_ends_a_run_are_found(rim: float, share: float) -> None:
     at_rim, is_open = ACCELERATIONS[:, 2] >= rim, (CONTACT[:, 0::4] >= 0.0).all(axis=1)
     expected = tuple(int(np.append(holds, True).argmax()) for holds in (at_rim, is_open))
     assert first_ends(ACCELERATIONS, 2, rim, CONTACT) == expected
     assert first_ends(ACCELERATIONS, 2, rim, -np.abs(CONTACT))[1] == STEPS
-
-
-def test_the_largest_distance_is_that_between_the_instants_too() -> None:
-    axes, between = BODIES[0, :2], 0
-    for _ in range(20):
-        time, velocities = np.cumsum(DRAW.random(STEPS)), DRAW.normal(size=(STEPS, 8))
-        coordinates = DRAW.normal(size=(STEPS, 8))
-        place = coordinates[:, axes]
-        expected = largest_displacement(time, place, velocities[:, axes])
-        assert largest_distance(time, coordinates, velocities, axes) == expected
-        between += expected > _length(place).max()
-    assert between > 2
-
-
-@pytest.mark.parametrize("share", [0.5, 0.99, 1.01])
-def test_the_last_row_near_a_largest_value_is_found(share: float) -> None:
     size, distance = np.abs(ACCELERATIONS[:, :2]), np.abs(ACCELERATIONS[:, 3])
     sizes, far = share * size.max(axis=0), share * float(distance.max())
     near = np.flatnonzero((size >= sizes).any(axis=1) | (distance >= far))
     assert last_near(size, sizes, distance, far) == (near[-1] if len(near) else -1)
 
 
+def test_the_largest_distance_is_that_between_the_instants_too() -> None:
+    axes, between = BODIES[0, :2], 0
+    for _ in range(20):
+        time, (coordinates, velocities) = np.cumsum(DRAW.random(STEPS)), DRAW.normal(size=(2, STEPS, 8))
+        expected = largest_displacement(time, coordinates[:, axes], velocities[:, axes])
+        assert largest_distance(time, coordinates, velocities, axes) == expected
+        between += expected > length(coordinates[:, axes]).max()
+    assert between > 2
+
+
 def test_an_entry_counts_as_larger_in_its_own_column() -> None:
     size = np.array([[5.0, 1.0], [1.0, 2.0], [3.0, 2.0]])
-    assert any_larger(size, 0, np.array([4.0, 4.0]))
-    assert not any_larger(size, 1, np.array([4.0, 4.0]))
-    assert not any_larger(size, 1, np.array([3.0, 2.0])), "as large is not larger"
-    assert any_larger(size, 1, np.array([3.0, 1.9]))
+    cases = ((0, [4.0, 4.0], True), (1, [4.0, 4.0], False), (1, [3.0, 2.0], False), (1, [3.0, 1.9], True))
+    assert [any_larger(size, first, np.array(least)) for first, least, _ in cases] == [larger for *_, larger in cases]
     assert not any_larger(size[:0], 0, np.zeros(2))

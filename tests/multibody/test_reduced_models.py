@@ -1,0 +1,127 @@
+"""A smaller model answers for the one asked for where the scene allows it: no rotations (vi), or a plane (4.7)."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scenes_at_hand import changed
+
+import multibody
+from multibody import surface
+from reference.problem import Scene, builtin_scenes, ground_peak, in_plane, load_scene, planar, untilted
+
+PHASES = [(2.0, 0.7), (0.3, 1.1)]
+DIAGONAL = [[1.0, 0.5], [-0.8, -0.4]]
+AXIS = {"bodies.1.stiffness": [20.0, 20.000001], "bodies.1.period": None}
+
+
+def planar_scene(name: str = "fig4-dry", amplitudes: Any = None, duration: float = 3.0, **values: Any) -> Scene:
+    scene = load_scene(name).with_values({"duration": duration, **values})
+    return scene if amplitudes is None else changed(scene, excitation={"amplitudes": amplitudes})
+
+
+PLANAR = {
+    "diagonal": planar_scene(),
+    "lubricated": planar_scene("fig4-viscous"),
+    "oblique, vertical too": planar_scene(amplitudes=[*DIAGONAL, [0.5, 0.3]]),
+    "along y, links of two stiffnesses": planar_scene("fig3-I", [[0.0, 0.0], [1.0, 0.6]]),
+}
+
+
+def level(name: str, duration: float, height: float = 0.0, bodies: int = 1, **values: Any) -> Scene:
+    """Bodies with their centers in the plane of the depressions."""
+    scene = load_scene(name)
+    kept = [{**body.model_dump(exclude_none=True), "height": height} for body in scene.bodies[:bodies]]
+    return scene.with_values({"duration": duration, "bodies": kept, **values})
+
+
+LEVEL = {
+    f"{name}, level": level(name, 2.0, **{"isolator.supports": 3 if name == "fig3-II" else 4})
+    for name in builtin_scenes()
+    if name != "fig4-viscous"
+}
+
+
+@pytest.mark.parametrize("name", [*PLANAR, *LEVEL])
+def test_the_answer_is_that_of_the_whole_model(name: str) -> None:
+    scene, model = (PLANAR[name], "translational") if name in PLANAR else (LEVEL[name], "spatial")
+    reduced, full = (multibody.amplification(scene, PHASES[:1], model, full=full) for full in (False, True))
+    assert (planar if name in PLANAR else untilted)(scene)
+    assert reduced.status.tolist() == full.status.tolist() == ["ok"]
+    assert (np.abs(reduced.mu - full.mu) <= reduced.error + full.error).all()
+
+
+def test_what_does_not_need_it_is_computed_by_the_smaller_model(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Coordinates: six of the platform and one or two of the body above; six of each body that turns, one a sphere."""
+    built: list[tuple[str, int]] = []
+    assemble = surface.assemble
+
+    def noted(scene: Scene, model: str, *rest: Any, **more: Any) -> Any:
+        made = assemble(scene, model, *rest, **more)
+        built.append((model, made.coordinates))
+        return made
+
+    monkeypatch.setattr(surface, "assemble", noted)
+    almost = planar_scene(amplitudes=[[1.0, 0.5], [-0.8, -0.4 - 1e-9]], duration=0.05)
+    for scene in (planar_scene(duration=0.05), almost, planar_scene(duration=0.05, **AXIS)):
+        multibody.amplification(scene, PHASES[:1], tolerance=0.1)
+    multibody.amplification(planar_scene(duration=0.05), PHASES[:1], tolerance=0.1, full=True)
+    assert built == [("translational", count) for count in (7, 8, 8, 8)]
+    built.clear()
+    moving, spatial = (
+        multibody.amplification(level("fig3-I", 0.5), PHASES, model) for model in ("translational", "spatial")
+    )
+    np.testing.assert_array_equal(spatial.mu, moving.mu)
+    multibody.amplification(level("fig3-I", 0.5), PHASES[:1], "spatial", full=True)
+    multibody.amplification(level("fig3-I", 0.5, 1e-12), PHASES[:1], "spatial")
+    assert built == [*[("translational", 6)] * 2, *[("spatial", 10)] * 2]
+
+
+def test_off_its_supports_the_model_that_is_asked_for_goes_on() -> None:
+    """Thrown up by 12 m/s^2, the translational model ends; the spatial one falls back."""
+    scene = level("fig3-I", 0.6, **{"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0], [12.0, 0.0]]})
+    moving, spatial = (
+        multibody.amplification(scene, [(0.0, 0.0)], model, tolerance=1e-2) for model in ("translational", "spatial")
+    )
+    assert (moving.status[0], np.isnan(moving.mu[0, 0])) == ("contact lost", True)
+    assert (spatial.status[0], np.isfinite(spatial.mu[0, 0])) == ("ok", True)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        level("fig3-I", 1.0, bodies=2),  # its weight shifts by more than the platform's
+        level("fig3-I", 1.0, height=1e-12),
+        level("fig3-I", 1.0, **{"isolator.ring": 0.05}),  # friction, 0.3 m above, lifts it off a support
+        level("fig3-I", 1.0, **{"isolator.support_stiffness": 1e5}),
+        level("fig4-viscous", 1.0),  # friction without a limit
+        level("fig3-I", 1.0, **{"bodies.0.offset": [0.1, 0.0]}),
+        level("fig3-I", 1.0, **{"isolator.ring": None, "isolator.supports": [[1, 1], [-1, 1], [0, -1]]}),
+    ],
+)
+def test_rotations_are_kept_where_something_may_turn(scene: Scene) -> None:
+    assert not untilted(scene)
+
+
+def test_the_weight_of_a_second_level_body_turns_the_platform() -> None:
+    spatial, moving = (
+        multibody.amplification(level("fig3-I", 2.65, bodies=2), PHASES[:1], model, tolerance=5e-4)
+        for model in ("spatial", "translational")
+    )
+    assert moving.mu[0, 0] - spatial.mu[0, 0] > 2.0 * (moving.error[0, 0] + spatial.error[0, 0])
+
+
+@given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0), st.floats(0.1, 2.0), st.floats(0.1, 2.0))
+def test_turning_a_scene_into_its_plane_keeps_the_loading(x: float, y: float, first: float, second: float) -> None:
+    scene = planar_scene(
+        amplitudes=[[x, 2.0 * x], [y, 2.0 * y], [first, second]]
+    )  # powers of two keep proportions exact
+    turned = in_plane(scene)
+    assert planar(scene)
+    assert not turned.amplitudes[1].any()
+    np.testing.assert_allclose(ground_peak(turned, PHASES), ground_peak(scene, PHASES), rtol=1e-13)
+    np.testing.assert_array_equal(turned.stiffness, scene.stiffness)
+    damped = PLANAR["along y, links of two stiffnesses"].with_values({"bodies.1.damping": [0.2, 0.7]})
+    assert in_plane(damped).damping.tolist() == [[0.7, 0.2]]
