@@ -1,6 +1,7 @@
 """Which springs the supports of an answer stand on, with a function of the level in place of runs of the engine."""
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
@@ -11,7 +12,6 @@ import pytest
 
 import multibody
 from multibody.integration.adaptive import Budget, EngineRun
-from multibody.integration.estimate import ERROR_PER_WARPING_LOAD, SAFETY_OF_BEARINGS
 from multibody.integration.level import COMPLIANCE_OF_CLOSED, COMPLIANCE_RATIO, REAL_WARPING_COMPLIANCE, Level
 from multibody.integration.level_runs import MAX_FIRST_SHARE
 from multibody.integration.one_run import PhasePair
@@ -22,6 +22,7 @@ from reference.problem import Outcome, load_scene
 
 TOLERANCE = 1e-3
 STIFF, REAL = MIN_WARPING_COMPLIANCE, REAL_WARPING_COMPLIANCE
+NAMES = {STIFF: "s", REAL: "r", COMPLIANCE_OF_CLOSED: "c"}
 STEPS = 1000  # of every run
 SCENE = load_scene("fig3-I")
 # of a contact that gets stiffer from level to level, and whose forces do not round
@@ -41,6 +42,9 @@ MODEL: Any = SimpleNamespace(
 )
 
 
+Runs = Callable[[int, float], EngineRun]  # number of the level, and how far supports give way
+
+
 def result(
     platform: float, *, opens: bool = True, outcome: Outcome = Outcome.OK, load: float = 0.0, steps: int = STEPS
 ) -> EngineRun:
@@ -57,7 +61,8 @@ class Refined:
     """A refinement, and the runs that it asked for."""
 
     answer: Refinement
-    asked: list[tuple[int, float]] = field(default_factory=list)  # number of the level, and how far supports give way
+    asked: str = ""  # numbers of the levels, and how far supports give way
+    springs: list[float] = field(default_factory=list)
     work: list[float] = field(default_factory=list)  # steps that each run was allowed
 
 
@@ -65,12 +70,13 @@ class Refined:
 def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Refined]:
     """Refine with runs that are a function of the number of the level and of how far supports give way."""
 
-    def refine_on(runs: Callable[[int, float], EngineRun], levels: int = 6, max_work: float = 1e9) -> Refined:
+    def refine_on(runs: Runs, levels: int = 6, max_work: float = 1e9) -> Refined:
         done = Refined(answer=None)  # type: ignore[arg-type]
 
         def at_level(pair: PhasePair, level: Level, budget: Budget, *given: Any, **more: Any) -> EngineRun:
             number = [other.step for other in LEVELS].index(level.step)
-            done.asked.append((number, level.warping_compliance))
+            done.asked += f" {number}{NAMES.get(level.warping_compliance, '')}"
+            done.springs.append(level.warping_compliance)
             done.work.append(budget.left)
             run = runs(number, level.warping_compliance)
             budget.left -= run.work
@@ -79,6 +85,7 @@ def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Refined]:
         monkeypatch.setattr(PhasePair, "at_level", at_level)
         phase = np.array([0.3, 1.1])
         done.answer = refine(SCENE, MODEL, phase, TOLERANCE, whole=True, levels=LEVELS[:levels], max_work=max_work)
+        done.asked = done.asked.strip()
         return done
 
     return refine_on
@@ -89,15 +96,8 @@ def level_error(number: int) -> float:
     return LEVELS[number].error_floor + 1e-6
 
 
-def test_an_answer_hardly_changed_by_bearings_stays(refined: Any) -> None:
-    changes = [3e-4, 5e-4]
-    done = refined(lambda number, springs: result(1.0 + changes[number] * (springs == REAL)))
-    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL)]
-    assert done.answer.outcome == Outcome.OK
-    np.testing.assert_allclose(done.answer.peaks, [1.0, 2.0])
-    np.testing.assert_allclose(done.answer.errors, [5e-4 + level_error(1), 2.0 * level_error(1)])
-    (_, (real, share)) = done.answer.coarser
-    assert (real.peaks.value[0], share) == (1.0005, 1.0), "any number of the motion has its change as an error"
+def changed_by_bearings(change: float) -> Runs:
+    return lambda _, springs: result(1.0 + change * (springs == REAL))
 
 
 def real_from_level_1(number: int, springs: float) -> EngineRun:
@@ -105,120 +105,100 @@ def real_from_level_1(number: int, springs: float) -> EngineRun:
     return result(1.826 if number > 0 and springs == REAL else 1.893, steps=STEPS + STEPS // 2 * (springs == REAL))
 
 
-def failing(outcome: Outcome, where: Callable[[int, float], bool], change: float = 0.0) -> Callable[..., EngineRun]:
-    """Runs with a peak of 1, which real bearings change, that end with an outcome somewhere."""
-    return lambda number, springs: result(
-        1.0 + change * (springs == REAL), outcome=outcome if where(number, springs) else Outcome.OK
-    )
+def failing(outcome: Outcome, where: Callable[[int, float], bool], change: float = 0.0, so_far: float = 0.0) -> Runs:
+    """Runs with a peak of 1, which real bearings change, that end somewhere with an outcome, and a peak so far."""
+
+    def runs(number: int, springs: float) -> EngineRun:
+        fails = where(number, springs)
+        peak = so_far if fails and so_far else 1.0 + change * (springs == REAL)
+        return result(peak, outcome=outcome if fails else Outcome.OK)
+
+    return runs
 
 
-# runs; number of the level and springs of those asked for; outcome, peak of the platform and its error
-PATHS: dict[str, tuple[Any, list[tuple[int, float]], Outcome, float, float]] = {
-    "a change without room asks for another level": (
-        lambda number, springs: result(1.0 + 9e-4 * (springs == REAL)),
-        [(0, STIFF), (0, REAL), (1, STIFF), (2, STIFF), (2, REAL)], Outcome.OK, 1.0, 9e-4 + level_error(2),
-    ),
-    "where bearings change the peaks levels have them": (
-        lambda number, springs: result(1.893 if springs == STIFF else 1.826),
-        [(0, STIFF), (0, REAL), (1, REAL)], Outcome.OK, 1.826, 1.826 * level_error(1),
-    ),
-    "an answer that real bearings change is dropped": (
-        real_from_level_1,
-        [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL), (2, REAL)], Outcome.OK, 1.826, 1.826 * level_error(2),
-    ),
-    "a level whose run on bearings ends is confirmed": (
-        failing(Outcome.SOLVER_FAILED, lambda number, springs: number == 1 and springs == REAL, 1e-4),
-        [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL), (2, STIFF), (2, REAL)], Outcome.OK, 1.0, 1e-4 + level_error(2),
-    ),
-    "no run on real bearings": (
-        failing(Outcome.SOLVER_FAILED, lambda number, springs: springs == REAL),
-        [(0, STIFF), (0, REAL), (1, REAL)], Outcome.SOLVER_FAILED, math.nan, math.nan,
-    ),
-    "of two levels without an answer the finer one says why": (
-        lambda number, _: result(1.0, outcome=Outcome.STEP_LIMIT if number == 0 else Outcome.SOLVER_FAILED),
-        [(0, STIFF), (0, REAL), (1, REAL)], Outcome.SOLVER_FAILED, math.nan, math.nan,
-    ),
-    "supports that rattle stand on real bearings": (
-        failing(Outcome.STEP_LIMIT, lambda number, springs: number == 0),
-        [(0, STIFF), (0, REAL), (1, REAL), (2, REAL)], Outcome.OK, 1.0, level_error(2),
-    ),
+def finer_on_bearings(number: int, springs: float) -> bool:
+    return number > 0 and springs == REAL
+
+
+OK, BEYOND, RIM = Outcome.OK, Outcome.TOLERANCE_NOT_MET, Outcome.RIM_REACHED
+FAILED, LIMIT = Outcome.SOLVER_FAILED, Outcome.STEP_LIMIT
+NOTHING = (math.nan, math.nan)
+# runs and limits; numbers of levels and springs of those asked for; outcome, peak of the platform and its error
+PATHS: dict[str, tuple[Any, ...]] = {
+    "a change without room asks for another level":
+        (changed_by_bearings(9e-4), {}, "0s 0r 1s 2s 2r", OK, 1.0, 9e-4 + level_error(2)),
+    "no level is begun without work for its bearings":
+        (changed_by_bearings(9e-4), {"max_work": 6.5 * STEPS}, "0s 0r 1s", BEYOND, 1.0, 9e-4 + level_error(1)),
+    "where bearings change the peaks levels have them":
+        (lambda _, springs: result(1.826 + 0.067 * (springs == STIFF)), {},
+         "0s 0r 1r", OK, 1.826, 1.826 * level_error(1)),
+    "an answer that real bearings change is dropped":
+        (real_from_level_1, {}, "0s 0r 1s 1r 2r", OK, 1.826, 1.826 * level_error(2)),
+    "at the last level bearings give the answer":
+        (real_from_level_1, {"levels": 2}, "0s 0r 1s 1r", BEYOND, 1.826, 0.067 + 1.893 * level_error(1)),
+    "at the end of the work bearings give the answer":
+        (real_from_level_1, {"max_work": 7.0 * STEPS}, "0s 0r 1s 1r", BEYOND, 1.826, 0.067 + 1.893 * level_error(1)),
+    "a level whose run on bearings ends is confirmed":
+        (failing(FAILED, lambda number, springs: (number, springs) == (1, REAL), 1e-4), {},
+         "0s 0r 1s 1r 2s 2r", OK, 1.0, 1e-4 + level_error(2)),
+    "no run on real bearings": (failing(FAILED, lambda _, springs: springs == REAL), {}, "0s 0r 1r", FAILED, *NOTHING),
+    "of two levels without an answer the finer one says why":
+        (lambda number, _: result(1.0, outcome=FAILED if number else LIMIT), {}, "0s 0r 1r", FAILED, *NOTHING),
+    "supports that rattle stand on real bearings":
+        (failing(LIMIT, lambda number, _: number == 0), {}, "0s 0r 1r 2r", OK, 1.0, level_error(2)),
+    "a motion that ends on bearings alone has no value":
+        (failing(RIM, finer_on_bearings), {}, "0s 0r 1s 1r 2r", RIM, *NOTHING),
+    "likewise at the last level": (failing(RIM, finer_on_bearings), {"levels": 2}, "0s 0r 1s 1r", RIM, *NOTHING),
+    "unconfirmed by a run out of steps, which has no larger peak so far":
+        (failing(LIMIT, finer_on_bearings, 1e-4, 0.4), {"levels": 2},
+         "0s 0r 1s 1r", BEYOND, 1.0, 2.0 * 1e-4 + level_error(1)),
+    "unconfirmed by a run that fails, whose peak can only grow":
+        (failing(FAILED, finer_on_bearings, 1e-4, 1.05), {"levels": 2},
+         "0s 0r 1s 1r", BEYOND, 1.0, 0.05 + level_error(1)),
+    "supports opened by a misfit may give way by more":
+        (lambda _, springs: result(1.0, opens=springs == STIFF, load=1e-6 / springs), {},
+         "0s 0r 1c", OK, 1.0, level_error(1) + 0.25e-10),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("runs", "asked", "outcome", "platform", "error"), PATHS.values(), ids=PATHS)
+@pytest.mark.parametrize(("runs", "limits", "asked", "outcome", "platform", "error"), PATHS.values(), ids=PATHS)
 def test_levels_and_springs_follow_from_what_runs_say(
-    refined: Any, runs: Any, asked: list[tuple[int, float]], outcome: Outcome, platform: float, error: float
+    refined: Any, runs: Any, limits: Any, asked: str, outcome: Outcome, platform: float, error: float
 ) -> None:
-    done = refined(runs)
-    assert (done.asked, done.answer.outcome) == (asked, outcome)
-    np.testing.assert_allclose([done.answer.peaks[0], done.answer.errors[0]], [platform, error])
+    done = refined(runs, **limits)
+    answer = done.answer
+    assert (done.asked, answer.outcome) == (asked, outcome)
+    np.testing.assert_allclose([answer.peaks[0], answer.errors[0]], [platform, error])
+    if outcome in (Outcome.OK, BEYOND):
+        assert (answer.peaks[1], answer.finest.peaks.value[0]) == (2.0, platform)
+    instants = {Outcome.OK: math.nan, BEYOND: 0.2}  # where the worst peak is; otherwise when the run ended
+    np.testing.assert_equal(answer.instant, instants.get(outcome, 0.7))
 
 
-@pytest.mark.parametrize(("levels", "max_work"), [(2, 1e9), (6, 7.0 * STEPS)], ids=["last level", "end of the work"])
-def test_without_a_further_level_bearings_give_the_answer(refined: Any, levels: int, max_work: float) -> None:
-    done = refined(real_from_level_1, levels, max_work)
-    assert done.asked[-1] == (1, REAL)
-    assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
-    np.testing.assert_allclose(done.answer.peaks, [1.826, 2.0])
-    np.testing.assert_allclose(done.answer.errors[0], 1.893 - 1.826 + 1.893 * level_error(1))
-    assert done.answer.finest.peaks.value[0] == 1.826
-    assert done.answer.instant == 0.2, "where the worst peak is"
+def test_an_answer_hardly_changed_by_bearings_stays(refined: Any) -> None:
+    changes = [3e-4, 5e-4]
+    done = refined(lambda number, springs: result(1.0 + changes[number] * (springs == REAL)))
+    assert done.asked == "0s 0r 1s 1r"
+    np.testing.assert_allclose(done.answer.errors, [5e-4 + level_error(1), 2.0 * level_error(1)])
+    (_, (real, share)) = done.answer.coarser
+    assert (real.peaks.value[0], share) == (1.0005, 1.0), "any number of the motion has its change as an error"
 
 
 def test_the_error_on_real_bearings_counts_impacts(refined: Any) -> None:
     def runs(number: int, springs: float) -> EngineRun:
         run = real_from_level_1(number, springs)
-        run.impacts = int(number > 0 and springs == REAL)
+        run.impacts = int(finer_on_bearings(number, springs))
         return run
 
     done = refined(runs, 2)
     assert done.answer.errors[1] == pytest.approx(2.0 * 4e-3), "no level before it has the same springs"
 
 
-@pytest.mark.parametrize("outcome", [Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED])
-@pytest.mark.parametrize("so_far", [0.4, 1.05])
-def test_an_unconfirmed_answer_has_the_change_twice(refined: Any, outcome: Outcome, so_far: float) -> None:
-    def runs(number: int, springs: float) -> EngineRun:
-        if number > 0 and springs == REAL:
-            return result(so_far, outcome=outcome)
-        return result(1.0 + 1e-4 * (springs == REAL))
-
-    done = refined(runs, 2)
-    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF), (1, REAL)]
-    assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
-    np.testing.assert_allclose(done.answer.peaks, [1.0, 2.0])
-    # the peaks of a run that did not end can only grow
-    change = max(SAFETY_OF_BEARINGS * 1e-4, so_far - 1.0)
-    np.testing.assert_allclose(done.answer.errors[0], change + level_error(1))
-
-
-def test_a_motion_that_ends_on_bearings_alone_has_no_value(refined: Any) -> None:
-    def runs(number: int, springs: float) -> EngineRun:
-        tips = number > 0 and springs == REAL
-        return result(1.0, outcome=Outcome.RIM_REACHED if tips else Outcome.OK)
-
-    for levels, last in ((2, (1, REAL)), (6, (2, REAL))):
-        done = refined(runs, levels)
-        assert done.asked[-1] == last
-        assert done.answer.outcome == Outcome.RIM_REACHED
-        assert done.answer.instant == 0.7
-        assert np.isnan(done.answer.peaks).all()
-
-
 def test_the_first_run_of_rattling_supports_has_a_share(refined: Any) -> None:
-    def runs(number: int, springs: float) -> EngineRun:
-        outcome = Outcome.STEP_LIMIT if springs == STIFF else Outcome.OK
-        return result(1.0, outcome=outcome)
-
-    done = refined(runs, max_work=1e5)
-    assert done.asked == [(0, STIFF), (0, REAL), (1, REAL)]
+    done = refined(failing(Outcome.STEP_LIMIT, lambda number, springs: springs == STIFF), max_work=1e5)
+    assert done.asked == "0s 0r 1r"
     assert done.work[:2] == [MAX_FIRST_SHARE * 1e5, 1e5 - STEPS]
     assert done.answer.outcome == Outcome.OK
-
-
-def test_supports_opened_by_a_misfit_may_give_way_by_more(refined: Any) -> None:
-    done = refined(lambda number, springs: result(1.0, opens=springs == STIFF, load=1e-6 / springs))
-    assert done.asked == [(0, STIFF), (0, REAL), (1, COMPLIANCE_OF_CLOSED)]
 
 
 @pytest.mark.parametrize("softest_closed", [0.0, REAL], ids=["open on any", "open on softer ones only"])
@@ -227,23 +207,15 @@ def test_supports_opened_on_softer_springs_get_real_bearings(refined: Any, softe
         return result(1.0 + 0.1 * (number == 1), opens=number > 0 and springs > softest_closed, load=4e-7 / springs)
 
     done = refined(runs)
-    assert done.asked[0] == (0, STIFF)
-    assert done.asked[1][1] > REAL
-    assert {springs for _, springs in done.asked[2:]} == {REAL}
-    assert [number for number, _ in done.asked] == [0, 1, *range(1, 5)], "levels 0 and 1 differ: more follow"
+    assert (done.springs[0], done.springs[1] > REAL, set(done.springs[2:])) == (STIFF, True, {REAL})
+    assert re.findall(r"\d", done.asked) == [*"01", *"1234"], "levels 0 and 1 differ: more follow"
 
 
 @pytest.mark.parametrize("load", [1e-5, 1e-3])
 def test_load_that_warping_takes_is_an_error_of_all_numbers(refined: Any, load: float) -> None:
     """Of supports that stay closed on real bearings, as one opened on softer springs."""
     done = refined(lambda number, springs: result(1.0, opens=springs > REAL, load=load))
-    assert done.asked == [(0, STIFF), (1, COMPLIANCE_OF_CLOSED), (1, REAL)]
-    np.testing.assert_allclose(done.answer.errors[0], level_error(1) + ERROR_PER_WARPING_LOAD * load)
-    assert done.answer.floor == max(load, LEVELS[1].error_floor)
-
-
-def test_no_level_is_begun_without_work_for_its_bearings(refined: Any) -> None:
-    done = refined(lambda number, springs: result(1.0 + 9e-4 * (springs == REAL)), max_work=6.5 * STEPS)
-    assert done.asked == [(0, STIFF), (0, REAL), (1, STIFF)]
-    assert done.answer.outcome == Outcome.TOLERANCE_NOT_MET
-    np.testing.assert_allclose(done.answer.errors[0], 9e-4 + level_error(1))
+    answer = done.answer
+    assert done.asked == "0s 1c 1r"
+    np.testing.assert_allclose(answer.errors, [each * (level_error(1) + 0.25 * load) for each in (1.0, 2.0)])
+    assert answer.floor == max(load, LEVELS[1].error_floor)
