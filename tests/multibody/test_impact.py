@@ -1,4 +1,4 @@
-"""Supports that lift off and close again: closed forms of impacts and flights, overturning, the key of the scene."""
+"""Supports that lift off and close again: closed forms of impacts and flights, overturning, errors behind impacts."""
 
 import math
 from dataclasses import replace
@@ -25,10 +25,8 @@ from multibody.models.impact import ImpactLaw
 from multibody.motion import _attitude
 from reference.problem import GRAVITY, DryFriction, Outcome, Scene, SceneError, load_scene
 
-NO_LINKS = np.ones(0, dtype=bool)
 HALF_WIDTH, HEIGHT, RADIUS = 0.5, 3.0, 0.2  # of the square of supports, of the center of mass, of the spheres
-CENTER, AXES = np.array([0.0, 0.0, HEIGHT]), np.eye(3)[None]  # of mass, of inertia
-INERTIA = 0.9  # of the block about horizontal axes
+CENTER, MOMENTS = np.array([0.0, 0.0, HEIGHT]), np.array([0.9, 0.9, 0.7])  # of mass, of inertia of a block
 ARM = HEIGHT - (1.0 + RADIUS)  # of the center of mass above the points of contact
 CORNERS = HALF_WIDTH * np.array([[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]])
 LEFT, RIGHT = np.array([True, True, False, False]), np.array([False, False, True, True])
@@ -36,37 +34,24 @@ NONE, ALL = np.zeros(4, bool), np.ones(4, bool)
 
 
 def block(restitution: float = 0.0, friction: float | DryFriction = 0.0, corner: float = 1e-9) -> ImpactLaw:
-    """A block of mass one on the four corners of a square, with the inertia above."""
+    """A block of mass one on the four corners of a square."""
     depressions = Depressions(CORNERS, CENTER, RADIUS, np.empty(0, np.int_))
-    inertias = np.array([[INERTIA, INERTIA, 0.7]])
     law = DryFriction(friction, friction, 0.0) if isinstance(friction, float) else friction
-    return ImpactLaw(depressions, np.ones(1), inertias, AXES, CENTER[None], restitution, law, corner, NO_LINKS)
+    inertia = np.ones(1), MOMENTS[None], np.eye(3)[None], CENTER[None]
+    return ImpactLaw(depressions, *inertia, restitution, law, corner, np.ones(0, dtype=bool))
 
 
-def rocking_about_the_left_edge(pace: float) -> np.ndarray[Any, Any]:
-    """Velocities (6,) of a level block that turns about its left edge, on which it stands, by `pace` about y."""
-    # a turn about y moves a point at (x, z) beside the center by pace * (z, -x); the edge is at (-b, -arm)
-    return np.array([pace * ARM, 0.0, -pace * HALF_WIDTH, 0.0, pace, 0.0])
-
-
-def test_a_rocking_block_slows_down_as_housner_says() -> None:
-    before = rocking_about_the_left_edge(0.3)
-    after, is_open = block(friction=1e3).after(np.zeros(6), before, LEFT, RIGHT)
-    moment = INERTIA + ARM**2 + HALF_WIDTH**2  # about either edge
-    ratio = (moment - 2.0 * HALF_WIDTH**2) / moment
-    assert after[4] / before[4] == pytest.approx(ratio, rel=1e-8)
+@pytest.mark.parametrize("grips", [True, False])
+def test_a_rocking_block_slows_down_as_housner_says(grips: bool) -> None:
+    """It turns about y by 0.3 about its left edge, on which it stands, and hits the right one; or it slides there."""
+    before = 0.3 * np.array([ARM, 0.0, -HALF_WIDTH, 0.0, 1.0, 0.0])
+    after, is_open = block(friction=1e3 * grips).after(np.zeros(6), before, LEFT, RIGHT)
+    moment = MOMENTS[1] + HALF_WIDTH**2 + ARM**2 * grips  # about either edge
+    assert after[4] / before[4] == pytest.approx((moment - 2.0 * HALF_WIDTH**2) / moment, rel=1e-8)
     np.testing.assert_array_equal(is_open, LEFT)
-    # the block now turns about its right edge
-    np.testing.assert_allclose(after[[0, 2]], [after[4] * ARM, after[4] * HALF_WIDTH], atol=1e-9)
-
-
-def test_a_rocking_block_slows_down_by_its_inertia() -> None:
-    before = rocking_about_the_left_edge(0.3)
-    after, is_open = block().after(np.zeros(6), before, LEFT, RIGHT)
-    ratio = (INERTIA - HALF_WIDTH**2) / (INERTIA + HALF_WIDTH**2)
-    assert after[4] / before[4] == pytest.approx(ratio, rel=1e-10)
-    assert after[0] == before[0]  # nothing acts along the plate
-    np.testing.assert_array_equal(is_open, LEFT)
+    # the block now turns about its right edge, or nothing acts along the plate
+    along = after[4] * ARM if grips else before[0]
+    np.testing.assert_allclose(after[[0, 2]], [along, after[4] * HALF_WIDTH], atol=1e-9)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
@@ -78,20 +63,20 @@ def test_a_level_block_rebounds_by_the_restitution(restitution: float) -> None:
 
 
 def test_the_friction_of_an_impact_is_that_of_the_whole_speed() -> None:
+    """Gripped by mu times its normal impulse of 0.7, over the height at which a block of this inertia is held."""
     law = block(0.0, DryFriction(0.02, 0.2, 1.0), 1e-3)
     along, across = (
         law.after(np.zeros(6), np.array([x, y, -0.7, 0.0, 0.0, 0.0]), NONE, ALL)[0] for x, y in ((0.4, 0.0), (0.0, 0.4))
     )
     assert along[0] == pytest.approx(across[1], rel=1e-6)
-    assert along[0] < 0.38, "friction acts"
+    assert along[0] == pytest.approx(0.4 - (0.2 - 0.18 * math.exp(-0.4)) * 0.7, rel=1e-6)
 
 
-@pytest.mark.parametrize("varying", [False, True], ids=["constant", "of the velocity"])
-@pytest.mark.parametrize("seed", range(20))
-def test_no_impact_adds_energy_or_breaks_the_laws_of_contact(seed: int, varying: bool) -> None:
+@pytest.mark.parametrize("seed", range(40))
+def test_no_impact_adds_energy_or_breaks_the_laws_of_contact(seed: int) -> None:
     random = np.random.default_rng(seed)
     friction, corner = random.uniform(0.0, 0.3), 1e-3
-    law = block(0.0, DryFriction(friction, 0.3 - friction, 1.0) if varying else friction, corner)
+    law = block(0.0, DryFriction(friction, 0.3 - friction, 1.0) if seed % 2 else friction, corner)
     coordinates = np.concatenate([random.uniform(-0.2, 0.2, 3), random.uniform(-0.05, 0.05, 3)])
     before = random.normal(size=6)
     hit = random.random(4) < 0.5
@@ -100,29 +85,32 @@ def test_no_impact_adds_energy_or_breaks_the_laws_of_contact(seed: int, varying:
     speeds, _ = law.normal_speeds(coordinates, after)
     assert (speeds[closed | hit] > -1e-9).all()
     np.testing.assert_array_equal(is_open[closed | hit], speeds[closed | hit] > 1e-5)
-    axes = rotation(coordinates[3:])
-    inertia = axes @ np.diag([INERTIA, INERTIA, 0.7]) @ axes.T
-    turning = law._turning(coordinates)
+    axes, turning = rotation(coordinates[3:]), law._turning(coordinates)
+    inertia = axes @ np.diag(MOMENTS) @ axes.T
     energies = [0.5 * v[:3] @ v[:3] + 0.5 * v[3:] @ inertia @ v[3:] for v in (turning @ before, turning @ after)]
     assert energies[1] <= energies[0] * (1.0 + 1e-9)
 
 
-def bouncing(restitution: float, **isolator: Any) -> Scene:
+PACE = 2.0 * math.pi / 0.4  # of a plate that moves up and down
+
+
+def bouncing(restitution: float, push: float = 15.0, duration: float = 0.45, **isolator: Any) -> Scene:
     """One body over its supports, thrown off by a plate that moves up and down only."""
-    scene = one_body(friction=0.0, duration=0.45, amplitudes=[[0.0, 0.0], [0.0, 0.0], [15.0, 0.0]], periods=(0.4, 0.4))
+    load = [[0.0, 0.0], [0.0, 0.0], [push, 0.0]]
+    scene = one_body(friction=0.0, duration=duration, amplitudes=load, periods=(0.4, 0.4))
     supports = {"supports": 3, "ring": 0.5, "sphere_radius": 0.05, "restitution": restitution, **isolator}
     return changed(scene, isolator=supports, bodies=[{"mass": 1.0, "height": 0.3, "size": [1.0, 1.0, 0.2]}])
 
 
-def flights(restitution: float, count: int) -> list[tuple[float, float]]:
-    """Start and end of the first flights of a ball on a plate that moves by 15 cos(2 pi t / 0.4) m/s^2, by roots."""
-    pace = 2.0 * math.pi / 0.4
+def flights(restitution: float, end: float, push: float = 15.0, phase: float = 0.0) -> list[tuple[float, float]]:
+    """Start and end of the flights, up to `end`, of a ball on a plate that moves by push cos(PACE t + phase)."""
 
     def fall(t: float) -> float:  # acceleration of the ball against the plate
-        return -GRAVITY - 15.0 * math.cos(pace * t)
+        return -GRAVITY - push * math.cos(PACE * t + phase)
 
-    start, speed, done = math.acos(-GRAVITY / 15.0) / pace, 0.0, []
-    for _ in range(count):
+    start, speed = (math.acos(-GRAVITY / push) - phase) / PACE, 0.0
+    done: list[tuple[float, float]] = []
+    while start < end:
         begin, initial = start, speed
 
         def height(t: float, begin: float = begin, initial: float = initial) -> float:
@@ -130,15 +118,17 @@ def flights(restitution: float, count: int) -> list[tuple[float, float]]:
 
         grid = begin + np.linspace(1e-3, 0.4, 400)
         first = next(k for k, t in enumerate(grid) if height(t) < 0.0)
-        end = float(brentq(height, grid[first - 1], grid[first], xtol=1e-13))
-        done.append((begin, end))
-        start, speed = end, -restitution * (initial + quad(fall, begin, end, epsabs=1e-14)[0])
+        start = float(brentq(height, grid[first - 1], grid[first], xtol=1e-13))
+        done.append((begin, start))
+        speed = -restitution * (initial + quad(fall, begin, start, epsabs=1e-14)[0])
+        if not speed:
+            break
     return done
 
 
 def test_flights_begin_and_end_when_free_fall_says() -> None:
     motion = multibody.trajectory(bouncing(0.5), (0.0, 0.0), model="spatial", tolerance=1e-2)
-    expected = [flight for flight in flights(0.5, 2) if flight[1] < 0.45]
+    expected = [flight for flight in flights(0.5, 0.45) if flight[1] < 0.45]
     assert len(expected) == 2
     for support in range(3):
         intervals = motion.extra["liftoff"][motion.extra["liftoff"][:, 0] == support][:2, 1:]
@@ -151,29 +141,22 @@ def test_flights_begin_and_end_when_free_fall_says() -> None:
 def test_a_platform_tilted_by_its_contacts_lands_at_once(number: int) -> None:
     """Uneven loads press rigid spheres in by nothing: a platform that does not turn lands as often as a ball."""
     load = {"amplitudes": [[3.0, 0.0], [0.0, 2.1], [15.0, 0.0]]}
-    scene = changed(bouncing(0.8), isolator={"friction": 0.05}, excitation=load, duration=0.6)
-    landings = [end for _, end in flights(0.8, 3) if end < 0.6]
+    scene = changed(bouncing(0.8, duration=0.6), isolator={"friction": 0.05}, excitation=load)
+    landings = [end for _, end in flights(0.8, 0.6) if end < 0.6]
     assert one_level(scene, (0.0, 0.0), number, 6e4).impacts == len(landings) == 2
 
 
 def test_the_largest_value_behind_an_impact_converges() -> None:
     """A body lands on a plate whose acceleration falls: nothing counted before or later is as large."""
-    push, phase, pace = 20.0, 0.5 * math.pi, 2.0 * math.pi / 0.4
-    scene = bouncing(0.0).with_values({"duration": 0.5, "excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0], [push, 0.0]]})
-    begin = (math.acos(-GRAVITY / push) - phase) / pace
-
-    def height(t: float) -> float:
-        rise, speed = push * math.cos(pace * begin + phase), push * math.sin(pace * begin + phase)
-        swing = push * math.cos(pace * t + phase) - rise + pace * speed * (t - begin)
-        return swing / pace**2 - 0.5 * GRAVITY * (t - begin) ** 2
-
-    landing = float(brentq(height, begin + 0.2, begin + 0.5, xtol=1e-13))
+    push, phase = 20.0, 0.5 * math.pi
+    scene = bouncing(0.0, push, 0.5)
+    [(_, landing)] = flights(0.0, 0.5, push, phase)
     counted = landing + IMPACT_TIME * math.sqrt(scene.radius / GRAVITY)
     model = assemble(scene, "spatial", 1e-3)
     pair = PhasePair(scene, model, np.array([phase, 0.0]), whole=True)
     runs = [pair.at_level(level, Budget(1e6)) for level in multibody.levels(scene, "spatial")[:3]]
     peaks = np.array([run.peaks.value[0] for run in runs]) * model.units.acceleration
-    errors = np.abs(peaks / (push * math.cos(pace * counted + phase)) - 1.0)
+    errors = np.abs(peaks / (push * math.cos(PACE * counted + phase)) - 1.0)
     assert errors[0] < 1e-3
     assert (errors[1:] < errors[:-1] / 3.5).all(), errors
 
@@ -185,13 +168,11 @@ def tower(ring: float) -> Scene:
     return load_scene("fig3-I").with_values({"duration": 3.0, **isolator, **load})
 
 
-def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float, **changes: Any) -> EngineRun:
-    """The run of one level on springs of real bearings; changes: factors of the level's values."""
-    model = assemble(scene, "spatial", 1e-3)
-    level = multibody.levels(scene, "spatial")[number]
-    level = replace(level, warping_compliance=REAL_WARPING_COMPLIANCE)
-    level = replace(level, **{key: factor * getattr(level, key) for key, factor in changes.items()})
-    return PhasePair(scene, model, np.array(phase), whole=True).at_level(level, Budget(work))
+def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float) -> EngineRun:
+    """The run of one level on springs of real bearings."""
+    level = replace(multibody.levels(scene, "spatial")[number], warping_compliance=REAL_WARPING_COMPLIANCE)
+    pair = PhasePair(scene, assemble(scene, "spatial", 1e-3), np.array(phase), whole=True)
+    return pair.at_level(level, Budget(work))
 
 
 def test_a_contact_that_opens_again_does_not_end_the_run() -> None:
@@ -203,12 +184,17 @@ def test_a_contact_that_opens_again_does_not_end_the_run() -> None:
 
 
 def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
-    angles, model = np.array([0.3, -0.4, 0.9]), SimpleNamespace(bodies=np.arange(3)[None])
-    gap = np.array([[-1.0, 1.0, 1.0, -1.0]]).T
-    motion = SimpleNamespace(coordinates=np.tile([0.0, 0.0, 0.0, *angles], (4, 1)), gap=gap)
-    found = _attitude(model, motion, np.arange(4.0))  # type: ignore[arg-type]
-    np.testing.assert_allclose(found["tilt"], np.arccos(rotation(angles)[2, 2]))
-    assert found["liftoff"].tolist() == [[0.0, 0.0, 3.0]], "from the last instant of contact to the next"
+    """Of two bodies; the second of two supports opens, which lasts from the last instant of contact to the next."""
+    angles, model = np.array([[0.3, -0.4, 0.9], [0.1, 0.2, 0.5]]), SimpleNamespace(bodies=[[0, 1, 2], [6, 7, 8]])
+    model.bodies = np.array(model.bodies)
+    coordinates = np.hstack([np.zeros((2, 3)), angles]).ravel()
+    gap = np.array([[-1.0] * 5, [-1.0, -1.0, 1.0, 1.0, -1.0]]).T
+    motion = SimpleNamespace(coordinates=np.tile(coordinates, (5, 1)), gap=gap)
+    found = _attitude(model, motion, 0.1 * np.arange(5))  # type: ignore[arg-type]
+    np.testing.assert_allclose(found["tilt"], np.arccos(rotation(angles[0])[2, 2]))
+    np.testing.assert_array_equal(found["yaw"], [0.9] * 5)
+    np.testing.assert_array_equal(found["turns"][3], angles)
+    np.testing.assert_allclose(found["liftoff"], [[1.0, 0.1, 0.4]])
 
 
 def test_a_tower_that_overturns_ends_under_that_name() -> None:
@@ -222,24 +208,24 @@ def test_a_tower_that_overturns_ends_under_that_name() -> None:
     assert 1.0 < results[0].instant[0] < 3.0
 
 
-@pytest.mark.long
-def test_a_tower_that_hits_its_supports_has_an_answer() -> None:
-    coarse, fine = (
-        multibody.amplification(tower(1.0), [(0.3, 1.1)], model="spatial", tolerance=tolerance)
-        for tolerance in (1e-2, 1e-3)
-    )
-    assert coarse.status.tolist() == fine.status.tolist() == ["ok"]
-    assert (np.abs(coarse.mu - fine.mu) <= coarse.error + fine.error).all()
-    assert (fine.error <= 1.000001e-3 * fine.mu).all()
+BRIEFLY = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [GRAVITY, 0.0]], "decay": [0.0, 0.0]}
 
 
-@pytest.mark.parametrize("phase", [(0.0, 1.1), pytest.param((math.pi, 0.7), marks=pytest.mark.long)])
-def test_supports_that_carry_nothing_briefly_do_not_chatter(phase: tuple[float, float]) -> None:
-    """The plate falls as fast as the bodies at a turning point of its acceleration."""
-    load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [GRAVITY, 0.0]], "decay": [0.0, 0.0]}
-    scene = changed(load_scene("fig3-I"), excitation=load).with_values({"duration": 1.0})
+@pytest.mark.parametrize(
+    ("scene", "phase", "max_work"),
+    [
+        (changed(load_scene("fig3-I"), excitation=BRIEFLY, duration=1.0), (0.0, 1.1), 5e4),
+        pytest.param(
+            changed(load_scene("fig3-I"), excitation=BRIEFLY, duration=1.0), (math.pi, 0.7), 5e4, marks=pytest.mark.long
+        ),
+        pytest.param(tower(1.0), (0.3, 1.1), 2e6, marks=pytest.mark.long),
+    ],
+    ids=["falling at a turning point", "falling at another", "tower that hits its supports"],
+)
+def test_supports_that_open_leave_answers_that_agree(scene: Scene, phase: tuple[float, float], max_work: float) -> None:
+    """The plate falls as fast as the bodies at a turning point of its acceleration, and nothing chatters."""
     loose, strict = (
-        multibody.amplification(scene, [phase], "spatial", tolerance=tolerance, max_work=5e4)
+        multibody.amplification(scene, [phase], "spatial", tolerance=tolerance, max_work=max_work)
         for tolerance in (1e-2, 1e-3)
     )
     assert [loose.status[0], strict.status[0]] == [Outcome.OK] * 2
@@ -278,17 +264,21 @@ def test_levels_on_other_springs_do_not_lower_the_error() -> None:
     """Level 0 on stiff springs is another motion: level 2 then is confirmed by one level, as is level 1 without it."""
     scene = load_scene("fig3-I")
     model, levels = assemble(scene, "spatial", 1e-3), multibody.levels(scene, "spatial")[:3]
-    pair = PhasePair(scene, model, np.array([0.3, 1.1]))
     levels[1:] = [replace(level, warping_compliance=REAL_WARPING_COMPLIANCE) for level in levels[1:]]
     runs = [EngineRun(Peaks(2, math.inf), math.inf, impacts=9, last_open=1.0) for _ in levels]
     for run in runs:
         run.peaks.value[:] = 1.0
+    pair = PhasePair(scene, model, np.array([0.3, 1.1]))
     done = LevelRuns(pair, 1e-2, Budget(1e6), levels, softens=True, whole=True, keep=False, runs=runs)
     done.softest = REAL_WARPING_COMPLIANCE
     candidate = done.candidate()
     assert candidate is not None
     np.testing.assert_allclose(candidate.errors, 2e-3, rtol=1e-2)
-    assert replace(candidate, level_errors=np.array([0.1, 0.2])).relative_error == pytest.approx(0.2, rel=1e-2)
+    # a level that has not converged for one body has not for any
+    for level_errors, least in ((np.array([0.1, 0.2]), [0.1, 0.2]), (np.array([0.1, 0.31]), [1.0, 1.0])):
+        widened = replace(candidate, level_errors=level_errors)
+        np.testing.assert_allclose(widened.errors, least, rtol=1e-2)
+        assert widened.relative_error == pytest.approx(max(least), rel=1e-2)
 
 
 def test_restitution_beside_a_support_stiffness_is_refused() -> None:
