@@ -80,7 +80,7 @@ def share_of_errors(scene: dict[str, Any], phase: tuple[float, float], v_reg: fl
     engine = multibody.amplification(Scene.model_validate(scene), [phase], "spatial", v_reg, tolerance)
     assert engine.status[0] == Outcome.OK
     building = ElasticBuilding(scene, v_reg)
-    rough, close = (building.motion(phase, rtol).mu for rtol in (1e-5, 1e-7))
+    rough, close = (building.factors(phase, rtol) for rtol in (1e-5, 1e-7))
     return float((np.abs(engine.mu[0] - close) / (engine.error[0] + np.abs(rough - close))).max())
 
 

@@ -23,7 +23,7 @@ from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation
 from multibody.models.impact import ImpactLaw
 from multibody.motion import _attitude
-from reference.problem import GRAVITY, DryFriction, Outcome, Scene, SceneError, load_scene
+from reference.problem import GRAVITY, DryFriction, Outcome, Scene, load_scene
 
 HALF_WIDTH, HEIGHT, RADIUS = 0.5, 3.0, 0.2  # of the square of supports, of the center of mass, of the spheres
 CENTER, MOMENTS = np.array([0.0, 0.0, HEIGHT]), np.array([0.9, 0.9, 0.7])  # of mass, of inertia of a block
@@ -279,8 +279,3 @@ def test_levels_on_other_springs_do_not_lower_the_error() -> None:
         widened = replace(candidate, level_errors=level_errors)
         np.testing.assert_allclose(widened.errors, least, rtol=1e-2)
         assert widened.relative_error == pytest.approx(max(least), rel=1e-2)
-
-
-def test_restitution_beside_a_support_stiffness_is_refused() -> None:
-    with pytest.raises(SceneError, match="remove one of the two keys"):
-        tower(1.0).with_values({"isolator.restitution": 0.5, "isolator.support_stiffness": 1e6})

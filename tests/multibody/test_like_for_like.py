@@ -68,7 +68,7 @@ SCENES: dict[str, Scene] = {
 }
 SCENES["frame"] = frame(10.0)
 SCENES["frame on a plane"] = frame(10.0).with_values({"isolator": {"radius": math.inf, "friction": 0.05}})
-RECORDED: dict[str, Scene] = {
+BRIEFLY = {name: scene.with_values({"duration": 5.0}) for name, scene in SCENES.items()} | {
     name: load_scene(base).with_values(values)
     for name, base, values in (
         ("pair", "synthetic-pair", {"excitation.scale": 0.5}),
@@ -77,6 +77,8 @@ RECORDED: dict[str, Scene] = {
         ("pair, falling", "synthetic-pair", law(FALLING, duration=3.0)),
         ("pair, heated", "synthetic-pair", law(HEATED, duration=3.0)),
         ("pair, locked", "synthetic-pair", {"duration": 2.0, "isolator": {"period": 2.0, "lubrication": 1e5}}),
+        ("moving plate", "fig3-I", {"duration": 4.0}),
+        ("moving plate, plane", "fig3-I", {"duration": 4.0, **PLANE}),
     )
 }
 
@@ -89,14 +91,10 @@ def compare(scene: Scene, phases: Any, **asked: Any) -> tuple[reference.Amplific
     return engine, equations
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", BRIEFLY)
 def test_every_factor_lies_within_its_error(name: str) -> None:
-    compare(SCENES[name].with_values({"duration": 5.0}), PHASES if name in ("fig3-I", "plane") else PHASES[:1])
-
-
-@pytest.mark.parametrize("name", RECORDED)
-def test_factors_under_a_record_lie_within_their_errors(name: str) -> None:
-    compare(RECORDED[name], PHASES[:1])
+    loading = "plate" if "moving" in name else "inertial"
+    compare(BRIEFLY[name], PHASES if name in ("fig3-I", "plane") else PHASES[:1], loading=loading)
 
 
 @pytest.mark.long
@@ -113,12 +111,6 @@ def test_64_points_of_a_surface_lie_within_their_errors(name: str) -> None:
     compare(SCENES[name], np.random.default_rng(7).uniform(0.0, 2.0 * np.pi, (64, 2)), strict=strict)
 
 
-@pytest.mark.parametrize("place", [{}, PLANE], ids=["sphere", "plane"])
-def test_a_moving_plate_lies_within_its_errors(place: dict[str, Any]) -> None:
-    scene = load_scene("fig3-I").with_values({"duration": 4.0, **place})
-    compare(scene, PHASES[:1], loading="plate")
-
-
 def test_a_locked_platform_moves_with_the_ground() -> None:
     scene = load_scene("fig4-viscous").with_values({"isolator.lubrication": 1e7, "duration": 5.0})
     np.testing.assert_allclose(multibody.amplification(scene, PHASES).mu[:, 0], 1.0, rtol=1e-3)
@@ -128,27 +120,25 @@ LEVEL = {"bodies": [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}], "dur
 
 
 @pytest.mark.parametrize(
-    "values",
+    ("values", "apart"),
     [
-        law(RISING),
-        law(FALLING),
-        law({"slow": 0.1, "load_exponent": 0.2}, **VERTICAL),
-        law(HEATED),
-        {**PLANE, "excitation.scale": 2},
+        (law(RISING), 0.0),
+        (law(FALLING), 0.0),
+        (law({"slow": 0.1, "load_exponent": 0.2}, **VERTICAL), 5e-3),  # four contacts share the load
+        (law(HEATED), 0.0),
+        ({**PLANE, "excitation.scale": 2}, 0.0),
     ],
     ids=["rising", "falling", "pressed", "heated", "plane"],
 )
-def test_supports_have_the_friction_of_their_own_speed_and_load(values: dict[str, Any]) -> None:
+def test_supports_have_the_friction_of_their_own_speed_and_load(values: dict[str, Any], apart: float) -> None:
     """A body level with its contacts does not turn: the spatial model has the motion of the translational one."""
     scene = load_scene("fig3-I").with_values({**LEVEL, **values})
-    spatial, translational = (
+    spatial, moving = (
         multibody.amplification(scene, PHASES[:1], model, full=True) for model in ("spatial", "translational")
     )
     assert spatial.status.tolist() == [Outcome.OK]
-    if isinstance(values.get("isolator.friction"), dict) and "load_exponent" in values["isolator.friction"]:
-        np.testing.assert_allclose(spatial.mu, translational.mu, rtol=5e-3)  # four contacts share the load
-    else:
-        assert (np.abs(spatial.mu - translational.mu) <= spatial.error + translational.error).all()
+    allowed = apart * moving.mu if apart else spatial.error + moving.error
+    assert (np.abs(spatial.mu - moving.mu) <= allowed).all()
 
 
 def test_a_contact_made_stiff_by_a_small_v_reg_is_solved() -> None:
@@ -163,9 +153,14 @@ def test_a_contact_made_stiff_by_a_small_v_reg_is_solved() -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("scene", "count"), [("fig3-I", 256), ("fig3-II", 128)])
-def test_a_whole_surface_lies_within_its_errors(scene: str, count: int) -> None:
-    engine, equations = compare(load_scene(scene), np.random.default_rng(11).uniform(0.0, 2.0 * np.pi, (count, 2)))
+@pytest.mark.parametrize(
+    ("scene", "count", "v_reg"),
+    [("fig3-I", 256, V_REG), ("fig3-II", 128, V_REG), ("fig3-I", 16, 1e-4), ("fig3-II", 16, 1e-4)],
+)
+def test_a_whole_surface_lies_within_its_errors(scene: str, count: int, v_reg: float) -> None:
+    phases = np.vstack([PHASES[:1], np.random.default_rng(11).uniform(0.0, 2.0 * np.pi, (count - 1, 2))])
+    engine, equations = both_sides(load_scene(scene), phases, v_reg)
+    assert (engine.error <= 1e-3 * engine.mu).all()
     gap = np.abs(engine.mu - equations.mu) / equations.mu
     assert gap.max() <= 2e-3
     assert (np.median(gap, axis=0) <= 1e-4).all()
@@ -207,12 +202,7 @@ def test_no_finer_run_contradicts_an_answer(scene: str, model: str, within: Call
 
 @pytest.mark.long
 def test_asked_for_too_much_the_engine_says_so() -> None:
-    """
-    At 1e-5 the last levels differ by little more than rounding in the contact, which no finer level removes.
-
-    How many points meet such a tolerance depends on the processor; that each says whether it does, and how far it is
-    off, does not.
-    """
+    """How many points meet 1e-5, where rounding takes over, depends on the processor; that each says so does not."""
     tolerance, scene = 1e-5, load_scene("fig3-I")
     phases = np.random.default_rng(11).uniform(0.0, 2.0 * np.pi, (16, 2))
     engine = multibody.amplification(scene, phases, regularization=V_REG, tolerance=tolerance)
@@ -232,10 +222,3 @@ def test_a_sharp_corner_asks_for_a_quick_contact(v_reg: float) -> None:
     # the contact of 1e-6 rho is 3 or 30 times slower than the friction relaxes: off by 1.4e-4 and 7e-4, estimate less
     engine, equations = both_sides(changed(load_scene("fig3-I"), duration=4.0), PHASES[:1], v_reg)
     np.testing.assert_allclose(engine.mu, equations.mu, rtol=8e-5)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("scene", ["fig3-I", "fig3-II"])
-def test_errors_hold_where_v_reg_is_small(scene: str) -> None:
-    phases = np.vstack([PHASES[:1], np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, (15, 2))])
-    both_sides(load_scene(scene), phases, 1e-4)

@@ -11,7 +11,6 @@ damping. The start is the static equilibrium, in which fast motions of the beari
 
 import itertools
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -92,7 +91,7 @@ def _kinematics(q, free, centers):
 @compiled
 def _forces(q, rates, ground, masses, tensors, centers, free, stiffness, damping, preload, rods, ring, numbers):
     """
-    Generalized forces (n,), mass matrix (n, n), gaps' rates (K, n), forces of the supports (K,), Jacobians of velocity.
+    Generalized forces (n,), mass matrix (n, n), gaps' rates (K, n), Jacobians of velocity.
 
     numbers: rho, radius of the spheres, penetration at rest, stiffness and damping of a support, friction, v_reg.
     """
@@ -124,7 +123,6 @@ def _forces(q, rates, ground, masses, tensors, centers, free, stiffness, damping
             over = moved[i] - skew(upper) @ spun[i] - moved[i - 1] + skew(lower) @ spun[i - 1]
             stretch = direction @ over
             force -= stretch * (along * (math.sqrt(span @ span) - rods[i - 1, 3]) + lag * along * (stretch @ rates))
-    supports = np.zeros(len(ring))
     gap_rates = np.zeros((len(ring), size))
     for k in range(len(ring)):
         if math.isinf(rho):  # a plane on the tops of the spheres
@@ -145,15 +143,15 @@ def _forces(q, rates, ground, masses, tensors, centers, free, stiffness, damping
             continue
         velocity = over @ rates
         approach = -(normal @ velocity)
-        supports[k] = spring * penetration - dashpot * (normal @ velocity)
+        pressing = spring * penetration - dashpot * (normal @ velocity)
         slip = velocity + approach * normal
         speed = math.sqrt(slip @ slip)
-        force += over.T @ (supports[k] * (normal - friction * slip / max(speed, corner)))
+        force += over.T @ (pressing * (normal - friction * slip / max(speed, corner)))
     for k in range(size):
         if not free[k]:
             mass[k, k] = 1.0
             force[k] = 0.0
-    return force, mass, gap_rates, supports, moved
+    return force, mass, gap_rates, moved
 
 
 def beam_column(beam: float, length: float, load: float) -> tuple[float, float, float]:
@@ -177,19 +175,6 @@ def ring_of(isolator: dict[str, Any]) -> Array:
     angles = 2.0 * np.pi * (np.arange(isolator["supports"]) + 0.5) / isolator["supports"]
     ring: Array = isolator["ring"] * np.column_stack([np.cos(angles), np.sin(angles)])
     return ring
-
-
-@dataclass(frozen=True)
-class Motion:
-    """Peaks of the absolute accelerations, (N,), m/s^2, with their instants, and what else was read."""
-
-    peak: Array
-    instant: Array
-    mu: Array
-    start: Array  # coordinates at time zero
-    time: Array
-    supports: Array  # (T, K), N
-    turn: Array  # (T, 3), rotation vector of the platform
 
 
 class ElasticBuilding:
@@ -259,17 +244,13 @@ class ElasticBuilding:
         """What `_forces` returns."""
         return _forces(np.ascontiguousarray(q), np.ascontiguousarray(rates), ground, *self._model)
 
-    def equilibrium(self) -> Array:
-        """Coordinates (n,) at which nothing moves under the weight."""
-        everything = np.eye(len(self.free))[:, self.free]
-        return self._balanced(np.zeros(len(self.free)), everything, np.zeros((len(self.free), 0)), np.zeros(3))
-
     def start(self, ground: Array) -> Array:
         """Coordinates (n,) at time zero, with heave and tilt on the bearings in balance with the loading."""
-        rest = self.equilibrium()
+        everything = np.eye(len(self.free))[:, self.free]
+        rest = self._balanced(np.zeros(len(self.free)), everything, np.zeros((len(self.free), 0)), np.zeros(3))
         if not ground.any():
             return rest
-        _, mass, gap_rates, _, _ = self.forces(rest, np.zeros_like(rest), np.zeros(3))
+        _, mass, gap_rates, _ = self.forces(rest, np.zeros_like(rest), np.zeros(3))
         patterns = np.column_stack([np.ones(len(self.ring)), self.ring])
         fast = patterns.T @ gap_rates
         slow = null_space(np.vstack([fast, np.eye(len(self.free))[~self.free]]))
@@ -296,10 +277,9 @@ class ElasticBuilding:
             raise RuntimeError("no equilibrium")
         return begin + moved @ unknown[:count]
 
-    def motion(self, phase: tuple[float, float], tolerance: float = 1e-8) -> Motion:
-        """The motion from its start to the end of the scene."""
-        size, bodies = len(self.free), len(self.masses)
-        ground = Ground(self.scene, phase)
+    def factors(self, phase: tuple[float, float], tolerance: float) -> Array:
+        """mu (N,) of the motion from its start to the end of the scene."""
+        size, ground = len(self.free), Ground(self.scene, phase)
         start = self.start(ground(0.0))
 
         def solved(time: float, state: Array) -> tuple[Array, Any]:
@@ -309,18 +289,17 @@ class ElasticBuilding:
         def rate(time: float, state: Array) -> Array:
             return np.concatenate([state[size:], solved(time, state)[0]])
 
-        def read(time: float, state: Array) -> tuple[Array, Array]:
+        def sizes(time: float, state: Array) -> Array:
             changed, found = solved(time, state)
             rates = state[size:]
             later, before = (
                 _kinematics(state[:size] + sign * ALONG * rates, self.free, self._model[2])[2] for sign in (1.0, -1.0)
             )
-            moved = found[4] @ changed + (later - before) @ rates / (2.0 * ALONG)
-            return np.linalg.norm(moved + ground(time), axis=1), found[3]
+            moved = found[3] @ changed + (later - before) @ rates / (2.0 * ALONG)
+            return np.asarray(np.linalg.norm(moved + ground(time), axis=1))
 
         first = np.concatenate([start, np.zeros(size)])
-        peak, supports = read(0.0, first)
-        instant, times, all_supports, turns = np.zeros(bodies), [0.0], [supports], [start[3:6]]
+        peak = sizes(0.0, first)
         state, longest = first, 1e-6
         for begin, end in itertools.pairwise(ground.knots):
             options = {"rtol": tolerance, "atol": 1e-3 * tolerance, "max_step": 0.02}
@@ -331,13 +310,6 @@ class ElasticBuilding:
                     raise RuntimeError(message)
                 dense, longest = solver.dense_output(), solver.step_size
                 for time in np.linspace(solver.t_old, solver.t, PER_STEP + 1)[1:]:
-                    now = dense(time)
-                    sizes, supports = read(time, now)
-                    instant = np.where(sizes > peak, time, instant)
-                    peak = np.maximum(peak, sizes)
-                    times.append(time)
-                    all_supports.append(supports)
-                    turns.append(now[3:6])
+                    peak = np.maximum(peak, sizes(time, dense(time)))
             state = solver.y
-        largest = ground.largest()
-        return Motion(peak, instant, peak / largest, start, np.array(times), np.array(all_supports), np.array(turns))
+        return peak / ground.largest()

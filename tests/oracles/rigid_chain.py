@@ -245,14 +245,11 @@ def _flow(state, accelerated):
 
 @dataclass(frozen=True)
 class SpatialMotion:
-    """Peaks of the absolute accelerations (N,) and their instants, mu (N,), and samples of the motion."""
+    """mu (N,), and samples of the motion."""
 
     mu: Array
-    instant: Array
-    time: Array
     support_force: Array  # (T, K), N
     yaw: Array  # (T,), of the platform, rad: the last of three angles about x, y and z, each in the axes turned so far
-    drift: float  # m, largest distance of a mean gap from zero
 
 
 def _beams(scene: Scene, link: int, bars: Bars) -> tuple[Array, float, tuple[float, ...]]:
@@ -289,20 +286,8 @@ def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolera
     for link, body in enumerate(scene.bodies[1:]):
         if body.bars is not None and body.bars.axial_stiffness is not None:
             shear[link], twist[link], bars[link] = _beams(scene, link, body.bars)
-    lubricated = scene.lubricated
-    model = (
-        scene.masses,
-        tensors,
-        centers,
-        shear,
-        twist,
-        bars,
-        ring,
-        scene.radius,
-        isolator.sphere_radius,
-        scene.friction_coefficient * (1e6 if lubricated else 1.0),
-        1e6 if lubricated else regularization,
-    )
+    contact = scene.radius, isolator.sphere_radius, scene.friction_coefficient, regularization
+    model = (scene.masses, tensors, centers, shear, twist, bars, ring, *contact)
 
     def solved(time: float, flat: Array) -> tuple[Array, Array]:
         state = np.ascontiguousarray(flat).reshape(4, bodies, 3)
@@ -318,9 +303,7 @@ def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolera
     solver = Radau(
         rate, 0.0, start.ravel(), scene.duration, rtol=tolerance, atol=1e-3 * tolerance, first_step=1e-5, max_step=0.02
     )
-    times, forces, yaws = [0.0], [solved(0.0, start.ravel())[1]], [0.0]
-    peak, instant = np.zeros(bodies), np.zeros(bodies)
-    drift = 0.0
+    forces, yaws, peak = [solved(0.0, start.ravel())[1]], [0.0], np.zeros(bodies)
     while solver.status == "running":
         message = solver.step()
         if solver.status == "failed":
@@ -332,16 +315,9 @@ def spatial_motion(scene: Scene, phase: ArrayLike, regularization: float, tolera
             if normals.min() < 0.0:
                 raise RuntimeError(f"a support lifts off at {time:.4f} s")
             ground = ground_acceleration(scene, phase, [time])[0]
-            size = np.linalg.norm(accelerated[:, :3] + ground, axis=1)
-            instant = np.where(size > peak, time, instant)
-            peak = np.maximum(peak, size)
-            times.append(float(time))
+            peak = np.maximum(peak, np.linalg.norm(accelerated[:, :3] + ground, axis=1))
             forces.append(normals)
             turned = _rotation(state.reshape(4, bodies, 3)[1, 0])
             yaws.append(math.atan2(-turned[0, 1], turned[0, 0]))
-        place, turn = solver.y.reshape(4, bodies, 3)[:2]
-        arms = (np.column_stack([ring, np.zeros(len(ring))]) - centers[0]) @ _rotation(turn[0]).T
-        away = np.column_stack([ring, np.full(len(ring), scene.radius)]) - place[0] - arms
-        drift = max(drift, abs(float((np.linalg.norm(away, axis=1) - scene.radius).mean())))
     below = ground_peak(scene, np.reshape(np.asarray(phase, float), (1, -1)))[0]
-    return SpatialMotion(peak / below, instant, np.array(times), np.array(forces), np.array(yaws), drift)
+    return SpatialMotion(peak / below, np.array(forces), np.array(yaws))
