@@ -5,7 +5,6 @@ import pytest
 
 from multibody.integration.chunk import (
     absolute_sizes,
-    any_larger,
     first_ends,
     largest_distance,
     last_near,
@@ -59,10 +58,3 @@ def test_the_largest_distance_is_that_between_the_instants_too() -> None:
         assert largest_distance(time, coordinates, velocities, axes) == expected
         between += expected > length(coordinates[:, axes]).max()
     assert between > 2
-
-
-def test_an_entry_counts_as_larger_in_its_own_column() -> None:
-    size = np.array([[5.0, 1.0], [1.0, 2.0], [3.0, 2.0]])
-    cases = ((0, [4.0, 4.0], True), (1, [4.0, 4.0], False), (1, [3.0, 2.0], False), (1, [3.0, 1.9], True))
-    assert [any_larger(size, first, np.array(least)) for first, least, _ in cases] == [larger for *_, larger in cases]
-    assert not any_larger(size[:0], 0, np.zeros(2))

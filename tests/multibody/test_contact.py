@@ -5,7 +5,6 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from scenes_at_hand import CONSTANT, one_body
-from scipy.integrate import solve_ivp
 
 import multibody
 from multibody.integration.constant_step import Engine, silence
@@ -89,17 +88,3 @@ def test_a_conical_pendulum_keeps_its_circle_at_its_own_rate(within: Callable[[f
     within(abs(np.unwrap(np.arctan2(y, x))[-1] / (rate * scene.duration) - 1.0), 1e-5)
     # the compliance gives way by N / k more than at rest: 1e-8 of rho
     np.testing.assert_allclose(motion.contact_force, GRAVITY / np.cos(cone), rtol=1e-4)
-
-
-def test_a_lubricated_platform_is_a_pendulum_with_linear_drag() -> None:
-    lubrication, radius = 0.05, 0.25
-    scene = one_body(radius=radius, lubrication=lubrication, duration=1.0)
-    motion = started(scene, (0.05, 0.0), (0.0, 0.0), regularization=None, tolerance=1e-5)
-
-    def planar(t: float, y: np.ndarray) -> list[float]:
-        th, rate = y
-        drag = lubrication * radius * rate * (GRAVITY * np.cos(th) / radius + rate**2)
-        return [rate, -GRAVITY / radius * np.sin(th) - drag]
-
-    exact = solve_ivp(planar, (0.0, 1.0), [np.arcsin(0.05 / radius), 0.0], rtol=1e-10, atol=1e-12)
-    assert motion.position[-1, 0, 0] == pytest.approx(radius * np.sin(exact.y[0, -1]), abs=1e-5 * 0.05)

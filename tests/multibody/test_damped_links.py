@@ -14,17 +14,13 @@ from reference.problem import Outcome, Scene, State, load_scene
 PHASES = [(0.3, 1.1), (2.0, 0.7)]
 
 
-def damped(scene: Scene, damping: float | list[float], **values: Any) -> Scene:
-    return scene.with_values({f"bodies.{i}.damping": damping for i in range(1, len(scene.bodies))} | values)
-
-
 @pytest.mark.parametrize("zeta", [0.05, 1.0, 3.0])
 def test_a_damped_body_on_a_held_platform_decays_in_closed_form(zeta: float) -> None:
     w, amplitude = 2.0 * np.pi / 1.5, 0.02
     still = {"isolator.friction": 5.0, "excitation.amplitudes": [[1e-9, 0.0], [0.0, 0.0]], "duration": 1.5}
-    scene = damped(load_scene("fig3-I"), zeta, **still)
+    scene = load_scene("fig3-I").with_values({"bodies.1.damping": zeta, **still})
     released = State(np.array([[0.0, 0.0], [amplitude, 0.0]]), np.zeros((2, 2)))
-    motion = multibody.trajectory(scene, PHASES[0], initial=released)
+    motion = multibody.trajectory(scene, (0.3, 1.1), initial=released)
     root = np.emath.sqrt(zeta**2 - 1.0) if zeta != 1.0 else 1e-9
     one, other = w * (-zeta + root), w * (-zeta - root)
     expected = ((one * np.exp(other * motion.time) - other * np.exp(one * motion.time)) / (one - other)).real
@@ -45,19 +41,15 @@ def two_bodies(link: str, damping: Any) -> Scene:
     return load_scene("fig3-I").with_values({**values, "bodies.1.damping": damping, "isolator.friction": 0.0})
 
 
+CENTERS = np.array([[0.0, 0.0, 0.2], [0.2, -0.1, 1.2]]) / load_scene("fig3-I").radius  # at rest, in units of the model
+
+
 def motion_of_two(seed: int) -> tuple[Any, Any]:
     """Coordinates (12,) of two bodies that are displaced and rotated against each other, and places of both (2, 3)."""
     random = np.random.default_rng(seed)
     coordinates = np.concatenate([*random.uniform(-0.3, 0.3, (4, 3))])
-    coordinates[[9, 10, 11]] = coordinates[[3, 4, 5]] + random.uniform(-0.01, 0.01, 3)
-    centers = assemble_centers()
-    return coordinates, coordinates.reshape(2, 6)[:, :3] + centers
-
-
-def assemble_centers() -> Any:
-    """Centers of mass (2, 3) at rest, in units of the model."""
-    scene = two_bodies("stiff", 0.1)
-    return np.column_stack([scene.offsets, [body.height for body in scene.bodies]]) / scene.radius
+    coordinates[9:] = coordinates[3:6] + random.uniform(-0.01, 0.01, 3)
+    return coordinates, coordinates.reshape(2, 6)[:, :3] + CENTERS
 
 
 def in_engine(coordinates: Any, velocities: Any, spins: Any) -> Any:
@@ -77,9 +69,10 @@ def test_a_chain_that_turns_as_one_feels_no_damper(link: str, axis: list[float])
     spin = np.array(axis)
     turning = np.cross(spin, places) + np.array([0.3, -0.2, 0.1])
     rates = in_engine(coordinates, turning, [spin, spin])
-    damped_one, bare = (forces_of_links(two_bodies(link, zeta), coordinates, rates) for zeta in (2.0, 0.0))
-    scale = 2.0 * two_bodies(link, 2.0).damping.max() * damped_one[2].units.time / two_bodies(link, 2.0).total_mass
-    for with_damper, without in zip(damped_one[:2], bare[:2]):
+    scene = two_bodies(link, 2.0)
+    damped, bare = (forces_of_links(each, coordinates, rates) for each in (scene, two_bodies(link, 0.0)))
+    scale = 2.0 * scene.damping.max() * damped[2].units.time / scene.total_mass
+    for with_damper, without in zip(damped[:2], bare[:2]):
         np.testing.assert_allclose(with_damper, without, atol=1e-8 * scale)
 
 
@@ -108,8 +101,7 @@ def test_a_damper_takes_its_link_s_power_and_keeps_momentum(link: str) -> None:
     np.testing.assert_allclose(force.sum(axis=0), 0.0, atol=1e-9)
     np.testing.assert_allclose((moment + np.cross(places, force)).sum(axis=0), 0.0, atol=1e-8)
 
-    centers = assemble_centers()
-    half = 0.5 * (centers[1, 2] - centers[0, 2])
+    half = 0.5 * (CENTERS[1, 2] - CENTERS[0, 2])
 
     def deformation(time: float) -> Any:
         """In the middle axes of both bodies, by SciPy's rotations."""
@@ -120,7 +112,7 @@ def test_a_damper_takes_its_link_s_power_and_keeps_momentum(link: str) -> None:
         middle = turned[0] * Rotation.from_rotvec(0.5 * (turned[0].inv() * turned[1]).as_rotvec())
         ends = [
             place + time * velocity + turn.apply([-center[0], -center[1], sign * half])
-            for place, velocity, turn, center, sign in zip(places, velocities, turned, centers, (1.0, -1.0))
+            for place, velocity, turn, center, sign in zip(places, velocities, turned, CENTERS, (1.0, -1.0))
         ]
         return middle.inv().apply(ends[1] - ends[0])
 
@@ -134,19 +126,8 @@ def test_a_damper_takes_its_link_s_power_and_keeps_momentum(link: str) -> None:
 
 def test_a_damped_body_off_the_axis_has_dampers_that_turn() -> None:
     """Those of elastic_chain.py on bearings of 1e7 N/m; without omega x D they are 0.95162 and 1.01113."""
-    size = {"mass": 1.0, "size": [2.0, 2.0, 0.2]}
-    above = {"height": 1.2, "period": [1.5, 1.2], "offset": [0.2, 0.2], "damping": 0.3}
-    scene = load_scene("fig3-I").with_values(
-        {
-            "duration": 4.0,
-            "isolator.supports": 3,
-            "isolator.sphere_radius": 0.05,
-            "bodies": [{**size, "height": 0.2}, {**size, **above}],
-            "excitation.amplitudes": [[1.5, 0.0], [0.0, 1.5]],
-            "excitation.periods": [0.9, 1.1],
-            "excitation.decay": [1.0 / 3.0, 3.0 / 11.0],
-        }
-    )
+    values = {"duration": 4.0, "isolator.supports": 3, "bodies.1.offset": [0.2, 0.2], "bodies.1.damping": 0.3}
+    scene = load_scene("fig3-I").with_values(values).with_amplitude(1.5)
     answer = multibody.amplification(scene, [(2.0, 0.7)], "spatial", 5e-3, tolerance=1e-4)
     assert answer.status[0] == Outcome.OK
     assert (np.abs(answer.mu[0] - [0.947956, 1.013365]) <= answer.error[0]).all(), (answer.mu, answer.error)

@@ -25,16 +25,3 @@ def test_a_platform_near_its_rest_has_all_spheres_in(height: float, width: float
             assert not place.beyond_rim(coordinates).any()
             assert (rotation(coordinates[:, 3:6])[:, 2, 2] > 0.0).all()
     assert 100 < proved < 400
-
-
-def test_a_platform_that_slides_a_little_is_near_its_rest() -> None:
-    coordinates = np.zeros((1, COORDINATES))
-    coordinates[0, :6] = 0.1, 0.1, 0.01, 1e-3, 1e-3, 1e-3
-    assert depressions(5.0).near_rest(coordinates)
-
-
-@pytest.mark.parametrize("axis", range(6))
-def test_what_is_not_a_number_is_not_near_rest(axis: int) -> None:
-    coordinates = np.zeros((3, COORDINATES))
-    coordinates[1, axis] = np.nan
-    assert not depressions(0.2).near_rest(coordinates)

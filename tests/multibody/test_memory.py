@@ -15,39 +15,33 @@ ALLOWED = 0.01  # MB per call: allocators keep 1 MB for a while; a system that i
 SCRIPT = """
 import gc, os
 import multibody
-from reference.problem import Scene, load_scene
+from reference.problem import load_scene
 
-table = load_scene("{scene}").model_dump(exclude_none=True)
-scene = Scene.model_validate({{**table, "duration": 0.02}})
+scene = load_scene("{scene}").with_values({{"duration": 0.02}})
 
-def resident():
+def resident_after(calls):
+    for _ in range(calls):
+        multibody.{call}
+    gc.collect()
     return int(open("/proc/self/statm").read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
 
-def call():
-    multibody.{function}(scene, {phases}, {settings})
-
-for _ in range({calls}):
-    call()
-gc.collect()
-before = resident()
-for _ in range(4 * {calls}):
-    call()
-gc.collect()
-print((resident() - before) / (4 * {calls}))
+before = resident_after({calls})
+print((resident_after(4 * {calls}) - before) / (4 * {calls}))
 """
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize(
-    ("scene", "function", "phases", "settings"),
+    ("scene", "call"),
     [
-        pytest.param("fig3-I", "amplification", "[(0.3, 1.1)]", "loading='plate'", marks=pytest.mark.long),
-        pytest.param("fig3-I", "trajectory", "(0.3, 1.1)", "model='spatial'", marks=pytest.mark.long),
-        pytest.param("synthetic-pair", "amplification", "[(0.3, 1.1)]", "", marks=pytest.mark.long),
+        ("fig3-I", "amplification(scene, [(0.3, 1.1)], loading='plate')"),
+        ("fig3-I", "trajectory(scene, (0.3, 1.1), model='spatial')"),
+        ("synthetic-pair", "amplification(scene, [(0.3, 1.1)])"),
     ],
 )
-def test_calls_of_the_engine_do_not_grow_the_memory(scene: str, function: str, phases: str, settings: str) -> None:
-    script = SCRIPT.format(scene=scene, function=function, phases=phases, settings=settings, calls=CALLS)
+def test_calls_of_the_engine_do_not_grow_the_memory(scene: str, call: str) -> None:
+    script = SCRIPT.format(scene=scene, call=call, calls=CALLS)
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert float(done.stdout) < ALLOWED
 

@@ -5,9 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scenes_at_hand import changed
 
 import multibody
-from reference.problem import Outcome, ground_peak, load_scene
+from reference.problem import GRAVITY, Outcome, ground_peak, load_scene
 
 PHASE = (0.3, 1.1)
 SCENE = load_scene("fig3-I").with_values({"duration": 1.0})
@@ -21,10 +22,17 @@ def test_the_run_at_the_second_level_has_the_peaks_of_the_answer(model: str) -> 
     np.testing.assert_array_equal(run.peak / ground_peak(SCENE, [PHASE])[0], answer.mu[0])
 
 
-def test_a_level_with_another_contact_rounds_like_it() -> None:
-    level = multibody.levels(SCENE)[0]
-    stiffer = replace(level, penetration=level.penetration / 100.0)
-    assert stiffer.rounding == pytest.approx(100.0 * level.rounding)
+def test_a_contact_gives_way_by_the_penetration_asked_for() -> None:
+    """Under a plate that is pushed up by 4 m/s^2 at the start, whether at a constant step or at a level."""
+    scene = changed(SCENE, duration=0.01, excitation={"amplitudes": [[0.0, 0.0], [0.0, 0.0], [4.0, 0.0]]})
+    level = replace(multibody.levels(scene)[0], penetration=1e-3)
+    runs = [
+        multibody.single_run(scene, (0.0, 0.0), **asked)
+        for asked in ({"step": 1e-4, "penetration": 1e-3}, {"level": level})
+    ]
+    for run in runs:
+        assert run.position[0, 0, 2] == pytest.approx(-1e-3 * scene.radius * 4.0 / GRAVITY, rel=1e-6)
+    assert level.rounding == pytest.approx(level.rounding_moment / 1e-3)
 
 
 @pytest.mark.parametrize("integrator", ["generalized alpha", "trapezoidal", "RK44"])

@@ -12,7 +12,6 @@ from multibody.integration.adaptive import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from multibody.models.depressions import rotation
-from reference.measures import demands
 from reference.problem import GRAVITY, Outcome, Scene, SceneError, load_scene, phase_grid
 
 PHASE = (2.0, 0.7)
@@ -91,17 +90,6 @@ def test_supports_of_a_building_at_rest_carry_what_statics_say(name: str) -> Non
     np.testing.assert_allclose(forces[-1] / (scene.total_mass * GRAVITY), static_shares(scene), atol=2e-5)
 
 
-@pytest.mark.parametrize("supports", [3, 4, 5, 6])
-def test_offsets_are_allowed_while_supports_carry(supports: int) -> None:
-    """Offset by e away from it, a support of a ring carries 1/K - 2 e / (K ring) of the weight."""
-    scene = uneven("body above off the axis", **{"isolator.supports": supports})
-    place = scene.support_places[0]  # type: ignore[index]
-    inside, outside = ({f"bodies.{body}.offset": -0.5 * factor * place for body in (0, 1)} for factor in (0.999, 1.001))
-    assert static_shares(scene.with_values(inside))[0] == pytest.approx(1e-3 / supports)
-    with pytest.raises(SceneError, match="would carry nothing at rest"):
-        scene.with_values(outside)
-
-
 def turned(scene: Scene, angle: float) -> Scene:
     """The same scene, loading included, turned about the vertical."""
     matrix = rotation(np.array([0.0, 0.0, angle]))[:2, :2]
@@ -133,29 +121,6 @@ def test_a_scene_turned_as_a_whole_has_the_turned_motion(name: str, angle: float
     matrix = rotation(np.array([0.0, 0.0, angle]))[:2, :2]
     np.testing.assert_allclose(ends[1], ends[0] @ matrix.T, atol=2e-4 * np.abs(motions[0].position[:, 0]).max())
     np.testing.assert_allclose(motions[1].extra["turns"][-1, :, 2], motions[0].extra["turns"][-1, :, 2], atol=2e-5)
-
-
-def test_a_quarter_turn_swaps_edges_and_stiffness() -> None:
-    scene = uneven("at an angle", **{"bodies.0.yaw": 0.0, "bodies.1.yaw": 0.5 * math.pi})
-    swapped = scene.with_values({"bodies.1.yaw": None, "bodies.1.size": [0.8, 2.0, 0.2], "bodies.1.period": [1.2, 1.5]})
-    assert agree(*(multibody.amplification(each, [PHASE], "spatial") for each in (scene, swapped)))
-
-
-@pytest.mark.parametrize(
-    "law", [{}, {"isolator.friction": 0.0}, {"isolator.friction": None, "isolator.lubrication": 0.5}]
-)
-@pytest.mark.parametrize("key", ["offset", "yaw"])
-def test_rotation_grows_linearly_and_factors_squared(key: str, law: dict[str, Any]) -> None:
-    """Loading along x: an offset along y, or an angle, of the other sign gives the mirrored motion."""
-    along_x = {"duration": 2.0, "excitation.amplitudes": [[1.0, 1.0], [0.0, 0.0]], **law}
-    values = [[0.0, size] if key == "offset" else size for size in (0.0, 0.02, 0.04)]
-    scenes = [load_scene("fig3-I").with_values({**along_x, f"bodies.1.{key}": value}) for value in values]
-    motions = [multibody.trajectory(scene, PHASE, "spatial", tolerance=3e-4) for scene in scenes]
-    torsion = [demands(motion).torsion[1].value for motion in motions]  # type: ignore[index]
-    assert torsion[0] < 1e-10
-    assert torsion[2] / torsion[1] == pytest.approx(2.0, rel=0.01)
-    once, twice = (motion.peak - motions[0].peak for motion in motions[1:])
-    np.testing.assert_allclose(twice / once, 4.0, rtol=0.02)
 
 
 STILL_AT_FIRST = (-0.5 * math.pi, -0.5 * math.pi)  # phases at which the loading is zero at time zero
