@@ -88,9 +88,10 @@ def test_a_link_keeps_the_momentum_of_its_bodies(link: str) -> None:
     np.testing.assert_allclose(about_the_origin, 0.0, atol=2e-5 * np.abs(force).max())
 
 
-@pytest.mark.parametrize("link", ["stiff", "at an angle"])
+@pytest.mark.parametrize("link", ["stiff", "at an angle", "bars"])
 def test_a_damper_takes_its_link_s_power_and_keeps_momentum(link: str) -> None:
-    scene, (coordinates, places) = two_bodies(link, [0.7, 0.2]), motion_of_two(6)
+    """Bars that give way damp every direction in proportion to its stiffness, as that in shear."""
+    scene, (coordinates, places) = two_bodies(link, 0.7 if link == "bars" else [0.7, 0.2]), motion_of_two(6)
     random = np.random.default_rng(7)
     velocities, spins = random.uniform(-0.5, 0.5, (2, 2, 3))
     rates = in_engine(coordinates, velocities, spins)
@@ -109,19 +110,25 @@ def test_a_damper_takes_its_link_s_power_and_keeps_momentum(link: str) -> None:
             Rotation.from_rotvec(time * spin) * Rotation.from_euler("XYZ", angles)
             for spin, angles in zip(spins, coordinates.reshape(2, 6)[:, 3:])
         ]
-        middle = turned[0] * Rotation.from_rotvec(0.5 * (turned[0].inv() * turned[1]).as_rotvec())
+        relative = (turned[0].inv() * turned[1]).as_rotvec()
+        middle = turned[0] * Rotation.from_rotvec(0.5 * relative)
         ends = [
             place + time * velocity + turn.apply([-center[0], -center[1], sign * half])
             for place, velocity, turn, center, sign in zip(places, velocities, turned, CENTERS, (1.0, -1.0))
         ]
-        return middle.inv().apply(ends[1] - ends[0])
+        return np.append(middle.inv().apply(ends[1] - ends[0]), relative)
 
     rate = (deformation(1e-5) - deformation(-1e-5)) / 2e-5
     yaw = scene.yaws[1]
     along = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]]) @ rate[:2]
-    values = scene.damping[0] * model.units.time / model.units.mass
+    values, units = scene.damping[0] * model.units.time / model.units.mass, model.units
+    taken, bars = (values * along**2).sum(), scene.bar_links[0]
+    if bars is not None:
+        moments = np.array([bars.bending, bars.bending, bars.torsion]) / units.force / units.length
+        along_bars = bars.tension * units.length / units.force * rate[2] ** 2
+        taken += scene.damping[0, 0] / bars.shear / units.time * (along_bars + (moments * rate[3:] ** 2).sum())
     power = (force * velocities).sum() + (moment * spins).sum()
-    assert power == pytest.approx(-(values * along**2).sum(), rel=2e-3)  # bodies are turned against each other by 0.01
+    assert power == pytest.approx(-taken, rel=2e-3)  # bodies are turned against each other by 0.01
 
 
 def test_a_damped_body_off_the_axis_has_dampers_that_turn() -> None:

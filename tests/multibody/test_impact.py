@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes_at_hand import changed, one_body
+from scenes_at_hand import changed, one_body, ring_that_opens
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -208,19 +208,19 @@ def test_a_tower_that_overturns_ends_under_that_name() -> None:
     assert 1.0 < results[0].instant[0] < 3.0
 
 
-BRIEFLY = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [GRAVITY, 0.0]], "decay": [0.0, 0.0]}
+LOAD = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [GRAVITY, 0.0]], "decay": [0.0, 0.0]}
+BRIEFLY = changed(load_scene("fig3-I"), excitation=LOAD, duration=1.0)
 
 
 @pytest.mark.parametrize(
     ("scene", "phase", "max_work"),
     [
-        (changed(load_scene("fig3-I"), excitation=BRIEFLY, duration=1.0), (0.0, 1.1), 5e4),
-        pytest.param(
-            changed(load_scene("fig3-I"), excitation=BRIEFLY, duration=1.0), (math.pi, 0.7), 5e4, marks=pytest.mark.long
-        ),
+        (BRIEFLY, (0.0, 1.1), 5e4),
+        pytest.param(BRIEFLY, (math.pi, 0.7), 5e4, marks=pytest.mark.long),
         pytest.param(tower(1.0), (0.3, 1.1), 2e6, marks=pytest.mark.long),
+        *(pytest.param(ring_that_opens(count), (0.3, 1.1), 2e6, marks=pytest.mark.long) for count in (4, 6)),
     ],
-    ids=["falling at a turning point", "falling at another", "tower that hits its supports"],
+    ids=["falling at a turning point", "at another", "tower that hits its supports", "ring of 4", "ring of 6"],
 )
 def test_supports_that_open_leave_answers_that_agree(scene: Scene, phase: tuple[float, float], max_work: float) -> None:
     """The plate falls as fast as the bodies at a turning point of its acceleration, and nothing chatters."""

@@ -8,7 +8,7 @@ import pytest
 from scenes_at_hand import changed
 
 import multibody
-from reference.problem import GRAVITY, Outcome, ground_peak, load_scene
+from reference.problem import GRAVITY, Outcome, State, ground_peak, load_scene
 
 PHASE = (0.3, 1.1)
 SCENE = load_scene("fig3-I").with_values({"duration": 1.0})
@@ -33,6 +33,16 @@ def test_a_contact_gives_way_by_the_penetration_asked_for() -> None:
     for run in runs:
         assert run.position[0, 0, 2] == pytest.approx(-1e-3 * scene.radius * 4.0 / GRAVITY, rel=1e-6)
     assert level.rounding == pytest.approx(level.rounding_moment / 1e-3)
+
+
+@pytest.mark.parametrize("model", ["translational", "spatial"])
+def test_all_bodies_start_as_fast_upwards_as_the_platform_slides(model: str) -> None:
+    place, speed = np.array([[0.03, -0.04], [0.0, 0.0]]), np.array([[0.6, 0.2], [0.1, 0.3]])
+    run = multibody.single_run(changed(SCENE, duration=1e-3), PHASE, model, step=1e-4, initial=State(place, speed))
+    upward = (place[0] @ speed[0]) / np.sqrt(SCENE.radius**2 - 0.05**2)
+    np.testing.assert_allclose(run.velocity[0], np.column_stack([speed, [upward, upward]]), rtol=1e-12)
+    np.testing.assert_allclose(run.position[0, :, :2], place, rtol=1e-6)
+    assert run.extra["slip_speed"][0, 0] == pytest.approx(np.hypot(np.hypot(*speed[0]), upward), rel=1e-9)
 
 
 @pytest.mark.parametrize("integrator", ["generalized alpha", "trapezoidal", "RK44"])
