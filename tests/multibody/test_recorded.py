@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,16 +23,15 @@ from reference.problem import Scene, ground_velocity
 ANY = (0.0, 0.0)  # a record has no phases
 
 
-def example(name: str, scale: float = 1.0, duration: float | None = None) -> Scene:
-    scene = reference.load_scene(name)
-    data = scene.model_dump(exclude_none=True) | {"duration": duration or scene.duration}
-    data["excitation"]["scale"] = scale
-    return Scene.model_validate(data)
+def example(scale: float = 1.0, duration: float = 20.0, **values: Any) -> Scene:
+    return reference.load_scene("synthetic-pair").with_values(
+        {"excitation.scale": scale, "duration": duration, **values}
+    )
 
 
 def test_a_loose_tolerance_begins_a_level_earlier_under_a_record() -> None:
     """Twice the step of level 0, within its stated error; agreement behind impacts counts from level 0 on."""
-    scene = example("synthetic-pair")
+    scene = example()
     loose, usual = multibody.levels(scene, tolerance=1e-2), multibody.levels(scene, tolerance=9e-3)
     assert [level.step for level in loose] == [2.0 * usual[0].step, *(level.step for level in usual[:-1])]
     assert (loose[1], [level.is_loose for level in loose[:2]]) == (usual[0], [True, False])
@@ -49,18 +49,11 @@ def test_a_loose_tolerance_begins_a_level_earlier_under_a_record() -> None:
 @pytest.mark.parametrize(("push", "impacts"), [(-5.0, False), (-20.0, True)])
 def test_behind_impacts_a_loose_tolerance_goes_on_to_level_1(push: float, impacts: bool) -> None:
     """A plate that falls faster than a body under gravity, for 0.05 s, and one that does not."""
-    scene = Scene.model_validate(
-        {
-            "title": "a plate that falls",
-            "duration": 0.3,
-            "isolator": {"radius": 1.0, "friction": 0.05, "supports": 3, "ring": 0.5, "sphere_radius": 0.05},
-            "bodies": [{"mass": 1e3, "height": 0.1, "size": [1.0, 1.0, 0.1]}],
-            "excitation": {
-                "record": "falls.csv",
-                "samples": [[0.0, 1.0, 0.0, 0.0], [0.1, 1.0, 0.0, push], [0.15, 1.0, 0.0, 0.0], [0.3, 1.0, 0.0, 0.0]],
-            },
-        }
-    )
+    samples = [[0.0, 1.0, 0.0, 0.0], [0.1, 1.0, 0.0, push], [0.15, 1.0, 0.0, 0.0], [0.3, 1.0, 0.0, 0.0]]
+    on = {"radius": 1.0, "friction": 0.05, "supports": 3, "ring": 0.5, "sphere_radius": 0.05}
+    body = {"mass": 1e3, "height": 0.1, "size": [1.0, 1.0, 0.1]}
+    falls = {"excitation": {"record": "falls.csv", "samples": samples}}
+    scene = Scene.model_validate({"title": "falls", "duration": 0.3, "isolator": on, "bodies": [body], **falls})
     with silence():
         built = assemble(scene, "spatial", 1e-3, contact_force=True)
         point = refine(scene, built, np.zeros(2), 1e-2)
@@ -71,10 +64,7 @@ def test_behind_impacts_a_loose_tolerance_goes_on_to_level_1(push: float, impact
 
 def test_the_plate_moves_as_the_integral_of_the_record_says():
     """Frictionless and very slow, a pendulum stays behind: its motion against the plate is minus the plate's."""
-    data = example("synthetic-pair", duration=6.0).model_dump(exclude_none=True)
-    data["isolator"] = {"period": 400.0, "friction": 0.0}
-    data["bodies"] = data["bodies"][:1]
-    scene = Scene.model_validate(data)
+    scene = example(duration=6.0, isolator={"period": 400.0, "friction": 0.0}, bodies=[{"mass": 1.0}])
     motion = multibody.trajectory(scene, ANY, regularization=None, loading="plate", tolerance=1e-4)
     expected = -ground_velocity(scene, ANY, motion.time)[:, :2]
     assert motion.velocity[:, 0, :2] == pytest.approx(expected, abs=1e-2 * np.abs(expected).max())
@@ -102,7 +92,7 @@ def test_steps_end_at_every_knot_passed(time, step, count, expected):
 @pytest.mark.parametrize("parts", [8, 11, 15, 29])
 def test_knots_do_not_make_the_chunks_behind_them_short(parts: int) -> None:
     """Chunks of 1, 2, 4 and 8 steps up to each knot, of 15 between two, left a weak record 2.5 stated errors off."""
-    scene = example("synthetic-pair", 0.16, 3.0)
+    scene = example(0.16, 3.0)
     with silence():
         model = assemble(scene, "translational", 1e-3)
         interval, level = model.ground.knots[1], levels_of(scene, model, 1e-3)[0]
