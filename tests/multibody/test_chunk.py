@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 
 from multibody.integration.chunk import (
-    absolute_sizes,
     first_ends,
     largest_distance,
     last_near,
-    slip_changes,
 )
 from reference.measures.demands import largest_displacement
 
@@ -24,18 +22,6 @@ def length(vectors: np.ndarray) -> np.ndarray:
     for part in np.moveaxis(vectors, -1, 0):  # from the first to the last: sums of three depend on their order
         square = square + part * part
     return np.sqrt(square)
-
-
-def test_sizes_and_changes_are_those_of_whole_arrays() -> None:
-    plate, of_platform = DRAW.normal(size=(STEPS, 3)), ACCELERATIONS[:, BODIES[0]]
-    expected = length(ACCELERATIONS[:, BODIES] + plate[:, None, :])
-    assert np.array_equal(absolute_sizes(ACCELERATIONS, BODIES, plate), expected)
-    size = length(of_platform)
-    size[1:] = np.maximum(size[1:], 2.0 * length(np.diff(of_platform, axis=0)))
-    slip = np.where(CONTACT[:, 0::4] < 0.0, CONTACT[:, 1::4], np.inf).min(axis=1)  # of the slowest loaded contact
-    for corner in (0.3, np.inf):
-        expected = 0.7 * size / np.maximum(slip, corner)
-        assert np.array_equal(slip_changes(ACCELERATIONS, BODIES[0], CONTACT, 0.7, corner), expected)
 
 
 @pytest.mark.parametrize(("rim", "share"), [(0.5, 0.5), (1.5, 0.99), (100.0, 1.01)])
