@@ -15,7 +15,6 @@ import multibody
 from multibody.integration.adaptive import Budget, EngineRun
 from multibody.integration.estimate import widened_by_impacts
 from multibody.integration.level import REAL_WARPING_COMPLIANCE
-from multibody.integration.level_runs import LevelRuns
 from multibody.integration.one_run import PhasePair
 from multibody.integration.openings import IMPACT_TIME
 from multibody.integration.peak import Peaks
@@ -232,22 +231,6 @@ def test_supports_that_open_leave_answers_that_agree(scene: Scene, phase: tuple[
     assert (np.abs(loose.mu - strict.mu) <= loose.error + strict.error).all()
 
 
-def test_levels_that_impacts_take_elsewhere_are_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    ran: list[EngineRun] = []
-
-    def elsewhere(pair: PhasePair, *given: Any, **named: Any) -> EngineRun:
-        run = EngineRun(Peaks(2, pair.model.corner), math.inf, work=1000, impacts=7)
-        run.peaks.value[:] = 2.0 ** len(ran)
-        ran.append(run)
-        return run
-
-    monkeypatch.setattr(PhasePair, "at_level", elsewhere)
-    result = multibody.amplification(tower(1.0), [(0.3, 1.1)], model="spatial", tolerance=1e-2)
-    assert result.status.tolist() == ["tolerance not met"]
-    assert (result.error >= result.mu).all()
-    assert len(ran) <= 7, "four levels, three of which went to the end after all"
-
-
 def test_levels_that_impacts_scatter_have_their_spread() -> None:
     run = EngineRun(Peaks(3, math.inf), math.inf, impacts=50)
     peaks = [Peaks(3, math.inf), Peaks(3, math.inf), run.peaks]
@@ -258,24 +241,3 @@ def test_levels_that_impacts_scatter_have_their_spread() -> None:
     np.testing.assert_allclose(errors, [0.0042, 0.0033, 1e-3 * 0.997], rtol=1e-9)
     run.impacts = 0
     assert not widened_by_impacts(np.zeros(3), peaks, run, 2).any()
-
-
-def test_levels_on_other_springs_do_not_lower_the_error() -> None:
-    """Level 0 on stiff springs is another motion: level 2 then is confirmed by one level, as is level 1 without it."""
-    scene = load_scene("fig3-I")
-    model, levels = assemble(scene, "spatial", 1e-3), multibody.levels(scene, "spatial")[:3]
-    levels[1:] = [replace(level, warping_compliance=REAL_WARPING_COMPLIANCE) for level in levels[1:]]
-    runs = [EngineRun(Peaks(2, math.inf), math.inf, impacts=9, last_open=1.0) for _ in levels]
-    for run in runs:
-        run.peaks.value[:] = 1.0
-    pair = PhasePair(scene, model, np.array([0.3, 1.1]))
-    done = LevelRuns(pair, 1e-2, Budget(1e6), levels, softens=True, whole=True, keep=False, runs=runs)
-    done.softest = REAL_WARPING_COMPLIANCE
-    candidate = done.candidate()
-    assert candidate is not None
-    np.testing.assert_allclose(candidate.errors, 2e-3, rtol=1e-2)
-    # a level that has not converged for one body has not for any
-    for level_errors, least in ((np.array([0.1, 0.2]), [0.1, 0.2]), (np.array([0.1, 0.31]), [1.0, 1.0])):
-        widened = replace(candidate, level_errors=level_errors)
-        np.testing.assert_allclose(widened.errors, least, rtol=1e-2)
-        assert widened.relative_error == pytest.approx(max(least), rel=1e-2)

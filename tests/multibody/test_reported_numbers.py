@@ -81,10 +81,14 @@ def test_the_error_of_levels_is_what_richardson_says() -> None:
 
 
 def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
-    [peaks] = peaks_of(1.0)
-    parts = [np.array([part]) for part in (1e-3, 2e-3, 0.0)]
-    answer = Candidate(SimpleNamespace(peaks=peaks), LEVELS[0], True, *parts, (), compliance=np.array([4e-3]))  # type: ignore[arg-type]
-    assert answer.errors[0] == pytest.approx(7e-3)
+    """Unless one body shows that levels have not converged: then none is known to better than itself."""
+    [peaks] = peaks_of((1.0, 2.0))
+    run: Any = SimpleNamespace(peaks=peaks)
+    for shown, expected in ((1e-3, (7e-3, 7e-3)), (0.31, (1.004, 2.004))):
+        parts = np.array([shown, 1e-3]), np.full(2, 2e-3), np.zeros(2)
+        answer = Candidate(run, LEVELS[0], True, *parts, (), compliance=np.full(2, 4e-3))
+        np.testing.assert_allclose(answer.errors, expected)
+        assert answer.relative_error == pytest.approx(expected[0])
 
 
 def test_a_motion_comes_with_the_accuracy_of_all_its_numbers() -> None:

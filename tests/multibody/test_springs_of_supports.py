@@ -46,10 +46,16 @@ Runs = Callable[[int, float], EngineRun]  # number of the level, and how far sup
 
 
 def result(
-    platform: float, *, opens: bool = True, outcome: Outcome = Outcome.OK, load: float = 0.0, steps: int = STEPS
+    platform: float,
+    *,
+    opens: bool = True,
+    outcome: Outcome = Outcome.OK,
+    load: float = 0.0,
+    steps: int = STEPS,
+    impacts: int = 0,
 ) -> EngineRun:
     """A run with this peak of the platform; that of the other body is always 2."""
-    run = EngineRun(Peaks(2, math.inf), math.inf, work=steps, warping_load=load)
+    run = EngineRun(Peaks(2, math.inf), math.inf, work=steps, warping_load=load, impacts=impacts)
     run.peaks.value[:] = platform, 2.0
     run.peaks.instant[:] = 0.2, 0.3
     run.last_open = 0.5 if opens else -math.inf
@@ -155,6 +161,11 @@ PATHS: dict[str, tuple[Any, ...]] = {
     "unconfirmed by a run that fails, whose peak can only grow":
         (failing(FAILED, finer_on_bearings, 1e-4, 1.05), {"levels": 2},
          "0s 0r 1s 1r", BEYOND, 1.0, 0.05 + level_error(1)),
+    "behind impacts levels on the same springs have an error of 4e-3, halved by each":
+        (lambda _, springs: result(1.826 + 0.067 * (springs == STIFF), impacts=9), {},
+         "0s 0r 1r 2r", OK, 1.826, 1.826 * 1e-3),
+    "three levels that impacts take elsewhere are enough":
+        (lambda number, _: result(2.0**number, opens=False, impacts=7), {}, "0s 1s 2s 3s", BEYOND, 8.0, 8.0),
     "supports opened by a misfit may give way by more":
         (lambda _, springs: result(1.0, opens=springs == STIFF, load=1e-6 / springs), {},
          "0s 0r 1c", OK, 1.0, level_error(1) + 0.25e-10),
@@ -185,12 +196,7 @@ def test_an_answer_hardly_changed_by_bearings_stays(refined: Any) -> None:
 
 
 def test_the_error_on_real_bearings_counts_impacts(refined: Any) -> None:
-    def runs(number: int, springs: float) -> EngineRun:
-        run = real_from_level_1(number, springs)
-        run.impacts = int(finer_on_bearings(number, springs))
-        return run
-
-    done = refined(runs, 2)
+    done = refined(lambda *at: replace(real_from_level_1(*at), impacts=int(finer_on_bearings(*at))), 2)
     assert done.answer.errors[1] == pytest.approx(2.0 * 4e-3), "no level before it has the same springs"
 
 
