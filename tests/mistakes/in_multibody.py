@@ -117,7 +117,7 @@ MISTAKES = (
             (BARS + "test_a_link_under_an_eccentric_weight_is_straight_at_rest",)),
     Mistake(MODELS + "links.py", "return square_distance * swaying", "return 0.5 * square_distance * swaying",
             "Links are half as stiff against twist.",
-            (NUMBERS + "test_a_link_without_bars_twists_as_if_it_stood_on_the_ring",)),
+            (NUMBERS + "test_a_link_without_bars_twists_as_if_it_stood_on_the_supports",)),
     Mistake(MODELS + "links.py", "dampingPerLength=0.25 * damping", "dampingPerLength=0.5 * damping",
             "A damper takes energy from the twist of its link.",
             (TESTS + "test_damped_links.py::test_a_damper_takes_its_link_s_power_and_keeps_momentum",)),

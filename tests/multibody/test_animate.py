@@ -15,7 +15,7 @@ from PIL import Image
 from multibody import animate
 from multibody import film as film_module
 from multibody.animate import main
-from multibody.film import Look, box_corners, contact_paths, film, magnified
+from multibody.film import Look, box_corners, contact_paths, drawn_boxes, film, magnified
 from reference.problem import load_scene
 
 SHORT = """
@@ -170,6 +170,13 @@ def test_contact_points_move_against_the_platform() -> None:
 )
 def test_turns_are_magnified_by_round_factors_and_never_reduced(largest: float, factor: float) -> None:
     assert magnified(np.array([0.0, -largest]), 0.3) == factor
+
+
+def test_boxes_without_stated_sizes_stand_half_a_width_apart(words: list[str]) -> None:
+    """Their width is that of a ring of 1 m; centers of mass at one height are drawn apart likewise."""
+    for scene in (load_scene(words[0]), load_scene("fig3-I").with_values({"bodies.1.height": 0.2})):
+        heights, sizes, factor = drawn_boxes(scene)
+        assert (heights.tolist(), sizes.tolist(), factor) == ([0.0, 1.0], [[2.0, 2.0, 0.2]] * 2, 1.0)
 
 
 def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatch) -> None:

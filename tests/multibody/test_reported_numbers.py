@@ -110,6 +110,8 @@ def test_supports_that_press_are_not_lifted() -> None:
     motion = multibody.trajectory(BRIEF, PHASE, "spatial")
     assert motion.support_force.min() > 0.0
     assert not motion.extra["uplift"].any()
+    lubricated = load_scene("fig4-viscous").with_values({"duration": 0.5})
+    assert multibody.trajectory(lubricated, PHASE).stick == [], "only dry friction sticks"
 
 
 def test_a_flat_slider_starts_under_the_weight_and_its_inertia() -> None:
@@ -120,12 +122,16 @@ def test_a_flat_slider_starts_under_the_weight_and_its_inertia() -> None:
     np.testing.assert_allclose(motion.contact_force, expected, rtol=1e-3)
 
 
-def test_a_link_without_bars_twists_as_if_it_stood_on_the_ring() -> None:
-    """ring^2 (kx + ky) / 2 of bars that stand where the supports do, on a ring of 1 m, against the engine's moment."""
-    scene, twisted = load_scene("fig3-I"), np.zeros(12)
+@pytest.mark.parametrize(
+    ("places", "square"), [({}, 1.0), ({"supports": [[1.4, 0.2], [-0.9, 1.1], [-0.6, -1.2]], "ring": None}, 5.82 / 3.0)]
+)
+def test_a_link_without_bars_twists_as_if_it_stood_on_the_supports(places: dict[str, Any], square: float) -> None:
+    """Mean square distance times (kx + ky) / 2: of a ring of 1 m, or of stated places, against the engine's moment."""
+    scene = load_scene("fig3-I").with_values({f"isolator.{key}": value for key, value in places.items()})
+    twisted = np.zeros(12)
     twisted[11] = 1e-4
     _, moments, model = forces_of_links(scene, twisted, np.zeros(12))
-    expected = 0.5 * scene.stiffness[0].sum() * 1e-4
+    expected = 0.5 * square * scene.stiffness[0].sum() * 1e-4
     assert moments[0, 2] * model.units.force * model.units.length == pytest.approx(expected, rel=1e-4)
 
 
