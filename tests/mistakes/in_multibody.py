@@ -192,7 +192,7 @@ MISTAKES = (
     Mistake(MODELS + "depressions.py",
             "outside = (inside[..., 2] <= 0.0) & (np.hypot(inside[..., 0], inside[..., 1]) >= 1.0)",
             "outside = np.hypot(inside[..., 0], inside[..., 1]) >= 1.0",
-            "A sphere is beyond the rim while it is still in its depression.", (TESTS + "test_depressions.py",)),
+            "A sphere is beyond the rim while it is still in its depression.", (IMPACT + "::test_a_platform_near_its_rest_has_all_spheres_in",)),
     Mistake(MODELS + "loading.py", "return lambda mbs, t, load: -mass * ground.along(axis, t)",
             "return lambda mbs, t, load: -mass * ground.along(0, t)", "The loading along y is that along x.",
             (TESTS + "test_plate_frame.py::test_inertial_forces_and_a_moving_plate_agree",)),

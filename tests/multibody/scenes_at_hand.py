@@ -78,6 +78,18 @@ def forces_of_links(scene: Scene, coordinates: Any, velocities: Any) -> tuple[An
     return pushed[:, 0], pushed[:, 1], model
 
 
+def assert_within(answer: Amplification, expected: Any, errors: Any = 0.0) -> None:
+    """Every point has an answer, within its error and those of what is expected."""
+    assert set(answer.status) == {Outcome.OK}
+    assert (np.abs(answer.mu - expected) <= answer.error + errors).all(), (answer.mu, expected, answer.error)
+
+
+def assert_agree(one: Amplification, other: Amplification) -> None:
+    """Two answers are the same within their errors."""
+    assert set(other.status) == {Outcome.OK}
+    assert_within(one, other.mu, other.error)
+
+
 def both_sides(
     scene: Scene, phases: Any, v_reg: float = 1e-3, *, outcome: str = Outcome.OK, strict: float = 1e-6, **asked: Any
 ) -> tuple[Amplification, Amplification]:
@@ -96,8 +108,7 @@ def assert_agrees_with_newton_and_euler(scene: Scene, phase: tuple[float, float]
     """Factors, torsion of the platform and forces of supports are those of rigid_chain.py, compiled in a minute."""
     engine = multibody.amplification(scene, [phase], "spatial", tolerance=tolerance)
     independent = spatial_motion(scene, phase, 1e-3, tolerance=1e-6)
-    assert engine.status[0] == Outcome.OK
-    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
+    assert_within(engine, independent.mu)
     force = independent.support_force
     assert_demands(scene, phase, np.abs(independent.yaw).max(), force.min(), force.max(), tolerance)
 

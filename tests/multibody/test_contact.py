@@ -1,6 +1,7 @@
-"""The contact of the engine against closed forms: what one mass does on the sphere."""
+"""The contact of the engine against closed forms: what one mass does on the sphere and on a plane."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,13 +11,13 @@ import multibody
 from multibody.integration.constant_step import Engine, silence
 from multibody.models.assembly import assemble
 from multibody.models.state import EngineState
-from reference.problem import GRAVITY, Scene, State, Trajectory
+from reference.problem import GRAVITY, Outcome, Scene, State, Trajectory
 
 
-def started(scene: Scene, position: tuple[float, float], velocity: tuple[float, float], **options: float) -> Trajectory:
+def started(scene: Scene, position: tuple[float, float], velocity: tuple[float, float], **options: Any) -> Trajectory:
     """The motion from an initial state of the single body."""
     state = State(np.array([position]), np.array([velocity]))
-    return multibody.trajectory(scene, (0.0, 0.0), initial=state, **options)  # type: ignore[arg-type]
+    return multibody.trajectory(scene, (0.0, 0.0), initial=state, **options)
 
 
 def test_the_weight_presses_the_contact_in(within: Callable[[float, float], None]) -> None:
@@ -88,3 +89,28 @@ def test_a_conical_pendulum_keeps_its_circle_at_its_own_rate(within: Callable[[f
     within(abs(np.unwrap(np.arctan2(y, x))[-1] / (rate * scene.duration) - 1.0), 1e-5)
     # the compliance gives way by N / k more than at rest: 1e-8 of rho
     np.testing.assert_allclose(motion.contact_force, GRAVITY / np.cos(cone), rtol=1e-4)
+
+
+@pytest.mark.parametrize("place", [0.0, 1e4])
+def test_a_slide_on_a_plane_stops_after_v2_over_2_mu_g_wherever_it_is(place: float) -> None:
+    way, creep = 1.0 / (0.2 * GRAVITY), 1e-6 / (0.1 * GRAVITY)  # below v_reg the speed decays over v_reg^2 / (mu g)
+    run = started(one_body(radius=np.inf, duration=2.0), (place, 0.0), (0.6, 0.8))
+    moved = run.position[-1, 0, :2] - [place, 0.0]
+    np.testing.assert_allclose(moved, [0.6 * way, 0.8 * way], atol=creep + 2e-4 * way)
+    np.testing.assert_allclose(run.peak, 0.1 * GRAVITY, rtol=1e-4)
+    assert np.abs(run.position[:, 0, 2]).max() < 1e-6
+
+
+def test_overturning_shifts_the_load_as_statics_says() -> None:
+    """A block that slides along x with its center h above the plane: the load's center is mu h before that of mass."""
+    height, on = 0.3, {"isolator.supports": 4, "isolator.ring": 1.0, "isolator.sphere_radius": 0.05}
+    block = {"mass": 2.0, "height": height, "size": [2.0, 2.0, 0.2]}
+    scene = one_body(radius=np.inf, duration=0.5).with_values({"bodies": [block], **on})
+    run = started(scene, (0.0, 0.0), (0.8, 0.0), model="spatial")
+    middle, places = len(run.time) // 2, scene.support_places[:, 0]  # type: ignore[index]
+    weight = 2.0 * GRAVITY
+    center = 0.1 * height + run.position[middle, 0, 0]
+    expected = weight / 4.0 + weight * center * places / (places**2).sum()
+    assert run.status == Outcome.OK
+    np.testing.assert_allclose(run.extra["support_force"][middle], expected, rtol=1e-5)
+    assert np.abs(run.extra["yaw"]).max() < 1e-9

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes_at_hand import changed, one_body, ring_that_opens
+from scenes_at_hand import assert_agree, changed, one_body, ring_that_opens
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -227,8 +227,7 @@ def test_supports_that_open_leave_answers_that_agree(scene: Scene, phase: tuple[
         multibody.amplification(scene, [phase], "spatial", tolerance=tolerance, max_work=max_work)
         for tolerance in (1e-2, 1e-3)
     )
-    assert [loose.status[0], strict.status[0]] == [Outcome.OK] * 2
-    assert (np.abs(loose.mu - strict.mu) <= loose.error + strict.error).all()
+    assert_agree(loose, strict)
 
 
 def test_levels_that_impacts_scatter_have_their_spread() -> None:
@@ -241,3 +240,19 @@ def test_levels_that_impacts_scatter_have_their_spread() -> None:
     np.testing.assert_allclose(errors, [0.0042, 0.0033, 1e-3 * 0.997], rtol=1e-9)
     run.impacts = 0
     assert not widened_by_impacts(np.zeros(3), peaks, run, 2).any()
+
+
+@pytest.mark.parametrize(("height", "width"), [(0.0, 1.0), (5.0, 1.0), (0.2, 10.0)])
+def test_a_platform_near_its_rest_has_all_spheres_in(height: float, width: float) -> None:
+    """Bounds on its place and angles prove it, and only where that is so."""
+    draw, proved = np.random.default_rng(3), 0
+    ring = 0.4 * width * np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
+    place = Depressions(ring, np.array([0.0, 0.0, height]), 0.1, np.arange(6, 10))
+    for size in np.geomspace(1e-3, 3.0, 400):
+        moved = draw.random(10) < 0.5  # some of them alone come further before a sphere leaves
+        coordinates = size * moved * draw.uniform(-1.0, 1.0, (20, 10))
+        if place.near_rest(coordinates):
+            proved += 1
+            assert not place.beyond_rim(coordinates).any()
+            assert (rotation(coordinates[:, 3:6])[:, 2, 2] > 0.0).all()
+    assert 100 < proved < 400
