@@ -1,7 +1,6 @@
 """One run at a level or at a constant step is what `amplification` and `trajectory` are made of."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -59,19 +58,3 @@ def test_every_integrator_finds_the_motion_at_a_constant_step(integrator: str) -
 
 def test_an_unstable_run_is_no_answer() -> None:
     assert multibody.single_run(SCENE, PHASE, step=2e-3, integrator="velocity Verlet").status != Outcome.OK
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({}, "exactly one"),
-        ({"step": 1e-3, "level": multibody.levels(SCENE)[0]}, "exactly one"),
-        ({"step": 0.0}, "step"),
-        ({"step": 2.0}, "step"),
-        ({"step": 1e-3, "integrator": "Euler"}, "integrator"),
-        ({"step": 1e-3, "penetration": -1.0}, "penetration"),
-    ],
-)
-def test_wrong_arguments_are_refused_by_name(options: dict[str, Any], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        multibody.single_run(SCENE, PHASE, **options)

@@ -120,9 +120,7 @@ def test_one_lost_point_does_not_take_the_others_with_it(monkeypatch: pytest.Mon
     assert result.status.tolist() == [Outcome.NO_GROUND_MOTION, Outcome.NON_FINITE_LOAD, Outcome.OK]
     np.testing.assert_array_equal(result.instant, [0.0, 0.0, np.nan])
     assert np.isnan(result.mu[:2]).all()
-
-
-def test_a_plate_at_rest_has_no_amplification() -> None:
+    monkeypatch.undo()
     assert multibody.amplification(one_body(), [(0.0, 0.0)]).status[0] == Outcome.NO_GROUND_MOTION
 
 
@@ -151,11 +149,19 @@ def test_a_tolerance_out_of_reach_gives_the_error_reached() -> None:
         ({"phases": [[0.0, 1.0, 2.0]]}, "phases"),
         ({"loading": "shaker"}, "loading"),
         ({"scene": one_body(), "model": "spatial"}, r"isolator\.supports.*bodies\.0\.height"),
+        ({"phase": PHASE}, "exactly one"),
+        ({"phase": PHASE, "step": 1e-3, "level": multibody.levels(load_scene("fig3-I"))[0]}, "exactly one"),
+        ({"phase": PHASE, "step": 0.0}, "step"),
+        ({"phase": PHASE, "step": 20.1}, "step"),
+        ({"phase": PHASE, "step": 1e-3, "integrator": "Euler"}, "integrator"),
+        ({"phase": PHASE, "step": 1e-3, "penetration": -1.0}, "penetration"),
     ],
 )
 def test_wrong_arguments_are_refused_by_name(options: dict[str, Any], message: str) -> None:
+    """Of a single run where the phases of one are given."""
+    asked = {"scene": load_scene("fig3-I"), **options}
     with pytest.raises(ValueError, match=message):
-        multibody.amplification(**{"scene": load_scene("fig3-I"), "phases": [PHASE], **options})
+        multibody.single_run(**asked) if "phase" in asked else multibody.amplification(**{"phases": [PHASE], **asked})
 
 
 def test_a_refusal_says_what_is_needed_and_what_helps() -> None:
