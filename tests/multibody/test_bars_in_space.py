@@ -52,10 +52,9 @@ def on_the_ground(scene: Scene, force: float = 0.0) -> tuple[Any, Any, int]:
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
     heights = np.array([body.height for body in scene.bodies]) / units.length
-    centers = np.column_stack([np.zeros((2, 2)), heights])
-    masses = scene.masses / units.mass
-    sides = np.array(SIZE) / units.length
-    inertia = masses[1] / 12.0 * (np.square(sides).sum() - np.square(sides))
+    centers, masses = np.column_stack([np.zeros((2, 2)), heights]), scene.masses / units.mass
+    sides = np.square(SIZE) / units.length**2
+    inertia = masses[1] / 12.0 * (sides.sum() - sides)
     ground = mbs.AddObject(items.ObjectGround(referencePosition=centers[0]))
     node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[*centers[1], 0.0, 0.0, 0.0]))
     body = mbs.AddObject(items.ObjectRigidBody(nodeNumber=node, mass=masses[1], inertia=[*inertia, 0.0, 0.0, 0.0]))

@@ -5,15 +5,14 @@ from typing import Any
 import numpy as np
 import pytest
 from rigid_chain import spatial_motion
-from scenes_at_hand import both_sides, changed, ring_that_opens
+from scenes_at_hand import both_sides, changed
 
 import multibody
 import reference
 from multibody.integration import one_run
 from multibody.integration.adaptive import EngineRun, run_adaptively
 from multibody.integration.constant_step import Engine
-from multibody.integration.level import REAL_WARPING_COMPLIANCE, Level, for_small_peaks
-from multibody.integration.one_run import PhasePair
+from multibody.integration.level import for_small_peaks
 from reference.problem import Outcome, Scene, load_scene
 
 PHASE = [(0.3, 1.1)]
@@ -109,23 +108,6 @@ def test_only_a_small_peak_asks_for_a_softer_contact() -> None:
     ]
     rounding = [first.rounding_moment for first, *_ in on_rings]
     assert rounding[1] == pytest.approx(9.0 * rounding[0]), "a force rounds by a place, its moment by that squared"
-
-
-def test_where_a_support_opens_every_level_has_bearings(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Which support is hit first depends on the springs: mu_1 is 1.893 on springs of 1e-4 rho, 1.826 on real ones."""
-    levels: list[tuple[Level, EngineRun]] = []
-    at_level = PhasePair.at_level
-
-    def noted(self: PhasePair, level: Level, *given: Any, **more: Any) -> EngineRun:
-        levels.append((level, at_level(self, level, *given, **more)))
-        return levels[-1][1]
-
-    monkeypatch.setattr(PhasePair, "at_level", noted)
-    result = multibody.amplification(ring_that_opens(4), PHASE, "spatial", V_REG, 1e-2)
-    assert result.status[0] == Outcome.OK
-    assert [level.warping_compliance for level, _ in levels] == [2e-5, *[REAL_WARPING_COMPLIANCE] * (len(levels) - 1)]
-    assert all(run.lifts_off for _, run in levels)
-    assert result.mu[0, 0] == pytest.approx(1.826, abs=float(result.error[0, 0]))
 
 
 def test_a_loading_that_is_gone_sets_nothing_rocking() -> None:

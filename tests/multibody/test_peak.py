@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from multibody.integration.peak import Peaks, _corner
+from multibody.integration.peak import Peaks, _alternating, _corner
 
 TIME = np.arange(0.0, 1.0, 0.02)
 CHUNKS = pytest.mark.parametrize("chunks", [1, 2, 7, 16])
@@ -124,3 +124,11 @@ def test_samples_that_alternate_have_half_of_their_spread() -> None:
     rough, smooth = read(np.where(TIME < 0.5, early, 0.0)), read(early, chunks=2)
     assert smooth.value[0] == pytest.approx(1.011, abs=1e-4)
     assert smooth.value[0] + smooth.sampling[0] == pytest.approx(rough.value[0] + rough.sampling[0], abs=1e-9)
+
+
+def test_what_a_longer_last_step_misses_counts_in_full() -> None:
+    """Of five samples on a cubic but for the last; among equal steps it counts with its share of an alternation, 1/16."""
+    for time, share in (([0.0, 1.0, 2.0, 3.0, 4.0], 1.0 / 16.0), ([0.0, 1.0, 2.0, 3.0, 7.0], 1.0)):
+        at = np.array(time)
+        size = 1.0 + 0.5 * at - 0.1 * at**2 + 0.02 * at**3 + [0.0, 0.0, 0.0, 0.0, 0.3]
+        assert _alternating(at, size) == pytest.approx(0.3 * share)

@@ -45,17 +45,9 @@ MODEL: Any = SimpleNamespace(
 Runs = Callable[[int, float], EngineRun]  # number of the level, and how far supports give way
 
 
-def result(
-    platform: float,
-    *,
-    opens: bool = True,
-    outcome: Outcome = Outcome.OK,
-    load: float = 0.0,
-    steps: int = STEPS,
-    impacts: int = 0,
-) -> EngineRun:
+def result(platform: float, *, opens: bool = True, outcome: Outcome = Outcome.OK, **more: Any) -> EngineRun:
     """A run with this peak of the platform; that of the other body is always 2."""
-    run = EngineRun(Peaks(2, math.inf), math.inf, work=steps, warping_load=load, impacts=impacts)
+    run = EngineRun(Peaks(2, math.inf), math.inf, **{"work": STEPS, **more})
     run.peaks.value[:] = platform, 2.0
     run.peaks.instant[:] = 0.2, 0.3
     run.last_open = 0.5 if opens else -math.inf
@@ -108,7 +100,7 @@ def changed_by_bearings(change: float) -> Runs:
 
 def real_from_level_1(number: int, springs: float) -> EngineRun:
     """Real bearings change nothing at level 0, and the order of impacts at all others."""
-    return result(1.826 if number > 0 and springs == REAL else 1.893, steps=STEPS + STEPS // 2 * (springs == REAL))
+    return result(1.826 if number > 0 and springs == REAL else 1.893, work=STEPS + STEPS // 2 * (springs == REAL))
 
 
 def failing(outcome: Outcome, where: Callable[[int, float], bool], change: float = 0.0, so_far: float = 0.0) -> Runs:
@@ -167,7 +159,7 @@ PATHS: dict[str, tuple[Any, ...]] = {
     "three levels that impacts take elsewhere are enough":
         (lambda number, _: result(2.0**number, opens=False, impacts=7), {}, "0s 1s 2s 3s", BEYOND, 8.0, 8.0),
     "supports opened by a misfit may give way by more":
-        (lambda _, springs: result(1.0, opens=springs == STIFF, load=1e-6 / springs), {},
+        (lambda _, springs: result(1.0, opens=springs == STIFF, warping_load=1e-6 / springs), {},
          "0s 0r 1c", OK, 1.0, level_error(1) + 0.25e-10),
 }  # fmt: skip
 
@@ -210,7 +202,9 @@ def test_the_first_run_of_rattling_supports_has_a_share(refined: Any) -> None:
 @pytest.mark.parametrize("softest_closed", [0.0, REAL], ids=["open on any", "open on softer ones only"])
 def test_supports_opened_on_softer_springs_get_real_bearings(refined: Any, softest_closed: float) -> None:
     def runs(number: int, springs: float) -> EngineRun:
-        return result(1.0 + 0.1 * (number == 1), opens=number > 0 and springs > softest_closed, load=4e-7 / springs)
+        return result(
+            1.0 + 0.1 * (number == 1), opens=number > 0 and springs > softest_closed, warping_load=4e-7 / springs
+        )
 
     done = refined(runs)
     assert (done.springs[0], done.springs[1] > REAL, set(done.springs[2:])) == (STIFF, True, {REAL})
@@ -220,7 +214,7 @@ def test_supports_opened_on_softer_springs_get_real_bearings(refined: Any, softe
 @pytest.mark.parametrize("load", [1e-5, 1e-3])
 def test_load_that_warping_takes_is_an_error_of_all_numbers(refined: Any, load: float) -> None:
     """Of supports that stay closed on real bearings, as one opened on softer springs."""
-    done = refined(lambda number, springs: result(1.0, opens=springs > REAL, load=load))
+    done = refined(lambda number, springs: result(1.0, opens=springs > REAL, warping_load=load))
     answer = done.answer
     assert done.asked == "0s 1c 1r"
     np.testing.assert_allclose(answer.errors, [each * (level_error(1) + 0.25 * load) for each in (1.0, 2.0)])
