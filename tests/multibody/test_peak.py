@@ -127,7 +127,7 @@ def test_samples_that_alternate_have_half_of_their_spread() -> None:
 
 
 def test_what_a_longer_last_step_misses_counts_in_full() -> None:
-    """Of five samples on a cubic but for the last; among equal steps it counts with its share of an alternation, 1/16."""
+    """Of five samples on a cubic but for the last; among equal steps its share of an alternation counts, 1/16."""
     for time, share in (([0.0, 1.0, 2.0, 3.0, 4.0], 1.0 / 16.0), ([0.0, 1.0, 2.0, 3.0, 7.0], 1.0)):
         at = np.array(time)
         size = 1.0 + 0.5 * at - 0.1 * at**2 + 0.02 * at**3 + [0.0, 0.0, 0.0, 0.0, 0.3]

@@ -185,6 +185,10 @@ def test_a_refusal_says_what_is_needed_and_what_helps() -> None:
         ({"full": True}, ("5.1e+03 steps", "steps of 0.0039 s", "(above 0.4 s")),
     ):
         assert all(part in multibody.refusal(scene, max_work=100.0, **loose) for part in said)
+    bars = {"bodies.1.period": None, "bodies.1.bars": {"count": 4, "bending_stiffness": 0.8, "length": 1.0}}
+    on_bars = scene.with_values(bars)
+    softened, stiff = (multibody.refusal(on_bars, max_work=100.0, softened=soft) for soft in (True, False))
+    assert softened == multibody.refusal(on_bars.softened(), max_work=100.0) != stiff
     for duration in (1.55, 1.57):
         refused = multibody.refusal(scene.with_values({"duration": duration}), max_work=100.0)
         assert (refused != "") == (duration > 1.563)
