@@ -22,7 +22,8 @@ from reference.problem import Outcome, load_scene
 
 TOLERANCE = 1e-3
 STIFF, REAL = MIN_WARPING_COMPLIANCE, REAL_WARPING_COMPLIANCE
-NAMES = {STIFF: "s", REAL: "r", COMPLIANCE_OF_CLOSED: "c"}
+SOFTER = -1.0  # in place of how far supports give way: a contact softer than that of the level
+NAMES = {STIFF: "s", REAL: "r", COMPLIANCE_OF_CLOSED: "c", SOFTER: "~"}
 STEPS = 1000  # of every run
 SCENE = load_scene("fig3-I")
 # of a contact that gets stiffer from level to level, and whose forces do not round
@@ -68,21 +69,24 @@ class Refined:
 def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Refined]:
     """Refine with runs that are a function of the number of the level and of how far supports give way."""
 
-    def refine_on(runs: Runs, levels: int = 6, max_work: float = 1e9) -> Refined:
+    def refine_on(runs: Runs, levels: int = 6, max_work: float = 1e9, stiffenings: int = 6) -> Refined:
         done = Refined(answer=None)  # type: ignore[arg-type]
+        contacts = [LEVELS[min(number, stiffenings)].penetration for number in range(levels)]
+        planned = [replace(level, penetration=contact) for level, contact in zip(LEVELS, contacts)]
 
         def at_level(pair: PhasePair, level: Level, budget: Budget, *given: Any, **more: Any) -> EngineRun:
             number = [other.step for other in LEVELS].index(level.step)
-            done.asked += f" {number}{NAMES.get(level.warping_compliance, '')}"
-            done.springs.append(level.warping_compliance)
+            springs = SOFTER if level.penetration > 1.01 * contacts[number] else level.warping_compliance
+            done.asked += f" {number}{NAMES.get(springs, '')}"
+            done.springs.append(springs)
             done.work.append(budget.left)
-            run = runs(number, level.warping_compliance)
+            run = runs(number, springs)
             budget.left -= run.work
             return run
 
         monkeypatch.setattr(PhasePair, "at_level", at_level)
         phase = np.array([0.3, 1.1])
-        done.answer = refine(SCENE, MODEL, phase, TOLERANCE, whole=True, levels=LEVELS[:levels], max_work=max_work)
+        done.answer = refine(SCENE, MODEL, phase, TOLERANCE, whole=True, levels=planned, max_work=max_work)
         done.asked = done.asked.strip()
         return done
 
@@ -158,6 +162,9 @@ PATHS: dict[str, tuple[Any, ...]] = {
          "0s 0r 1r 2r", OK, 1.826, 1.826 * 1e-3),
     "three levels that impacts take elsewhere are enough":
         (lambda number, _: result(2.0**number, opens=False, impacts=7), {}, "0s 1s 2s 3s", BEYOND, 8.0, 8.0),
+    "a contact that stays shows by a softer one what it leaves":
+        (lambda _, springs: result(1.0 + 2e-4 * (springs == SOFTER), opens=False), {"stiffenings": 0},
+         "0s 1s 1~", OK, 1.0, level_error(1) + 1.5 * 2e-4 * (1.0 + 2e-3) + 4e-6),
     "supports opened by a misfit may give way by more":
         (lambda _, springs: result(1.0, opens=springs == STIFF, warping_load=1e-6 / springs), {},
          "0s 0r 1c", OK, 1.0, level_error(1) + 0.25e-10),
@@ -219,3 +226,18 @@ def test_load_that_warping_takes_is_an_error_of_all_numbers(refined: Any, load: 
     assert done.asked == "0s 1c 1r"
     np.testing.assert_allclose(answer.errors, [each * (level_error(1) + 0.25 * load) for each in (1.0, 2.0)])
     assert answer.floor == max(load, LEVELS[1].error_floor)
+
+
+def test_a_softer_contact_without_an_answer_leaves_the_error_open(refined: Any) -> None:
+    """The value then is that of the last level whose error is known, or none."""
+
+    def runs(number: int, springs: float) -> EngineRun:
+        outcome = FAILED if springs == SOFTER else OK
+        return result((1.0, 1.01, 1.0105)[number], opens=False, outcome=outcome)
+
+    done = refined(lambda number, springs: runs(0, springs), 2, stiffenings=0)
+    assert (done.asked, done.answer.outcome, done.answer.instant) == ("0s 1s 1~", FAILED, SCENE.duration)
+    assert np.isnan(done.answer.peaks).all()
+    done = refined(runs, 3, stiffenings=1)
+    assert (done.asked, done.answer.outcome) == ("0s 1s 2s 2~", BEYOND)
+    np.testing.assert_allclose([done.answer.peaks[0], done.answer.errors[0]], [1.01, 0.015 * 1.001 + 1.01e-6])
