@@ -106,6 +106,19 @@ def test_a_motion_is_integrated_again_behind_a_look_ahead(monkeypatch: pytest.Mo
     np.testing.assert_allclose(early.peaks, whole.peaks, rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    "changes", [{}, {"peak": 1.61}, {"max_displacement": 0.41}, {"opened": True}, {"min_load": 0.19}], ids=str
+)
+def test_a_look_ahead_ends_at_all_that_is_asked_for(changes: dict[str, Any]) -> None:
+    """Beyond 0.8 of a largest value, or with less than 0.2 of the weight on the contact."""
+    result = EngineRun(Peaks(2, math.inf), math.inf, max_displacement=0.5)
+    result.peaks.value[:] = 1.0, 2.0
+    peak = changes.pop("peak", 1.6)
+    ahead = EngineRun(Peaks(2, math.inf), math.inf, **{"max_displacement": 0.4, **changes})
+    ahead.peaks.value[:] = 0.8, peak
+    assert look_ahead._large(ahead, result, 0.0) == (peak > 1.6 or bool(changes))
+
+
 @pytest.mark.parametrize(("travel", "load", "stop"), [(1.0, 1.0, 2.02), (0.5, 1.0, math.inf), (1.0, 0.09, math.inf)])
 def test_a_run_close_to_its_travel_or_to_opening_goes_to_the_end(travel: float, load: float, stop: float) -> None:
     """Others stop 20 of their largest steps after the last large value."""

@@ -107,7 +107,7 @@ def test_only_a_small_peak_asks_for_a_softer_contact() -> None:
         multibody.levels(load_scene("fig3-I").with_values({"isolator.ring": ring}), "spatial") for ring in (2.0, 6.0)
     ]
     rounding = [first.rounding_moment for first, *_ in on_rings]
-    assert rounding[1] == pytest.approx(9.0 * rounding[0]), "a force rounds by a place, its moment by that squared"
+    assert rounding[1] / rounding[0] == pytest.approx(9.0), "a force rounds by a place, its moment by that squared"
 
 
 def test_a_loading_that_is_gone_sets_nothing_rocking() -> None:
