@@ -103,6 +103,8 @@ def test_only_a_small_peak_asks_for_a_softer_contact() -> None:
     assert softer.rounding == pytest.approx(0.25 * 1e-3 * 1e-6)
     assert softer.residual == pytest.approx(softer.rounding)
     assert for_small_peaks(levels[3], 1e-20, 1e-3).penetration == pytest.approx(1e-4), "the softest that is tried"
+    first = for_small_peaks(levels[0], 1e-6, 1e-3)
+    assert first.residual / first.rounding == pytest.approx(1.0), "Newton's tolerance counts from so small a peak"
     on_rings = [
         multibody.levels(load_scene("fig3-I").with_values({"isolator.ring": ring}), "spatial") for ring in (2.0, 6.0)
     ]
