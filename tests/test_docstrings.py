@@ -27,12 +27,14 @@ NAMES = [
 
 
 @pytest.mark.parametrize("package", PACKAGES, ids=lambda package: package.__name__)
-def test_the_package_lists_its_functions_before_its_classes(package: ModuleType) -> None:
+def test_a_package_lists_its_names_and_its_examples_run(package: ModuleType) -> None:
     text = inspect.getdoc(package) or ""
     assert 0 < text.index("Functions\n---------") < text.index("Classes\n-------")
     listed = text.replace(",", " ").split()
     assert [name for name in package.__all__ if name not in listed] == []
     assert set(package.__all__) <= set(dir(package))
+    for test in doctest.DocTestFinder(recurse=False).find(package, package.__name__):
+        assert doctest.DocTestRunner().run(test).failed == 0
 
 
 @pytest.mark.parametrize(("package", "name"), NAMES)
@@ -61,12 +63,6 @@ def test_the_examples_of_a_public_name_run(package: ModuleType, name: str) -> No
     for test in doctest.DocTestFinder().find(getattr(package, name), name, globs=imported):
         result = doctest.DocTestRunner().run(test)
         assert result.failed == 0, f"{test.name}: {result.failed} of {result.attempted} examples fail"
-
-
-@pytest.mark.parametrize("package", PACKAGES, ids=lambda package: package.__name__)
-def test_the_examples_of_a_package_run(package: ModuleType) -> None:
-    for test in doctest.DocTestFinder(recurse=False).find(package, package.__name__):
-        assert doctest.DocTestRunner().run(test).failed == 0
 
 
 def undocumented(node: ast.Module | ast.ClassDef | ast.FunctionDef, name: str) -> Iterator[str]:

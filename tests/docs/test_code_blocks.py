@@ -20,14 +20,7 @@ COMMENTS = ("long", "with ", "not run: ")
 WITH_CODE = [page for page in PAGES if blocks(page)]
 MODULES = {f"python -m comparison.{name}": module for name, (module, _) in COMMANDS.items()}
 MODULES |= {f"phase-resonance {name}": module for name, (module, _) in COMMANDS.items()}
-MODULES |= {
-    "python -m multibody.animate": "multibody.animate",
-    "python -m comparison.tradeoff.record": "comparison.cli.record",
-}
-
-
-def page_name(page: Path) -> str:
-    return str(page.relative_to(ROOT))
+MODULES["python -m multibody.animate"] = "multibody.animate"
 
 
 @pytest.fixture(autouse=True)
@@ -38,18 +31,11 @@ def folder_of_a_reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Itera
     plt.close("all")
 
 
-@pytest.mark.parametrize("page", WITH_CODE, ids=page_name)
-def test_what_a_page_shows_runs_from_top_to_bottom(page: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    run_page(page, capfd, long=False)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("page", [page for page in WITH_CODE if any(b.long for b in blocks(page))], ids=page_name)
-def test_what_a_page_shows_runs_with_what_takes_long(page: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    run_page(page, capfd, long=True)
-
-
-def run_page(page: Path, capfd: pytest.CaptureFixture[str], long: bool) -> None:
+@pytest.mark.parametrize("long", [False, pytest.param(True, marks=pytest.mark.long)], ids=["short", "long"])
+@pytest.mark.parametrize("page", WITH_CODE, ids=lambda page: str(page.relative_to(ROOT)))
+def test_what_a_page_shows_runs_from_top_to_bottom(page: Path, long: bool, capfd: pytest.CaptureFixture[str]) -> None:
+    if long and not any(block.long for block in blocks(page)):
+        pytest.skip("nothing takes long")
     names: dict[str, Any] = {"__name__": "page"}
     printed = ""
     for block in blocks(page):

@@ -1,10 +1,9 @@
 """Every example runs as a user would run it, is short, and has its picture in the gallery."""
 
 import ast
-import importlib.util
 from pathlib import Path
-from types import ModuleType
 
+import gallery_pictures as gallery
 import numpy as np
 import pytest
 from pages import ROOT
@@ -14,25 +13,15 @@ EXAMPLES = sorted([*(ROOT / "examples").glob("*.py"), *(ROOT / "examples").glob(
 MAX_LINES = 60
 
 
-@pytest.fixture(scope="module")
-def gallery() -> ModuleType:
-    place = importlib.util.spec_from_file_location("gallery_pictures", ROOT / "docs" / "gallery_pictures.py")
-    assert place is not None
-    assert place.loader is not None
-    module = importlib.util.module_from_spec(place)
-    place.loader.exec_module(module)
-    return module
-
-
 @pytest.mark.long
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
-def test_an_example_runs_and_draws_its_picture(example: Path, gallery: ModuleType, tmp_path: Path) -> None:
+def test_an_example_runs_and_draws_its_picture(example: Path, tmp_path: Path) -> None:
     with Image.open(gallery.run(example, tmp_path)) as drawn:
         assert np.unique(np.asarray(drawn.convert("RGB")).reshape(-1, 3), axis=0).shape[0] > 20  # not an empty page
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
-def test_an_example_has_its_picture_in_the_gallery(example: Path, gallery: ModuleType) -> None:
+def test_an_example_has_its_picture_in_the_gallery(example: Path) -> None:
     script = gallery.script_of(example)
     ast.parse(script)
     assert len(script.splitlines()) < MAX_LINES

@@ -27,3 +27,5 @@ def test_the_links_of_a_page_lead_to_files_and_headings(page: Path) -> None:
         assert place.exists(), target
         if heading:
             assert heading in anchors(place), target
+    for path in re.findall(r"`((?:comparison|reference|tests|\.github)/[\w/.]+)`", page.read_text(encoding="utf-8")):
+        assert page.parent != ROOT or (ROOT / path).exists(), path

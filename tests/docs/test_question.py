@@ -1,12 +1,15 @@
 """The question that other codes are asked, answered from its file alone."""
 
 import json
-from pathlib import Path
+from types import SimpleNamespace
 
+import compare_engines
 import numpy as np
+from pages import ROOT
 from scipy.integrate import solve_ivp
 
-QUESTION = json.loads(Path(__file__).parents[2].joinpath("docs/question.json").read_text(encoding="utf-8"))
+DOCS = ROOT / "docs"
+QUESTION = json.loads((DOCS / "question.json").read_text(encoding="utf-8"))
 V_REG = 1e-3
 
 
@@ -44,3 +47,17 @@ def test_the_file_of_the_question_is_enough_to_answer_it():
     largest = np.max([np.linalg.norm(accelerations(t, run.sol(t))[1], axis=1) for t in times], axis=0)
     mu = largest / np.linalg.norm(ground(np.linspace(*span, 20_001)[:, None]), axis=1).max()
     np.testing.assert_allclose(mu, scene["mu"]["regularized"][pair], rtol=2e-4)
+
+
+def test_the_page_of_engines_and_the_question_are_as_measured_and_as_asked(monkeypatch):
+    nothing = SimpleNamespace(mu=np.zeros((64, 2)), error=np.zeros((64, 2)))
+    monkeypatch.setattr(compare_engines.reference, "amplification", lambda *rest, **law: nothing)
+    asked = compare_engines.question()
+    for made, kept in zip(asked["scenes"].values(), QUESTION["scenes"].values()):
+        made.update(mu=kept["mu"], error=kept["error"])
+    assert asked == QUESTION
+    order = [engine.name for engine in compare_engines.ENGINES]
+    rows = json.loads((DOCS / "engines.json").read_text(encoding="utf-8"))
+    rows.sort(key=lambda row: (row["scene"], order.index(row["engine"]), row["seconds"]))
+    text, page = compare_engines._page(rows), (DOCS / "engines.md").read_text(encoding="utf-8")
+    assert text.split("\nMeasured with")[0] == page.split("\nMeasured with")[0]
