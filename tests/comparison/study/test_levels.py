@@ -7,7 +7,6 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -16,19 +15,21 @@ import pytest
 import xarray as xr
 from fake_models import fake_hierarchy
 from report_texts import page_of, summary_of
+from rich.console import Console
 from runs import Run
 
 from comparison import registry
 from comparison import run as command_module
 from comparison.cli import reports
 from comparison.runner.cache import Cache
-from comparison.runner.progress import Deadline, Display, TimeUpError
+from comparison.runner.progress import Deadline, Display, TimeUpError, progress
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.levels import levels_of
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study, levels, nested_grids
+from comparison.study.user_models import user_model
 from comparison.surfaces.surfaces import surface_tasks
 from reference.command import StoppedError
 from reference.problem import load_scene, phase_grid
@@ -39,21 +40,19 @@ STOP = 60  # results stored within the second level: the first has 20
 
 
 @pytest.fixture
-def command(command: Callable[..., Run]) -> Callable[..., Run]:
-    """The command with a few large batches."""
+def command(command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch) -> Callable[..., Run]:
+    """The command with a few large batches; every level gets a report, however soon it is done."""
+    monkeypatch.setattr(reports, "PATIENCE", 0.0)
     return partial(command, hierarchy=fake_hierarchy(batch=36))
 
 
-@pytest.fixture
-def every_level(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Every level gets a report, however soon it is done."""
-    monkeypatch.setattr(reports, "PATIENCE", 0.0)
-
-
-@pytest.mark.parametrize("grid", [1, 2, 3, 7, 12, 16, 24, 47, 48])
-@pytest.mark.parametrize("hierarchy", [MODEL_HIERARCHY, fake_hierarchy(batch=24)], ids=["real", "fake"])
-def test_every_level_begins_with_what_the_level_before_has(grid: int, hierarchy: Any) -> None:
-    study = Study(SCENES, grid, 1e-3, hierarchy)
+@pytest.mark.parametrize("grid", [1, 2, 7, 12, 16, 45, 48, 96])
+def test_every_grid_and_every_level_is_part_of_the_next(grid: int) -> None:
+    chain, level = nested_grids(grid), levels(grid)
+    assert chain[-1] == grid
+    assert all(fine % coarse == 0 and fine > coarse for coarse, fine in itertools.pairwise(chain))
+    assert [(level <= number).sum() for number in range(len(chain))] == list(chain)
+    study = Study(SCENES, grid, 1e-3, MODEL_HIERARCHY)
     found = levels_of(study, {"motions": 3})
     assert found[-1].study is study
     asked = [{task.key for task in surface_tasks(level.study)} for level in found]
@@ -64,57 +63,41 @@ def test_every_level_begins_with_what_the_level_before_has(grid: int, hierarchy:
 
 
 def test_the_first_level_is_coarse_and_the_last_is_whole() -> None:
-    first, second, last = registry.levels(Study((load_scene("fig3-I"),), 48, 1e-3))
-
-    def grids(study: Study) -> list[int]:
-        return [len(study.axis(model)) for model in study.hierarchy[3:]]
-
-    assert [grids(level.study) for level in (first, second, last)] == [[16, 8, 4], [48, 16, 8], [48, 16, 16]]
-    assert set(first.study.absent) - {"demands"} > set(second.study.absent) - {"demands"} > set()
-    assert set(last.study.absent) == {"demands"}
-
-
-def _copied(place: Path, at: Path) -> None:
-    at.mkdir(exist_ok=True)
-    for name in ("summary.json", "surfaces.nc", "index.html"):
-        (at / name).write_bytes((place / name).read_bytes())
+    models = [*MODEL_HIERARCHY, user_model("mine", {"function": "user_engines:plain"})]
+    first, second, last = (level.study for level in registry.levels(Study((load_scene("fig3-I"),), 48, 1e-3, models)))
+    grids = [[len(study.axis(model)) for model in study.hierarchy[3:]] for study in (first, second, last)]
+    assert grids == [[16, 8, 4, 8], [48, 16, 8, 8], [48, 16, 16, 8]]
+    later = [
+        {key for key, why in study.absent.items() if why == "follows at a later level of the study"}
+        for study in (first, second)
+    ]
+    assert later[0] > later[1] > set()
+    assert set(first.absent) - later[0] == set(second.absent) - later[1] == set(last.absent) == {"demands"}
 
 
-@pytest.mark.usefixtures("every_level")
 def test_each_level_has_a_whole_report_that_names_it(
-    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write, seen = reports.Reports.write, []
 
-    def copying(self: reports.Reports, complete: reports.Complete, *rest: Any, **more: Any) -> Any:
+    def noting(self: reports.Reports, complete: reports.Complete, *rest: Any, **more: Any) -> Any:
         said = write(self, complete, *rest, **more)
-        seen.append(tmp_path / f"level{complete.level.number}")
-        _copied(self.place, seen[-1])
+        seen.append((summary_of(self.place), xr.load_dataset(self.place / "surfaces.nc"), page_of(self.place)))
         return said
 
-    monkeypatch.setattr(reports.Reports, "write", copying)
+    monkeypatch.setattr(reports.Reports, "write", noting)
     run = command(*WORDS)
     assert run.code == 0
-    assert len(seen) == 3
-    for number, place in enumerate(seen, start=1):
-        summary = summary_of(place)
+    for number, grid, (summary, surfaces, page) in zip((1, 2, 3), (8, 24, 24), seen, strict=True):
         assert (summary["run"]["level"], summary["run"]["levels"]) == (number, 3)
-        with xr.open_dataset(place / "surfaces.nc") as surfaces:
-            assert surfaces.sizes["alpha1"] == summary["grid"] == (8, 24, 24)[number - 1]
-            assert np.isfinite(surfaces["mu"].sel(model="small", scene="fig3-I")).all()
-        page = page_of(place)
+        assert surfaces.sizes["alpha1"] == summary["grid"] == grid
+        assert np.isfinite(surfaces["mu"].sel(model="small", scene="fig3-I")).all()
         assert (f"This is level {number} of 3" in page) == (number < 3)
-        assert (f"{summary['grid']} × {summary['grid']} phases of the equations" in page) == (number < 3)
-    first = run.out.index("Level 1 of 3: ")
-    assert "fig3-I, platform" in run.out[first : run.out.index("Level 2 of 3: ")]
-
-
-@pytest.mark.usefixtures("every_level")
-def test_a_repeated_run_writes_the_last_level_alone(command: Callable[..., Run]) -> None:
-    assert "Level 2 of 3: " in command(*WORDS).out
+        assert (f"{grid} × {grid} phases of the equations" in page) == (number < 3)
+    first, second = (run.out.index(f"Level {number} of 3: {run.report / 'index.html'}\n") for number in (1, 2))
+    assert "fig3-I, platform" in run.out[first:second]
     again = command(*WORDS)
-    assert again.code == 0
-    assert "of 3: " not in again.out
+    assert (again.code, "of 3: " in again.out) == (0, False), "a repeated run writes the last level alone"
 
 
 class Ends:
@@ -131,51 +114,41 @@ class Ends:
         patch.setattr(Cache, "put", stored)
 
 
-def _whole(command: Callable[..., Run], place: Path) -> xr.Dataset:
-    assert command(*WORDS, "--out", str(place)).code == 0
-    return xr.load_dataset(place / "surfaces.nc")
+@pytest.mark.parametrize(("error", "code"), [(StoppedError, 130), (TimeUpError, 0)])
+def test_a_run_that_ends_early_has_its_last_level_and_goes_on_alike(
+    command: Callable[..., Run], tmp_path: Path, error: type[BaseException], code: int
+) -> None:
+    words = (*WORDS, "--budget", "1000", "--out")
+    with pytest.MonkeyPatch.context() as patch:
+        Ends(patch, STOP, error)
+        run = command(*words, str(tmp_path / "a"))
+    assert run.code == code
+    assert ("go on with: python -m comparison.run fig3-I" in run.err) == (code == 130)
+    assert summary_of(tmp_path / "a")["run"]["level"] == 1
+    assert "This is level 1 of 3: the same command goes on with it." in run.out
+    if code:
+        assert [command(*words, str(tmp_path / name)).code for name in "ab"] == [0, 0]
+        stopped, undisturbed = (xr.load_dataset(tmp_path / name / "surfaces.nc").drop_attrs() for name in "ab")
+        xr.testing.assert_identical(stopped, undisturbed)
 
 
-@pytest.mark.usefixtures("every_level")
-@pytest.mark.parametrize(("number", "level"), [(5, None), (STOP, 1)])
-def test_a_stopped_run_has_its_last_level_and_goes_on_alike(
-    command: Callable[..., Run], tmp_path: Path, number: int, level: int | None
+@pytest.mark.parametrize(
+    ("error", "code", "said"),
+    [
+        (StoppedError, 130, "go on with: python -m comparison.run fig3-I"),
+        (TimeUpError, 3, "--budget = 1000: no level of the study was complete by then"),
+    ],
+)
+def test_an_end_before_the_first_level_is_one_line(
+    command: Callable[..., Run], error: type[BaseException], code: int, said: str
 ) -> None:
     with pytest.MonkeyPatch.context() as patch:
-        Ends(patch, number, StoppedError)
-        run = command(*WORDS, "--out", str(tmp_path / "a"))
-    assert run.code == 130
-    assert "go on with: python -m comparison.run fig3-I" in run.err
-    if level is None:
-        assert not (tmp_path / "a").exists()
-        return
-    assert summary_of(tmp_path / "a")["run"]["level"] == level
-    assert f"This is level {level} of 3" in run.out
-    stopped, undisturbed = _whole(command, tmp_path / "a"), _whole(command, tmp_path / "b")
-    xr.testing.assert_identical(stopped.drop_attrs(), undisturbed.drop_attrs())
-
-
-@pytest.mark.usefixtures("every_level")
-def test_a_deadline_keeps_the_last_complete_level_and_exits_0(command: Callable[..., Run], tmp_path: Path) -> None:
-    with pytest.MonkeyPatch.context() as patch:
-        Ends(patch, STOP, TimeUpError)
+        Ends(patch, 3, error)
         run = command(*WORDS, "--budget", "1000")
-    assert run.code == 0
-    assert summary_of(run.report)["run"]["level"] == 1
-    assert "This is level 1 of 3: the same command goes on with it." in run.out
+    assert (run.code, run.err.count("\n"), run.report.exists()) == (code, 1, False)
+    assert said in run.err
 
 
-def test_a_deadline_before_the_first_level_is_one_line(command: Callable[..., Run]) -> None:
-    with pytest.MonkeyPatch.context() as patch:
-        Ends(patch, 3, TimeUpError)
-        run = command(*WORDS, "--budget", "1000")
-    assert run.code == 3
-    assert run.err.count("\n") == 1
-    assert "--budget = 1000: no level of the study was complete by then" in run.err
-    assert not run.report.exists()
-
-
-@pytest.mark.usefixtures("every_level")
 def test_finished_analyses_are_in_the_report_of_a_stopped_run(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -209,36 +182,43 @@ def test_the_time_is_up_at_the_deadline_less_what_is_kept_free(monkeypatch: pyte
 
 
 def test_the_alarm_ends_what_the_main_thread_does() -> None:
-    with Deadline(time.monotonic(), 0.0), pytest.raises(TimeUpError):
+    with pytest.raises(TimeUpError), Deadline(time.monotonic(), 0.0):
         threading.Event().wait(60.0)
 
 
-def test_the_time_left_follows_from_the_work_so_far(monkeypatch: pytest.MonkeyPatch) -> None:
-    now = iter([0.0, 20.0, 40.0])
-    monkeypatch.setattr("comparison.runner.progress.time.monotonic", lambda: next(now))
-    display = Display(100.0, 2)
-    display.advance("compiling", "1 of 1 tasks", 0.0)  # at 20 s: does not count
-    display.advance("engine", "1 of 9 tasks", 30.0)
-    display.skip(20.0)
-    assert display.left == pytest.approx(50.0 * (20.0 + 4.0) / (30.0 + 8.0))  # 30 in 20 s, and a tenth in half its cost
+def test_the_time_left_follows_from_the_work_so_far(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = [100.0]
+    monkeypatch.setattr("comparison.runner.progress.time.monotonic", lambda: now[0])
+    with progress(Console(), 120.0, 2) as display:
+        display.skip(20.0)
+        for count, seconds in enumerate((14.0, 16.0, 30.9, 31.4)):  # a line every 15 s
+            now[0] = 100.0 + seconds
+            display.advance("engine", f"{count} of 9 tasks", 0.0 if count == 0 else 10.0)  # the first does not count
+    # 10 of 100 in 2 s, 30 in 17.4 s, and a tenth of all work in half its cost
+    left = [f"{90.0 * (2.0 + 5.0) / (10.0 + 10.0):.0f} s left", f"{70.0 * (17.4 + 5.0) / (30.0 + 10.0):.0f} s left"]
+    assert capsys.readouterr().out.splitlines() == [
+        f"    16 s  engine: 1 of 9 tasks, about {left[0]}",
+        f"    31 s  engine: 3 of 9 tasks, about {left[1]}",
+    ]
 
 
-def test_work_of_an_earlier_level_is_not_skipped_twice() -> None:
-    display, tasks = Display(100.0, 1), [Task(math.sqrt, number, "roots") for number in (1.0, 4.0)]
-    runner = Runner(TaskResults(), 1, ThreadPoolExecutor, display, {"roots": 10.0})
-    for _ in range(2):
-        runner.run(tasks)
-    assert (display.total, display.done) == (100.0, 10.0)
-
-
-@pytest.mark.parametrize("grid", [1, 2, 3, 7, 12, 16, 20, 45, 48, 96, 512])
-def test_each_grid_is_part_of_the_next(grid: int) -> None:
-    chain = nested_grids(grid)
-    assert chain[-1] == grid
-    assert all(fine % coarse == 0 and fine > coarse for coarse, fine in pairwise(chain))
-    level = levels(grid)
-    for number, coarse in enumerate(chain):
-        assert (level <= number).sum() == coarse
+def test_work_is_counted_once_in_phase_pairs_and_tasks_of_its_weight() -> None:
+    said: list[tuple[str, float]] = []
+    display = Display(100.0, 1, lambda display: said.append((display.text.split(",")[0], display.done)))
+    tasks = [Task(math.sqrt, number, "roots", seconds) for number, seconds in ((1.0, 1.0), (4.0, 4.0))]
+    batches = surface_tasks(Study(SCENES[:1], 2, 1e-3, fake_hierarchy(batch=3)[:1]))
+    runner = Runner(TaskResults(), 1, ThreadPoolExecutor, display, {"roots": 10.0, "small equations": 40.0})
+    for _ in range(2):  # a later level has the work of the earlier one
+        runner.run([*tasks, *batches])
+    assert display.total == 100.0
+    assert said == [
+        ("small equations: 3 of 4 phase pairs", 30.0),
+        ("small equations: 4 of 4 phase pairs", 40.0),
+        ("roots: 1 of 2 tasks", 48.0),  # the longest first
+        ("roots: 2 of 2 tasks", 50.0),
+    ]
 
 
 def test_every_phase_pair_is_in_one_batch() -> None:
