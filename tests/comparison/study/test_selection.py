@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-import xarray as xr
 from fake_models import fake_hierarchy
 from places import SCENES
 from report_texts import both_pages, schema_errors, summary_of
@@ -14,6 +13,8 @@ from runs import Run
 
 from comparison.cli.options import parsed
 from comparison.registry import FEATURES, chosen_analyses, first_tasks
+from comparison.runner.cache import Key
+from comparison.runner.task import Task
 from comparison.study.analyses import ANALYSES, Selection, selected
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures
@@ -41,30 +42,24 @@ def scene_file(folder: Path, analyses: str) -> str:
     return str(folder / "mine.toml")
 
 
-@pytest.mark.parametrize("analysis", STAGES)
-def test_a_skipped_analysis_has_no_task(analysis: str) -> None:
+def test_a_selected_analysis_has_its_tasks_and_pictures_and_no_others() -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3)
-    rest = replace(study, selection=Selection.of(study.scenes, None, [analysis]))
-    every, kept = (first_tasks(part, chosen_analyses(part)) for part in (study, rest))
-    assert STAGES[analysis] in {task.stage for task in every}
-    assert [task.key for task in kept] == [task.key for task in every if task.stage != STAGES[analysis]]
-    assert len(kept) < len(every)
 
+    def tasks(only: list[str] | None, skip: list[str] | None) -> tuple[list[Task], set[Key]]:
+        part = replace(study, selection=Selection.of(study.scenes, only, skip))
+        pictures = Pictures().tasks(part, labeled_surfaces(study, [], []))
+        return first_tasks(part, chosen_analyses(part)), {task.key for task in pictures}
 
-def test_a_study_of_surfaces_alone_computes_their_pictures() -> None:
-    study = Study((load_scene("fig3-I"),), 4, 1e-3)
-    study = replace(study, selection=Selection.of(study.scenes, ["surfaces"], None))
-    assert first_tasks(study, chosen_analyses(study)) == []
-    assert len(Pictures().tasks(study, labeled_surfaces(study, [], []))) == 1 + 2 * len(study.pairs(study.scenes[0]))
-
-
-def test_a_selection_changes_the_key_of_no_picture(finished: Path) -> None:
-    study = Study((load_scene("fig3-I"),), 4, 1e-3)
-    surfaces = xr.load_dataset(finished / "surfaces.nc")
-    part = replace(study, selection=Selection.of(study.scenes, ["budget"], None))
-    every, kept = ({task.key for task in Pictures().tasks(one, surfaces)} for one in (study, part))
-    assert 0 < len(kept) < len(every)
-    assert kept <= every
+    every, all_pictures = tasks(None, None)
+    for analysis, stage in STAGES.items():
+        assert stage in {task.stage for task in every}
+        kept, _ = tasks(None, [analysis])
+        assert [task.key for task in kept] == [task.key for task in every if task.stage != stage]
+    first, pictures = tasks(["surfaces"], None)
+    assert (first, len(pictures)) == ([], 1 + 2 * len(study.pairs(study.scenes[0])))
+    _, of_budget = tasks(["budget"], None)
+    assert 0 < len(of_budget) < len(all_pictures)
+    assert of_budget | pictures <= all_pictures, "a selection changes the key of no picture"
 
 
 def test_only_leaves_the_sections_asked_for(command: Callable[..., Run]) -> None:
@@ -108,38 +103,32 @@ def test_the_command_line_selects_before_the_scene(command: Callable[..., Run], 
     assert options.selection.by_scene == {"mine": ("budget",)}
 
 
-WRONG = {
-    "misspelt": (
-        ["--only", "surfaces,bugdet"],
-        "--only = 'surfaces,bugdet': 'bugdet' is no analysis; did you mean budget?",
-    ),
-    "empty": (["--skip", ""], "--skip = '': '' is no analysis; the analyses are differences, "),
-    "also": (["--also", "demand"], "--also = 'demand': 'demand' is no analysis; did you mean demands?"),
-    "both": (["--only", "budget", "--skip", "claims"], "--skip = 'claims': names what --only leaves out anyway"),
-}
-
-
-@pytest.mark.parametrize(("words", "line"), WRONG.values(), ids=WRONG)
-def test_a_wrong_selection_is_one_line(command: Callable[..., Run], words: list[str], line: str) -> None:
-    run = command("fig3-I", *words, hierarchy=fake_hierarchy("forbidden"))
-    assert (run.code, run.out, run.err.count("\n")) == (2, "", 1)
-    assert run.err.startswith(f"command line: {line}")
-
-
 @pytest.mark.parametrize(
-    ("analyses", "line"),
+    ("words", "analyses", "line"),
     [
-        ('only = ["bugdet"]', "analyses.only = ['bugdet']: 'bugdet' is no analysis; did you mean budget?"),
-        ('onyl = ["budget"]', "analyses.onyl = ['budget']: unknown key; did you mean only?"),
-        ('only = ["budget"]\nskip = ["claims"]', "give only or skip, not both"),
+        (
+            ["--only", "surfaces,bugdet"],
+            "",
+            "--only = 'surfaces,bugdet': 'bugdet' is no analysis; did you mean budget?",
+        ),
+        (["--skip", ""], "", "--skip = '': '' is no analysis; the analyses are differences, "),
+        (["--also", "demand"], "", "--also = 'demand': 'demand' is no analysis; did you mean demands?"),
+        (["--only", "budget", "--skip", "claims"], "", "--skip = 'claims': names what --only leaves out anyway"),
+        ([], 'only = ["bugdet"]', "analyses.only = ['bugdet']: 'bugdet' is no analysis; did you mean budget?"),
+        ([], 'onyl = ["budget"]', "analyses.onyl = ['budget']: unknown key; did you mean only?"),
+        (
+            [],
+            'only = ["budget"]\nskip = ["claims"]',
+            "analyses = {'only': ['budget'], 'skip': ['claims']}: give only or skip, not both",
+        ),
     ],
 )
-def test_a_wrong_selection_of_a_scene_is_one_line(
-    command: Callable[..., Run], tmp_path: Path, analyses: str, line: str
+def test_a_wrong_selection_is_one_line(
+    command: Callable[..., Run], tmp_path: Path, words: list[str], analyses: str, line: str
 ) -> None:
-    run = command(scene_file(tmp_path, analyses), hierarchy=fake_hierarchy("forbidden"))
-    assert (run.code, run.err.count("\n")) == (2, 1)
-    assert line in run.err
+    run = command(scene_file(tmp_path, analyses), *words, hierarchy=fake_hierarchy("forbidden"))
+    assert (run.code, run.out, run.err.count("\n")) == (2, "", 1)
+    assert f"{'command line' if words else 'mine'}: {line}" in run.err.replace(".toml", "")
 
 
 def test_motions_bring_the_surfaces_below_which_they_are_shown() -> None:
@@ -157,9 +146,12 @@ def test_claims_and_errata_are_of_the_papers_scenes(command: Callable[..., Run],
     assert [selection.has("claims", scene.name) for scene in (mine, named, paper)] == [False, False, True]
     assert selection.has("differences", "mine")
     assert Selection.of([mine], ["errata"], None).has("errata", "mine")
-    assert not Selection.of([mine], None, ["motions"]).has("errata", "mine")
-    run = command(str(tmp_path / "mine.toml"), *GRID)
-    absent = summary_of(run.report)["absent"]
+    skipped = Selection.of([mine], None, ["errata", "demands"])
+    assert not skipped.has("errata", "mine")
+    assert [skipped.why_absent(key) for key in ("errata", "claims", "demands")] == [
+        "not asked for", "of the paper's scenes; --only claims makes it of others", "not asked for",
+    ]  # fmt: skip
+    absent = summary_of(command(str(tmp_path / "mine.toml"), *GRID).report)["absent"]
     assert absent == {
         **{name: f"of the paper's scenes; --only {name} makes it of others" for name in ("claims", "errata")},
         "demands": "on request; --also demands makes it",
@@ -167,21 +159,18 @@ def test_claims_and_errata_are_of_the_papers_scenes(command: Callable[..., Run],
 
 
 def test_demands_of_every_phase_are_computed_on_request(command: Callable[..., Run], tmp_path: Path) -> None:
-    scene = load_scene("fig3-I")
-    usual = Study((scene,), 4, 1e-3)
-    for selection, made in (
-        (Selection.of((scene,), None, None), False),
-        (Selection.of((scene,), None, None, ["demands"]), True),
-        (Selection.of((scene,), ["demands"], None), True),
-        (Selection.of((scene,), None, ["demands"]), False),
-        (Selection.of((load_scene(scene_file(tmp_path, 'also = ["demands"]')),), None, None), True),
+    scene, asking = load_scene("fig3-I"), load_scene(scene_file(tmp_path, 'also = ["demands"]'))
+    for of, asked, made in (
+        (scene, (None, None), False),
+        (scene, (None, None, ["demands"]), True),
+        (scene, (["demands"], None), True),
+        (scene, (None, ["demands"]), False),
+        (asking, (None, None), True),
+        (asking, (None, None, []), False),
     ):
-        assert any(selection.has("demands", name) for name in ("fig3-I", "mine")) == made
-    asked = replace(usual, selection=Selection.of((scene,), None, None, ["demands"]))
-    made_usually, made_now = ({analysis.key for analysis in chosen_analyses(study)} for study in (usual, asked))
-    assert made_now - made_usually == {"demands"}
-    run = command("fig3-I", *GRID, "--also", "demands", "--plan")
-    assert ", demands " in run.out.replace("\n", " ")
-    usual_plan = command("fig3-I", *GRID, "--plan").out.replace("\n", " ")
-    assert ", demands " not in usual_plan
-    assert "on request; --also demands makes it" in usual_plan
+        study = Study((of,), 4, 1e-3, selection=Selection.of((of,), *asked))
+        assert ("demands" in {analysis.key for analysis in chosen_analyses(study)}) == made
+    usual, also = (command("fig3-I", *GRID, *words, "--plan").out for words in ((), ("--also", "demands")))
+    assert ", demands (chosen by the surfaces)" not in " ".join(usual.split())
+    assert "on request; --also demands makes it" in " ".join(usual.split())
+    assert ", demands (" in " ".join(also.split())
