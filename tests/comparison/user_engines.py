@@ -55,8 +55,8 @@ def as_object(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
 
 def as_full_object(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
     mu, count = plain(scene, phases), len(phases)
-    nothing = [np.nan] * count
-    return SimpleNamespace(mu=mu, error=1e-3 * mu, status=["ok"] * count, instant=nothing, displacement=[0.1] * count)
+    instant, displacement = [3.2] * count, [0.1] * count
+    return SimpleNamespace(mu=mu, error=1e-3 * mu, status=["ok"] * count, instant=instant, displacement=displacement)
 
 
 def listens(scene: Scene, phases: np.ndarray, tolerance: float, *, regularization: float | None) -> np.ndarray:
@@ -68,6 +68,12 @@ def half(scene: Scene, phases: np.ndarray) -> np.ndarray:
     mu = plain(scene, phases)
     mu[0] = np.inf, -1.0
     return mu
+
+
+def zeros(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A building that does not move, known exactly."""
+    phases[:] = 0.0
+    return np.zeros((len(phases), 2)), np.zeros((len(phases), 2))
 
 
 def own_words(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
