@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import platform
 import time
 from collections.abc import Callable
 from concurrent.futures import Executor, ThreadPoolExecutor
@@ -21,7 +22,12 @@ from comparison.analyses.errata.analysis import Effect
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.registry import ANALYSES, first_tasks
 from comparison.runner.cache import MAGIC, Cache, Key
-from comparison.runner.environment import provenance, source_digest
+from comparison.runner.environment import (
+    environment_fingerprint,
+    provenance,
+    source_digest,
+    task_environment_fingerprint,
+)
 from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task, TaskResult, execute, fingerprint
@@ -37,46 +43,74 @@ def _batch_task(**changed: object) -> Task:
     return task
 
 
-def test_a_batch_belongs_to_scene_model_versions_and_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def is_stored(**changed: object) -> bool:
-        return not TaskResults(Cache(tmp_path)).missing([_batch_task(**changed)])
+def _task(argument: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Task:
+    return Task(motion, argument, "motions", 0.1, argument[0])
 
-    task = _batch_task()
-    scene, model = task.argument.scene, fake_hierarchy(batch=1)[0]
-    TaskResults(Cache(tmp_path)).put(task, execute(task))
-    assert is_stored()
-    others: dict[str, dict[str, object]] = {
-        "scene": {"scenes": (scene.with_values({"duration": 3.0}),)},
-        "model": {"hierarchy": [replace(model, amplification="fake_models:uneven")]},
-        "settings": {"hierarchy": [replace(model, settings={"gap": 2.0})]},
-        "phases": {"hierarchy": [replace(model, batch=2)]},
+
+def test_a_key_has_all_that_a_result_depends_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    task, batch = _task(), _batch_task()
+    (scene, *rest), model = task.argument, fake_hierarchy(batch=1)[0]
+    tasks = {
+        "it": task,
+        "function": replace(task, function=another_motion),
+        "scene": _task((scene.with_values({"duration": 3.0}), *rest)),
+        "name, which the answer may hold": _task((scene.with_values({"name": "other"}), *rest)),
+        "number": _task((scene, 2, *rest[1:])),
+        "last bit": _task((scene, 1, np.nextafter(0.5, 1.0), rest[2])),
+        "array": _task((scene, 1, 0.5, np.arange(3.0) + 1e-16 * np.array([1.0, 0.0, 0.0]))),
+        "shape": _task((scene, 1, 0.5, np.arange(3.0)[None])),
+        "kind": _task((scene, 1, 0.5, np.arange(3.0).view(int))),
+        "model": replace(task, argument=model),
+        "settings of a model": replace(task, argument=replace(model, settings={"gap": 2.0})),
+        "batch": batch,
+        "scene of a batch": _batch_task(scenes=(scene.with_values({"duration": 3.0}),)),
+        "model of a batch": _batch_task(hierarchy=[replace(model, amplification="fake_models:uneven")]),
+        "settings of a batch": _batch_task(hierarchy=[replace(model, settings={"gap": 2.0})]),
+        "tolerance of a batch": _batch_task(tolerance=1e-7),
+        "phases of a batch": _batch_task(hierarchy=[replace(model, batch=2)]),
     }
-    for name, changed in others.items():
-        assert not is_stored(**changed), name
-    assert is_stored(scenes=(scene.with_values({"name": "other", "title": "another title"}),)), "a name is no number"
-    for name, value in (("_version", "9.9"), ("source_digest", "changed")):
-        with monkeypatch.context() as patch:
-            patch.setattr(f"comparison.runner.environment.{name}", lambda package, value=value: value)
-            assert not is_stored(), name
-
-
-def test_results_of_the_fast_engine_module_are_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    keys = {name: other.key for name, other in tasks.items()}
+    assert len(set(keys.values())) == len(keys)
+    named = scene.with_values({"name": "other", "title": "another title"})
+    assert _batch_task(scenes=(named,)).key == batch.key, "a name is no number"
+    assert fingerprint(replace(model, most=8)) == fingerprint(model), "a study with another grid asks it the same"
     monkeypatch.delenv("EXUDYN_MODULE", raising=False)
-    usual = _batch_task().key
-    monkeypatch.setenv("EXUDYN_MODULE", "fast")
-    assert _batch_task().key != usual
+    with monkeypatch.context() as patch:
+        patch.setenv("EXUDYN_MODULE", "fast")
+        assert {_batch_task().key, _task().key}.isdisjoint(keys.values())
     assert provenance()["exudyn module"] == multibody.models.engine.MODULE
+    before = fingerprint(model)
+    for name in ("_version", "source_digest"):
+        with monkeypatch.context() as patch:
+            patch.setattr(f"comparison.runner.environment.{name}", lambda package: "changed")
+            assert {_batch_task().key, _task().key}.isdisjoint(keys.values()), name
+            assert fingerprint(model) != before
+
+
+def test_a_key_names_versions_and_the_source_that_computes() -> None:
+    everywhere = {"python", "machine", "exudyn module", "exudyn", "llvmlite", "numba", "numpy", "scipy"}
+    shared = {"source of reference.problem", "source of comparison.study.batches"}
+    engine = environment_fingerprint("multibody:amplification")
+    assert set(engine) == everywhere | shared | {"source of multibody"}
+    assert (engine["python"], engine["numpy"]) == (platform.python_version(), np.__version__)
+    of_user = set(environment_fingerprint("comparison.study.user_models:amplification"))
+    assert of_user == everywhere | shared | {"source of comparison.study.user_models"}
+    sources = "reference", "multibody", "comparison.study", "comparison.analyses", "comparison.wording"
+    assert set(task_environment_fingerprint("comparison.surfaces.figures.pictures")) == (
+        everywhere | {"matplotlib", "pillow", "xarray"} | {f"source of {name}" for name in sources}
+        | {"source of comparison.surfaces.figures"}
+    )  # fmt: skip
 
 
 def test_changed_source_is_another_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    package = tmp_path / "some_model"
-    package.mkdir()
-    (package / "__init__.py").write_text("a = 1\n", encoding="utf-8")
-    (package / "inner.py").write_text("b = 1\n", encoding="utf-8")
+    inner = tmp_path / "some_model" / "below" / "inner.py"
+    inner.parent.mkdir(parents=True)
+    for file in (inner, inner.parent / "__init__.py", tmp_path / "some_model" / "__init__.py"):
+        file.write_text("a = 1\n", encoding="utf-8")
     monkeypatch.syspath_prepend(str(tmp_path))
     source_digest.cache_clear()
     before = source_digest("some_model")
-    (package / "inner.py").write_text("b = 2\n", encoding="utf-8")
+    inner.write_text("a = 2\n", encoding="utf-8")
     source_digest.cache_clear()
     assert source_digest("some_model") != before != "absent"
     assert source_digest("no_such_package") == "absent"
@@ -103,8 +137,16 @@ def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path) -> 
     assert not aside.exists(), "except what a killed run left long ago"
     store.trim([needed], limit=sizes[0] + sizes[2])
     assert {entry.name for entry in tmp_path.iterdir()} == {needed.group, new.group}
+    store.put(old, 1.5)
+    os.utime(tmp_path / old.group, (1000.0, 1000.0))
+    assert store.get(old, float) == 1.5
+    store.trim([needed], limit=sizes[0] + sizes[1])
+    assert {entry.name for entry in tmp_path.iterdir()} == {needed.group, old.group}, "what was read lately stays"
     store.trim([needed], limit=0)
     assert {entry.name for entry in tmp_path.iterdir()} == {needed.group}
+    store.put(old, 1.5)
+    store.trim([needed])
+    assert store.get(old, float) == 1.5, "far less than the bound of a store"
 
 
 calls: list[object] = []
@@ -125,56 +167,27 @@ def broken(task: object) -> tuple[Effect, ...]:
     return Effect("s", 0), Effect("s", 1, error_message="it broke")
 
 
-def _task(task: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Task:
-    return Task(motion, task, "motions", 0.1, task[0])
-
-
 def _run(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolExecutor) -> TaskResults:
     results = TaskResults(Cache(folder))
     Runner(results, 1, make).run([task])
     return results
 
 
-def test_an_answer_is_kept_to_the_last_bit(tmp_path: Path) -> None:
+def test_an_answer_is_kept_to_the_last_bit_and_a_damaged_one_is_mended(tmp_path: Path) -> None:
     task = _task()
     runs = [_run(task, tmp_path), _run(task, tmp_path, no_executor)]
-    assert [results.parts["motions"].stored for results in runs] == [0, 1]
+    assert [(results.parts["motions"].tasks, results.parts["motions"].stored) for results in runs] == [(1, 0), (1, 1)]
     first, second = (results[task].value for results in runs)
     assert pickle.dumps(first) == pickle.dumps(second) == pickle.dumps(motion(task.argument))
     assert TaskResults(Cache(tmp_path)).holds(task)
     assert not TaskResults(Cache(tmp_path), fresh=True).holds(task)
     assert TaskResults(Cache(tmp_path), fresh=True).missing([task]) == [task]
-
-
-def test_it_belongs_to_function_task_versions_and_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    task = _task()
-    _run(task, tmp_path)
-    scene, *rest = task.argument
-    others = {
-        "function": replace(task, function=another_motion),
-        "scene": _task((scene.with_values({"duration": 3.0}), *rest)),
-        "name, which the answer may hold": _task((scene.with_values({"name": "other"}), *rest)),
-        "number": _task((scene, 2, *rest[1:])),
-        "last bit": _task((scene, 1, np.nextafter(0.5, 1.0), rest[2])),
-        "array": _task((scene, 1, 0.5, np.arange(3.0) + 1e-16 * np.array([1.0, 0.0, 0.0]))),
-        "shape": _task((scene, 1, 0.5, np.arange(3.0)[None])),
-    }
-    for name, other in others.items():
-        assert TaskResults(Cache(tmp_path)).missing([other]), name
-    for name in ("_version", "source_digest"):
-        with monkeypatch.context() as patch:
-            patch.setattr(f"comparison.runner.environment.{name}", lambda package: "changed")
-            assert TaskResults(Cache(tmp_path)).missing([_task()]), name
-    assert not TaskResults(Cache(tmp_path)).missing([task])
-
-
-def test_a_model_is_known_by_its_source_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    model = fake_hierarchy()[0]
-    before = fingerprint(model)
-    assert fingerprint(replace(model, settings={"gap": 2.0})) != before
-    assert fingerprint(replace(model, most=8)) == before, "a study with another grid asks it the same"
-    monkeypatch.setattr("comparison.runner.environment.source_digest", lambda name: "changed")
-    assert fingerprint(model) != before
+    (file,) = tmp_path.glob("*/*.result")
+    content, number = file.read_bytes(), np.float64(0.1).tobytes()
+    assert number in content
+    file.write_bytes(content.replace(number, bytes([number[0] ^ 1]) + number[1:], 1))
+    assert _run(task, tmp_path).parts["motions"].stored == 0
+    assert _run(task, tmp_path, no_executor).parts["motions"].stored == 1, "and mended"
 
 
 def test_what_names_a_fault_is_tried_again_by_the_next_run(tmp_path: Path) -> None:
@@ -184,17 +197,6 @@ def test_what_names_a_fault_is_tried_again_by_the_next_run(tmp_path: Path) -> No
     assert results[task].value[1].error_message == "it broke"
     _run(task, tmp_path)
     assert calls == [1, 1]
-
-
-def test_what_is_damaged_in_one_bit_is_computed_again(tmp_path: Path) -> None:
-    task = _task()
-    _run(task, tmp_path)
-    (file,) = tmp_path.glob("*/*.result")
-    content, number = file.read_bytes(), np.float64(0.1).tobytes()
-    assert number in content
-    file.write_bytes(content.replace(number, bytes([number[0] ^ 1]) + number[1:], 1))
-    assert _run(task, tmp_path).parts["motions"].stored == 0
-    assert _run(task, tmp_path, no_executor).parts["motions"].stored == 1, "and mended"
 
 
 def test_a_task_that_fails_has_its_reason_and_costs_no_other(tmp_path: Path) -> None:
