@@ -66,18 +66,16 @@ def _wait_for_the_equations(place: Path, process: subprocess.Popen[str]) -> None
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of a process group")
 @pytest.mark.parametrize(
-    ("number", "code"),
-    [(signal.SIGINT, 130), pytest.param(signal.SIGTERM, 143, marks=pytest.mark.long)],
-    ids=["Ctrl-C", "SIGTERM"],
+    "number", [signal.SIGINT, *(pytest.param(n, marks=pytest.mark.long) for n in (signal.SIGTERM, signal.SIGKILL))]
 )
-def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: int, code: int) -> None:
+def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: signal.Signals) -> None:
     old = tmp_path / "report"
     publish(old, {"summary.json": b'{"schema": "phase-resonance/summary"}'}, "comparison.run")
     script = SCRIPT.format(here=str(HELPERS), root=str(ROOT))
     process = subprocess.Popen(
         [sys.executable, "-c", script],
         cwd=tmp_path,
-        stdout=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,  # Ctrl-C reaches the whole group, as on a terminal
@@ -87,7 +85,10 @@ def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: int, code:
     assert workers
     os.killpg(process.pid, number) if number == signal.SIGINT else os.kill(process.pid, number)
     _, err = process.communicate(timeout=HANGS)  # does not wait for the points under way
-    assert process.returncode == code
+    _wait_for_the_end_of(workers)
+    if number == signal.SIGKILL:
+        return
+    assert process.returncode == 128 + number
     stopped = re.fullmatch(
         r"interrupted: (\d+) of (\d+) batches are kept in 'report.tiles'; "
         r"go on with: python -m comparison.run fig3-I --grid 4 --jobs 2 --out report\n",
@@ -98,22 +99,6 @@ def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: int, code:
     assert len(list(tmp_path.glob("report.tiles/*/*.batch"))) == 16, "one model under several names is stored once"
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report.tiles", "stored.txt"]
     assert sorted(entry.name for entry in old.iterdir()) == ["manifest.json", "summary.json"]
-    _wait_for_the_end_of(workers)
-
-
-@pytest.mark.long
-@pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL")
-def test_the_workers_of_a_killed_run_end_with_it(tmp_path: Path) -> None:
-    script = SCRIPT.format(here=str(HELPERS), root=str(ROOT))
-    process = subprocess.Popen(
-        [sys.executable, "-c", script], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
-    )
-    _wait_for_the_equations(tmp_path, process)
-    workers = psutil.Process(process.pid).children()
-    assert workers
-    process.kill()
-    process.communicate(timeout=HANGS)
-    _wait_for_the_end_of(workers)
 
 
 COUNT = 40  # cells

@@ -2,7 +2,6 @@
 
 import errno
 import io
-import json
 import os
 import subprocess
 import sys
@@ -78,24 +77,25 @@ def test_a_run_killed_at_random_goes_on_to_the_same_bytes(tmp_path: Path) -> Non
 
 
 def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[..., Run]) -> None:
-    words = ["fig3-I", "--grid", "4"]
-    first = command(*words)
-    assert first.code == 0
-    again = command(*words)
-    assert "only the others are computed" in again.out
-    summary = summary_of(again.report)["run"]
-    assert summary["tiles_stored_before"] == summary["tiles"] > 0
-    batches = summary["tiles"]
-    assert f"{batches} of {batches} batches, " in command(*words, "--plan").out.replace("\n", " ")
-    assert "batches are in" not in command(*words, "--fresh", "--plan").out
-    fresh = command(*words, "--fresh")
-    assert "only the others are computed" not in fresh.out
-    summary = summary_of(fresh.report)["run"]
-    assert summary["tiles_stored_before"] == 0
-    finer = command("fig3-I", "--grid", "8")
+    def stored(grid: int, *words: str) -> tuple[str, int, int, dict[str, tuple[int, int]]]:
+        run = command("fig3-I", "--grid", str(grid), *words)
+        about = summary_of(run.report)["run"]
+        parts = {stage: (part["tasks"], part["stored_before"]) for stage, part in about["parts"].items()}
+        return " ".join(run.out.split()), about["tiles_stored_before"], about["tiles"], parts
+
+    first, again = stored(4), stored(4)
+    assert (first[1], again[1]) == (0, again[2])
+    assert (first[3]["pictures"], again[3]["pictures"]) == ((9, 0), (9, 9))
+    line = f"{again[2]} of {again[2]} batches, 7 of 15 analyses are in "  # the models have no motions for the others
+    assert (line in again[0], "are in " in first[0]) == (True, False)
+    planned = command("fig3-I", "--grid", "4", "--plan").out
+    assert line in " ".join(planned.split())
+    assert "batches are in" not in command("fig3-I", "--grid", "4", "--fresh", "--plan").out
+    fresh = stored(4, "--fresh")
+    assert ("only the others are computed" in fresh[0], fresh[1]) == (False, 0)
     hierarchy, scenes = fake_hierarchy(), (load_scene("fig3-I"),)
     coarse, fine = ([task.key for task in surface_tasks(Study(scenes, n, 1e-3, hierarchy))] for n in (4, 8))
-    assert summary_of(finer.report)["run"]["tiles_stored_before"] == sum(key in coarse for key in fine) > 0
+    assert stored(8)[1] == sum(key in coarse for key in fine) > 0
 
 
 def test_a_full_disk_is_exit_3_and_the_run_goes_on_later(
@@ -126,32 +126,3 @@ def test_a_full_disk_is_exit_3_and_the_run_goes_on_later(
     again = command(*words)
     assert again.code == 0
     assert "only the others are computed" in again.out
-
-
-@pytest.mark.long
-def test_a_real_run_is_repeated_without_computing_anything(tmp_path: Path) -> None:
-    def ended() -> int:
-        words = ["fig4-viscous", "--grid", "2", "--jobs", "1", "--out", "report"]
-        script = f"import sys\nfrom comparison.run import main\nsys.exit(main({words}))"
-        paths = os.pathsep.join([str(HELPERS), str(ROOT)])
-        environment = {**os.environ, "PYTHONPATH": paths, "NUMBA_CACHE_DIR": str(tmp_path / "build")}
-        command = [sys.executable, "-c", script]
-        return subprocess.run(command, cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL).returncode
-
-    def numbers() -> tuple[object, dict[str, dict[str, int]]]:
-        summary = summary_of(tmp_path / "report")
-        run = summary.pop("run")
-        for scene in summary["scenes"]:
-            for model in scene["models"].values():
-                model.pop("cost")  # processor time is no number of the models
-        for cell in summary["assumptions"]["cells"]:
-            cell.pop("cost")
-        return json.dumps(summary), run["parts"]
-
-    assert ended() == 0
-    whole, _ = numbers()
-    assert ended() == 0
-    again, parts = numbers()
-    assert again == whole
-    assert parts
-    assert all(part["stored_before"] == part["tasks"] for part in parts.values()), "nothing is computed"

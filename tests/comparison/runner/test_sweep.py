@@ -1,6 +1,6 @@
 """Every task has its result: one that kills or hangs its worker costs its own points, in any order of the others."""
 
-import gc
+import os
 import signal
 import threading
 import time
@@ -8,6 +8,7 @@ from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 from threading import Barrier
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,12 +17,20 @@ from fake_models import fake_hierarchy
 from light_tasks import counted, doubled, hangs_in_compiled_code, is_kept_waiting, raises, waits_for_ever
 from runs import no_executor
 
+from comparison.runner import processes
 from comparison.runner.cache import Cache
-from comparison.runner.processes import ExecutorLostError, Pool, TimeLimitError, executing, process_pool
+from comparison.runner.processes import (
+    ExecutorLostError,
+    Pool,
+    TimeLimitError,
+    executing,
+    one_thread_each,
+    process_pool,
+)
 from comparison.runner.runner import Runner
 from comparison.runner.task import GIVEN_UP, Task, TaskResult
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import execute_batch
+from comparison.study.batches import BatchResult, execute_batch
 from comparison.study.study import Study
 from comparison.study.user_models import user_model
 from comparison.surfaces.surfaces import batch_results, labeled_surfaces, surface_tasks
@@ -53,14 +62,12 @@ def test_a_death_costs_its_own_task_one_retry_and_no_other(tmp_path: Path) -> No
     assert _calls(tmp_path) == {"one": 1, "kills": 2, "two": 1, "kills always": 2, "three": 1, "four": 1}
 
 
-def test_a_worker_collects_garbage_as_seldom_as_its_parent() -> None:
-    before = gc.get_threshold()
-    gc.set_threshold(1234, 20, 30)
-    try:
-        with process_pool(1) as pool:
-            assert pool.submit(gc.get_threshold).result() == (1234, 20, 30)
-    finally:
-        gc.set_threshold(*before)
+def test_libraries_of_a_worker_use_one_thread_unless_the_user_says_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("MKL_NUM_THREADS", "3")
+    one_thread_each()
+    assert [os.environ[f"{name}_NUM_THREADS"] for name in ("OMP", "OPENBLAS", "MKL")] == ["1", "1", "3"]
 
 
 @pytest.mark.long
@@ -84,11 +91,21 @@ def test_halves_of_a_batch_are_its_points_in_order() -> None:
     np.testing.assert_array_equal(np.concatenate([early.phases, late.phases]), batch.phases)
     assert (early.first, late.first) == (batch.first, batch.first + len(early.phases))
     assert early.halves() == []
-    whole, halves = execute_batch(batch), [execute_batch(half) for half in (early, late)]
-    together = batch.join(halves)
-    np.testing.assert_array_equal(together.mu, whole.mu)
-    assert (together.status, together.error_message) == (whole.status, "")
-    assert together.cost == pytest.approx(whole.cost, rel=1e-12)  # a sum in another order
+    mu, (one, two) = batch.phases, (batch.phases[:1], batch.phases[1:])
+    parts = [
+        BatchResult(part, 0.1 * part, ["ok"] * len(part), 2.0 * part[:, 0], cost, "singular", 3.0 * part[:, 1])
+        for part, cost in ((one, 0.25), (two, 0.5))
+    ]
+    whole = batch.join(parts)
+    for found, expected in (
+        (whole.mu, mu), (whole.error, 0.1 * mu), (whole.instant, 2.0 * mu[:, 0]), (whole.displacement, 3.0 * mu[:, 1]),
+    ):  # fmt: skip
+        np.testing.assert_array_equal(found, expected)
+    assert (whole.status, whole.cost, whole.error_message) == (["ok", "ok"], 0.75, "singular")
+    lost = batch.without_result(Outcome.RIM_REACHED, "no")
+    numbers = [lost.mu, lost.error, lost.instant[:, None], lost.displacement[:, None]]
+    assert np.isnan(np.hstack(numbers)).all()
+    assert (np.hstack(numbers).shape, lost.status, lost.cost) == ((2, 6), ["rim reached"] * 2, 0.0)
 
 
 def test_a_lent_executor_states_its_width_and_stays_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -210,10 +227,11 @@ def test_a_repeated_run_waits_for_a_hang_only_if_it_allows_more(tmp_path: Path) 
 
 @pytest.mark.long
 @pytest.mark.usefixtures("patient")
-def test_what_a_busy_machine_keeps_waiting_does_not_hang(tmp_path: Path) -> None:
-    """2.5 s of waiting, next to no computing, under a limit of 1 s."""
-    (result,) = _run([Task(is_kept_waiting, "", "test", 1.0, timeout=1.0)])
-    assert result.value == 1
+def test_only_the_processor_time_of_a_task_itself_counts(tmp_path: Path) -> None:
+    """2.5 s of waiting and next to no computing under a limit of 1 s; then 2 s of computing without a limit."""
+    waiting = Task(is_kept_waiting, "", "test", 2.0, timeout=1.0)
+    results = _run([waiting, Task(is_busy, 2.0, "test", 1.0)], jobs=1)
+    assert [result.value for result in results] == [1, 2.0]
 
 
 @pytest.mark.long
@@ -223,13 +241,13 @@ def test_what_computes_nothing_any_more_is_ended_in_the_end(tmp_path: Path, monk
     assert result.reason == "time limit: no answer within 4 s"
 
 
-@pytest.mark.long
-@pytest.mark.usefixtures("patient")
-def test_the_limit_of_a_task_does_not_reach_the_next_one(tmp_path: Path) -> None:
-    short = Task(doubled, str(tmp_path / "short"), "test", 2.0, timeout=1.0)
-    endless = Task(is_busy, 2.0, "test", 1.0)
-    results = _run([short, endless], jobs=1)
-    assert [result.value for result in results] == [2, 2.0]
+def test_a_silent_process_is_waited_for_by_its_limit() -> None:
+    waits: list[float] = []
+    pipe = SimpleNamespace(send=lambda call: None, poll=lambda seconds: waits.append(seconds))
+    for limit in (1.0, 60.0, 1e6):
+        with pytest.raises(TimeLimitError, match=r"^no answer within "):
+            processes._Process.run(SimpleNamespace(_pipe=pipe), str, limit)  # type: ignore[arg-type]
+    assert waits == [20.0, 5.0 * 60.0 + 60.0, 1e6]
 
 
 def is_busy(seconds: float) -> float:
