@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from fake_models import fake_hierarchy
-from places import ROOT
+from places import scene_text
 from runs import Run
 
 WRONG = {
@@ -15,18 +15,30 @@ WRONG = {
     "grid too large": (["--grid", "513"], "command line: --grid = 513: must be a whole number from 2 to 512"),
     "grid not whole": (["--grid", "3.5"], "command line: --grid = '3.5': must be a whole number from 2 to 512"),
     "jobs zero": (["--jobs", "0"], "command line: --jobs = 0: must be a whole number from 1 to 1024"),
-    "tolerance zero": (["--tolerance", "0"], "command line: --tolerance = 0.0: must be a number from 1e-08 to 0.1"),
+    "tolerance zero": (
+        ["--tolerance", "0"],
+        "command line: --tolerance = 0.0: must be a number from 1e-08 to 0.1, relative",
+    ),
     "tolerance nan": (["--tolerance", "nan"], "command line: --tolerance = nan: must be a number"),
-    "budget zero": (["--budget", "0"], "command line: --budget = 0.0: must be a number from 1 to 1e+07"),
-    "budget a word": (["--budget", "soon"], "command line: --budget = 'soon': must be a number from 1 to 1e+07"),
-    "amplitude zero": (["--amplitude", "0"], "command line: --amplitude = 0.0: must be a number"),
-    "amplitude infinite": (["--amplitude", "inf"], "command line: --amplitude = inf: must be a number"),
+    "budget zero": (
+        ["--budget", "0"],
+        "command line: --budget = 0.0: must be a number from 1 to 1e+07, s of the whole",
+    ),
+    "budget a word": (["--budget", "soon"], "command line: --budget = 'soon': must be a number from 1 to 1e+07, s"),
+    "amplitude infinite": (
+        ["--amplitude", "inf"],
+        "command line: --amplitude = inf: must be a number from 1e-12 to 1e+06, m/s^2",
+    ),
+    "work too small": (
+        ["--max-work", "0.5"],
+        "command line: --max-work = 0.5: must be a number from 1 to 1e+12, steps of the engine for a phase pair",
+    ),
     "unknown option": (["--gird", "3"], "command line: unrecognized arguments: --gird"),
     "shortened option": (["--gri", "3"], "command line: unrecognized arguments: --gri"),
     "option without value": (["--grid"], "command line: argument --grid: expected one argument"),
     "unknown scene": (["fig9"], "fig9: scene = 'fig9': No such file or directory; give a TOML file or one of fig3-I"),
     "second scene unknown": (["fig3-I", "missing.toml"], "missing.toml: "),
-    "scene twice": (["fig3-I", "fig3-I"], "fig3-I: scene = 'fig3-I': same name as fig3-I"),
+    "scene twice": (["fig3-I", "fig3-I"], "fig3-I: scene = 'fig3-I': same name as fig3-I, which"),
     "scene a directory": (["/"], "/: scene = '/': Is a directory"),
 }
 
@@ -43,17 +55,21 @@ def test_a_wrong_option_is_one_line_and_exit_code_2(
     assert list(tmp_path.iterdir()) == [], "nothing half-written"
 
 
-def test_an_impossible_amplitude_names_the_scene(command: Callable[..., Run], tmp_path: Path) -> None:
-    good = ROOT / "reference/problem/scenes/fig3-I.toml"
-    file = tmp_path / "still.toml"
+def test_an_impossible_amplitude_and_a_name_that_is_there_twice_name_the_scene(
+    command: Callable[..., Run], tmp_path: Path
+) -> None:
+    file, other = tmp_path / "still.toml", tmp_path / "other" / "still.toml"
+    other.parent.mkdir()
     matrix = "amplitudes = [[1.0, 0.0], [0.0, 1.0]]"
-    text = good.read_text(encoding="utf-8")
-    assert matrix in text
-    file.write_text(text.replace(matrix, "amplitudes = [[0.0, 0.0], [0.0, 0.0]]"), encoding="utf-8")
-    run = command(str(file), "--amplitude", "2")
-    assert run.code == 2
-    assert "excitation.amplitudes = 0.0: all entries are 0: nothing to scale" in run.err
-    assert run.err.count("\n") == 1
+    file.write_text(scene_text("fig3-I", (matrix, "amplitudes = [[0.0, 0.0], [0.0, 0.0]]")), encoding="utf-8")
+    other.write_text(scene_text("fig3-I"), encoding="utf-8")
+    still = command(str(file), "--amplitude", "2")
+    assert (still.code, still.err.count("\n")) == (2, 1)
+    assert "excitation.amplitudes = 0.0: all entries are 0: nothing to scale" in still.err
+    file.write_text(scene_text("fig3-I"), encoding="utf-8")
+    twice = command(str(file), str(other))
+    assert (twice.code, twice.err.count("\n")) == (2, 1)
+    assert twice.err.startswith(f"{other}: scene = 'still': same name as {file}, which names its surfaces")
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")

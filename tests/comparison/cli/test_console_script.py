@@ -15,7 +15,6 @@ from places import ROOT
 import reference
 from comparison.cli.start import COMMANDS, main
 
-SHADOW = "raise SystemExit('a module of the user was imported')\n"
 PLANTED = ("multiprocessing", "threading", "socket", "pickle", "numpy", "numba", "typing_extensions")
 TELLING = """
 import pathlib
@@ -42,37 +41,29 @@ def script(tmp_path: Path) -> Path:
 
 
 def called(script: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    """The script in a directory of the user whose modules have the names of this project's packages."""
-    place = script.parent.parent / "work"
-    place.mkdir(exist_ok=True)
-    for name in ("reference", "multibody", "comparison"):
-        (place / f"{name}.py").write_text(SHADOW, encoding="utf-8")
-    command = [sys.executable, str(script), *words]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    return subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True, check=False)
-
-
-def planted(script: Path) -> Path:
-    """The working directory with modules that tell when they are imported; the file in which they do."""
+    """The script in a directory of the user whose modules have the names of others and tell when they are imported."""
     place = script.parent.parent / "work"
     place.mkdir()
+    for name in ("reference", "multibody", "comparison"):
+        (place / f"{name}.py").write_text("raise SystemExit('a module of the user was imported')\n", encoding="utf-8")
     for name in PLANTED:
         (place / f"{name}.py").write_text(TELLING, encoding="utf-8")
-    return place / "imported"
+    command = [sys.executable, str(script), *words]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    run = subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True, check=False)
+    assert not (place / "imported").exists(), (place / "imported").read_text(encoding="utf-8")
+    return run
 
 
 @pytest.mark.long
 def test_modules_beside_a_user_are_not_imported(script: Path) -> None:
-    imported = planted(script)
     run = called(script, "extremes", "--models", "small", "--rows", "outside the rules", "--jobs", "2")
-    assert not imported.exists(), imported.read_text(encoding="utf-8")
     assert run.returncode == 0, run.stderr
-    matrix = json.loads((imported.parent / "report/extremes.json").read_text(encoding="utf-8"))
+    matrix = json.loads((script.parent.parent / "work/report/extremes.json").read_text(encoding="utf-8"))
     assert matrix["run"]["command"].startswith("phase-resonance extremes --models small")
 
 
 def test_workers_of_a_program_elsewhere_import_nothing_there(script: Path) -> None:
-    imported = planted(script)
     script.write_text(
         "import os\n"
         "from comparison.runner.processes import process_pool\n"
@@ -82,13 +73,13 @@ def test_workers_of_a_program_elsewhere_import_nothing_there(script: Path) -> No
         encoding="utf-8",
     )
     run = called(script)
-    assert not imported.exists(), imported.read_text(encoding="utf-8")
     assert (run.returncode, run.stdout) == (0, "None None\n"), "what a task starts is searched as ever"
 
 
 @pytest.mark.parametrize(
     ("words", "code", "said"),
     [
+        (["plot"], 2, [f"command line: COMMAND = 'plot': must be one of {', '.join(COMMANDS)}\n"]),
         (["extrems"], 2, ["command line: COMMAND = 'extrems': did you mean extremes?\n"]),
         (["--version"], 0, [f"phase-resonance {reference.__version__}\n"]),
         ([], 0, [f"  {name} " for name in COMMANDS]),
@@ -120,23 +111,19 @@ def test_an_engine_that_cannot_be_loaded_is_one_line(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_every_command_states_the_version(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as end:
-        import_module(COMMANDS[name][0]).main(["--version"])
-    assert end.value.code == 0
-    assert capsys.readouterr().out == f"phase-resonance {reference.__version__}\n"
-
-
-@pytest.mark.parametrize("name", COMMANDS)
-@pytest.mark.parametrize("words", [("--no-such-option",), ("--jobs", "0"), ("--out",)])
-def test_a_wrong_option_of_every_command_is_one_line(
-    name: str, words: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+def test_every_command_states_its_version_and_refuses_a_wrong_option_in_one_line(
+    name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     main = import_module(COMMANDS[name][0]).main
-    assert main(list(words)) == 2
-    out, err = capsys.readouterr()
-    assert (out, err.count("\n")) == ("", 1), err
-    assert err.startswith("command line: ")
+    with pytest.raises(SystemExit) as end:
+        main(["--version"])
+    assert end.value.code == 0
+    assert capsys.readouterr().out == f"phase-resonance {reference.__version__}\n"
+    for words in (["--no-such-option"], ["--jobs", "0"], ["--out"]):
+        assert main(words) == 2
+        out, err = capsys.readouterr()
+        assert (out, err.count("\n")) == ("", 1), err
+        assert err.startswith("command line: ")
 
 
 COMPUTING = tuple(name for name in COMMANDS if name not in ("init", "animate", "validation"))  # these have no workers

@@ -2,6 +2,8 @@
 
 import errno
 import json
+import os
+import re
 import runpy
 import subprocess
 import sys
@@ -11,11 +13,13 @@ from types import SimpleNamespace
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
 
+import numpy as np
 import pytest
 from known_analyses import with_engine_off_by
 from packaging.requirements import Requirement
 from places import ROOT
 
+import multibody
 import reference
 from comparison.cli import requirement as source
 from comparison.cli.init import TEMPLATE, main, study_files
@@ -102,25 +106,45 @@ def test_a_checkout_is_found_by_its_commit(
     assert "word" not in line
 
 
-def test_the_script_runs(study: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_script_prints_the_numbers_of_the_worst_phases(
+    study: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setattr(sys, "argv", ["study.py", "--grid", "2"])
     runpy.run_path(str(study / "study.py"), run_name="__main__")
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "Building on a friction pendulum: 4 phase pairs, status ok"
-    assert len(lines) == 10
-    assert lines[-1].startswith("  drifts ")
+    first, *bodies, pair, one, two, three, demands, drifts = capsys.readouterr().out.splitlines()
+    assert first == "Building on a friction pendulum: 4 phase pairs, status ok"
+    scene, phases = reference.load_scene(study / "building.toml"), reference.phase_grid(2)
+    mu = reference.amplification(scene, phases).mu
+    assert bodies == [f"  body {k + 1}: mu from {mu[:, k].min():.3f} to {mu[:, k].max():.3f}" for k in range(3)]
+    worst = phases[mu[:, 2].argmax()]
+    assert pair == f"phases {worst.round(3).tolist()} rad, like for like:"
+    sides = [side.amplification(scene, worst, regularization=1e-3) for side in (reference, multibody)]
+    for body, line in enumerate((one, two, three)):
+        equations, engine = (f"{side.mu[body]:.4f} ± {side.error[body]:.1g}" for side in sides)
+        assert line == f"  body {body + 1}: equations {equations}, engine {engine}"
+    motion = reference.trajectory(scene, worst)
+    shear, displacement = (np.linalg.norm(part, axis=1).max() for part in isolator(motion))
+    found = re.fullmatch(r"  displacement (\S+) m, base shear (\S+) kN", demands)
+    assert found
+    assert [*map(float, found.groups())] == pytest.approx([displacement, 1e-3 * shear], rel=0.02)
+    relative = np.linalg.norm(np.diff(motion.position[:, :, :2], axis=1), axis=2).max(axis=0)
+    assert drifts.startswith("  drifts ")
+    assert drifts.endswith(" mm")
+    assert [float(word) for word in drifts[9:-3].split(", ")] == pytest.approx(1e3 * relative, rel=0.02)
 
 
-def test_the_gate_passes(study: Path) -> None:
-    gate = runpy.run_path(str(study / "test_building.py"))
-    gate["test_the_equations_and_the_engine_agree"]()
+def isolator(motion: reference.Trajectory) -> tuple[np.ndarray, np.ndarray]:
+    """Horizontal force on the bodies together, N, and displacement of the platform, m, both (T, 2)."""
+    force = (motion.scene.masses[:, None] * motion.absolute_acceleration[:, :, :2]).sum(axis=1)
+    return force, motion.position[:, 0, :2]
 
 
-def test_the_gate_fails_where_a_side_is_off(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    with_engine_off_by(monkeypatch, 1.01)
-    gate = runpy.run_path(str(study / "test_building.py"))
-    with pytest.raises(AssertionError, match="building, body 1: like_for_like: median difference"):
-        gate["test_the_equations_and_the_engine_agree"]()
+def test_the_gate_passes_and_fails_where_a_side_is_off(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    gate = runpy.run_path(str(study / "test_building.py"))["test_the_equations_and_the_engine_agree"]
+    gate()
+    with_engine_off_by(monkeypatch, 1.0015)
+    with pytest.raises(AssertionError, match=r"body 1: like_for_like: median difference 0\.0015, allowed 0\.001;"):
+        gate()
 
 
 @pytest.mark.parametrize(
@@ -141,19 +165,17 @@ def test_an_empty_directory_and_a_new_repository_are_filled(tmp_path: Path, monk
     assert tmp_path.stat().st_ino == before, "the shell that stands in it still does"
 
 
-def occupied(place: Path) -> Path:
-    place.mkdir()
-    (place / "thesis.txt").write_text("years of work", encoding="utf-8")
-    return place
-
-
 def a_file(place: Path) -> Path:
+    place.parent.mkdir(exist_ok=True)
     place.write_text("years of work", encoding="utf-8")
     return place
 
 
 REFUSED: dict[str, tuple[Callable[[Path], Path], str]] = {
-    "something in it": (occupied, "holds 'thesis.txt': give a new directory, or one that is empty"),
+    "something in it": (
+        lambda place: a_file(place / "thesis.txt").parent,
+        "holds 'thesis.txt': give a new directory, or one that is empty",
+    ),
     "below a file": (lambda place: a_file(place) / "study", "cannot be written: Not a directory"),
     "a line break": (lambda place: place.with_name("my\nstudy"), "must be a name of printable characters"),
     "the root": (lambda place: Path("/"), "is the root directory: give a directory inside it"),
@@ -176,38 +198,32 @@ def test_a_directory_that_cannot_be_taken_stays_as_it_was(
 
 
 @pytest.mark.parametrize("exists", [False, True], ids=["new", "empty"])
-@pytest.mark.parametrize("moment", ["writing", "moving"])
+@pytest.mark.parametrize(
+    ("function", "full_at"), [("pathlib.Path.write_bytes", {"requirements.txt"}), ("os.rename", {"study", "study.py"})]
+)
 def test_a_full_disk_leaves_nothing_behind(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], exists: bool, moment: str
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    exists: bool,
+    function: str,
+    full_at: set[str],
 ) -> None:
     place = tmp_path / "of" / "mine" / "study"
     if exists:
         place.mkdir(parents=True)
     before = sorted(tmp_path.rglob("*"))
-    full = OSError(errno.ENOSPC, "No space left on device")
-    if moment == "writing":
-        write = Path.write_bytes
+    does = {"os.rename": os.rename, "pathlib.Path.write_bytes": Path.write_bytes}[function]
 
-        def until_full(file: Path, content: bytes) -> int:
-            if file.name == "requirements.txt":
-                raise full
-            return write(file, content)
+    def until_full(source: Path, target: Path | bytes) -> object:
+        if Path(target if isinstance(target, Path) else source).name in full_at:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return does(source, target)  # type: ignore[operator]
 
-        monkeypatch.setattr(Path, "write_bytes", until_full)
-    else:
-        import os
-
-        rename = os.rename
-
-        def move(source: Path, target: Path) -> None:
-            if Path(target).name in ("study", "study.py"):
-                raise full
-            rename(source, target)
-
-        monkeypatch.setattr(os, "rename", move)
+    monkeypatch.setattr(function, until_full)
     assert main([str(place)]) == 3
     err = capsys.readouterr().err
     assert err.count("\n") == 1
-    assert "DIRECTORY" in err
+    assert err.startswith(f"command line: DIRECTORY = '{place}': could not be written: ")
     assert "No space left on device" in err
     assert sorted(tmp_path.rglob("*")) == before
