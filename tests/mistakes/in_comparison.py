@@ -252,7 +252,7 @@ MISTAKES = (
     Mistake(STUDY + "batches.py", "sum(result.cost for result in results)", "results[-1].cost",
             "Halves of a batch cost what the last one does.", (DEATHS + "halves_of_a_batch_are_its_points_in_order",)),
     Mistake(STUDY + "batches.py", "(np.isfinite(error) | bool(self.group))", "(np.isfinite(error) | True)",
-            "A model of ours may be ok without an error.", (FORGED + "a_batch_that_is_ok_without_numbers_is_computed_again",)),
+            "A model of ours may be ok without an error.", (FORGED + "a_batch_of_another_shape_or_ok_without_numbers_is_computed_again",)),
     Mistake(STUDY + "user_models.py", "lines.append(f\"{place.name}, line {line}\")", "lines.append(f\"{place.name}, line {frame.f_lineno}\")",
             "An exception names the line of the call that made it.", equivalent="The frame of a traceback that is "
             "unwound stands at the line that raised."),

@@ -5,8 +5,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from fake_models import fake_hierarchy
 from runs import RUN
+from studies import solved
 
 import multibody
 from comparison.registry import report_of
@@ -25,37 +27,35 @@ from comparison.study.models import (
 )
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import labeled_surfaces
-from reference.problem import Scene, builtin_scenes, load_scene, mirror_symmetric
-from reference.problem.symmetry import sources
+from reference.problem import Scene, load_scene, mirror_symmetric
 
 GRID = 4
 
 
-def surfaces(scene: Scene, models: list[Model], full: bool):
+def surfaces(scene: Scene, models: list[Model], full: bool) -> tuple[int, xr.Dataset]:
+    """How many phase pairs are computed, and the surfaces."""
     study = Study((scene.with_values({"duration": 4.0}),), GRID, 1e-3, models, full)
-    batches = study.batches()
-    return sum(len(batch.phases) for batch in batches), labeled_surfaces(
-        study, batches, [execute_batch(batch) for batch in batches]
-    )
+    return sum(len(batch.phases) for batch in study.batches()), solved(study)
 
 
-@pytest.mark.parametrize("name", builtin_scenes())
-def test_the_reduced_study_gives_the_full_surfaces(name: str) -> None:
-    models = [model for model in (SMALL, EXACT, REGULARIZED) if model.applies(load_scene(name))]
+ALIKE = {"fig3-I": 4, "fig3-II": 2, "fig4-dry": 2, "fig4-viscous": 2}
+
+
+@pytest.mark.parametrize(
+    ("name", "models"),
+    [
+        *(
+            (name, [model for model in (SMALL, EXACT, REGULARIZED) if model.applies(load_scene(name))])
+            for name in ALIKE
+        ),
+        pytest.param("fig3-I", [TRANSLATIONAL], marks=pytest.mark.long),
+    ],
+)
+def test_the_reduced_study_gives_the_full_surfaces(name: str, models: list[Model]) -> None:
     whole, full = surfaces(load_scene(name), models, full=True)
     fewer, reduced = surfaces(load_scene(name), models, full=False)
-    saved = {"fig3-I": 4, "fig3-II": 2, "fig4-dry": 2, "fig4-viscous": 2}[name]
-    assert fewer * saved == whole == len(models) * GRID**2
+    assert fewer * ALIKE[name] == whole == len(models) * GRID**2
     assert (reduced["status"] == full["status"]).all()
-    assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
-
-
-@pytest.mark.long
-def test_the_engine_has_the_symmetry_too() -> None:
-    whole, full = surfaces(load_scene("fig3-I"), [TRANSLATIONAL], full=True)
-    fewer, reduced = surfaces(load_scene("fig3-I"), [TRANSLATIONAL], full=False)
-    assert whole == 4 * fewer
     assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
 
 
@@ -119,8 +119,12 @@ def test_the_phase_of_a_harmonic_without_amplitude_is_not_varied() -> None:
     fewer, reduced = surfaces(scene, [EXACT], full=False)
     assert (whole, fewer) == (GRID**2, GRID)
     assert (abs(reduced["mu"] - full["mu"]) <= reduced["error"] + full["error"]).all()
-    almost = short(excitation={"amplitudes": [[1.0, 1e-9], [0.5, 0.0], [0.3, 0.0]]})
-    assert len(Study((almost,), GRID, 1e-3, [EXACT]).solved(almost, EXACT)) == GRID**2
+    (row,) = reductions(Study((scene,), GRID, 1e-3, [EXACT]))
+    assert row[:3] == (
+        "mirrored phases, all but 1/4",
+        "all models",
+        "a harmonic without amplitude: its phase changes nothing",
+    )
 
 
 def test_without_friction_no_law_of_friction_is_varied() -> None:
@@ -149,42 +153,45 @@ def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
 
 def test_what_is_left_out_is_listed_once_with_its_reason() -> None:
     scene = alone(short(isolator={"friction": 0.0}, bodies={"height": 0.0}))
-    rows = {row.what: row for row in reductions(Study((scene,), GRID, 1e-3))}
-    assert [row.models for row in rows.values()] == ["all models", "resolved, regularised", "small", "spatial"]
-    assert "mirrored phases, all but 1/4" in rows
+    assert [(row.what, row.models) for row in reductions(Study((scene,), GRID, 1e-3))] == [
+        ("mirrored phases, all but 1/4", "all models"),
+        ("laws of friction", "resolved, regularised"),
+        ("every run but one per harmonic", "small"),
+        ("rotations, all supports but one", "spatial"),
+    ]
     assert reductions(Study((scene,), GRID, 1e-3, full=True)) == []
-    twins = tuple(
-        Scene.model_validate(load_scene("fig3-I").model_dump(exclude_none=True) | {"name": name}) for name in "ab"
-    )
+    (_, *plane) = reductions(Study((load_scene("fig4-dry"),), GRID, 1e-3))
+    assert [(row.what, row.models) for row in plane] == [
+        ("motion across its plane", "small, exact, resolved, regularised"),
+        ("motion across its plane, of the bodies", "translational"),
+    ]
+    twins = tuple(load_scene("fig3-I").with_values({"name": name}) for name in "ab")
     (row,) = reductions(Study(twins, GRID, 1e-3))
     assert row.scenes == ("a", "b")
 
 
-def test_just_outside_the_condition_nothing_is_saved() -> None:
-    table = load_scene("fig3-I").model_dump(exclude_none=True)
-    crossed = [[1.0, 1e-9], [0.0, 1.0]]
-    lifted = [[1.0, 0.0], [0.0, 1.0], [1e-9, 0.0]]
-    for amplitudes, computed in ((crossed, GRID**2 // 2), (lifted, GRID**2)):
-        table["excitation"]["amplitudes"] = amplitudes
-        study = Study((Scene.model_validate(table),), GRID, 1e-3, [EXACT])
-        assert len(study.solved(study.scenes[0], EXACT)) == computed
+@pytest.mark.parametrize(
+    ("amplitudes", "computed"),
+    [
+        ([[1.0, 1e-9], [0.0, 1.0], [0.0, 0.0]], GRID**2 // 2),
+        ([[1.0, 0.0], [0.0, 1.0], [1e-9, 0.0]], GRID**2),
+        ([[1.0, 1e-9], [0.5, 0.0], [0.3, 0.0]], GRID**2),
+    ],
+)
+def test_just_outside_the_condition_nothing_is_saved(amplitudes: list[list[float]], computed: int) -> None:
+    study = Study((short(excitation={"amplitudes": amplitudes}),), GRID, 1e-3, [EXACT])
+    assert len(study.solved(study.scenes[0], EXACT)) == computed
+    odd = replace(study, grid=5, scenes=(load_scene("fig3-I"),))
+    assert len(odd.solved(odd.scenes[0], EXACT)) == 25, "an odd grid is computed in full"
+    plain = replace(EXACT, symmetric=never)
+    assert len(study.solved(load_scene("fig3-I"), plain)) == GRID**2
 
 
 def test_the_report_counts_what_a_model_computed() -> None:
-    study = Study(
-        (load_scene("fig3-I"),), GRID, 1e-3, [replace(model, symmetric=mirror_symmetric) for model in fake_hierarchy()]
-    )
-    batches = study.batches()
-    data = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
-    [scene] = report_of(study, data, {}, [], RUN).results.scenes
+    models = [replace(model, symmetric=mirror_symmetric) for model in fake_hierarchy()]
+    study = Study((load_scene("fig3-I"),), GRID, 1e-3, models)
+    [scene] = report_of(study, solved(study), {}, [], RUN).results.scenes
     assert {(row.points, row.computed) for row in scene.models.values()} == {(16, 4)}
-
-
-def test_an_odd_grid_is_computed_in_full() -> None:
-    scene = load_scene("fig3-I")
-    assert (sources(scene, 5) == np.arange(25)).all()
-    plain = replace(EXACT, symmetric=never)
-    assert len(Study((scene,), GRID, 1e-3, [plain]).solved(scene, plain)) == GRID**2
 
 
 @pytest.mark.parametrize(("asked", "of_equations"), [(1e-3, 1e-6), (1e-8, 1e-8)])
