@@ -106,6 +106,10 @@ def never_refused(scene: Scene, **settings: object) -> str:
     return ""
 
 
+def says_what_it_is_asked(scene: Scene, **settings: object) -> str:
+    return str(settings)
+
+
 def forbidden(scene: Scene, phases: object, **settings: object) -> Amplification:
     raise AssertionError("nothing should have been computed")
 

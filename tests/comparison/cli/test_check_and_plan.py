@@ -87,9 +87,11 @@ def test_plan_counts_the_work_and_computes_and_writes_nothing(
     points = 256 * (2 * 0.06 + 2 * 2 * 0.0005 + 0.0005 + 0.001) + 16 * 2 * 0.22
     seconds = 4.0 + (points + 2 * 3.0 + 2 * 3.5) / 2 + 4.0
     assert f"Roughly {seconds:.0f} s with 2 workers and 20 s for compiling on a new installation" in text
-    mirrored = command("fig3-I", "--plan", "--grid", "16", hierarchy=MODEL_HIERARCHY).out
+    mirrored = command("fig3-I", *words[2:], "--only", "differences", hierarchy=MODEL_HIERARCHY).out
     (small,) = (line.split() for line in mirrored.splitlines() if "small equations" in line)
     assert small[-3:] == ["256", "64", "1e-06"]
+    points = 64 * (3 * 0.0005 + 0.001 + 0.06 + 0.22)  # a quarter of them
+    assert f"Roughly {4.0 + (points + 3.0 + 3.5) / 2 + 4.0:.0f} s with" in mirrored
 
 
 def test_plan_refuses_what_takes_more_work_than_is_allowed(command: Callable[..., Run]) -> None:

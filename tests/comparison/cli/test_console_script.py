@@ -140,34 +140,3 @@ def test_shared_options_are_the_same_in_every_command(capsys: pytest.CaptureFixt
         assert re.search(r"--out DIR .*\(default report\)", text), name
     (shared,) = helps
     assert re.match(r"--jobs N .* --scheduler ADDRESS .* --fresh .*", shared)
-
-
-COMMAND = """
-if __name__ == "__main__":
-    from comparison.cli.start import start
-
-    start("counted")
-
-print("loaded", flush=True)
-
-
-def main():
-    from comparison.runner.processes import process_pool
-
-    with process_pool(1) as workers:
-        workers.submit(len, "").result()
-    return 0
-"""
-
-
-def test_worker_processes_do_not_load_the_command_again(tmp_path: Path) -> None:
-    (tmp_path / "counted.py").write_text(COMMAND)
-    run = subprocess.run(
-        [sys.executable, "-m", "counted"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )
-    assert run.stdout.count("loaded") == 1

@@ -6,7 +6,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -104,18 +103,6 @@ def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: signal.Sig
 COUNT = 40  # cells
 
 
-@pytest.fixture
-def run(monkeypatch: pytest.MonkeyPatch) -> Callable[..., int]:
-    """The command with COUNT extremes for models of known answer."""
-    models = "honest", "lies_about_its_error"
-    columns = tuple(replace(fake(model), key=model) for model in models)
-    rows = [replace(PLAIN, title=str(number), columns=models) for number in range(COUNT // len(models))]
-    monkeypatch.setattr(extremes, "COLUMNS", columns)
-    monkeypatch.setattr(extremes, "rows", lambda: iter(rows))
-    monkeypatch.setattr(extremes, "made_by", lambda draw: {PICTURE: b"a picture"})
-    return lambda executor: int(extremes.main(["--jobs", "2", "--out", "report"], executor))
-
-
 class Interrupted(ThreadPoolExecutor):
     """Ctrl-C comes while the eleventh task is handed out."""
 
@@ -129,17 +116,24 @@ class Interrupted(ThreadPoolExecutor):
 
 
 def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
-    tmp_path: Path, run: Callable[..., int], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def judged() -> list[object]:
-        found = STORED.load(Path("report")).rows
+    """COUNT extremes for models of known answer."""
+    models = "honest", "lies_about_its_error"
+    rows = [replace(PLAIN, title=str(number), columns=models) for number in range(COUNT // len(models))]
+    monkeypatch.setattr(extremes, "COLUMNS", tuple(replace(fake(model), key=model) for model in models))
+    monkeypatch.setattr(extremes, "rows", lambda: iter(rows))
+    monkeypatch.setattr(extremes, "made_by", lambda draw: {PICTURE: b"a picture"})
+    monkeypatch.chdir(tmp_path)
+
+    def run(executor: Any, out: str = "report") -> int:
+        return int(extremes.main(["--jobs", "2", "--out", out], executor))
+
+    def judged(out: str) -> list[object]:
+        found = STORED.load(Path(out)).rows
         return [(e.verdict, e.reason, e.status, e.error) for row in found for e in row.entries.values()]
 
-    (tmp_path / "whole").mkdir()
-    monkeypatch.chdir(tmp_path / "whole")
-    assert run(ThreadPoolExecutor) == 1, "a model that lies fails"
-    whole = judged()
-    monkeypatch.chdir(tmp_path)
+    assert run(ThreadPoolExecutor, "whole") == 1, "a model that lies fails"
     assert run(Interrupted) == 130
     stopped = re.fullmatch(
         r"interrupted: (\d+) results are kept in 'report.tiles'; "
@@ -150,6 +144,9 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     assert 0 < int(stopped[1]) == len(list(tmp_path.glob("report.tiles/*/*.result"))) < COUNT
     assert not (tmp_path / "report").exists()
     assert run(ThreadPoolExecutor) == 1
-    assert judged() == whole
+    assert (
+        f"{stopped[1]} of {COUNT} tasks are in report.tiles: only the others are computed." in capsys.readouterr().out
+    )
+    assert judged("report") == judged("whole")
     assert STORED.load(Path("report")).run["stored_before"] == int(stopped[1])
     assert run(no_executor) == 1, "nothing is computed twice"

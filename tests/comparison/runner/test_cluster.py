@@ -1,19 +1,23 @@
 """A Dask cluster gives the numbers of this machine, loses none when a worker dies, and can be done without."""
 
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
+from distributed import KilledWorker
 from fake_models import fake_hierarchy
 from light_tasks import doubled, hangs_in_compiled_code
 from local_cluster import LocalCluster
 from runs import Run
 
+from comparison.runner import dask
 from comparison.runner.cache import Cache, Key
 from comparison.runner.dask import cluster
-from comparison.runner.processes import Pool
+from comparison.runner.processes import Pool, WorkerDiedError
 from comparison.runner.progress import Display
 from comparison.runner.runner import Runner
 from comparison.runner.task import BATCH, Task
@@ -97,9 +101,8 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on(
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("nanny", [False, True])
-def test_a_hang_costs_no_worker_of_the_cluster(tmp_path: Path, nanny: bool) -> None:
-    started = LocalCluster(tmp_path, workers=1, nanny=nanny)
+def test_a_hang_costs_no_worker_of_the_cluster(tmp_path: Path) -> None:
+    started = LocalCluster(tmp_path, workers=1, nanny=True)
     tasks = [
         Task(hangs_in_compiled_code, str(tmp_path / "hanging"), "test", 2.0, timeout=4.0),
         Task(doubled, str(tmp_path / "other"), "test", 1.0, timeout=60.0),
@@ -137,13 +140,11 @@ def test_workers_with_other_code_are_refused(
     assert run.err.count("\n") == 1
 
 
-@pytest.mark.long
-def test_a_point_that_kills_every_worker_is_the_only_one_lost(tmp_path: Path) -> None:
-    """Every death costs the start of a worker."""
-    workers = LocalCluster(tmp_path, nanny=True)
-    try:
-        with cluster(workers.address, {"fake_models:killing"}) as there:
-            answers = _results("killing", 8, there)
-    finally:
-        workers.end()
-    assert [outcome for answer in answers for outcome in answer.status] == ["ok"] * 15 + ["worker died"]
+def test_a_task_that_killed_every_worker_it_was_on_has_died_as_often() -> None:
+    remote: Future[Any] = Future()
+    remote.set_exception(KilledWorker("task", SimpleNamespace(address="tcp://there"), 3))
+    answer: Future[Any] = Future()
+    dask._arrived(remote, answer)
+    error = answer.exception()
+    assert isinstance(error, WorkerDiedError)
+    assert error.times == 4

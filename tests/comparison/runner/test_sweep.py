@@ -5,6 +5,7 @@ import signal
 import threading
 import time
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from threading import Barrier
@@ -13,7 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import xarray as xr
-from fake_models import fake_hierarchy
+from fake_models import deadly, fake_hierarchy
 from light_tasks import counted, doubled, hangs_in_compiled_code, is_kept_waiting, raises, waits_for_ever
 from runs import no_executor
 
@@ -23,6 +24,7 @@ from comparison.runner.processes import (
     ExecutorLostError,
     Pool,
     TimeLimitError,
+    WorkerDiedError,
     executing,
     one_thread_each,
     process_pool,
@@ -70,18 +72,27 @@ def test_libraries_of_a_worker_use_one_thread_unless_the_user_says_otherwise(mon
     assert [os.environ[f"{name}_NUM_THREADS"] for name in ("OMP", "OPENBLAS", "MKL")] == ["1", "1", "3"]
 
 
-@pytest.mark.long
+class Deadly(ThreadPoolExecutor):
+    """A phase pair at which every worker dies."""
+
+    def start(self, call: partial[TaskResult], seconds: float | None, group: str) -> Future[TaskResult]:
+        if not deadly(call.args[0].argument.phases).any():
+            return self.submit(call)
+        died: Future[TaskResult] = Future()
+        died.set_exception(WorkerDiedError("exit code 7", exit_code=7))
+        return died
+
+
 @pytest.mark.parametrize("batch", [2, 16])
 def test_splitting_finds_the_one_point_that_kills(tmp_path: Path, batch: int) -> None:
-    hierarchy = [model for model in fake_hierarchy("killing", batch=batch) if model.key == "translational"]
+    hierarchy = [model for model in fake_hierarchy(batch=batch, gap=0.0) if model.key == "translational"]
     tasks, results = surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)), TaskResults(Cache(tmp_path))
-    Runner(results, 2, process_pool).run(tasks)
+    Runner(results, 2, Deadly).run(tasks)
     found = batch_results(tasks, results)
     assert [outcome for result in found for outcome in result.status] == ["ok"] * 15 + ["worker died"]
-    whole = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(gap=0.0)).batches()
-    expected = np.concatenate([execute_batch(batch).mu for batch in whole])
+    expected = np.concatenate([execute_batch(task.argument).mu for task in tasks])
     np.testing.assert_array_equal(np.concatenate([result.mu for result in found])[:15], expected[:15])
-    assert found[-1].error_message == "the worker process died 2 times (exit code -9)"
+    assert found[-1].error_message == "the worker process died 2 times (exit code 7)"
     assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[-1:], "only the batch that lost a point is tried again"
 
 

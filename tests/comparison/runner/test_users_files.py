@@ -32,6 +32,7 @@ from comparison.runner.output import (
 from reference.problem.files import TEMPORARY, write_new
 
 SMALL = ["fig3-I", "--grid", "2"]
+TABLES = ["extremes.json", "extremes.png"]
 
 
 def put(folder: Path, *names: str, content: str = "new") -> tuple[Path, list[str]]:
@@ -142,20 +143,26 @@ def test_a_file_added_while_the_report_is_moved_stays(tmp_path: Path, monkeypatc
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")
-@pytest.mark.parametrize("deaths", range(1, 4))
+@pytest.mark.parametrize("deaths", range(4))
 def test_a_report_half_moved_is_still_the_studys(tmp_path: Path, deaths: int) -> None:
     put(tmp_path / "report", "index.html", "figures/old.png", content="old")
-    child = os.fork()
-    if child == 0:
-        dies_at(deaths)
-        put(tmp_path / "report", "index.html", "summary.json")
-        os._exit(0)
-    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
+    publish(tmp_path / "tables", {"extremes.json": b"old"}, "comparison.extremes")
+    for number, ends in (
+        (deaths, lambda: publish(tmp_path / "tables", dict.fromkeys(TABLES, b"new"), "comparison.extremes")),
+        (max(deaths, 1), lambda: put(tmp_path / "report", "index.html", "summary.json")),  # 0 is no move of the report
+    ):
+        child = os.fork()
+        if child == 0:
+            dies_at(number)
+            ends()
+            os._exit(0)
+        os.waitpid(child, 0)
+    refuse_foreign_files(tmp_path / "tables", TABLES)
     assert foreign(tmp_path / "report") == []
     assert page_of(tmp_path / "report") in ("old", "new"), "each file is whole"
     clear_dead(tmp_path / "report")
     put(tmp_path / "report", "index.html", content="newer")
-    assert [entry.name for entry in tmp_path.iterdir()] == ["report"]
+    assert {entry.name for entry in tmp_path.iterdir()} == {"report", "tables"}
     assert sorted(entry.name for entry in (tmp_path / "report").iterdir()) == ["index.html", MANIFEST]
 
 
@@ -236,19 +243,6 @@ def test_extremes_replace_no_file_of_the_user(
     assert all(map(is_mine, files))
     assert {"extremes-2.json", "extremes-2.png"} <= {entry.name for entry in (tmp_path / "meanwhile").iterdir()}
     assert capsys.readouterr().err.count("not a file of this study") == 2
-
-
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="kill -9")
-@pytest.mark.parametrize("deaths", range(4))
-def test_a_file_half_replaced_is_still_the_studys(tmp_path: Path, deaths: int) -> None:
-    publish(tmp_path, {"extremes.json": b"old"}, "comparison.extremes")
-    child = os.fork()
-    if child == 0:
-        dies_at(deaths)
-        publish(tmp_path, {"extremes.json": b"new", "extremes.png": b"new"}, "comparison.extremes")
-        os._exit(0)
-    os.waitpid(child, 0)
-    refuse_foreign_files(tmp_path, ["extremes.json", "extremes.png"])
 
 
 def test_a_new_file_never_takes_a_name_that_something_has(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,7 +2,6 @@
 
 from importlib import import_module
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -11,25 +10,9 @@ from places import ROOT
 
 import reference
 from comparison.study.user_models import amplification
-from reference.problem import Scene, load_scene
+from reference.problem import load_scene
 
 PHASES = np.array([(0.0, 0.0), (2.0, 0.5)])
-
-
-def example(name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """The module of an example; the test is skipped where what it needs is not installed."""
-    monkeypatch.syspath_prepend(str(ROOT))
-    try:
-        module = import_module(f"examples.engines.{name}")
-    except (ImportError, RuntimeError) as error:  # openseespy raises the latter without a library of the system
-        pytest.skip(f"{name}: {error}")
-    if name == "siconos_moreau" and not list(Path("/usr/lib/python3/dist-packages").glob("siconos")):
-        pytest.skip("python3-siconos is not installed")
-    return module
-
-
-def mu(name: str, scene: Scene, **settings: Any) -> np.ndarray:
-    return amplification(scene, PHASES, engine={"function": f"examples.engines.{name}:amplification"}, **settings).mu
 
 
 @pytest.mark.parametrize(
@@ -50,10 +33,18 @@ def test_an_example_gives_mu_of_the_equations_with_its_law(
     close: tuple[float, float],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    example(name, monkeypatch)
+    monkeypatch.syspath_prepend(str(ROOT))
+    try:
+        import_module(f"examples.engines.{name}")
+    except (ImportError, RuntimeError) as error:  # openseespy raises the latter without a library of the system
+        pytest.skip(f"{name}: {error}")
+    if name == "siconos_moreau" and not list(Path("/usr/lib/python3/dist-packages").glob("siconos")):
+        pytest.skip("python3-siconos is not installed")
     scene = load_scene("fig3-I").with_values({"duration": 6.0})
     right = reference.amplification(scene, PHASES, **law).mu
-    assert (np.abs(mu(name, scene, **settings) / right - 1.0).max(axis=0) < close).all()
+    function = f"examples.engines.{name}:amplification"
+    mu = amplification(scene, PHASES, engine={"function": function}, **settings).mu
+    assert (np.abs(mu / right - 1.0).max(axis=0) < close).all()
 
 
 def test_the_page_of_other_engines_lists_every_example() -> None:

@@ -12,7 +12,7 @@ from studies import solved
 
 import multibody
 from comparison.registry import report_of
-from comparison.study.batches import execute_batch
+from comparison.study.batches import execute_batch, refusal_of
 from comparison.study.models import (
     EXACT,
     MODEL_HIERARCHY,
@@ -144,6 +144,14 @@ def test_a_full_study_asks_both_sides_for_all_of_it() -> None:
     for full in (False, True):
         batches = Study((short(),), GRID, 1e-3, full=full).batches()
         assert all(batch.settings.get("full", False) == full for batch in batches)
+        told = refusal_of(short(), replace(TRANSLATIONAL, refusal="fake_models:says_what_it_is_asked"), 1e-4, full)
+        asked = {
+            "model": "translational",
+            "regularization": 1e-3,
+            "tolerance": 1e-4,
+            **({"full": True} if full else {}),
+        }
+        assert told == str(asked)
     free = short(4.0, isolator={"friction": 0.0})
     _, whole = surfaces(free, [SMALL], full=True)
     _, reduced = surfaces(free, [SMALL], full=False)
