@@ -29,11 +29,6 @@ def is_kept_waiting(place: str) -> int:
     return 1
 
 
-def waits_for_ever(place: str) -> int:
-    while True:
-        time.sleep(1.0)
-
-
 def raises(place: str) -> int:
     raise RuntimeError("singular")
 

@@ -122,7 +122,8 @@ def test_plan_of_many_scenes_fits_a_screen(command: Callable[..., Run], tmp_path
     )
     out = command(str(tmp_path / "many.toml"), "--plan", hierarchy=MODEL_HIERARCHY).out.splitlines()
     assert len(out) <= 30
-    assert sum("adding pi to either phase" in line for line in out) == 1
+    (line,) = [line for line in out if "adding pi to either phase" in line]
+    assert "many[friction=0.052], many[friction=0.053] and 18 more)" in line
 
 
 def test_without_a_scene_the_study_is_the_papers_four_cases() -> None:

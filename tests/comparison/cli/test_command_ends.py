@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from places import ROOT
 
+from comparison.cli.start import start
+
 COMMANDS = (
     "comparison.run",
     "comparison.claims",
@@ -136,3 +138,17 @@ def test_every_command_refuses_words_that_are_no_text(
     assert (ended.value.code, out) == (2, "")
     assert "is not text in UTF-8" in err
     assert err.count("\n") == 1
+
+
+@pytest.mark.usefixtures("as_before")
+def test_an_engine_that_cannot_be_loaded_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = "Tried, in order:\\n  libGL.so.1: cannot open shared object file"
+    (tmp_path / "command_without_engine.py").write_text(f"raise ImportError('{lines}')\n", encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(sys.modules["__main__"], "__spec__", None)
+    with pytest.raises(SystemExit) as ended:
+        start("command_without_engine")
+    line = "phase-resonance cannot start: Tried, in order: libGL.so.1: cannot open shared object file\n"
+    assert (ended.value.code, *capsys.readouterr()) == (3, "", line)

@@ -96,20 +96,6 @@ def test_the_script_answers_where_no_command_is_named(
     assert all(text in output for text in said)
 
 
-@pytest.mark.long
-def test_an_engine_that_cannot_be_loaded_is_one_line(tmp_path: Path) -> None:
-    lines = "Tried, in order:\\n  libGL.so.1: cannot open shared object file"
-    (tmp_path / "exudyn.py").write_text(f"raise ImportError('{lines}')\n", encoding="utf-8")
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
-    command = [sys.executable, "-m", "comparison.run", "fig3-I", "--plan"]
-    run = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-    assert (run.returncode, run.stdout) == (3, "")
-    assert run.stderr == (
-        "phase-resonance cannot start: the engine Exudyn cannot be loaded (on Debian and Ubuntu it needs the package "
-        "libgl1): Tried, in order: libGL.so.1: cannot open shared object file\n"
-    )
-
-
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_command_states_its_version_and_refuses_a_wrong_option_in_one_line(
     name: str, capsys: pytest.CaptureFixture[str]

@@ -13,9 +13,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-import xarray as xr
 from fake_models import deadly, fake_hierarchy
-from light_tasks import counted, doubled, hangs_in_compiled_code, is_kept_waiting, raises, waits_for_ever
+from light_tasks import counted, doubled, hangs_in_compiled_code, is_kept_waiting, raises
 from runs import no_executor
 
 from comparison.runner import processes
@@ -35,7 +34,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult, execute_batch
 from comparison.study.study import Study
 from comparison.study.user_models import user_model
-from comparison.surfaces.surfaces import batch_results, labeled_surfaces, surface_tasks
+from comparison.surfaces.surfaces import batch_results, surface_tasks
 from reference.problem import Outcome, load_scene
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="SIGKILL")
@@ -177,22 +176,6 @@ def test_a_run_that_is_stopped_abandons_its_workers(tmp_path: Path, monkeypatch:
     assert abandoned == [True]
 
 
-def test_results_are_the_same_bits_for_any_number_of_jobs() -> None:
-    study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy("uneven", batch=1))
-    tasks = surface_tasks(study)
-    order: list[Task] = []
-    surfaces = []
-    for jobs in (1, 3):
-        order.clear()
-        results = TaskResults()
-        put = results.put
-        results.put = lambda task, result, put=put: (order.append(task), put(task, result))  # type: ignore[method-assign]
-        Runner(results, jobs, ThreadPoolExecutor).run(tasks)
-        surfaces.append(labeled_surfaces(study, study.batches(), batch_results(tasks, results)).drop_vars("cost"))
-    assert sorted(order, key=tasks.index) == tasks != order, "the second time they finished in another order"
-    xr.testing.assert_equal(*surfaces)  # values, not only close ones
-
-
 pytest.importorskip("resource", reason="the system limits no processor time")
 
 
@@ -243,13 +226,6 @@ def test_only_the_processor_time_of_a_task_itself_counts(tmp_path: Path) -> None
     waiting = Task(is_kept_waiting, "", "test", 2.0, timeout=1.0)
     results = _run([waiting, Task(is_busy, 2.0, "test", 1.0)], jobs=1)
     assert [result.value for result in results] == [1, 2.0]
-
-
-@pytest.mark.long
-def test_what_computes_nothing_any_more_is_ended_in_the_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("comparison.runner.processes.STALLED", 4.0)
-    (result,) = _run([Task(waits_for_ever, "", "test", 1.0, timeout=1.0)])
-    assert result.reason == "time limit: no answer within 4 s"
 
 
 def test_a_silent_process_is_waited_for_by_its_limit() -> None:

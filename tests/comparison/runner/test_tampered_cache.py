@@ -88,19 +88,14 @@ def objects() -> bytes:
 
 FORGERIES: dict[str, Callable[[bytes, bytes], bytes]] = {
     "an array of objects": lambda text, arrays: text + b"\n" + objects() + arrays,
-    "a shape too large": lambda text, arrays: text + b"\n" + arrays.replace(b"(2, 2)", b"(9, 9)"),
     "an array torn": lambda text, arrays: text + b"\n" + arrays[:-1],
     "more than arrays": lambda text, arrays: text + b"\n" + arrays + b"more",
-    "arrays missing": lambda text, arrays: text,
     "an array that is not there": lambda text, arrays: text.replace(b'array": 0', b'array": 7') + b"\n" + arrays,
     "a number for an array": lambda text, arrays: text.replace(b'{"\\u0000array": 0}', b"1.0") + b"\n" + arrays,
     "a text for a number": lambda text, arrays: text.replace(b"[1, -2]", b'["one"]') + b"\n" + arrays,
     "a field too few": lambda text, arrays: text.replace(b'"color": "red", ', b"") + b"\n" + arrays,
     "an unknown member": lambda text, arrays: text.replace(b"red", b"blue") + b"\n" + arrays,
-    "an unknown word": lambda text, arrays: text.replace(b"yes", b"perhaps") + b"\n" + arrays,
     "deeply nested": lambda text, arrays: b'{"about": 1, "value": ' + b"[" * 100000 + b"]" * 100000 + b"}",
-    "no JSON": lambda text, arrays: b"\xff\xfe",
-    "another form": lambda text, arrays: b"[1, 2]",
     "a pickle": lambda text, arrays: pickle.dumps(Evil()),
 }
 

@@ -204,6 +204,12 @@ def test_the_report_counts_what_a_model_computed() -> None:
 
 @pytest.mark.parametrize(("asked", "of_equations"), [(1e-3, 1e-6), (1e-8, 1e-8)])
 def test_the_equations_are_asked_for_more(asked: float, of_equations: float) -> None:
-    found = {batch.model: batch.settings["tolerance"] for batch in Study((short(),), 1, asked).batches()}
-    assert found["small"] == found["regularised"] == of_equations
-    assert found["translational"] == found["spatial"] == asked
+    equations = {"equations": "exact", "regularization": None, "tolerance": of_equations}
+    assert {batch.model: dict(batch.settings) for batch in Study((short(),), 1, asked).batches()} == {
+        "small": {**equations, "equations": "small"},
+        "exact": equations,
+        "resolved": {**equations, "cutoff": 1e-3},
+        "regularised": {**equations, "regularization": 1e-3},
+        "translational": {"model": "translational", "regularization": 1e-3, "tolerance": asked},
+        "spatial": {"model": "spatial", "regularization": 1e-3, "tolerance": asked},
+    }
