@@ -13,14 +13,20 @@ from typing import Any
 
 import psutil
 import pytest
+from fake_models import fake_hierarchy
 from known_results import PLAIN, fake
 from places import HELPERS, ROOT
 from runs import no_executor
 
 from comparison.analyses.extremes import command as extremes
 from comparison.analyses.extremes.matrix import PICTURE, STORED
+from comparison.runner.cache import Cache
 from comparison.runner.output import publish
+from comparison.runner.task_results import TaskResults
 from comparison.study.models import MODEL_HIERARCHY
+from comparison.study.study import Study
+from comparison.surfaces.surfaces import surface_tasks
+from reference.problem import load_scene
 
 HANGS = 300.0  # s: nothing here takes that long, however busy the machine
 SCRIPT = """
@@ -85,6 +91,9 @@ def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: signal.Sig
     os.killpg(process.pid, number) if number == signal.SIGINT else os.kill(process.pid, number)
     _, err = process.communicate(timeout=HANGS)  # does not wait for the points under way
     _wait_for_the_end_of(workers)
+    tasks = surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy("endless", batch=1)))
+    missing = TaskResults(Cache(tmp_path / "report.tiles")).missing(tasks)
+    assert {task.argument.model for task in missing} == {"translational", "spatial"}, "the others are whole"
     if number == signal.SIGKILL:
         return
     assert process.returncode == 128 + number

@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -47,7 +48,7 @@ ONLY = ("--only", "differences")  # what the limits are held to, without picture
 DOCS = ROOT / "docs/other-engines.md"
 SCENE = load_scene("fig3-I")
 PHASES = np.array([(0.0, 0.0), (1.0, 2.0)])
-RAISES = user_engines.raises.__code__.co_firstlineno + 1
+RAISES = user_engines._solve.__code__.co_firstlineno + 1
 RAISES_INSIDE = user_engines.raises_in_scipy.__code__.co_firstlineno + 3
 ASKS = user_engines.asks_us_wrongly.__code__.co_firstlineno + 3
 
@@ -213,7 +214,7 @@ def test_what_is_no_answer_costs_its_own_points_and_says_why(function: str, mess
     assert result.error_message == message
 
 
-def test_values_that_are_none_are_never_ok() -> None:
+def test_values_that_are_none_are_never_ok(monkeypatch: pytest.MonkeyPatch) -> None:
     answer = amplification(SCENE, PHASES, engine={"function": "user_engines:half"})
     assert list(answer.status) == [Outcome.SOLVER_FAILED, "ok"]
     assert np.isnan(answer.mu[0]).all()
@@ -222,6 +223,12 @@ def test_values_that_are_none_are_never_ok() -> None:
     nothing = amplification(SCENE, PHASES, engine={"function": "user_engines:zeros"})
     assert (list(nothing.status), nothing.mu.any(), nothing.error.any()) == (["ok", "ok"], False, False)
     assert PHASES[1].tolist() == [1.0, 2.0], "an engine has phases of its own to change"
+    spent = iter([1.0, 8.5])
+    monkeypatch.setattr(
+        "comparison.study.user_models.os.times", lambda: SimpleNamespace(children_user=next(spent), children_system=0.0)
+    )
+    cost = amplification(SCENE, PHASES, engine={"function": "user_engines:plain"}).cost
+    assert 7.5 <= cost < 8.5, "what its processes cost is its own"
 
 
 @pytest.mark.parametrize("like", ["small", "exact", "resolved", "regularised"])
@@ -397,9 +404,10 @@ def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
 
     assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
     assert (curve(""), curve("", "resolved")) == ([("regularised", 1e-3, True)], [("exact", 1e-3, False)])
-    tasks = TradeOff(True, (supplied("plain"),)).tasks(Study((SCENE,), 1, 1e-3))
+    models = (user_model("mine", {"function": "user_engines:plain"}, limit=7.0),)
+    tasks = TradeOff(True, models).tasks(Study((SCENE,), 1, 1e-3))
     mine = [task.timeout / len(task.argument.phases) for task in tasks if task.group]
-    assert set(mine) == {60.0}
+    assert set(mine) == {7.0}
 
 
 def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
