@@ -56,9 +56,6 @@ class LocalCluster:
     def kill_a_worker(self) -> None:
         self._workers[0].kill()
 
-    def kill_the_scheduler(self) -> None:
-        self._scheduler.kill()
-
     def end(self) -> None:
         for process in (*self._workers, self._scheduler):
             with suppress(ProcessLookupError):

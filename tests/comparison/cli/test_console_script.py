@@ -1,6 +1,5 @@
 """The console script does what the modules do, and a user's own reference.py beside it is never imported."""
 
-import json
 import os
 import re
 import subprocess
@@ -53,14 +52,6 @@ def called(script: Path, *words: str) -> subprocess.CompletedProcess[str]:
     run = subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True, check=False)
     assert not (place / "imported").exists(), (place / "imported").read_text(encoding="utf-8")
     return run
-
-
-@pytest.mark.long
-def test_modules_beside_a_user_are_not_imported(script: Path) -> None:
-    run = called(script, "extremes", "--models", "small", "--rows", "outside the rules", "--jobs", "2")
-    assert run.returncode == 0, run.stderr
-    matrix = json.loads((script.parent.parent / "work/report/extremes.json").read_text(encoding="utf-8"))
-    assert matrix["run"]["command"].startswith("phase-resonance extremes --models small")
 
 
 def test_workers_of_a_program_elsewhere_import_nothing_there(script: Path) -> None:

@@ -38,12 +38,17 @@ def contents(folder: Path) -> set[str]:
     return {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_it_writes_every_file_of_the_template(study: Path) -> None:
+def test_it_writes_every_file_of_the_template(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert contents(study) == set(TEMPLATE)
     template = ROOT / "comparison" / "cli" / "study_template"
     assert sorted(file.name for file in template.iterdir() if file.is_file()) == sorted(TEMPLATE.values())
     assert (study / "README.md").read_text(encoding="utf-8").startswith("# my-study\n")
     assert [name for name, content in study_files("x").items() if b"@NAME@" in content or b"@REQ" in content] == []
+    here = study.parent / "new-repository"
+    (here / ".git").mkdir(parents=True)
+    before = here.stat().st_ino
+    monkeypatch.chdir(here)
+    assert (main(["."]), contents(here), here.stat().st_ino) == (0, set(TEMPLATE), before), "the same directory"
 
 
 def test_its_requirement_is_the_version_that_made_it(study: Path) -> None:
@@ -154,15 +159,6 @@ def test_its_workflows_follow_their_schema(study: Path, schema: str, name: str) 
     check = [sys.executable, "-m", "check_jsonschema", "--builtin-schema", f"vendor.{schema}", str(study / name)]
     run = subprocess.run(check, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stdout + run.stderr
-
-
-def test_an_empty_directory_and_a_new_repository_are_filled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / ".git").mkdir()
-    before = tmp_path.stat().st_ino
-    monkeypatch.chdir(tmp_path)
-    assert main(["."]) == 0
-    assert contents(tmp_path) == set(TEMPLATE)
-    assert tmp_path.stat().st_ino == before, "the shell that stands in it still does"
 
 
 def a_file(place: Path) -> Path:

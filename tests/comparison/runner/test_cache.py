@@ -129,12 +129,15 @@ def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path) -> 
         store.put(key, 1.5)
         os.utime(tmp_path / key.group, (1000.0 + age, 1000.0 + age))
     sizes = [_on_disk(tmp_path / key.group) for key in (needed, old, new)]
-    aside = tmp_path / new.group / ".phase-resonance-1-x"
-    aside.write_bytes(MAGIC + b"torn")
-    os.utime(aside, (1000.0, 1000.0))
+    aside, young = (tmp_path / new.group / f".phase-resonance-{name}" for name in ("1-x", "2-y"))
+    for file, age in ((aside, 4000.0), (young, 3000.0)):
+        file.write_bytes(MAGIC + b"torn")
+        os.utime(file, (time.time() - age,) * 2)
+    store.trim([needed], limit=2 * sum(sizes))
+    assert (aside.exists(), young.exists()) == (False, True), "what a killed run left long ago goes"
+    young.unlink()
     store.trim([needed], limit=sum(sizes))
-    assert len(list(tmp_path.iterdir())) == 3, "within the limit nothing goes"
-    assert not aside.exists(), "except what a killed run left long ago"
+    assert len(list(tmp_path.iterdir())) == 3, "within the limit nothing else goes"
     store.trim([needed], limit=sizes[0] + sizes[2])
     assert {entry.name for entry in tmp_path.iterdir()} == {needed.group, new.group}
     store.put(old, 1.5)
@@ -145,8 +148,10 @@ def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path) -> 
     store.trim([needed], limit=0)
     assert {entry.name for entry in tmp_path.iterdir()} == {needed.group}
     store.put(old, 1.5)
-    store.trim([needed])
-    assert store.get(old, float) == 1.5, "far less than the bound of a store"
+    for size, kept in ((2**30 - 2**16, True), (2**30, False)):  # with the blocks of the other group beyond it
+        os.truncate(tmp_path / old.name, size)
+        store.trim([needed])
+        assert (tmp_path / old.name).exists() == kept
 
 
 calls: list[object] = []

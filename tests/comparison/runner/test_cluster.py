@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -12,15 +13,15 @@ from distributed import KilledWorker
 from fake_models import fake_hierarchy
 from light_tasks import doubled, hangs_in_compiled_code
 from local_cluster import LocalCluster
+from report_texts import summary_of
 from runs import Run
 
 from comparison.runner import dask
-from comparison.runner.cache import Cache, Key
 from comparison.runner.dask import cluster
-from comparison.runner.processes import Pool, WorkerDiedError
+from comparison.runner.processes import ExecutorLostError, Pool, WorkerDiedError
 from comparison.runner.progress import Display
 from comparison.runner.runner import Runner
-from comparison.runner.task import BATCH, Task
+from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult
 from comparison.study.study import Study
@@ -62,42 +63,36 @@ def test_numbers_of_a_cluster_are_those_of_this_machine(workers: LocalCluster) -
         assert [answer.status for answer in here] == [["ok"]] * 16, "nothing is lost"
 
 
-@pytest.mark.long
+class Lost(ThreadPoolExecutor):
+    """The scheduler goes when the sixth task is handed out."""
+
+    width, begun = 3, 0
+
+    def start(self, call: Callable[[], Any], seconds: float | None, group: str) -> Future[Any]:
+        self.begun += 1
+        if self.begun > 5:
+            raise ExecutorLostError(dask.GONE)
+        return self.submit(call)
+
+
 def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on(
-    workers: LocalCluster, command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    put = Cache.put
-    stored: list[Key] = []
-
-    def put_and_kill(cache: Cache, key: Key, answer: object) -> None:
-        put(cache, key, answer)
-        stored.append(key)
-        if len(stored) == 5:
-            workers.kill_the_scheduler()
-
-    monkeypatch.setattr(Cache, "put", put_and_kill)
-    hierarchy = fake_hierarchy("uneven", batch=1)
-    study = Study((load_scene("fig3-I"),), 4, 1e-3, hierarchy)
-    run = command("fig3-I", "--grid", "4", "--scheduler", workers.address, hierarchy=hierarchy)
-    assert run.code == 4
-    start = f"--scheduler {workers.address}: the connection to the scheduler was lost: "
-    assert run.err.startswith(start)
-    assert run.err.count("\n") == 1
-    of_surfaces = sum(key.kind == BATCH for key in stored)
-    assert f"{of_surfaces} of " in run.err
-    assert of_surfaces == len(stored) or f" and {len(stored) - of_surfaces} analys" in run.err
-    assert f"go on with: python -m comparison.run fig3-I --grid 4 --out {run.report}\n" in run.err, (
-        "without the cluster"
-    )
-    assert not run.report.exists()
-    before = len(stored)
-    again = command("fig3-I", "--grid", "4", "--jobs", "2", hierarchy=hierarchy)
-    assert again.code == 0
-    names = [key.name for key in stored]
-    assert 5 <= before < len(stored)
-    assert not set(names[:before]) & set(names[before:]), "only what was missing was computed"
-    batches = {key.name for key in stored if key.kind == BATCH}
-    assert batches == {task.key.name for task in surface_tasks(study)}
+    with Lost(3) as lost:
+        monkeypatch.setattr("comparison.cli.computing.cluster", lambda address, models: nullcontext(lost))
+        run = command("fig3-I", "--grid", "4", "--scheduler", "tcp://there:1")
+        assert (run.code, run.report.exists()) == (4, False)
+        kept = len(list(run.report.with_name("report.tiles").glob("*/*.batch")))
+        assert 0 < kept <= 5
+        assert run.err == (
+            f"--scheduler tcp://there:1: the connection to the scheduler was lost: {kept} of 24 batches are kept in "
+            f"'{run.report}.tiles'; go on with: python -m comparison.run fig3-I --grid 4 --out {run.report}\n"
+        )
+        lost.begun = -1000
+        again = command("fig3-I", "--grid", "4", "--scheduler", "tcp://there:1")
+    summary = summary_of(again.report)["run"]
+    # a batch of the first model stands for that of three others, which are the same function here
+    assert (again.code, summary["tiles_stored_before"], summary["jobs"]) == (0, 4 * kept, 3)
 
 
 @pytest.mark.long
