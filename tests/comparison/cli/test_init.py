@@ -10,8 +10,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
-from urllib.parse import urlsplit
-from urllib.request import url2pathname
+from typing import Any
 
 import numpy as np
 import pytest
@@ -51,64 +50,38 @@ def test_it_writes_every_file_of_the_template(study: Path, monkeypatch: pytest.M
     assert (main(["."]), contents(here), here.stat().st_ino) == (0, set(TEMPLATE), before), "the same directory"
 
 
-def test_its_requirement_is_the_version_that_made_it(study: Path) -> None:
-    lines = (study / "requirements.txt").read_text(encoding="utf-8").splitlines()
-    asked = {parsed.name: parsed for parsed in map(Requirement, (line for line in lines if not line.startswith("#")))}
-    wanted = asked["phase-resonance"]
-    if wanted.url is None:
-        assert not (ROOT / "pyproject.toml").is_file(), "nobody has put a checkout into an index"
-    elif wanted.url.startswith("file:"):
-        assert Path(url2pathname(urlsplit(wanted.url).path)) == ROOT
-    else:
-        head = subprocess.run(["git", "-C", ROOT, "rev-parse", "HEAD"], capture_output=True, text=True, check=True)
-        assert wanted.url.endswith(f"@{head.stdout.strip()}")
-
-
 COMMIT = "0123456789abcdef0123456789abcdef01234567"
-RECORDED = {
-    "an index": (None, f"phase-resonance=={reference.__version__}"),
-    "a repository": (
-        {"url": "https://me:word@host.org/a.git", "vcs_info": {"vcs": "git", "commit_id": COMMIT}},
-        f"phase-resonance @ git+https://host.org/a.git@{COMMIT}",
-    ),
-    "an archive": ({"url": "https://host.org/a.whl", "archive_info": {}}, "phase-resonance @ https://host.org/a.whl"),
-    "a folder": ({"url": "file:///no/such/folder", "dir_info": {}}, "phase-resonance @ file:///no/such/folder"),
-}
-
-
-@pytest.mark.parametrize(("recorded", "line"), RECORDED.values(), ids=RECORDED.keys())
-def test_the_requirement_is_where_pip_found_the_project(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recorded: object, line: str
-) -> None:
-    text = None if recorded is None else json.dumps(recorded)
-    monkeypatch.setattr(source, "distribution", lambda name: SimpleNamespace(read_text=lambda file: text))
-    monkeypatch.setattr(source, "CHECKOUT", tmp_path)
-    assert source.requirement() == line
-    assert Requirement(line).name == "phase-resonance"
+REPOSITORY = {"url": "https://me:word@host.org/a.git", "vcs_info": {"vcs": "git", "commit_id": COMMIT}}
+FOLDER = {"url": "file:///no/such/folder", "dir_info": {}}
 
 
 @pytest.mark.parametrize(
-    ("origin", "address"),
-    [
-        ("https://me:word@host.org/a/b.git", "git+https://host.org/a/b.git@"),
-        ("git@host.org:a/b.git", "git+ssh://git@host.org/a/b.git@"),
-        ("ssh://git:word@host.org/a/b.git", "git+ssh://git@host.org/a/b.git@"),
-        ("/srv/a/b.git", "file://"),
+    ("recorded", "origin", "address"),
+    [  # what pip has recorded, and whether the commit of a checkout is there for others
+        ({}, "", f"=={reference.__version__}"),
+        (REPOSITORY, "", f" @ git+https://host.org/a.git@{COMMIT}"),
+        ({"url": "https://host.org/a.whl", "archive_info": {}}, "", " @ https://host.org/a.whl"),
+        (FOLDER, "", " @ file:///no/such/folder"),
+        (FOLDER, "https://me:word@host.org/a/b.git", f" @ git+https://host.org/a/b.git@{COMMIT}"),
+        (FOLDER, "git@host.org:a/b.git", f" @ git+ssh://git@host.org/a/b.git@{COMMIT}"),
+        (FOLDER, "ssh://git:word@host.org/a/b.git", f" @ git+ssh://git@host.org/a/b.git@{COMMIT}"),
+        (FOLDER, "/srv/a/b.git", " @ file:///no/such/folder"),
+        (None, "git@host.org:a/b.git", f" @ git+ssh://git@host.org/a/b.git@{COMMIT}"),
     ],
 )
-@pytest.mark.parametrize("pushed", [True, False])
-def test_a_checkout_is_found_by_its_commit(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, origin: str, address: str, pushed: bool
+def test_the_requirement_is_where_others_find_the_project(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, recorded: dict[str, Any] | None, origin: str, address: str
 ) -> None:
-    said = {"rev-parse": COMMIT, "branch": "origin/main" if pushed else "", "remote": origin}
+    said = {"rev-parse": COMMIT, "branch": "origin/main" if origin else "", "remote": origin}
     monkeypatch.setattr(source, "git", lambda folder, verb, *rest: said[verb])
-    monkeypatch.setattr(source, "_recorded", dict)
+    text = json.dumps(recorded or {})
+    monkeypatch.setattr(source, "distribution", lambda name: SimpleNamespace(read_text=lambda file: text))
     monkeypatch.setattr(source, "CHECKOUT", tmp_path)
-    (tmp_path / "pyproject.toml").touch()
-    elsewhere = pushed and not origin.startswith("/")
-    line = f"phase-resonance @ {address}{COMMIT}" if elsewhere else f"phase-resonance @ {tmp_path.as_uri()}"
-    assert source.requirement() == line
-    assert "word" not in line
+    if recorded is None:  # not installed: it runs from a checkout
+        (tmp_path / "pyproject.toml").touch()
+    assert source.requirement() == f"phase-resonance{address}"
+    assert Requirement(source.requirement()).name == "phase-resonance"
+    assert f"\nphase-resonance{address}\n".encode() in study_files("x")["requirements.txt"]
 
 
 def test_the_script_prints_the_numbers_of_the_worst_phases(

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 from light_tasks import dies, doubled, raises
+from places import ROOT
 from runs import no_executor
 
 import multibody.models.engine
@@ -87,7 +88,7 @@ def test_a_key_has_all_that_a_result_depends_on(monkeypatch: pytest.MonkeyPatch)
             assert fingerprint(model) != before
 
 
-def test_a_key_names_versions_and_the_source_that_computes() -> None:
+def test_a_key_names_versions_and_sources_and_a_report_the_commit(monkeypatch: pytest.MonkeyPatch) -> None:
     everywhere = {"python", "machine", "exudyn module", "exudyn", "llvmlite", "numba", "numpy", "scipy"}
     shared = {"source of reference.problem", "source of comparison.study.batches"}
     engine = environment_fingerprint("multibody:amplification")
@@ -100,6 +101,13 @@ def test_a_key_names_versions_and_the_source_that_computes() -> None:
         everywhere | {"matplotlib", "pillow", "xarray"} | {f"source of {name}" for name in sources}
         | {"source of comparison.surfaces.figures"}
     )  # fmt: skip
+    said = {"--show-toplevel": str(ROOT), "HEAD": "0123abc"}
+    for changed, commit in (("", "0123abc"), (" M a.py", "0123abc with uncommitted changes")):
+        monkeypatch.setattr(
+            "comparison.runner.environment.git", lambda folder, *words, now=changed: said.get(words[1], now)
+        )
+        about = provenance()
+        assert (about["commit"], about["processors"]) == (commit, str(os.cpu_count()))
 
 
 def test_changed_source_is_another_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
