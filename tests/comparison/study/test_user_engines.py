@@ -296,47 +296,39 @@ def test_the_headline_begins_with_the_users_engine(function: str, said: str) -> 
         assert "the two codes" not in sentence, "it would be taken for the engine of the user"
 
 
-def test_a_value_with_an_error_as_large_as_itself_is_missing(command: Callable[..., Run]) -> None:
-    engine = ("--model", "vague=user_engines:vague")
-    run = command("fig3-I", "--grid", "2", *engine, *ONLY, "--check", hierarchy=fake_hierarchy(gap=5e-5))
-    assert (run.code, "4 points without an answer (vague 4 of 4)" in run.err) == (1, True)
-    assert "vague: only values with errors above half of them at any of 4 phase pairs" in run.out
-
-
 def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tmp_path: Path) -> None:
-    engines = ("--model", "good=user_engines:with_error", "--model", "bad=user_engines:off_with_error")
+    functions = {"good": "with_error", "bad": "off_with_error", "half": "with_one_error", "vague": "vague"}
+    engines = [word for name, of in functions.items() for word in ("--model", f"{name}=user_engines:{of}")]
     limits = {"median": 0.02, "maximum": 0.02, "ratio": 2.0}
     table = "".join(f"{key} = {value}\n" for key, value in limits.items())
-    tables = "".join(f"[acceptance.{name}]\n{table}" for name in ("good", "bad"))
-    run = command(limited_scene(tmp_path, tables), "--grid", "2", *engines, *ONLY, "--check")
+    tables = "".join(f"[acceptance.{name}]\n{table}" for name in ("good", "bad")) + "[acceptance.half]\nratio = 2.0\n"
+    scene = limited_scene(tmp_path, "[acceptance]\nfailed = 3\n" + tables)
+    run = command(scene, "--grid", "2", *engines, *ONLY, "--check")
     assert run.code == 1
     assert run.err.splitlines() == [
-        f"limit broken: limited: body {body}: acceptance.bad.{key}: {found} found, {limits[key]:g} allowed"
-        for key, found in (("median", "0.021"), ("maximum", "0.021"), ("ratio", "3"))  # it claims 7e-3
-        for body in (1, 2)
+        *(
+            f"limit broken: limited: body {body}: acceptance.bad.{key}: {found} found, {limits[key]:g} allowed"
+            for key, found in (("median", "0.021"), ("maximum", "0.021"), ("ratio", "3"))  # it claims 7e-3
+            for body in (1, 2)
+        ),
+        *(
+            f"limit broken: limited: body {n}: acceptance.half.ratio: an error estimate is missing, 2 allowed"
+            for n in (1, 2)
+        ),
+        "limit broken: limited: acceptance.failed: 4 points without an answer (vague 4 of 4), 3 allowed",
     ]
+    assert "vague: only values with errors above half of them at any of 4 phase pairs" in run.out
     junit = (run.report / "junit.xml").read_text(encoding="utf-8")
     assert all(f'name="acceptance.good.{key} = {value:g}"' in junit for key, value in limits.items())
-    assert 'tests="7" failures="3"' in junit
+    assert 'tests="8" failures="5"' in junit
     assert summary_of(run.report)["scenes"][0]["acceptance"]["bad"] == {**limits}
-
-
-def test_a_limit_in_units_of_errors_needs_all_of_them(command: Callable[..., Run], tmp_path: Path) -> None:
-    scene = limited_scene(tmp_path, "[acceptance.mine]\nratio = 2.0\n")
-    run = command(scene, "--grid", "2", "--model", "mine=user_engines:with_one_error", *ONLY, "--check")
-    assert run.code == 1
-    assert "body 1: acceptance.mine.ratio: an error estimate is missing, 2 allowed" in run.err
-
-
-def test_limits_of_an_absent_engine_are_refused(command: Callable[..., Run], tmp_path: Path) -> None:
-    scene = limited_scene(tmp_path, "[acceptance.mine]\nmedian = 0.02\n")
-    run = command(scene, "--grid", "2", *ONLY, "--check", hierarchy=fake_hierarchy("forbidden"))
-    assert (run.code, run.err.count("\n")) == (2, 1)
-    assert "acceptance.mine = {'median': 0.02}: this study has no engine of this name" in run.err
-    assert "--model mine=module:function enters it" in run.err
+    absent = command(scene, "--grid", "2", *ONLY, "--check", hierarchy=fake_hierarchy("forbidden"))
+    assert (absent.code, absent.err.count("\n")) == (2, 1)
+    assert "acceptance.good = {'median': 0.02, 'maximum': 0.02, 'ratio': 2.0}: this study has no" in absent.err
+    assert "--model good=module:function enters it" in absent.err
     unchecked = command(scene, "--grid", "2", *ONLY)
     assert unchecked.code == 0
-    assert "no engine mine in this study" in (unchecked.report / "summary.md").read_text(encoding="utf-8")
+    assert "no engine bad in this study" in (unchecked.report / "summary.md").read_text(encoding="utf-8")
 
 
 def test_it_is_compared_with_the_model_of_its_law() -> None:
