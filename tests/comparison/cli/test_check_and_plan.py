@@ -16,6 +16,7 @@ from studies import solved
 
 import reference
 from comparison.cli.options import parsed
+from comparison.runner.processes import cores
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit, checked_limits
@@ -126,8 +127,20 @@ def test_plan_of_many_scenes_fits_a_screen(command: Callable[..., Run], tmp_path
     assert "many[friction=0.052], many[friction=0.053] and 18 more)" in line
 
 
-def test_without_a_scene_the_study_is_the_papers_four_cases() -> None:
-    assert [scene.name for scene in parsed([]).scenes] == ["fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"]
+def test_without_a_word_the_study_is_the_papers_four_cases_on_48_phases(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    usual = parsed([])
+    assert [scene.name for scene in usual.scenes] == ["fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"]
+    assert (usual.grid, usual.tolerance, usual.out, usual.jobs) == (48, 1e-3, Path("report"), cores())
+    assert (usual.budget, usual.max_work, usual.scheduler, usual.models) == (None, None, None, ())
+    assert not any((usual.check, usual.plan, usual.fresh, usual.full))
+    words = "--grid 3 --tolerance 1e-4 --out r --jobs 5 --budget 60 --max-work 7 --check --fresh --full --amplitude 2"
+    asked = parsed([*words.split(), "fig3-I"])
+    assert (asked.grid, asked.tolerance, asked.out, asked.jobs) == (3, 1e-4, Path("r"), 5)
+    assert (asked.budget, asked.max_work, asked.scenes[0].amplitudes.max()) == (60.0, 7.0, pytest.approx(2.0))
+    assert (asked.check, asked.plan, asked.fresh, asked.full) == (True, False, True, True)
 
 
 @pytest.mark.parametrize("batch", [1, 4])
