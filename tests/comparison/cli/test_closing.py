@@ -5,8 +5,10 @@ import shlex
 import subprocess
 import sys
 import time
+from argparse import Namespace
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,8 +21,10 @@ from rich.console import Console
 from runs import Run
 
 import comparison.run
-from comparison.cli import reports
+from comparison.cli import reports, terminal
 from comparison.cli.arguments import changed, resume_hint
+from comparison.cli.closing import print_closing
+from comparison.cli.computing import run_facts
 from comparison.cli.start import Clock
 from comparison.cli.terminal import new_table
 from comparison.run import main
@@ -114,6 +118,31 @@ def test_the_times_of_a_run_are_the_same_in_every_place(
     times = summary_of(run.report)["run"]
     assert (times["wall_seconds"], times["processor_seconds"]) == (102.0, 30.0)
     assert "102.0 s of wall time with" in run.out
+    assert abs((datetime.now(UTC) - datetime.fromisoformat(times["began"])).total_seconds() - 102.0) < 60.0
+    facts = run_facts("extremes", Namespace(jobs="3", scheduler=None), ["--a"], time.monotonic() - 90.0)
+    assert (facts["command"], facts["jobs"]) == ("python -m comparison.extremes --a", 3)
+    assert abs((datetime.now(UTC) - datetime.fromisoformat(facts["began"])).total_seconds() - 90.0) < 60.0
+    assert 90.0 <= facts["seconds"] < 120.0
+
+
+def test_an_alert_has_its_label_and_a_value_hardly_meant_its_scene(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    labels = {"refused": "No answer", "lacking": "Values missing", "swing": "Wide swing", "limit": "Limit broken"}
+    labels["travel"] = "Travel nearly used up"
+    alerts = [SimpleNamespace(kind=kind, level="amber", line=f"about {kind}") for kind in (*labels, "fault")]
+    run_of = SimpleNamespace(took="1 s", level=1, levels=1)
+    nothing = {"scenes": [], "phased": [], "grid": 4, "no_pdf": "", "of": lambda key: None}
+    results = SimpleNamespace(**nothing, run=run_of, alerts=alerts, scenes_with=lambda key: [])
+    lines = ["The run took 1 s.", *(f"{label}: about {kind}" for kind, label in labels.items())]
+    lines += ["Report: r/index.html", "In print: r/report.pdf"]
+    for check in (False, True):
+        print_closing(Console(), results, SimpleNamespace(check=check), [], Path("r"))  # type: ignore[arg-type]
+        shown = [line for line in lines if not check or "about limit" not in line]
+        assert capsys.readouterr().out.splitlines() == shown, "with --check limits are on standard error"
+    monkeypatch.setattr(terminal, "implausible_values", lambda scene: ["mass = 1e9: hardly meant"])
+    terminal.print_implausible_values(Console(), [SimpleNamespace(name=name) for name in "ab"])  # type: ignore[misc]
+    assert capsys.readouterr().out == "Warning: a: mass = 1e9: hardly meant\n", "once, of the first scene"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows does not add up the times of processes")
@@ -126,10 +155,11 @@ def test_the_processor_time_of_processes_that_run_and_that_ended_is_counted() ->
     if sys.platform == "linux":  # other systems do not tell
         process = multiprocessing.get_context("spawn").Process(target=busy, args=(1e9,), daemon=True)
         process.start()
-        while Clock.now().since(ended).processor < 0.45:
+        while (passed := Clock.now().since(ended)).processor < 0.45 and passed.wall < 300.0:
             time.sleep(0.05)
         process.kill()
         process.join()
+        assert passed.processor >= 0.45
 
 
 def test_the_film_is_of_the_largest_difference(command: Callable[..., Run]) -> None:

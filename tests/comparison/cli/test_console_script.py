@@ -96,6 +96,14 @@ def test_every_command_states_its_version_and_refuses_a_wrong_option_in_one_line
         main(["--version"])
     assert end.value.code == 0
     assert capsys.readouterr().out == f"phase-resonance {reference.__version__}\n"
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    place = {"init": "phase-resonance", "animate": "python -m multibody."}.get(name, "python -m comparison.")
+    assert (
+        " ".join(capsys.readouterr().out.split())
+        .replace(". ", ".")
+        .startswith(f"usage: {place}{name}".replace("ei", "e i"))
+    )
     for words in (["--no-such-option"], ["--jobs", "0"], ["--out"]):
         assert main(words) == 2
         out, err = capsys.readouterr()
@@ -115,5 +123,8 @@ def test_shared_options_are_the_same_in_every_command(capsys: pytest.CaptureFixt
         options = text[text.index("--jobs N worker") :]
         helps.add(options[: options.index("is used") + len("is used")])
         assert re.search(r"--out DIR .*\(default report\)", text), name
+        if name == "run":
+            for default in ("phases per axis (default 48)", "or better (default 0.001)", "phase pair (default 2e6)"):
+                assert default in text
     (shared,) = helps
     assert re.match(r"--jobs N .* --scheduler ADDRESS .* --fresh .*", shared)

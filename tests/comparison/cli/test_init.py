@@ -23,6 +23,12 @@ import reference
 from comparison.cli import requirement as source
 from comparison.cli.init import TEMPLATE, main, study_files
 
+COMMANDS = (  # of continuous integration
+    "python -m pip install -r requirements.txt",
+    "python -m pytest",
+    "phase-resonance run building.toml --grid 8 --check",
+)
+
 
 @pytest.fixture
 def study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
@@ -43,6 +49,12 @@ def test_it_writes_every_file_of_the_template(study: Path, monkeypatch: pytest.M
     assert sorted(file.name for file in template.iterdir() if file.is_file()) == sorted(TEMPLATE.values())
     assert (study / "README.md").read_text(encoding="utf-8").startswith("# my-study\n")
     assert [name for name, content in study_files("x").items() if b"@NAME@" in content or b"@REQ" in content] == []
+    for name in (".github/workflows/study.yml", ".gitlab-ci.yml"):
+        text = (study / name).read_text(encoding="utf-8")
+        assert all(f"- {command}\n" in text.replace("run: ", "") for command in COMMANDS), name
+    assert "junit: report/junit.xml\n" in text
+    limits = reference.load_scene(study / "building.toml").acceptance
+    assert (limits.median, limits.maximum, limits.failed) == (1e-4, 2e-3, 0)
     here = study.parent / "new-repository"
     (here / ".git").mkdir(parents=True)
     before = here.stat().st_ino
@@ -120,9 +132,13 @@ def isolator(motion: reference.Trajectory) -> tuple[np.ndarray, np.ndarray]:
 def test_the_gate_passes_and_fails_where_a_side_is_off(study: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     gate = runpy.run_path(str(study / "test_building.py"))["test_the_equations_and_the_engine_agree"]
     gate()
-    with_engine_off_by(monkeypatch, 1.0015)
-    with pytest.raises(AssertionError, match=r"body 1: like_for_like: median difference 0\.0015, allowed 0\.001;"):
-        gate()
+    for factor, rule in (
+        (1.0015, r"median difference 0\.0015, allowed 0\.001;"),
+        (1.003, r"maximum .*allowed 0\.002;"),
+    ):
+        with_engine_off_by(monkeypatch, factor)
+        with pytest.raises(AssertionError, match=rf"building, body 1: like_for_like: {rule}"):
+            gate()
 
 
 @pytest.mark.parametrize(

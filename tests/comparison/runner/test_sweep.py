@@ -1,5 +1,6 @@
 """Every task has its result: one that kills or hangs its worker costs its own points, in any order of the others."""
 
+import itertools
 import os
 import signal
 import threading
@@ -228,13 +229,39 @@ def test_only_the_processor_time_of_a_task_itself_counts(tmp_path: Path) -> None
     assert [result.value for result in results] == [1, 2.0]
 
 
-def test_a_silent_process_is_waited_for_by_its_limit() -> None:
+def test_a_silent_process_is_waited_for_by_its_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     waits: list[float] = []
     pipe = SimpleNamespace(send=lambda call: None, poll=lambda seconds: waits.append(seconds))
     for limit in (1.0, 60.0, 1e6):
         with pytest.raises(TimeLimitError, match=r"^no answer within "):
             processes._Process.run(SimpleNamespace(_pipe=pipe), str, limit)  # type: ignore[arg-type]
     assert waits == [20.0, 5.0 * 60.0 + 60.0, 1e6]
+    limits: list[tuple[int, tuple[float, int]]] = []
+    never = processes.resource.RLIM_INFINITY
+    system = SimpleNamespace(RLIMIT_CORE=4, RLIMIT_CPU=0, RLIM_INFINITY=never, getrlimit=lambda kind: (7, never))
+    monkeypatch.setattr(processes, "resource", system)
+    monkeypatch.setattr(system, "setrlimit", lambda kind, pair: limits.append((kind, pair)), raising=False)
+    monkeypatch.setattr(processes.time, "process_time", lambda: 100.2)
+    for seconds in (1.5, None):
+        processes._allow(seconds)
+    assert limits == [(4, (0, never)), (0, (102, never)), (4, (0, never)), (0, (never, never))], "no dump, 1.5 s, none"
+
+
+def test_a_process_runs_the_tasks_of_one_group(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = itertools.count()
+
+    class Numbered:
+        def __init__(self) -> None:
+            self.number = next(made)
+
+        def run(self, call: object, seconds: float | None) -> tuple[int, None]:
+            return self.number, None
+
+        def end(self) -> None: ...
+
+    monkeypatch.setattr(processes, "_Process", Numbered)
+    with process_pool(1) as pool:
+        assert [pool.start(str, group=group).result() for group in ("", "a", "", "b", "a")] == [0, 1, 0, 2, 1]
 
 
 def is_busy(seconds: float) -> float:

@@ -213,6 +213,7 @@ def test_work_is_counted_once_in_phase_pairs_and_tasks_of_its_weight() -> None:
     for _ in range(2):  # a later level has the work of the earlier one
         runner.run([*tasks, *batches])
     assert display.total == 100.0
+    assert runner.results.parts["roots"].seconds == sum(runner.results[task].cost for task in tasks) > 0.0
     assert said == [
         ("small equations: 3 of 4 phase pairs", 30.0),
         ("small equations: 4 of 4 phase pairs", 40.0),

@@ -85,6 +85,7 @@ TURNED, MIRRORED = [np.pi, np.pi], [np.pi, 0.0]
 def test_even_supports_have_the_symmetry_of_the_loading(values: dict[str, Any]) -> None:
     scene = short().with_values(values)
     assert mirror_symmetric(scene)
+    assert SPATIAL in models_of(scene, MODEL_HIERARCHY)
     shifts = np.array([[0.0, 0.0], MIRRORED, MIRRORED[::-1]])
     here, *there = (multibody.amplification(scene, [np.add((2.0, 0.7), shift)], model="spatial") for shift in shifts)
     assert here.status == "ok"
@@ -191,6 +192,8 @@ def test_just_outside_the_condition_nothing_is_saved(amplitudes: list[list[float
     assert len(study.solved(study.scenes[0], EXACT)) == computed
     odd = replace(study, grid=5, scenes=(load_scene("fig3-I"),))
     assert len(odd.solved(odd.scenes[0], EXACT)) == 25, "an odd grid is computed in full"
+    few = replace(odd, grid=7, hierarchy=[replace(EXACT, most=4)])
+    assert len(few.solved(few.scenes[0], few.hierarchy[0])) == 16, "the last phase and the first are closer"
     plain = replace(EXACT, symmetric=never)
     assert len(study.solved(load_scene("fig3-I"), plain)) == GRID**2
 

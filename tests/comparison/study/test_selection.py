@@ -167,5 +167,6 @@ def test_demands_of_every_phase_are_computed_on_request(command: Callable[..., R
         assert ("demands" in {analysis.key for analysis in chosen_analyses(study)}) == made
     usual, also = (command("fig3-I", *GRID, *words, "--plan").out for words in ((), ("--also", "demands")))
     assert ", demands (chosen by the surfaces)" not in " ".join(usual.split())
+    assert "effective values (6)" in " ".join(usual.split())
     assert "on request; --also demands makes it" in " ".join(usual.split())
     assert ", demands (" in " ".join(also.split())
