@@ -99,11 +99,11 @@ def test_the_requirement_is_where_others_find_the_project(
 def test_the_script_prints_the_numbers_of_the_worst_phases(
     study: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(sys, "argv", ["study.py", "--grid", "2"])
+    monkeypatch.setattr(sys, "argv", ["study.py", "--grid", "4"])
     runpy.run_path(str(study / "study.py"), run_name="__main__")
     first, *bodies, pair, one, two, three, demands, drifts = capsys.readouterr().out.splitlines()
-    assert first == "Building on a friction pendulum: 4 phase pairs, status ok"
-    scene, phases = reference.load_scene(study / "building.toml"), reference.phase_grid(2)
+    assert first == "Building on a friction pendulum: 16 phase pairs, status ok"
+    scene, phases = reference.load_scene(study / "building.toml"), reference.phase_grid(4)
     mu = reference.amplification(scene, phases).mu
     assert bodies == [f"  body {k + 1}: mu from {mu[:, k].min():.3f} to {mu[:, k].max():.3f}" for k in range(3)]
     worst = phases[mu[:, 2].argmax()]
