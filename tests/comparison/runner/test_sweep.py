@@ -199,11 +199,13 @@ def test_a_hang_ends_at_its_limit_and_costs_no_other_task(tmp_path: Path) -> Non
 
 
 class Limited(ThreadPoolExecutor):
-    """Every call takes as long as it may."""
+    """Every call takes as long as it may, or ends its process."""
+
+    error: type[Exception] = TimeLimitError
 
     def start(self, call: object, seconds: float | None, group: str) -> Future[TaskResult]:
         ended: Future[TaskResult] = Future()
-        ended.set_exception(TimeLimitError(f"no answer within {seconds:g} s"))
+        ended.set_exception(self.error(f"no answer within {seconds:g} s"))
         return ended
 
 
@@ -300,7 +302,7 @@ def test_what_cannot_be_sent_from_a_worker_is_named(tmp_path: Path) -> None:
     assert other.value == 2
 
 
-def test_a_batch_that_was_given_up_is_not_stored(tmp_path: Path) -> None:
+def test_a_batch_that_was_given_up_is_not_stored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Two calls of an engine that hangs, and the one at work by then, are stored; the last is asked again next time."""
     model = user_model("mine", {"function": "user_engines:plain"})
     tasks = surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, [model]))
@@ -308,6 +310,10 @@ def test_a_batch_that_was_given_up_is_not_stored(tmp_path: Path) -> None:
     assert [result.outcome for result in results] == [Outcome.TIME_LIMIT] * 4
     assert [result.error_message for result in results] == [*["no answer within 60 s"] * 3, GIVEN_UP]
     assert TaskResults(Cache(tmp_path / "cache")).missing(tasks) == tasks[3:]
+    monkeypatch.setattr(Limited, "error", WorkerDiedError)
+    assert _run(tasks, Limited, jobs=1)[-1].error_message == GIVEN_UP, (
+        "an engine that ends its process is given up, too"
+    )
 
 
 COMPILED = threading.Event()
