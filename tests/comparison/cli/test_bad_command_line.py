@@ -1,5 +1,6 @@
 """A wrong command ends with exit code 2 and one line that names file, key, value and rule; nothing is written."""
 
+import math
 import os
 import stat
 from collections.abc import Callable
@@ -8,7 +9,10 @@ from pathlib import Path
 import pytest
 from fake_models import fake_hierarchy
 from places import scene_text
+from pydantic import TypeAdapter
 from runs import Run
+
+from comparison.result_types import Number, Radius
 
 WRONG = {
     "grid too small": (["--grid", "1"], "command line: --grid = 1: must be a whole number from 2 to 512"),
@@ -70,6 +74,19 @@ def test_an_impossible_amplitude_and_a_name_that_is_there_twice_name_the_scene(
     twice = command(str(file), str(other))
     assert (twice.code, twice.err.count("\n")) == (2, 1)
     assert twice.err.startswith(f"{other}: scene = 'still': same name as {file}, which names its surfaces")
+
+
+def test_a_wrong_file_beside_the_report_is_named_with_its_key_and_command(
+    command: Callable[..., Run], tmp_path: Path
+) -> None:
+    (tmp_path / "report").mkdir()
+    (tmp_path / "report" / "extremes.json").write_text('{"columns": {"small": 3}}', encoding="utf-8")
+    run = command("fig3-I", hierarchy=fake_hierarchy("forbidden"))
+    assert (run.code, run.err.count("\n")) == (2, 1)
+    assert "extremes.json: not a matrix of extremes: columns.small: " in run.err
+    assert run.err.endswith(": run python -m comparison.extremes\n")
+    written = [TypeAdapter(kind).dump_json(value) for kind in (Number, Radius) for value in (math.nan, math.inf, 0.5)]
+    assert written == [b"null", b"null", b"0.5", b"null", b'"inf"', b"0.5"], "JSON has no other numbers"
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
