@@ -120,6 +120,7 @@ def as_before(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """What the start of a command changes in its process is as before for the tests that follow."""
     heard = signal.getsignal(signal.SIGINT)
     monkeypatch.setattr(gc, "set_threshold", lambda *thresholds: None)
+    monkeypatch.setattr("comparison.cli.start._started", [])
     yield
     signal.signal(signal.SIGINT, heard)
 
