@@ -1,7 +1,9 @@
-"""Scenes for the tests, in few words."""
+"""Scenes for the tests, in few words, and what is said of wrong ones."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
+
+import pytest
 
 from reference.problem import Scene
 
@@ -38,3 +40,11 @@ def chain(
             },
         }
     )
+
+
+def refusal(asked: Callable[..., object], *given: Any, kind: type[Exception] = ValueError, **options: Any) -> Any:
+    """The error, one line, that a call with wrong arguments raises."""
+    with pytest.raises(kind) as caught:
+        asked(*given, **options)
+    assert "\n" not in str(caught.value)
+    return caught.value

@@ -74,22 +74,3 @@ def test_the_ratio_and_the_coefficients_say_the_same() -> None:
     np.testing.assert_array_equal(stated.damping, ratio.damping)
     assert stated.digest() != ratio.digest() != scene.digest()
     assert not scene.damping.any()
-
-
-@pytest.mark.parametrize(
-    ("key", "value", "message"),
-    [
-        ("bodies.0.damping", 0.05, "bodies.0.damping = 0.05: the platform has no link below: remove this key"),
-        ("bodies.1.damping", -0.1, "bodies.1.damping = -0.1: must be finite, from 0 to 100"),
-        ("bodies.1.damping", 1e3, "bodies.1.damping = 1000.0: must be finite, from 0 to 100"),
-        ("bodies.1.damping", [1.0], "bodies.1.damping = [1.0]: must be a ratio of critical, or [cx, cy] in N s/m"),
-        ("bodies.1.damping", "much", "bodies.1.damping = 'much': must be a ratio of critical, or [cx, cy] in N s/m"),
-        ("bodies.1.damping", [1.0, -2.0], "bodies.1.damping.1 = -2.0: must be finite, from 0 to 1e+30 N s/m"),
-        ("bodies.1.damping", [1.0, 1e9], "bodies.1: damping ratio along y = 9"),
-    ],
-)
-def test_what_is_no_damping_is_refused_in_one_line(key: str, value: Any, message: str) -> None:
-    with pytest.raises(SceneError) as error:
-        load_scene("fig3-I").with_values({key: value})
-    assert message in str(error.value)
-    assert "\n" not in str(error.value)

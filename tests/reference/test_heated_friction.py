@@ -167,18 +167,3 @@ def test_supports_share_the_load_and_so_the_heat():
     four, eight = (heated(SCENE.with_values({"isolator.supports": count})).dry_friction.heat for count in (4, 8))
     assert eight.rise == four.rise / 2.0
     assert eight.cover == four.cover
-
-
-@pytest.mark.parametrize(
-    ("table", "said"),
-    [
-        ({"conductivity": 18.0, "diffusivity": 4.4e-6}, "contact_radius"),
-        ({**HEATING, "conductivity": 0.0}, "greater than 0"),
-        ({**HEATING, "initial_temperature": 500.0}, "from -50 to 300 degrees C"),
-        ({**HEATING, "thickness": 1.0}, "thickness"),
-    ],
-)
-def test_wrong_tables_of_heating_are_refused_in_one_line(table, said):
-    with pytest.raises(SceneError, match=said) as caught:
-        SCENE.with_values({"isolator.friction": {"slow": 0.1, "heating": table}})
-    assert "\n" not in str(caught.value)

@@ -43,19 +43,3 @@ def test_builds_of_both_variants_have_functions_of_other_names():
     """A build on disk would otherwise lend its functions to the other variant, which is compiled later."""
     without, present = (_SystemType([("exponent", kind)]).mangling_args for kind in (types.none, types.float64))
     assert without != present
-
-
-@pytest.mark.parametrize(
-    ("friction", "said"),
-    [
-        ({"slow": 0.1}, "give fast and rate, load_exponent or heating"),
-        ({"slow": 0.1, "fast": 0.2}, "give fast and rate together"),
-        ({"slow": 0.1, "fast": 0.2, "rate": 1.0, "reference_load": 9.0}, "belongs to a load_exponent"),
-        ({"slow": 0.1, "load_exponent": 2.0}, "from -0.5 to 1"),
-        ({"slow": 0.1, "load_exponent": 1.0, "reference_load": 1e16}, "from 1e-09 to 1000"),
-    ],
-)
-def test_wrong_tables_are_refused_in_one_line(friction, said):
-    with pytest.raises(SceneError, match=said) as caught:
-        SCENE.with_values({"isolator.friction": friction})
-    assert "\n" not in str(caught.value)
