@@ -3,12 +3,11 @@
 from typing import Any
 
 import numpy as np
-import pytest
 from chains import chain
 from scipy.linalg import expm
 
 import reference
-from reference.problem import Scene, SceneError, State, half_turn, linear, load_scene, own_axes, planar
+from reference.problem import Scene, State, half_turn, linear, load_scene, own_axes, planar
 
 PHASES = [(0.3, 1.1), (2.0, 0.7)]
 THREE: dict[str, Any] = {"masses": (2.0, 1.0, 0.5), "stiffness": [(150.0, 110.0), (180.0, 240.0)]}

@@ -96,40 +96,22 @@ def test_the_isolator_force_is_friction_and_restoring_force(law: str, side: str)
 
 @pytest.mark.parametrize(("name", "regularization"), [("fig3-I", 1e-3), ("fig4-viscous", None)])
 def test_both_sides_have_the_demands_of_a_scene_of_the_paper(name, regularization) -> None:
-    agree(reference.load_scene(name), regularization)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("name", ["synthetic-pair", "synthetic-triple"])
-def test_the_two_sides_agree_within_their_errors_in_every_scene(name) -> None:
-    agree(reference.load_scene(name), 1e-3)
-
-
-@pytest.mark.long
-def test_both_sides_have_the_demands_of_a_frame() -> None:
-    agree(frame(), 1e-3)
-    recorded = frame().model_dump(exclude_none=True)
-    recorded["excitation"] = reference.load_scene("synthetic-triple").model_dump(exclude_none=True)["excitation"]
-    agree(Scene.model_validate(recorded), 1e-3)
-
-
-def agree(scene: Scene, regularization: float | None) -> None:
-    ours = demands(reference.trajectory(scene, PHASE, regularization=regularization))
-    theirs = demands(multibody.trajectory(scene, PHASE, regularization=regularization))
+    scene = reference.load_scene(name)
+    ours, theirs = (
+        demands(side.trajectory(scene, PHASE, regularization=regularization)) for side in (reference, multibody)
+    )
     assert ours.status == theirs.status == "ok"
     for (name, a), b in zip(estimates(ours).items(), estimates(theirs).values(), strict=True):
         assert np.isnan(a.value) == np.isnan(b.value)
         assert not np.isnan(a.value) or name == "residual", "a platform that never rests, or still moves"
-        if not np.isnan(a.value):
-            assert abs(a.value - b.value) <= a.error + b.error, name
+        if np.isnan(a.value):
+            continue
+        assert abs(a.value - b.value) <= a.error + b.error, name
+        if name == "residual":  # its error is that against Coulomb friction, which both share
+            assert abs(a.value - b.value) <= 1e-3 * theirs.displacement.value
+        else:
             size = theirs.friction_energy.value if name == "energy_balance" else abs(b.value)
-            if name == "residual":  # its error is that against Coulomb friction, which both share
-                assert abs(a.value - b.value) <= 1e-3 * theirs.displacement.value
-                continue
             assert b.error <= 1e-2 * size + 1e-5, f"{name}: an error that large agrees with anything"
-    for balance in (ours.energy_balance, theirs.energy_balance):
-        assert balance is not None
-        assert abs(balance.value) <= balance.error, "energy is created or lost"
 
 
 def test_a_displacement_between_two_samples_is_found() -> None:
@@ -198,16 +180,6 @@ def test_a_residual_after_creep_is_that_of_coulomb_friction() -> None:
             assert (found.error >= 0.999 * ways.sum(), len(ways) > 1) == (True, True), "of all rests together"
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("motion", ["synthetic-pair", "synthetic-triple"])
-@pytest.mark.parametrize("v_reg", [1e-2, 1e-4])
-@pytest.mark.parametrize("friction", [0.02, 0.1])
-def test_the_error_of_a_residual_covers_regularization(motion: str, v_reg: float, friction: float) -> None:
-    scene = reference.load_scene(motion).with_values({"isolator.friction": friction})
-    truth, found = (demands(reference.trajectory(scene, PHASE, regularization=law)).residual for law in (None, v_reg))
-    assert abs(found.value - truth.value) <= found.error + truth.error
-
-
 @pytest.mark.parametrize(
     ("isolator", "duration", "reason"),
     [
@@ -242,16 +214,15 @@ def test_a_motion_that_ends_early_has_a_status_and_no_numbers() -> None:
 
 
 def held(place: float, force: float, rests: int, accuracy: Accuracy | None = None) -> Trajectory:
-    """A made-up motion, constant in time but for two samples: its friction heats and its rests are counted."""
+    """A made-up motion, constant in time but for its first velocity: its friction heats and its rests are counted."""
     scene = shaken_then_still().with_values({"bodies": [{"mass": 3.0}, {"mass": 2.0, "period": [0.5, 0.5]}]})
     time = np.linspace(0.0, scene.duration, 101)
-    position = np.zeros((101, 2, 3))
+    position, velocity, acceleration = np.zeros((3, 101, 2, 3))
     position[:, 0, 0], position[:, 1, 0] = place, 3.0 * place
-    acceleration = np.zeros((101, 2, 3))
     acceleration[:, 0, 0] = force / 3.0
-    velocity = np.zeros((101, 2, 3))
     velocity[0, 0, 0] = np.sqrt(2.0 * force / 3.0)  # what friction takes is there at the start
-    power = np.full(101, force / scene.duration)
+    part = time / scene.duration
+    power = 6.0 * part * (1.0 - part) * force / scene.duration
     stick = [(scene.duration * (k + 0.5) / rests, scene.duration * (k + 1.0) / rests) for k in range(rests)]
     return Trajectory(
         time, position, velocity, acceleration, np.full(101, 10.0 * force), stick, "ok", np.nan, scene,
@@ -259,12 +230,16 @@ def held(place: float, force: float, rests: int, accuracy: Accuracy | None = Non
     )  # fmt: skip
 
 
-def test_the_error_of_every_demand_is_what_the_other_runs_say() -> None:
-    """A half of the difference to one run, a quarter of that to another, and a hundredth of the value."""
+def test_the_error_of_every_demand_is_what_the_samples_and_the_other_runs_say() -> None:
+    """
+    A half of the difference to one run, a quarter of that to another, and a hundredth of the value.
+
+    The trapezoidal rule misses a sum of d^3 over intervals d of the power: 1e-4 in a hundred, 2.5e-3 in twenty.
+    """
     others = held(0.8, 14.0, 3), held(1.4, 10.0, 6)
     motion = held(1.0, 12.0, 4, Accuracy(np.array([0.7, 0.9]), others, (0.5, 0.25), 0.01))
     answer = demands(motion)
-    rho = motion.scene.radius
+    rho, sum_of, sampling = motion.scene.radius, 1.0 - 1e-4, 12.0 * 2.4e-3 / 4.0
     expected = {
         "displacement": (1.0, 0.01 + 0.1 + 0.1),
         "residual": (1.0, 0.01 + 0.1 + 0.1),
@@ -276,8 +251,8 @@ def test_the_error_of_every_demand_is_what_the_other_runs_say() -> None:
         "contact_force_min": (120.0, 16.2),
         "contact_force_max": (120.0, 16.2),
         "stops": (4.0, 2.0),
-        "friction_energy": (12.0, 0.12 + 1.0 + 0.5),
-        "energy_balance": (0.0, 0.12),
+        "friction_energy": (12.0 * sum_of, sampling + (0.12 + 1.0 + 0.5) * sum_of),
+        "energy_balance": (12.0 * 1e-4, sampling + 0.12 * sum_of + (1.0 + 0.5) * 1e-4),
     }
     found = estimates(answer)
     for name, (value, error) in expected.items():
@@ -292,29 +267,24 @@ def test_a_single_run_has_values_and_no_errors() -> None:
     assert np.isfinite([number.value for name, number in found.items() if name != "residual"]).all()
 
 
-def test_support_forces_are_those_of_the_spatial_model_alone() -> None:
-    scene = reference.load_scene("fig3-I").with_values({"duration": 1.5})
-    answer = demands(multibody.trajectory(scene, PHASE, "spatial"))
-    assert answer.support_force_min is not None
-    assert answer.support_force_max is not None
-    weight = scene.total_mass * GRAVITY
-    assert 0.0 < answer.support_force_min.value < 0.25 * weight < answer.support_force_max.value < 0.5 * weight
-    assert 0.0 < answer.support_force_max.error < 0.02 * weight
-    assert demands(multibody.trajectory(scene, PHASE)).support_force_min is None
-    assert demands(reference.trajectory(scene, PHASE)).support_force_max is None
-
-
-def test_torsion_is_the_largest_rotation_of_every_body() -> None:
+def test_support_forces_and_torsion_are_those_of_the_spatial_model_alone() -> None:
     scene = reference.load_scene("fig3-I").with_values({"duration": 1.5, "bodies.1.offset": [0.1, 0.0]})
     motion = multibody.trajectory(scene, PHASE, "spatial")
-    torsion = demands(motion).torsion
-    assert torsion is not None
-    assert [turn.value for turn in torsion] == np.abs(motion.extra["turns"][:, :, 2]).max(axis=0).tolist()
-    assert torsion[0].value == np.abs(motion.extra["yaw"]).max()
-    assert torsion[1].value > 1e-3
-    assert all(0.0 < turn.error < 0.05 * turn.value for turn in torsion)
-    assert demands(multibody.trajectory(scene, PHASE)).torsion is None
-    assert demands(reference.trajectory(scene, PHASE)).torsion is None
+    answer = demands(motion)
+    force, weight = motion.extra["support_force"], scene.total_mass * GRAVITY
+    for found, value in ((answer.support_force_min, force.min()), (answer.support_force_max, force.max())):
+        assert found is not None
+        assert found.value == value
+        assert 0.0 < found.error < 0.02 * weight
+    assert 0.0 < force.min() < 0.25 * weight < force.max() < 0.5 * weight
+    assert answer.torsion is not None
+    assert [turn.value for turn in answer.torsion] == np.abs(motion.extra["turns"][:, :, 2]).max(axis=0).tolist()
+    assert answer.torsion[0].value == np.abs(motion.extra["yaw"]).max()
+    assert answer.torsion[1].value > 1e-3
+    assert all(0.0 < turn.error < 0.05 * turn.value for turn in answer.torsion)
+    for other in (multibody.trajectory(scene, PHASE), reference.trajectory(scene, PHASE)):
+        plain = demands(other)
+        assert plain.support_force_min is plain.support_force_max is plain.uplift is plain.torsion is None
 
 
 def test_a_motion_survives_copies_and_processes_with_its_scene() -> None:

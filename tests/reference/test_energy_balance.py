@@ -137,33 +137,3 @@ def test_energy_is_balanced(run, within):
     ends = energy.reshape(-1, 3) @ np.array(basis)
     assert np.all(friction <= 1e-12 * np.abs(shaking).max())
     within(abs(ends - work).max() / exchanged, 10.0 * TOLERANCE)
-
-
-@pytest.mark.parametrize("run", [r for r in RUNS if r.equations == "exact"], ids=lambda run: run.name)
-def test_newton_s_law_holds_in_space_at_every_sample_of_a_slide(run):
-    """m1 a_h = f + N (n - mu w)_h and m_sum (a_z + g) = N (n - mu w)_z, with accelerations as reported."""
-    scene = run.scene
-    motion = reference.trajectory(scene, PHASE, run.equations, run.regularization, TOLERANCE)
-    place, total = motion.position, motion.absolute_acceleration
-    normal = np.stack([-place[:, 0, 0], -place[:, 0, 1], scene.radius - place[:, 0, 2]], axis=1) / scene.radius
-    np.testing.assert_allclose((normal**2).sum(axis=1), 1.0, rtol=1e-12)
-    reaction = motion.contact_force[:, None] * (normal + slip_force(run, motion))
-    force = np.zeros_like(place[:, :, :2])
-    elastic = scene.stiffness * np.diff(place[:, :, :2], axis=1)
-    elastic += scene.damping * np.diff(motion.velocity[:, :, :2], axis=1)
-    force[:, :-1] += elastic
-    force[:, 1:] -= elastic
-    force[:, 0] += reaction[:, :2]
-    speed = np.sqrt((motion.velocity[:, 0] ** 2).sum(axis=-1))
-    dry = run.regularization is None and not scene.lubricated and scene.friction_coefficient > 0.0
-    # within a creep the friction is velocity over v_reg: its digits are those of the velocity
-    slides = speed > (1e-2 if dry else 0.0)
-    error = (scene.masses[:, None] * total[:, :, :2] - force)[slides]
-    scale = scene.total_mass * GRAVITY
-    creep = 1.0 if run.regularization is None else 0.1 / run.regularization
-    assert slides.any() == (run.name != "held")
-    assert np.abs(error).max(initial=0.0) <= 100.0 * TOLERANCE * scale * creep
-    vertical = scene.total_mass * (total[:, 0, 2] + GRAVITY) - reaction[:, 2]
-    assert np.abs(vertical[slides]).max(initial=0.0) <= 100.0 * TOLERANCE * scale * creep
-    upper = scene.masses[1:, None] * total[:, 1:, :2] - force[:, 1:]
-    assert np.abs(upper).max(initial=0.0) <= 10.0 * TOLERANCE * scale

@@ -1,6 +1,7 @@
 """Energy that friction dissipates: closed forms, the friction law itself, and the balance with the ground's work."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -47,21 +48,23 @@ def test_without_friction_or_motion_nothing_is_dissipated() -> None:
     assert held.friction_energy.value == 0.0
 
 
-@pytest.mark.parametrize("equations", ["exact", "small"])
-@pytest.mark.parametrize(("name", "regularization"), [("fig3-I", None), ("fig3-II", V_REG), ("fig4-viscous", None)])
-def test_the_equations_balance_energy_within_the_error(name, regularization, equations) -> None:
-    motion = reference.trajectory(reference.load_scene(name), PHASE, equations, regularization)
-    answer = demands(motion)
-    assert answer.energy_balance is not None
-    assert abs(answer.energy_balance.value) <= answer.energy_balance.error < 2e-4 * answer.friction_energy.value
+VERTICAL = {"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [2.0, 2.0]]}
+VARYING = {"isolator.friction": {"slow": 0.05, "fast": 0.12, "rate": 30.0}, "duration": 8.0}
+RUNS = [("fig3-I", {}, None), ("fig3-II", {}, V_REG), ("fig4-viscous", {}, None), ("fig3-I", VERTICAL, None)]
+BALANCES = [(*run, partial(reference.trajectory, equations=name)) for run in RUNS for name in ("exact", "small")]
+BALANCES += [("fig3-I", VARYING, V_REG, side.trajectory) for side in (reference, multibody)]
 
 
-@pytest.mark.parametrize("equations", ["exact", "small"])
-def test_vertical_loading_does_its_work_too(equations: str) -> None:
-    scene = reference.load_scene("fig3-I").with_values({"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [2.0, 2.0]]})
-    answer = demands(reference.trajectory(scene, PHASE, equations))
+@pytest.mark.parametrize(
+    ("name", "values", "v_reg", "trajectory"), [*BALANCES, ("fig3-I", {}, V_REG, multibody.trajectory)]
+)
+def test_energy_is_balanced_within_the_error(name, values, v_reg, trajectory) -> None:
+    """By the engine: measured at the contact, and from kinetic, elastic and gravity energy."""
+    scene = reference.load_scene(name).with_values(values)
+    answer = demands(trajectory(scene, PHASE, regularization=v_reg))
+    limit = 3e-3 if values or trajectory is multibody.trajectory else 2e-4
     assert answer.energy_balance is not None
-    assert abs(answer.energy_balance.value) <= answer.energy_balance.error < 1e-3 * answer.friction_energy.value
+    assert abs(answer.energy_balance.value) <= answer.energy_balance.error < limit * answer.friction_energy.value
 
 
 @pytest.mark.parametrize(("name", "regularization"), [("fig3-I", None), ("fig3-I", V_REG), ("fig4-viscous", None)])
@@ -72,23 +75,6 @@ def test_friction_power_is_the_law_times_normal_force_and_speed(name, regulariza
     law = speed if scene.lubricated else np.minimum(1.0, speed / (regularization or 1e-300))
     expected = scene.friction_coefficient * law * motion.contact_force * speed
     np.testing.assert_allclose(motion.friction_power, expected, atol=2e-5 * expected.max())
-
-
-def test_the_engine_s_contacts_dissipate_what_its_motion_loses() -> None:
-    """Measured at the contact on one hand, and by kinetic, elastic and gravity energy on the other."""
-    answer = demands(multibody.trajectory(reference.load_scene("fig3-I"), PHASE))
-    assert answer.energy_balance is not None
-    assert abs(answer.energy_balance.value) <= answer.energy_balance.error < 2e-3 * answer.friction_energy.value
-
-
-@pytest.mark.parametrize("side", ["equations", "engine"])
-def test_energy_is_balanced_with_velocity_friction(side) -> None:
-    law = {"isolator.friction": {"slow": 0.05, "fast": 0.12, "rate": 30.0}, "duration": 8.0}
-    scene = reference.load_scene("fig3-I").with_values(law)
-    trajectory = reference.trajectory if side == "equations" else multibody.trajectory
-    answer = demands(trajectory(scene, PHASE, regularization=V_REG))
-    assert answer.energy_balance is not None
-    assert abs(answer.energy_balance.value) <= answer.energy_balance.error < 3e-3 * answer.friction_energy.value
 
 
 def test_a_friction_that_takes_too_much_breaks_the_balance() -> None:

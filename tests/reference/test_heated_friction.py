@@ -5,7 +5,7 @@ import pytest
 from heated_motion import heated_motion, temperature_rise
 
 import reference
-from reference.problem import DryFriction, SceneError, State, load_scene
+from reference.problem import DryFriction, State, load_scene
 from reference.problem.friction import Heat
 from reference.solver.collocation import NODES
 from reference.solver.heating import warm

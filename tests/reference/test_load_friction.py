@@ -5,7 +5,7 @@ import pytest
 from numba import types
 
 import reference
-from reference.problem import GRAVITY, SceneError, load_scene
+from reference.problem import GRAVITY, load_scene
 from reference.solver.work import _SystemType
 
 SCENE = load_scene("fig3-I").with_values({"duration": 4.0})

@@ -47,16 +47,8 @@ def compiled():
     reference.amplification(reference.load_scene("fig3-I"), [(0.0, 0.0)], tolerance=1e-3)
 
 
-def hold_all(seeds: range) -> None:
+@pytest.mark.parametrize("seeds", [range(60), pytest.param(range(1000, 2000), marks=pytest.mark.long)])
+def test_random_scenes_are_answered_or_refused_by_name(seeds: range) -> None:
     for seed in seeds:
         scene, phase, v_reg, _ = random_case(seed, 0.1, 6.0, 0.5, 5.0)
         hold(scene, phase, ("exact", "small")[seed % 2], v_reg if seed % 3 else None)
-
-
-def test_random_scenes_are_answered_or_refused_by_name() -> None:
-    hold_all(range(60))
-
-
-@pytest.mark.long
-def test_a_thousand_scenes_are_answered_or_refused_by_name() -> None:
-    hold_all(range(1000, 2000))

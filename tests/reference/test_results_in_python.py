@@ -1,4 +1,4 @@
-"""Phases of any shape, results as xarray, and their drawings."""
+"""Phases of any shape, results as xarray, in one line and as tables, and their drawings."""
 
 import subprocess
 import sys
@@ -6,9 +6,11 @@ import sys
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from chains import chain, refusal
 
 import multibody
 import reference
+from reference.problem import Amplification
 
 SCENE = reference.load_scene("fig4-dry").with_values({"duration": 3.0})
 PAIRS = reference.phase_grid(3)
@@ -25,17 +27,18 @@ def surface():
     return reference.amplification(SCENE, PAIRS, tolerance=1e-4)
 
 
-SHAPES = [(3, 3), (3, 1, 3)]
+@pytest.fixture(scope="module")
+def motion():
+    return reference.trajectory(SCENE, (2.0, 0.7), tolerance=1e-4)
 
 
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("shape", [(3, 3), (3, 1, 3)])
 def test_results_have_the_shape_of_the_phases(surface, shape):
     result = reference.amplification(SCENE, PAIRS.reshape(*shape, 2), tolerance=1e-4)
-    for name in ("mu", "error"):
+    for name in ("mu", "error", "phases"):
         np.testing.assert_array_equal(getattr(result, name), getattr(surface, name).reshape(*shape, 2))
-    for name in ("status", "instant", "cap_share"):
+    for name in ("status", "instant", "cap_share", "displacement"):
         np.testing.assert_array_equal(getattr(result, name), getattr(surface, name).reshape(shape))
-    np.testing.assert_array_equal(result.phases, PAIRS.reshape(*shape, 2))
 
 
 def test_one_pair_gives_one_row(surface):
@@ -50,9 +53,12 @@ def test_the_engine_takes_phases_of_any_shape():
     listed = multibody.amplification(scene, pairs, tolerance=1e-2)
     result = multibody.amplification(scene, pairs.reshape(2, 2, 2), tolerance=1e-2)
     np.testing.assert_array_equal(result.mu, listed.mu.reshape(2, 2, 2))
-    np.testing.assert_array_equal(result.status, listed.status.reshape(2, 2))
-    assert result.cap_share.shape == result.instant.shape == (2, 2)
+    assert result.status.shape == result.cap_share.shape == result.instant.shape == (2, 2)
     assert multibody.amplification(scene, pairs[1], tolerance=1e-2).mu.tolist() == listed.mu[1].tolist()
+
+
+def units(data):
+    return {name: data[name].attrs["units"] for name in data.variables if "units" in data[name].attrs}
 
 
 def test_a_list_is_labeled_by_itself_and_a_grid_by_its_axes(surface):
@@ -62,64 +68,59 @@ def test_a_list_is_labeled_by_itself_and_a_grid_by_its_axes(surface):
     grid = reference.amplification(SCENE, PAIRS.reshape(3, 3, 2), tolerance=1e-4).to_xarray()
     assert grid["mu"].dims == ("alpha1", "alpha2", "body")
     at = grid.sel(alpha1=PAIRS[5, 0], alpha2=PAIRS[5, 1])
-    np.testing.assert_array_equal(at["mu"], surface.mu[5])
+    for name in ("mu", "error", "displacement", "cap_share"):
+        np.testing.assert_array_equal(at[name], getattr(surface, name)[5])
     assert str(at["status"].item()) == "ok"
-    units = {"mu": "1", "error": "1", "instant": "s", "alpha1": "rad", "alpha2": "rad"}
-    assert {name: grid[name].attrs["units"] for name in units} == units
+    assert units(grid) == dict.fromkeys(("mu", "error", "cap_share"), "1") | {
+        "instant": "s",
+        "displacement": "m",
+        "alpha1": "rad",
+        "alpha2": "rad",
+    }
     assert grid["body"].values.tolist() == [1, 2]
-
-
-def test_pairs_that_are_no_grid_keep_their_own_phases():
     random = np.random.default_rng(1).uniform(0.0, 6.0, (2, 2, 2))
-    data = reference.amplification(SCENE, random, tolerance=1e-3).to_xarray()
-    assert data["mu"].dims == ("phase_1", "phase_2", "body")
-    np.testing.assert_array_equal(data["alpha1"], random[..., 0])
+    loose = reference.amplification(SCENE, random, tolerance=1e-3).to_xarray()
+    assert loose["mu"].dims == ("phase_1", "phase_2", "body")
+    np.testing.assert_array_equal(loose["alpha1"], random[..., 0])
 
 
-def test_a_motion_is_labeled_with_units():
-    motion = reference.trajectory(SCENE, (2.0, 0.7), tolerance=1e-4)
+def test_a_motion_is_labeled_with_units(motion):
     data = motion.to_xarray()
-    x = data["position"].sel(body=2, axis="x")
-    np.testing.assert_array_equal(x, motion.position[:, 1, 0])
-    assert (x.attrs["units"], data["time"].attrs["units"]) == ("m", "s")
-    assert data["absolute_acceleration"].attrs["units"] == "m/s^2"
+    np.testing.assert_array_equal(data["position"].sel(body=2, axis="x"), motion.position[:, 1, 0])
     np.testing.assert_array_equal(data["isolator_force"].sel(horizontal="y"), motion.isolator_force[:, 1])
+    of = {"m": "position", "m/s": "velocity", "m/s^2": "absolute_acceleration peak ground", "W": "friction_power"}
+    of |= {"N": "contact_force isolator_force support_force", "s": "time"}
+    assert units(data) == {name: unit for unit, names in of.items() for name in names.split()}
     assert (data.attrs["scene"], data.attrs["status"]) == ("fig4-dry", "ok")
     assert data["support_force"].shape == (len(motion.time), 0), "the equations have no single supports"
 
 
 def test_a_surface_is_drawn_with_its_heights_where_they_belong(surface):
     axes = surface.plot(body=2)
-    assert axes.name == "3d"
+    assert (axes.name, axes.get_xlabel(), axes.get_ylabel()) == ("3d", r"$\alpha_1$, rad", r"$\alpha_2$, rad")
     assert "mu_{2}" in axes.get_zlabel()
     low, high = axes.get_zlim()
-    assert low <= surface.mu[:, 1].min()
-    assert surface.mu[:, 1].max() <= high
+    assert low <= surface.mu[:, 1].min() < surface.mu[:, 1].max() <= high
     flat = surface.plot(axes=plt.figure().add_subplot())
     (mesh,) = flat.collections
     np.testing.assert_array_equal(np.asarray(mesh.get_array()).reshape(3, 3), surface.mu[:, 0].reshape(3, 3).T)
 
 
-def test_a_motion_is_drawn_with_a_line_for_every_body_and_axis():
-    motion = reference.trajectory(SCENE, (2.0, 0.7), tolerance=1e-4)
+def test_a_motion_is_drawn_with_a_line_for_every_body_and_axis(motion):
     axes = motion.plot()
     assert [line.get_label() for line in axes.get_lines()] == ["body 1, x", "body 1, y", "body 2, x", "body 2, y"]
     np.testing.assert_array_equal(axes.get_lines()[3].get_ydata(), motion.position[:, 1, 1])
-    assert len(axes.patches) == len(motion.stick) > 0
-    assert motion.plot("velocity", axes=plt.figure().add_subplot()).get_ylabel().endswith("m/s")
+    assert [patch.get_x() for patch in axes.patches] == [start for start, _ in motion.stick] != []
+    for name, unit in (("position", "m"), ("velocity", "m/s"), ("absolute_acceleration", "m/s$^2$")):
+        assert motion.plot(name, axes=plt.figure().add_subplot()).get_ylabel().endswith(f", {unit}")
 
 
-@pytest.mark.parametrize("body", [0, 3, "1", 1.0])
-def test_a_body_that_is_not_there_is_refused(surface, body):
-    with pytest.raises(ValueError, match="must be a whole number from 1 to 2"):
-        surface.plot(body=body)
-
-
-def test_what_is_no_surface_and_no_quantity_is_refused(surface):
-    with pytest.raises(ValueError, match="must be a grid"):
-        reference.amplification(SCENE, [(0.3, 1.1), (2.0, 0.7)], tolerance=1e-3).plot()
-    with pytest.raises(ValueError, match="quantity = 'speed': must be one of position"):
-        reference.trajectory(SCENE, (2.0, 0.7), tolerance=1e-3).plot("speed")
+def test_what_is_no_body_surface_or_quantity_is_refused(surface, motion):
+    for body in (0, 3, "1", 1.0):
+        assert "must be a whole number from 1 to 2" in str(refusal(surface.plot, body=body))
+    listed = reference.amplification(SCENE, [(0.3, 1.1), (2.0, 0.7)], tolerance=1e-3)
+    assert "must be a grid" in str(refusal(listed.plot))
+    assert "quantity = 'speed': must be one of position" in str(refusal(motion.plot, "speed"))
 
 
 def test_importing_the_reference_loads_no_plotting_and_no_xarray():
@@ -128,14 +129,30 @@ def test_importing_the_reference_loads_no_plotting_and_no_xarray():
     assert ended.stdout.strip() == ""
 
 
-def test_a_notebook_shows_scene_surface_and_motion_as_tables(surface):
-    table = surface._repr_html_()
-    assert f"<td>2</td><td>{surface.mu[:, 1].min():.5g}</td>" in table
-    assert "9 ok" in table
-    assert f"± {surface.error[:, 1].max():.1g}, 9 ok" in table
-    motion = reference.trajectory(SCENE, (2.0, 0.7))
-    far = 1e3 * np.linalg.norm(motion.position[:, 1, :2], axis=1).max()
-    assert f"<td>2</td><td>{far:.4g}</td><td>{motion.peak[1]:.5g}</td>" in motion._repr_html_()
-    named = SCENE.with_values({"title": "a < b"})._repr_html_()
-    assert "a &lt; b" in named
-    assert f"<td>{SCENE.masses[1]:.4g}</td>" in named
+def cells(html):
+    return [row.removesuffix("</td></tr>").split("</td><td>") for row in html.split("<tr><td>")[1:]]
+
+
+def test_a_terminal_and_a_notebook_show_scene_surface_and_motion(motion):
+    mu = np.array([[1.0, 2.25], [1.5, 2.5], [3.0, 5.0], [np.nan, np.nan]])
+    error = np.array([[0.01, 0.2], [0.03, 0.1], [0.02, 0.4], [np.nan, np.nan]])
+    shown = Amplification(mu, error, np.array(["ok", "ok", "ok", "rim reached"]), np.zeros(4), 0.0)
+    line = "Amplification of 4 phase pairs: mu_1 1 to 3 ± 0.03, mu_2 2.25 to 5 ± 0.4, 3 ok, 1 rim reached"
+    assert repr(shown) == f"<{line}>"
+    table = shown._repr_html_().removesuffix("</tbody></table>")
+    assert line in table
+    assert "<th>smallest μ</th><th>median μ</th><th>largest μ</th><th>largest error</th>" in table
+    assert cells(table) == [["1", "1", "1.5", "3", "0.03"], ["2", "2.25", "2.5", "5", "0.4"]]
+    one = Amplification(mu[0], error[0], np.array("ok"), np.array(np.nan), 0.0)
+    assert repr(one) == "<Amplification of 1 phase pair: mu_1 = 1 ± 0.01, mu_2 = 2.25 ± 0.2, 1 ok>"
+    far = 1e3 * np.linalg.norm(motion.position[:, :, :2], axis=2).max(axis=0)
+    head = f"{len(motion.time)} instants to 3 s, {len(motion.stick)} rests, platform at most {far[0]:.4g} mm off, ok"
+    assert repr(motion) == f"<Trajectory of fig4-dry: {head}>"
+    rows = [[str(n + 1), f"{far[n]:.4g}", f"{motion.peak[n]:.5g}"] for n in range(2)]
+    assert cells(motion._repr_html_().removesuffix("</tbody></table>")) == rows
+    scene = chain(0.4, 0.07, (3.0, 2.0), [(150.0, 110.0)], duration=7.0)
+    scene = scene.with_values({"title": "a < b", "bodies.1.damping": [5.0, 6.0]})
+    assert repr(scene) == "<Scene scene: 2 bodies, 5 kg, radius 0.4 m, two-frequency motion, 7 s>"
+    table = scene._repr_html_().removesuffix("</tbody></table>")
+    assert "7 s: a &lt; b; friction coefficient at most 0.07</p>" in table
+    assert cells(table) == [["1", "3", "", ""], ["2", "2", "150, 110", "5, 6"]]
