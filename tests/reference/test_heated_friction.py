@@ -128,18 +128,6 @@ def test_a_slide_on_a_plane_warms_like_the_root_of_time():
     np.testing.assert_allclose(speed - without, -0.1 * gravity * slope * rise * times * 2.0 / 3.0, rtol=5e-3)
 
 
-@pytest.mark.parametrize("v_reg", [None, 1e-3])
-def test_what_heat_changes_falls_with_slope_one_in_the_conductivity(v_reg):
-    k_t = 0.79 * (0.7**0.4 + 0.4)
-    plain = SCENE.with_values({"isolator.friction": 0.1 * k_t})
-    mu, far, near = (
-        reference.amplification(scene, [PHASE, (2.0, 0.7)], regularization=v_reg, tolerance=1e-7).mu
-        for scene in (plain, heated(conductivity=20.0), heated(conductivity=40.0))
-    )
-    assert np.abs(near - mu).max() > 1e-5
-    np.testing.assert_allclose(far - mu, 2.0 * (near - mu), atol=0.03 * np.abs(far - mu).max())
-
-
 def test_heat_and_motion_on_a_plane_settle():
     """Without a restoring force the first runs differ by more from one to the next."""
     scene = heated(SCENE.with_values({"isolator.period": None, "isolator.radius": np.inf}))
@@ -149,12 +137,6 @@ def test_heat_and_motion_on_a_plane_settle():
         motion, finer = (reference.trajectory(scene, phase, tolerance=tolerance) for tolerance in (1e-5, 1e-7))
         assert (motion.accuracy.peak_error <= 2e-5 * motion.peak).all()
         assert (np.abs(motion.peak - finer.peak) <= motion.accuracy.peak_error).all()
-
-
-def test_a_large_contact_stays_cold():
-    scenes = heated(contact_radius=10.0), SCENE.with_values({"isolator.friction": 0.1 * 0.79 * (0.7**0.4 + 0.4)})
-    large, mu = (reference.amplification(scene, [PHASE], tolerance=1e-6).mu for scene in scenes)
-    np.testing.assert_allclose(large, mu, rtol=3e-6)
 
 
 def test_a_heated_motion_in_a_plane_is_that_of_two_axes():

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from chains import chain
+from chains import chain, refusal
 from oracle_law import Law
 from scipy.optimize import brentq
 
 import reference
+from reference import surface
 from reference.problem import ADVICE, GRAVITY, Outcome, Scene, load_scene, phase_grid
 
 PHASE = (0.3, 1.1)
@@ -70,8 +71,7 @@ def test_loads_beyond_double_precision_are_told_at_once(equations):
 
 
 def test_a_still_ground_has_no_amplification():
-    scene = chain(amplitudes=[[0.0, 0.0], [0.0, 0.0]])
-    refused(scene, Outcome.NO_GROUND_MOTION)
+    assert refused(chain(amplitudes=[[0.0, 0.0], [0.0, 0.0]]), Outcome.NO_GROUND_MOTION) == 0.0
 
 
 def test_a_failed_point_leaves_its_neighbors_alone():
@@ -89,15 +89,39 @@ def test_a_failed_point_leaves_its_neighbors_alone():
     np.testing.assert_array_equal(together.mu[good], alone.mu)
 
 
+WORDS = {  # of the advice for every outcome
+    Outcome.OK: "nothing to do",
+    Outcome.TOLERANCE_NOT_MET: "loosen the tolerance, or give a cutoff",
+    Outcome.RIM_REACHED: "lower the amplitude or enlarge the radius",
+    Outcome.TRAVEL_REACHED: "lower the amplitude or enlarge the travel",
+    Outcome.CONTACT_LOST: "lower the vertical amplitude, or use the spatial model",
+    Outcome.OVERTURNED: "widen the ring or lower the amplitude",
+    Outcome.PAINLEVE: "lower the friction coefficient or the swing, or take a heavier platform",
+    Outcome.NON_FINITE_LOAD: "rescale the scene",
+    Outcome.NO_GROUND_MOTION: "give a nonzero amplitude",
+    Outcome.STEP_LIMIT: "shorten the duration",
+    Outcome.SOLVER_FAILED: "loosen the tolerance or change v_reg",
+    Outcome.WORKER_DIED: "run the point alone",
+    Outcome.TIME_LIMIT: "allow more, or shorten the duration",
+}
+
+
 def test_every_outcome_has_advice():
-    assert set(ADVICE) == set(Outcome)
-    assert all("\n" not in text and text for text in ADVICE.values())
+    assert list(WORDS) == list(Outcome) == list(ADVICE)
+    assert [outcome for outcome, words in WORDS.items() if words not in ADVICE[outcome]] == []
+    assert not any("\n" in text for text in ADVICE.values())
 
 
-@pytest.mark.parametrize("times", [[1.0, 0.5], [0.0, 21.0], [-1.0, 0.0], [[0.0, 1.0]], [np.nan]])
-def test_impossible_times_are_refused(times):
-    with pytest.raises(ValueError, match="times"):
-        reference.trajectory(load_scene("fig3-I"), PHASE, times=times)
+def test_a_run_of_too_many_steps_ends_at_its_limit(monkeypatch):
+    scene = load_scene("fig3-I")
+    for name, limit in (("BASE_STEPS", 20), ("MAX_STEPS", 0)):
+        monkeypatch.setattr(surface, name, limit)
+    assert 0.0 < refused(scene, Outcome.STEP_LIMIT) < scene.duration
+
+
+def test_impossible_times_are_refused():
+    for times in ([1.0, 0.5], [0.0, 21.0], [-1.0, 0.0], [[0.0, 1.0]], [np.nan]):
+        assert str(refusal(reference.trajectory, load_scene("fig3-I"), PHASE, times=times)).startswith("times: ")
 
 
 def test_the_printed_rest_condition_is_looser():

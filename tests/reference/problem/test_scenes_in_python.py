@@ -1,11 +1,15 @@
 """Scenes that are built and changed in Python: arrays and tuples for lists, records from arrays, equality and hash."""
 
+import re
+
 import numpy as np
 import pytest
+from chains import refusal
 from pydantic import ValidationError
 
 from reference.problem import Scene, SceneError, ground_acceleration, load_scene
 
+FIG3 = load_scene("fig3-I")
 TIME = np.array([5.0, 5.1, 5.3, 5.4])
 ALONG_X = np.array([0.5, 1.0, -3.0, 0.0])
 
@@ -36,12 +40,14 @@ def test_arrays_and_tuples_make_the_scene_that_lists_make():
     assert scene == Scene.model_validate(scene.model_dump(exclude_none=True))
 
 
-def test_a_record_from_arrays_counts_time_from_its_start():
+def test_a_record_from_arrays_is_that_of_a_file_and_counts_time_from_its_start(tmp_path):
     scene = recorded()
-    assert scene.duration == pytest.approx(0.4)
+    assert (scene.duration, scene.excitation.files) == (pytest.approx(0.4), "arrays")
     np.testing.assert_allclose(scene.record, [[0, 0.5, 0, 0], [0.1, 1, 0, 0], [0.3, -3, 0, 0], [0.4, 0, 0, 0]])
     np.testing.assert_allclose(ground_acceleration(scene, (0.0, 0.0), [0.2])[0], [-1.0, 0.0, 0.0], atol=1e-12)
-    assert scene.excitation.files == "arrays"
+    rows = "\n".join(f"{t},{a}" for t, a in zip(TIME.tolist(), ALONG_X.tolist()))
+    (tmp_path / "a.csv").write_text(f"time [s],ax [m/s^2]\n{rows}\n")
+    assert Scene.model_validate(table(record=str(tmp_path / "a.csv"))).digest() == scene.digest()
 
 
 @pytest.mark.parametrize("axes", [1, 2, 3])
@@ -53,21 +59,12 @@ def test_accelerations_are_along_x_y_and_z_in_this_order(axes):
     assert scene.duration == 0.2
 
 
-def test_a_record_from_arrays_is_that_of_a_file(tmp_path):
-    rows = "\n".join(f"{t},{a}" for t, a in zip(TIME.tolist(), ALONG_X.tolist()))
-    (tmp_path / "a.csv").write_text(f"time [s],ax [m/s^2]\n{rows}\n")
-    read = Scene.model_validate(table(record=str(tmp_path / "a.csv")))
-    assert read.digest() == recorded().digest()
-
-
 def test_the_record_of_a_scene_is_changed_by_arrays():
-    scene = recorded().with_values({"excitation.record": {"time": TIME, "acceleration": 2.0 * ALONG_X}})
-    np.testing.assert_array_equal(scene.record[:, 1], 2.0 * ALONG_X)
-    replaced = load_scene("fig3-I").with_values(
-        {"excitation": {"record": {"time": TIME, "acceleration": ALONG_X}, "scale": 0.5}}
-    )
-    np.testing.assert_array_equal(replaced.record[:, 1], 0.5 * ALONG_X)
-    assert replaced.duration == load_scene("fig3-I").duration
+    record = {"time": TIME, "acceleration": 2.0 * ALONG_X}
+    np.testing.assert_array_equal(recorded().with_values({"excitation.record": record}).record[:, 1], 2.0 * ALONG_X)
+    replaced = FIG3.with_values({"excitation": {"record": record, "scale": 0.5}})
+    np.testing.assert_array_equal(replaced.record[:, 1], ALONG_X)
+    assert replaced.duration == FIG3.duration
 
 
 def test_what_was_given_may_change_and_the_samples_may_not():
@@ -82,23 +79,23 @@ def test_what_was_given_may_change_and_the_samples_may_not():
 @pytest.mark.parametrize(
     ("time", "acceleration", "rule"),
     [
-        (TIME, ALONG_X[:3], r"shape \(3,\) at 4 instants"),
-        (TIME, np.zeros((4, 4)), r"shape \(4, 4\)"),
-        (TIME[:, None], ALONG_X, r"time: shape \(4, 1\)"),
-        (TIME[::-1], ALONG_X, "from sample to sample"),
-        (TIME[:1], ALONG_X[:1], "at least 2"),
-        (TIME, [0.0, np.nan, 0.0, 0.0], "must be finite"),
-        (TIME, [0.0, 1e305, 0.0, 0.0], "at most 1e"),
+        (TIME, ALONG_X[:3], "acceleration: shape (3,) at 4 instants"),
+        (TIME, np.zeros((4, 4)), "acceleration: shape (4, 4)"),
+        (TIME[:, None], ALONG_X, "time: shape (4, 1)"),
+        (TIME[::-1], ALONG_X, "-0.2 s from sample to sample"),
+        (TIME[:1], ALONG_X[:1], "1 samples: must have at least 2"),
+        (TIME, [0.0, np.nan, 0.0, 0.0], "acceleration: must be finite"),
+        (TIME, [0.0, 1e305, 0.0, 0.0], "acceleration: must be at most 1e"),
         ("soon", ALONG_X, "time = 'soon': must be numbers"),
         (None, ALONG_X, "time = None: must be numbers"),
     ],
 )
 def test_arrays_that_are_no_record_are_refused_in_one_line(time, acceleration, rule):
-    with pytest.raises(SceneError, match=rule) as refusal:
-        recorded().with_values({"excitation.record": {"time": time, "acceleration": acceleration}})
-    assert refusal.value.key == "excitation.record"
-    assert "\n" not in str(refusal.value)
-    with pytest.raises(ValidationError, match=rule):
+    record = {"time": time, "acceleration": acceleration}
+    said = refusal(recorded().with_values, {"excitation.record": record}, kind=SceneError)
+    assert said.key == "excitation.record"
+    assert said.rule.startswith(rule)
+    with pytest.raises(ValidationError, match=re.escape(rule)):
         recorded(time, acceleration)
 
 
@@ -106,15 +103,11 @@ def test_equal_scenes_have_equal_hashes_and_others_do_not():
     for make in (recorded, lambda: two_frequencies(np.eye(2)), lambda: load_scene("fig3-I")):
         assert make() == make()
         assert hash(make()) == hash(make())
-        assert hash(make().isolator) == hash(make().isolator)
-    scene = load_scene("fig3-I")
-    same = scene.with_values({"isolator.friction": 0.2}).with_values({"isolator.friction": 0.1})
-    assert hash(same) == hash(scene)
-    changed = [scene.with_values({"isolator.friction": value}) for value in (0.1, 0.2, 0.3)]
-    assert len({*changed, scene}) == 3
-    assert {scene: "known"}[same] == "known"
+    same = FIG3.with_values({"isolator.friction": 0.2}).with_values({"isolator.friction": 0.1})
+    assert {FIG3: "known"}[same] == "known"
+    assert len({FIG3, *(FIG3.with_values({"isolator.friction": value}) for value in (0.1, 0.2, 0.3))}) == 3
     other = recorded(acceleration=2.0 * ALONG_X)
     assert len({recorded(), other, recorded()}) == 2, "samples count, too"
-    assert scene.excitation != other.excitation
-    assert two_frequencies([[0.0, 1.0], [1.0, -0.0]]) == two_frequencies([[0.0, 1.0], [1.0, 0.0]])
-    assert hash(two_frequencies([[0.0, 1.0], [1.0, -0.0]])) == hash(two_frequencies([[0.0, 1.0], [1.0, 0.0]]))
+    assert FIG3.excitation != other.excitation
+    negative, positive = (two_frequencies([[0.0, 1.0], [1.0, zero]]) for zero in (-0.0, 0.0))
+    assert (negative, hash(negative)) == (positive, hash(positive))
