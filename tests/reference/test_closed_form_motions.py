@@ -12,7 +12,6 @@ from reference.analytical import (
     coulomb_rest,
     den_hartog,
     frictionless_amplification,
-    frictionless_motion,
     planar_period,
     squared_rate,
     turning_angle,
@@ -173,15 +172,6 @@ def test_a_shaken_chain_stays_on_its_circles(count, damping, equations):
 FRICTIONLESS = chain(
     0.25, 0.0, [2.0, 1.0, 0.4], [[60.0, 90.0], [50.0, 70.0]], [[0.6, 0.2], [-0.1, 0.5]], decay=[0.33, 0.1]
 )
-
-
-def test_frictionless_motion_is_the_modal_sum():
-    times = np.linspace(0.0, 20.0, 500)
-    run = reference.trajectory(FRICTIONLESS, (0.3, 1.1), "small", tolerance=TOLERANCE, times=times)
-    for found, wanted in zip(
-        (run.position, run.velocity, run.absolute_acceleration), frictionless_motion(FRICTIONLESS, (0.3, 1.1), times)
-    ):
-        np.testing.assert_allclose(found[:, :, :2], wanted, atol=30 * TOLERANCE * np.abs(wanted).max())
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 from chains import chain
-from scipy.linalg import expm
 
 import reference
 from reference.problem import Scene, State, half_turn, linear, load_scene, own_axes, planar
@@ -18,21 +17,6 @@ def damped(scene: Scene, *damping: float | list[float], **values: Any) -> Scene:
     links = len(scene.bodies) - 1
     each = damping if len(damping) > 1 else damping * links
     return scene.with_values({f"bodies.{i + 1}.damping": zeta for i, zeta in enumerate(each)} | values)
-
-
-def test_a_damped_body_on_a_held_platform_decays_in_closed_form() -> None:
-    """x'' + 2 zeta w x' + w^2 x = 0 from rest at A, under, at and over critical damping."""
-    for zeta in (0.05, 1.0, 3.0):
-        w = 5.0
-        still = [[1e-9, 0.0], [0.0, 0.0]]
-        scene = chain(1.0, 5.0, masses=(1.0, 2.0), stiffness=[(2.0 * w * w,) * 2], amplitudes=still, duration=3.0)
-        released = State(np.array([[0.0, 0.0], [0.02, 0.01]]), np.zeros((2, 2)))
-        times = np.linspace(0.0, 3.0, 301)
-        motion = reference.trajectory(damped(scene, zeta), PHASES[0], times=times, initial=released, tolerance=1e-9)
-        free = expm(np.array([[0.0, 1.0], [-w * w, -2.0 * zeta * w]]) * times[:, None, None])[:, 0, 0]
-        np.testing.assert_allclose(motion.position[:, 1, 0], 0.02 * free, atol=1e-10)
-        np.testing.assert_allclose(motion.position[:, 1, 1], 0.01 * free, atol=1e-10)
-        assert motion.stick == [(0.0, 3.0)]
 
 
 def test_a_frictionless_chain_swings_in_its_complex_modes() -> None:
@@ -73,3 +57,18 @@ def test_the_ratio_and_the_coefficients_say_the_same() -> None:
     np.testing.assert_array_equal(stated.damping, ratio.damping)
     assert stated.digest() != ratio.digest() != scene.digest()
     assert not scene.damping.any()
+
+
+def test_two_harmonics_along_one_axis_do_not_have_their_own() -> None:
+    for amplitudes, own in (
+        ([[1.0, 0.0], [0.0, 1.4]], True),
+        ([[1.0, 1.4], [0.0, 0.0]], False),
+        ([[1.0, 0.0], [1.4, 0.0]], False),
+    ):
+        scene = chain(masses=[1.0, 1.0], stiffness=[[20.0, 30.0]], amplitudes=amplitudes)
+        assert bool(own_axes(scene)) == own
+        here, there = reference.amplification(scene, [(0.3, 1.1), (0.3, 1.1 + np.pi)]).mu
+        assert np.allclose(here, there, rtol=1e-5) == (own or amplitudes[1][0] != 0.0)
+    upright = chain(amplitudes=[[1.0, 0.0], [0.0, 1.0], [2.0, 1.0]])
+    assert not half_turn(upright)
+    assert not own_axes(upright)

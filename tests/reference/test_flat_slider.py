@@ -13,8 +13,7 @@ from chains import chain
 from scipy.optimize import brentq
 
 import reference
-from reference.analytical import frictionless_motion, stopping_distance, stopping_time
-from reference.problem import GRAVITY, Scene, State, ground_peak, load_scene, phase_grid
+from reference.problem import GRAVITY, Scene, ground_peak, load_scene, phase_grid
 
 FLAT = {"isolator.period": None, "isolator.radius": math.inf}
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])
@@ -30,22 +29,6 @@ def block(amplitude: float, friction: float, duration: float, period: float = 1.
     """A rigid block under one undamped harmonic along x."""
     rows = [[amplitude, 0.0], [0.0, 0.0]]
     return chain(math.inf, friction, [3.0], (), rows, (period, period), (0.0, 0.0), duration)
-
-
-@pytest.mark.parametrize("equations", ["exact", "small"])
-@pytest.mark.parametrize("angle", [0.0, 0.7, 2.5, 4.0])
-def test_a_straight_slide_stops_after_v2_over_2_mu_g(angle, equations):
-    friction, speed = 0.1, 0.8
-    scene = block(0.0, friction, 2.0)
-    along = np.array([math.cos(angle), math.sin(angle)])
-    run = reference.trajectory(
-        scene, (0.0, 0.0), equations, tolerance=1e-9, initial=State(np.zeros((1, 2)), speed * along[None])
-    )
-    way = stopping_distance(speed, friction)
-    assert run.status == "ok"
-    np.testing.assert_allclose(run.position[-1, 0, :2], way * along, atol=1e-8 * way)
-    assert run.stick[0][0] == pytest.approx(stopping_time(speed, friction), rel=1e-8)
-    assert (run.position[:, :, 2] == 0.0).all()
 
 
 def test_a_sliding_rigid_block_is_accelerated_by_mu_g():
@@ -90,15 +73,6 @@ def test_without_friction_the_plate_moves_alone(equations, phase):
     np.testing.assert_allclose(run.position[:, 0, :2], moved, atol=1e-6)
 
 
-def test_the_closed_form_without_friction_is_the_run_s():
-    scene = flat(isolator__friction=0.0, duration=4.0)
-    times = np.linspace(0.0, 4.0, 401)
-    position, velocity, _ = frictionless_motion(scene, PHASES[1], times)
-    run = reference.trajectory(scene, PHASES[1], "small", times=times, tolerance=1e-9)
-    np.testing.assert_allclose(run.position[:, :, :2], position, atol=1e-8)
-    np.testing.assert_allclose(run.velocity[:, :, :2], velocity, atol=1e-8)
-
-
 def test_the_modes_on_a_plane_begin_with_rigid_motion():
     """The others are those of an oscillator with the reduced mass 2/3 kg."""
     scene = flat(bodies=[{"mass": 2.0}, {"mass": 1.0, "stiffness": [30.0, 12.0], "damping": [0.4, 0.3]}])
@@ -126,14 +100,6 @@ def test_a_flat_slider_has_no_rim_and_no_share_of_one():
     assert numbers.cap_share.value == answer.cap_share[0] == 0.0
     assert numbers.displacement.value == pytest.approx(answer.displacement[0], rel=1e-3)
     assert numbers.displacement.value > 0.01
-
-
-def test_the_worst_displacement_on_a_plane_is_found_in_meters():
-    scene = flat(bodies=[{"mass": 1.0}], duration=2.0, excitation__scale=2.0)
-    worst = reference.worst_phases(scene, 1, "displacement", tolerance=1e-4)
-    surface = reference.amplification(scene, phase_grid(8)).displacement
-    assert worst.value >= 0.999 * surface.max()
-    assert worst.value == pytest.approx(surface.max(), rel=0.1)
 
 
 def test_infinity_survives_json_as_a_word():

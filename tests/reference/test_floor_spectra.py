@@ -30,22 +30,6 @@ def harmonic(period: float, duration: float, count: int) -> Trajectory:
     return floor(time, np.stack([wave, 2.0 * wave], axis=1))
 
 
-def test_an_oscillator_in_resonance_amplifies_by_1_over_2_zeta() -> None:
-    spectra = reference.floor_spectra(harmonic(0.8, 80.0, 40_001), [0.8], DAMPING)
-    assert spectra.acceleration[0, 0, 0] == pytest.approx(1.0 / (2.0 * DAMPING), rel=1e-4)
-    assert spectra.acceleration[0, 1, 0] == pytest.approx(2.0 / (2.0 * DAMPING), rel=1e-4), "the other direction"
-
-
-@pytest.mark.parametrize("period", [0.4, 2.0])
-def test_between_two_samples_the_motion_is_exact(period) -> None:
-    """u'' + w^2 u = -t from rest: w^2 u = -(t - sin(w t) / w)."""
-    time, natural = np.array([0.0, 3.0]), 2.0 * np.pi / period
-    ramp = floor(time, np.stack([time, -time], axis=1))
-    spectra = reference.floor_spectra(ramp, [period], 0.0)
-    expected = 3.0 - np.sin(3.0 * natural) / natural
-    np.testing.assert_allclose(spectra.acceleration[0, :, 0], expected, rtol=1e-9)
-
-
 @pytest.mark.parametrize("name", ["fig3-I", "synthetic-pair"])
 def test_the_floors_of_a_motion_agree_with_scipy(name) -> None:
     scene = reference.load_scene(name).with_values({"duration": 2.0})

@@ -12,7 +12,7 @@ import reference
 from reference.measures import demands
 from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import QUANTITIES
-from reference.problem import Scene, State, Trajectory, load_scene
+from reference.problem import State, Trajectory, load_scene
 from reference.solver.phases import follow, stopping
 from reference.solver.record import note_stick
 
@@ -118,12 +118,6 @@ def test_bodies_above_have_the_arc_s_vertical_part(monkeypatch: pytest.MonkeyPat
     work: Any = SimpleNamespace(x=np.zeros((3, 2)), total0=total, best=np.ones(3), angle=0.0)
     assert stopping.take_arc.py_func(SimpleNamespace(small=False), work, None, False)
     assert taken == {0: 9.0, 1: 1.0 + 4.0 + 4.0, 2: 9.0 + 0.25 + 4.0}
-
-
-def test_vertical_shaking_forbids_to_take_phases_from_others() -> None:
-    scene: Scene = chain(amplitudes=[[1.0, 0.0], [0.0, 1.0], [2.0, 1.0]])
-    assert not reference.problem.half_turn(scene)
-    assert not reference.problem.own_axes(scene)
 
 
 def test_what_steps_miss_of_a_vibration_adds_up_to_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -95,25 +95,6 @@ def test_both_runs_stop_early_and_full_ones_do_not(monkeypatch: pytest.MonkeyPat
     np.testing.assert_array_equal(early.cap_share, whole.cap_share)
 
 
-def two_bursts(second: float) -> Scene:
-    """fig3-I under a burst at 2 s and one of `second` times its size at 20 s."""
-    time = STEP * np.arange(500)
-    bursts = [np.exp(-(((time - instant) / 0.6) ** 2)) for instant in (2.0, 20.0)]
-    strong = 2.0 * (bursts[0] + second * bursts[1]) * np.sin(2.0 * np.pi * time)
-    samples = np.column_stack([time, strong, 0.5 * strong, np.zeros(len(time))])
-    values = load_scene("fig3-I").model_dump(exclude_none=True)
-    values["excitation"] = {"record": "two bursts.csv", "samples": samples.tolist()}
-    return Scene.model_validate({**values, "duration": float(time[-1])})
-
-
-def test_a_run_goes_on_only_where_something_large_comes(monkeypatch: pytest.MonkeyPatch) -> None:
-    weak, strong = two_bursts(0.2), two_bursts(1.2)
-    assert (ends_of_runs(monkeypatch, weak, full=False) < 10.0).all()
-    assert (ends_of_runs(monkeypatch, strong, full=False) > 20.0).all()
-    early, whole = (reference.amplification(strong, [(0.3, 1.1)], full=full) for full in (False, True))
-    np.testing.assert_array_equal(early.mu, whole.mu)
-
-
 def test_a_peak_at_a_stop_is_not_lost_where_a_small_drive_turns() -> None:
     """The drive turns by up to 114 degrees before the stop, and friction, many times as large, turns with it."""
     upper = {"mass": 2.8986718585201334, "period": [0.9617713210619094, 1.524479675295248]}
