@@ -1,12 +1,14 @@
-"""Friction that depends on the velocity against closed forms, limits and scaling; `oracle_values.json` has more."""
+"""Friction that depends on velocity or load against closed forms; `oracle_values.json` has more."""
 
 import numpy as np
 import pytest
 from chains import chain
+from numba import types
 from scipy.integrate import quad
 
 import reference
-from reference.problem import GRAVITY, DryFriction, Scene, State, linear, load_scene, no_friction, untilted
+from reference.problem import GRAVITY, DryFriction, Scene, State, load_scene
+from reference.solver.work import _SystemType
 
 TOLERANCE = 1e-8
 STILL = ((0.0, 0.0), (0.0, 0.0))
@@ -61,14 +63,27 @@ def test_a_force_between_frictions_makes_a_terminal_speed(equations):
     assert held.stick == [(0.0, 2.0)]
 
 
-def test_what_friction_forbids_the_larger_coefficient_forbids():
-    body = {"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}
-    alone = load_scene("fig3-I").with_values({"bodies": [body], "isolator.ring": 0.12})
-    assert untilted(with_law(alone, 0.1))
-    assert not untilted(with_law(alone, 0.15))
-    for slow, fast in ((0.1, 0.4), (0.4, 0.1)):
-        law = {"slow": slow, "fast": fast, "rate": 10.0}
-        assert not untilted(with_law(alone, law))
-        assert not no_friction(with_law(alone, law))
-        assert not linear(with_law(alone, law))
-    assert not no_friction(with_law(alone, {"slow": 0.1, "fast": 0.0, "rate": 10.0}))
+SCENE = load_scene("fig3-I").with_values({"duration": 4.0})
+PHASES = [(0.3, 1.1), (2.0, 0.7)]
+
+
+def factors(friction: object, **asked: object) -> np.ndarray:
+    answer = reference.amplification(SCENE.with_values({"isolator.friction": friction}), PHASES, **asked)
+    assert set(answer.status) == {"ok"}
+    return answer.mu
+
+
+def test_an_exponent_of_zero_gives_the_bits_of_plain_friction():
+    np.testing.assert_array_equal(factors({"slow": 0.1, "load_exponent": 0.0}), factors(0.1))
+
+
+def test_small_equations_have_the_friction_of_their_constant_load():
+    load = {"slow": 0.1, "load_exponent": 0.5, "reference_load": SCENE.total_mass * GRAVITY / 0.64}
+    small = {"equations": "small", "tolerance": 1e-8}
+    np.testing.assert_allclose(factors(load, **small), factors(0.08, **small), rtol=3e-8)
+
+
+def test_builds_of_both_variants_have_functions_of_other_names():
+    """A build on disk would otherwise lend its functions to the other variant, which is compiled later."""
+    without, present = (_SystemType([("exponent", kind)]).mangling_args for kind in (types.none, types.float64))
+    assert without != present

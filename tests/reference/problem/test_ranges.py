@@ -1,6 +1,8 @@
 """Every quantity and argument has a range: inside it is an answer or a named outcome, outside it one line."""
 
 import math
+import runpy
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -50,6 +52,14 @@ def test_every_number_of_a_scene_has_a_range() -> None:
     unbounded = {"bodies.bars", "bodies.bars.load_effect", "measured.quantity", "measured.source"}
     unbounded |= {"isolator.friction.heating", "excitation.scale"}
     assert numbers - unbounded == set(SCENE), "a scale is bounded by the accelerations that it makes"
+
+
+def test_the_page_of_keys_is_what_the_schema_says() -> None:
+    docs = Path(__file__).parents[3] / "docs"
+    page = (docs / "scene.md").read_text(encoding="utf-8")
+    assert page == runpy.run_path(str(docs / "scene_keys.py"))["page"](), "run: python docs/scene_keys.py"
+    keys = {key for table in KEYS.values() for key in table} - {*KEYS, "name"}
+    assert not [key for key in keys if f"\n| `{key}` | " not in page]
 
 
 @pytest.mark.parametrize("key", SCENE)

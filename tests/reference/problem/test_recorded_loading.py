@@ -15,18 +15,13 @@ from reference.problem import (
     SceneError,
     builtin_scenes,
     example_scenes,
-    exponents,
     ground_acceleration,
     ground_displacement,
     ground_peak,
     ground_velocity,
-    half_turn,
-    linear,
     load_family,
     load_scene,
     loading_period,
-    own_axes,
-    planar,
 )
 
 HEAD = """title = "recorded"
@@ -166,14 +161,3 @@ def test_examples_are_reached_by_name_and_none_of_the_paper_s(folder, monkeypatc
     pair, triple = map(load_scene, example_scenes())
     assert (len(pair.record), len(triple.record)) == (801, 601)
     assert triple.record[:, 3].any()
-
-
-def test_a_record_has_no_harmonics_to_leave_out():
-    """Reductions decide by amplitudes; a record taken for loading without any would be solved as if at rest."""
-    data = load_scene("synthetic-pair").model_dump(exclude_none=True)
-    scene = Scene.model_validate(data | {"isolator": {"period": 1.0, "friction": 0.0}})
-    for reduction in (half_turn, own_axes, planar, linear):
-        assert not reduction(scene), reduction.__name__
-    for asked in (lambda: scene.amplitudes, lambda: exponents(scene)):
-        with pytest.raises(ValueError, match="recorded motion"):
-            asked()

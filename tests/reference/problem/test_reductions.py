@@ -1,0 +1,123 @@
+"""What a scene does not require, decided from the scene alone, and why."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from chains import chain
+
+import reference
+from reference.problem import (
+    Reduction,
+    Scene,
+    half_turn,
+    linear,
+    load_scene,
+    mirror_symmetric,
+    no_friction,
+    own_axes,
+    planar,
+    planar_chain,
+    untilted,
+    unused_harmonics,
+)
+
+FIG3 = load_scene("fig3-I")
+HEATING = {"contact_radius": 0.02, "conductivity": 0.02, "diffusivity": 1e-3}
+ALONE = {"bodies": [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}], "isolator.ring": 0.12}
+SMOOTH = {"isolator.friction": 0.0}
+OIL = {"isolator.friction": None, "isolator.lubrication": 0.1}
+UPRIGHT = {"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]}
+OBLIQUE = {"excitation.amplitudes": [[1.0, 0.5], [-0.8, -0.4]]}
+ALIKE = {**OBLIQUE, "bodies.1.period": [1.5, 1.5]}
+ALONG_X = {"excitation.amplitudes": [[1.0, 0.5], [0.0, 0.0]]}
+TWICE_SHAKEN = {"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0 + 1e-9]]}
+
+
+def law(**table: object) -> dict[str, Any]:
+    return {"isolator.friction": {"slow": 0.1, **table}}
+
+
+def places(*supports: list[float]) -> dict[str, Any]:
+    return {"isolator.ring": None, "isolator.supports": list(supports)}
+
+
+# values of fig3-I by key, whether something may be left out, and how the reason begins
+DECIDED: list[tuple[Callable[[Scene], Reduction], dict[str, Any], bool, str]] = [
+    (untilted, {}, False, "bodies above the platform"),
+    (untilted, {"isolator.ring": None, "isolator.supports": None}, False, "no supports are stated"),
+    (untilted, ALONE, True, "one body, its center level with the depressions"),
+    (untilted, {**ALONE, "bodies.0.offset": [0.01, 0.0]}, False, "supports or centers of mass at stated places"),
+    (untilted, {**ALONE, "isolator.period": None, "isolator.radius": math.inf}, False, "a flat slider"),
+    (untilted, {**ALONE, "bodies.0.height": 0.1}, False, "a body above the depressions"),
+    (untilted, {**ALONE, "isolator.support_stiffness": 1e4}, False, "supports that give way"),
+    (untilted, {**ALONE, **OIL}, False, "lubricated"),
+    (untilted, {**ALONE, **law(heating=HEATING)}, False, "friction that depends on the load"),
+    (untilted, {**ALONE, **law(load_exponent=0.1)}, False, "friction that depends on the load"),
+    # twice the friction, 2 mu (rho + r), within the square of four supports: 0.0844 m is the least ring
+    (untilted, {**ALONE, "isolator.ring": 0.085}, True, "one body"),
+    (untilted, {**ALONE, "isolator.ring": 0.084}, False, "a narrow ring"),
+    (untilted, {**ALONE, **law(fast=0.4, rate=10.0)}, False, "a narrow ring"),
+    (untilted, {**ALONE, "isolator.friction": {"slow": 0.4, "fast": 0.1, "rate": 10.0}}, False, "a narrow ring"),
+    (mirror_symmetric, {}, True, "an even number of supports on a ring"),
+    (mirror_symmetric, {"isolator.supports": 3}, False, "an odd number of supports"),
+    (mirror_symmetric, {"bodies.1.offset": [0.0, 0.1]}, False, "a center of mass off the axis"),
+    (mirror_symmetric, {"bodies.1.yaw": 0.1}, False, "a body or link at an angle"),
+    (mirror_symmetric, places([1.0, 2.0], [1.0, -2.0], [-1.0, 2.0], [-1.0, -2.0]), True, "positions of supports that"),
+    (mirror_symmetric, places([1.0, 1.0], [1.0, -1.0], [-1.0, 0.0]), False, "supports at positions that are no mirror"),
+    (planar, {}, False, "the harmonics act in different directions"),
+    (planar, ALONG_X, True, "loading along one axis"),
+    (planar, ALIKE, True, "(4.7): one direction of loading"),
+    (planar, OBLIQUE, False, "loading across links that are not equally stiff"),
+    (planar, {**ALIKE, "bodies.1.damping": 0.1}, True, "(4.7): one direction of loading"),
+    (planar, {**ALIKE, "bodies.1.damping": [0.1, 0.2]}, False, "loading across links that are not equally damped"),
+    (planar_chain, {**ALONG_X, "bodies": [{"mass": 1.0}]}, False, "one body"),
+    (planar_chain, ALONG_X, True, "loading along one axis"),
+    (linear, SMOOTH, True, "no friction, no vertical loading"),
+    (linear, {}, False, "dry friction"),
+    (linear, law(fast=0.0, rate=10.0), False, "dry friction"),
+    (linear, OIL, False, "lubricated"),
+    (linear, {**SMOOTH, "bodies.1.damping": 0.1}, False, "damped links"),
+    (linear, {**SMOOTH, **UPRIGHT}, False, "vertical loading"),
+    (linear, {**SMOOTH, "bodies.1.period": [1e-3, 1.2]}, True, "no friction, no vertical loading"),
+    (linear, {**SMOOTH, "bodies.1.period": [5e-4, 1.2]}, False, "more than 200000 rad of the fastest vibration"),
+    (half_turn, UPRIGHT, False, "vertical loading"),
+    (half_turn, {}, True, "no vertical loading"),
+    (own_axes, UPRIGHT, False, "vertical loading"),
+    (own_axes, TWICE_SHAKEN, True, "each harmonic has its own axis"),
+    (own_axes, ALONG_X, False, "a harmonic acts along both axes, or both along one"),
+    (own_axes, {"excitation.amplitudes": [[1.0, 0.0], [1.4, 0.0]]}, False, "a harmonic acts along both axes"),
+    (no_friction, SMOOTH, True, "no friction"),
+    (no_friction, law(fast=0.0, rate=10.0), False, "friction"),
+]
+
+
+@pytest.mark.parametrize(("decide", "values", "allowed", "reason"), DECIDED)
+def test_a_scene_says_what_may_be_left_out_and_why(
+    decide: Callable[[Scene], Reduction], values: dict[str, Any], allowed: bool, reason: str
+) -> None:
+    decision = decide(FIG3.with_values(values))
+    assert bool(decision) == allowed
+    assert decision.reason.startswith(reason)
+
+
+def test_a_record_has_no_harmonics_to_leave_out() -> None:
+    """Reductions decide by amplitudes; a record taken for loading without any would be solved as if at rest."""
+    scene = load_scene("synthetic-pair").with_values(SMOOTH)
+    for reduction in (half_turn, own_axes, planar, linear):
+        assert reduction(scene) == Reduction(False, "a recorded motion: no harmonics, no phases")
+    for asked in (lambda: scene.amplitudes, lambda: reference.problem.exponents(scene)):
+        with pytest.raises(ValueError, match="recorded motion"):
+            asked()
+    assert unused_harmonics(FIG3.with_values({"excitation.amplitudes": [[1.0, 0.0], [0.4, 0.0]]})) == [1]
+
+
+def test_mu_is_the_same_where_a_symmetry_says_so() -> None:
+    for amplitudes in ([[1.0, 0.0], [0.0, 1.4]], [[1.0, 1.4], [0.0, 0.0]], [[1.0, 0.7], [-0.3, 1.2]]):
+        scene = chain(masses=[1.0, 1.0], stiffness=[[20.0, 30.0]], amplitudes=amplitudes, damping=0.03, duration=5.0)
+        turned = np.pi * np.array([[0, 0], [1, 1], [0, 1], [1, 0]])
+        mu = reference.amplification(scene, turned + (0.3, 1.1), full=True).mu
+        same = [np.allclose(other, mu[0], rtol=1e-6) for other in mu]
+        assert same == [True, True, *[bool(own_axes(scene))] * 2]
