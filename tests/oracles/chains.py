@@ -1,11 +1,13 @@
-"""Scenes for the tests, in few words, and what is said of wrong ones."""
+"""Scenes and motions for the tests, in few words, and what is said of wrong ones."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
-from reference.problem import Scene
+from reference.problem import Scene, Trajectory
 
 Rows = Sequence[Sequence[float]]
 
@@ -40,6 +42,16 @@ def chain(
             },
         }
     )
+
+
+def made_up(scene: Scene, time: NDArray[np.float64], stick: Sequence[Any] = (), **parts: Any) -> Trajectory:
+    """A motion that was not computed: at rest under one newton, but for the parts that are given."""
+    count = len(time)
+    vectors = {
+        key: np.zeros((count, len(scene.bodies), 3)) for key in ("position", "velocity", "absolute_acceleration")
+    }
+    plain = {"contact_force": np.ones(count), "status": "ok", "instant": np.nan}
+    return Trajectory(time=time, scene=scene, stick=list(stick), **(vectors | plain | parts))
 
 
 def refusal(asked: Callable[..., object], *given: Any, kind: type[Exception] = ValueError, **options: Any) -> Any:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from chains import chain
+from chains import chain, made_up
 
 import multibody
 import reference
@@ -218,16 +218,19 @@ def held(place: float, force: float, rests: int, accuracy: Accuracy | None = Non
     scene = shaken_then_still().with_values({"bodies": [{"mass": 3.0}, {"mass": 2.0, "period": [0.5, 0.5]}]})
     time = np.linspace(0.0, scene.duration, 101)
     position, velocity, acceleration = np.zeros((3, 101, 2, 3))
-    position[:, 0, 0], position[:, 1, 0] = place, 3.0 * place
+    position[:, :, 0] = place, 3.0 * place
     acceleration[:, 0, 0] = force / 3.0
     velocity[0, 0, 0] = np.sqrt(2.0 * force / 3.0)  # what friction takes is there at the start
     part = time / scene.duration
     power = 6.0 * part * (1.0 - part) * force / scene.duration
     stick = [(scene.duration * (k + 0.5) / rests, scene.duration * (k + 1.0) / rests) for k in range(rests)]
-    return Trajectory(
-        time, position, velocity, acceleration, np.full(101, 10.0 * force), stick, "ok", np.nan, scene,
-        peak=np.array([force / 3.0, 0.0]), ground=np.zeros((101, 3)), friction_power=power, accuracy=accuracy,
-    )  # fmt: skip
+    moving = {"position": position, "velocity": velocity, "absolute_acceleration": acceleration}
+    forces = {
+        "contact_force": np.full(101, 10.0 * force),
+        "peak": np.array([force / 3.0, 0.0]),
+        "friction_power": power,
+    }
+    return made_up(scene, time, stick, **moving, **forces, ground=np.zeros((101, 3)), accuracy=accuracy)
 
 
 def test_the_error_of_every_demand_is_what_the_samples_and_the_other_runs_say() -> None:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from chains import chain, refusal
+from chains import chain, made_up, refusal
 from scipy import optimize, signal
 from scipy.integrate import solve_ivp
 
@@ -18,10 +18,8 @@ DAMPING = 0.05
 
 def floor(time: np.ndarray, acceleration: np.ndarray) -> Trajectory:
     """A motion of one body whose absolute acceleration (T, 2) is known."""
-    total = np.zeros((len(time), 1, 3))
-    total[:, 0, :2] = acceleration
-    zero, scene = np.zeros_like(total), chain(duration=float(time[-1]))
-    return Trajectory(time, zero, zero.copy(), total, np.zeros(len(time)), [], "ok", np.nan, scene)
+    total = np.pad(acceleration, ((0, 0), (0, 1)))[:, None]
+    return made_up(chain(duration=float(time[-1])), time, absolute_acceleration=total)
 
 
 def harmonic(period: float, duration: float, count: int) -> Trajectory:

@@ -92,6 +92,7 @@ def test_a_motion_is_labeled_with_units(motion):
     of |= {"N": "contact_force isolator_force support_force", "s": "time"}
     assert units(data) == {name: unit for unit, names in of.items() for name in names.split()}
     assert (data.attrs["scene"], data.attrs["status"]) == ("fig4-dry", "ok")
+    assert np.isin(np.linspace(0.0, 3.0, 215), motion.time).all(), "64 instants in 0.9 s, and those of the steps"
     assert data["support_force"].shape == (len(motion.time), 0), "the equations have no single supports"
 
 

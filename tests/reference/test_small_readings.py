@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from chains import chain
+from chains import chain, made_up
 
 import reference
 from reference.measures import demands
 from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import QUANTITIES
-from reference.problem import State, Trajectory, load_scene
+from reference.problem import State, load_scene
 from reference.solver.phases import follow, stopping
 from reference.solver.record import note_stick
 
@@ -38,36 +38,28 @@ def test_units_are_those_of_the_quantities() -> None:
 
 def test_a_drift_is_against_the_body_below() -> None:
     scene = chain(masses=[1.0] * 4, stiffness=[[20.0, 20.0]] * 3, duration=1.0)
-    time, place = np.linspace(0.0, 1.0, 21), np.zeros((21, 4, 3))
-    place[:, :, 0] = [1.0, 3.0, 7.0, 8.0]
-    still = np.zeros_like(place)
-    motion = Trajectory(time, place, still, still, np.ones(21), [], "ok", np.nan, scene, peak=np.zeros(4))
+    place = np.tile(np.array([1.0, 3.0, 7.0, 8.0])[:, None] * [1.0, 0.0, 0.0], (21, 1, 1))
+    motion = made_up(scene, np.linspace(0.0, 1.0, 21), position=place, peak=np.zeros(4))
     assert [drift.value for drift in demands(motion).drift] == [2.0, 4.0, 1.0]
 
 
 def test_a_support_moves_with_the_turning_platform() -> None:
     """A support of an eccentric platform, against its place before and after the turn about the center of mass."""
-    values = {
-        "isolator.ring": None,
-        "isolator.supports": [[1.0, 0.5], [-1.0, 0.5], [0.0, -1.0]],
-        "isolator.sphere_radius": 0.05,
-    }
-    scene = load_scene("fig3-I").with_values(values | {"bodies.0.offset": [0.2, -0.1]})
-    bodies, angle, moved, center = len(scene.bodies), 0.3, np.array([0.05, -0.02]), np.array([0.2, -0.1])
-    place, turns = np.zeros((11, bodies, 3)), np.zeros((11, bodies, 3))
+    center, angle, moved = np.array([0.2, -0.1]), 0.3, np.array([0.05, -0.02])
+    places = {"isolator.ring": None, "isolator.supports": [[1.0, 0.5], [-1.0, 0.5], [0.0, -1.0]]}
+    scene = load_scene("fig3-I").with_values(places | {"bodies.0.offset": center})
+    place, turns = np.zeros((2, 11, len(scene.bodies), 3))
     place[5:, 0, :2], turns[5:, 0, 2] = moved, angle
-    still, extra = (
-        np.zeros_like(place),
-        {"turns": turns, "support_force": np.ones((11, 3)), "uplift": np.zeros((11, 3))},
-    )
-    time = np.linspace(0.0, 1.0, 11)
-    motion = Trajectory(time, place, still, still, np.ones(11), [], "ok", np.nan, scene, extra, np.zeros(bodies))
+    extra = {"turns": turns, "support_force": np.ones((11, 3)), "uplift": np.zeros((11, 3))}
+    extra["uplift"][4, 1] = 0.01
+    answer = demands(made_up(scene, np.linspace(0.0, 1.0, 11), position=place, extra=extra))
     turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
     assert scene.support_places is not None
     expected = max(np.linalg.norm(center + moved + turn @ (at - center) - at) for at in scene.support_places)
-    answer = demands(motion)
     assert answer.support_displacement is not None
     assert answer.support_displacement.value == pytest.approx(expected, rel=1e-12)
+    assert answer.uplift is not None
+    assert answer.uplift.value == 0.01
 
 
 def test_dampers_take_the_energy_of_a_body_on_a_held_platform() -> None:
@@ -86,14 +78,10 @@ def test_dampers_take_the_energy_of_a_body_on_a_held_platform() -> None:
 @pytest.mark.parametrize("share", [0.6, 0.72, 0.9])
 def test_a_spectrum_is_read_between_the_steps(share: float) -> None:
     """A rigid floor jumps by 1 for a part of a period: the oscillator swings to 2 once, at half a period."""
-    period = 1.7
-    time = np.array([0.0, 1.0, np.nextafter(1.0, 2.0), 1.0 + share * period])
-    total = np.zeros((4, 1, 3))
+    time, total = np.array([0.0, 1.0, np.nextafter(1.0, 2.0), 1.0 + share * 1.7]), np.zeros((4, 1, 3))
     total[2:, 0, 0] = 1.0
-    scene = chain(duration=float(time[-1]))
-    zero = np.zeros_like(total)
-    motion = Trajectory(time, zero, zero, total, np.zeros(4), [], "ok", np.nan, scene)
-    found = reference.floor_spectra(motion, [period], 0.0).acceleration[0, 0, 0]
+    motion = made_up(chain(duration=float(time[-1])), time, absolute_acceleration=total)
+    found = reference.floor_spectra(motion, [1.7], 0.0).acceleration[0, 0, 0]
     assert found == pytest.approx(2.0, rel=1e-4)
 
 

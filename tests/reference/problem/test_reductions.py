@@ -117,7 +117,7 @@ def test_a_record_has_no_harmonics_to_leave_out() -> None:
 def test_mu_is_the_same_where_a_symmetry_says_so() -> None:
     for amplitudes in ([[1.0, 0.0], [0.0, 1.4]], [[1.0, 1.4], [0.0, 0.0]], [[1.0, 0.7], [-0.3, 1.2]]):
         scene = chain(masses=[1.0, 1.0], stiffness=[[20.0, 30.0]], amplitudes=amplitudes, damping=0.03, duration=5.0)
-        turned = np.pi * np.array([[0, 0], [1, 1], [0, 1], [1, 0]])
-        mu = reference.amplification(scene, turned + (0.3, 1.1), full=True).mu
+        phases = np.array([0.3, 1.1]) + np.pi * np.array([[0, 0], [1, 1], [0, 1], [1, 0]])
+        mu = reference.amplification(scene, phases, full=True).mu
         same = [np.allclose(other, mu[0], rtol=1e-6) for other in mu]
         assert same == [True, True, *[bool(own_axes(scene))] * 2]
