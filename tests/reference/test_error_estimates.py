@@ -19,15 +19,11 @@ def test_an_error_counts_what_equal_steps_between_knots_miss(period):
     for seed in range(8):
         frequencies, phases = np.random.default_rng(seed).uniform([[0.5], [0.0]], [[2.0], [6.0]], (2, 2))
         waves = np.sin(np.pi * time / 4.0) ** 2 * np.sin(2.0 * np.pi * np.outer(frequencies, time) + phases[:, None])
-        scene = Scene.model_validate(
-            {
-                "title": "at rest under a record",
-                "duration": 4.0,
-                "isolator": {"radius": 0.8, "friction": 0.9},
-                "bodies": [{"mass": 1.0}, {"mass": 0.5, "period": [period, 1.3 * period]}],
-                "excitation": {"record": "waves.csv", "samples": np.column_stack([time, *waves, 0.0 * time]).tolist()},
-            }
-        )
+        links = {"mass": 0.5, "period": [period, 1.3 * period]}
+        scene = FIG3.with_values({
+            "isolator": {"radius": 0.8, "friction": 0.9}, "bodies": [{"mass": 1.0}, links], "duration": 4.0,
+            "excitation": {"record": {"time": time, "acceleration": waves.T}},
+        })  # fmt: skip
         found = reference.amplification(scene, [(0.0, 0.0)])
         truth = reference.amplification(scene, [(0.0, 0.0)], tolerance=1e-9)
         assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error), seed
@@ -113,15 +109,8 @@ def test_a_point_does_not_depend_on_its_company():
 
 def test_what_is_known_remains_where_a_finer_run_fails():
     """A platform of a millionth of the mass: rounding ends the steps of the runs that a tolerance of 1e-8 asks for."""
-    scene = chain(
-        0.25,
-        0.1,
-        [2e-6, 2.0],
-        [[35.1, 54.8]],
-        amplitudes=[[2.0, 0.0], [0.0, 2.0]],
-        decay=[1.0 / 3.0, 0.3 / 1.1],
-        duration=1.5,
-    )
+    loading = {"amplitudes": 2.0 * np.eye(2), "decay": [1.0 / 3.0, 0.3 / 1.1]}
+    scene = chain(0.25, 0.1, [2e-6, 2.0], [[35.1, 54.8]], **loading, duration=1.5)
     phases = [(0.3, 1.1), (2.0, 0.7)]
     rough, found = (reference.amplification(scene, phases, "small", tolerance=tolerance) for tolerance in (1e-6, 1e-8))
     assert set(found.status) == {"tolerance not met"}
