@@ -58,24 +58,6 @@ def test_phases_at_which_the_rim_is_reached_are_told_as_by_a_run():
     np.testing.assert_array_equal(reduced.instant, full.instant)
 
 
-@pytest.mark.parametrize(
-    "outside",
-    [
-        {"friction": 1e-12},
-        {"lubrication": 1e-12},
-        {"amplitudes": [[0.3, 0.1], [-0.2, 0.2], [0.0, 1e-12]]},
-        {"stiffness": [[2e9, 30.0]]},
-    ],
-    ids=lambda change: next(iter(change)),
-)
-def test_a_scene_just_outside_is_integrated(outside, monkeypatch):
-    monkeypatch.setattr(surface, "frictionless_peaks", None)
-    scene = frictionless(**outside)
-    assert not linear(scene)
-    assert reference.amplification(scene, PHASES[:1], equations="small").status[0] == "ok"
-    assert linear(frictionless())
-
-
 def test_full_and_the_exact_equations_are_integrated(monkeypatch):
     monkeypatch.setattr(surface, "frictionless_peaks", None)
     assert reference.amplification(frictionless(), PHASES[:1], equations="small", full=True).status[0] == "ok"

@@ -70,37 +70,33 @@ def test_a_maximum_in_a_rougher_place_is_climbed_first(monkeypatch: pytest.Monke
     assert starts[:2].tolist() == (phase_grid(8)[[5 * 8 + 3, 1 * 8 + 2]]).tolist()
 
 
-def test_a_smooth_maximum_is_found_to_its_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    worst = reference.worst_phases(scene_with(monkeypatch, hill, level))
-    assert worst.kind == "smooth"
-    assert abs(worst.value - 4.0) <= worst.error
-    assert np.allclose(worst.phases, TOP, atol=1e-5)
+def beside_a_gap(phases: Array) -> Array:
+    return np.where(np.cos(phases - TOP - 2.0).sum(axis=1) > 1.0, np.nan, hill(phases))
+
+
+@pytest.mark.parametrize(
+    ("numerator", "denominator", "kind", "value"),
+    [
+        (hill, level, "smooth", 4.0),
+        (beside_a_gap, level, "smooth", 4.0),
+        (hill, lambda phases: 1.0 + 3.0 * abs(across(phases)), "kink", highest_on_the_edge()),
+        (lambda phases: hill(phases) - (across(phases) < 0.0), level, "jump", highest_on_the_edge()),
+    ],
+    ids=["smooth", "points without an answer", "oblique edge", "oblique jump"],
+)
+def test_a_known_maximum_is_found_to_its_error(
+    monkeypatch: pytest.MonkeyPatch, numerator: Surface, denominator: Surface, kind: str, value: float
+) -> None:
+    worst = reference.worst_phases(scene_with(monkeypatch, numerator, denominator))
+    assert worst.kind == kind
+    assert abs(worst.value - value) <= worst.error
+    if kind == "smooth":
+        assert np.allclose(worst.phases, TOP, atol=1e-5)
+    else:
+        assert abs(across(np.array([worst.phases]))[0]) < 1e-6
+    assert (kind == "jump") == (np.dot(worst.side, [1.0, 2.0]) > 0.0)
     monkeypatch.setattr(sys.modules[__name__], "ERROR", 0.01)
-    assert 0.01 <= reference.worst_phases(scene_with(monkeypatch, hill, level)).error < 0.03
-    from_two = reference.worst_phases(scene_with(monkeypatch, hill, level), starts=[TOP + 0.3, TOP - 0.4])
-    assert (from_two.climbs, from_two.reached, np.isnan(from_two.runner_up)) == (2, 2, True)
-
-
-def test_a_maximum_on_an_oblique_edge_is_found_to_its_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    worst = reference.worst_phases(scene_with(monkeypatch, hill, lambda phases: 1.0 + 3.0 * abs(across(phases))))
-    assert worst.kind == "kink"
-    assert abs(worst.value - highest_on_the_edge()) <= worst.error
-    assert abs(across(np.array([worst.phases]))[0]) < 1e-6
-
-
-def test_a_maximum_beside_a_jump_is_approached_from_its_side(monkeypatch: pytest.MonkeyPatch) -> None:
-    worst = reference.worst_phases(scene_with(monkeypatch, lambda phases: hill(phases) - (across(phases) < 0.0), level))
-    assert worst.kind == "jump"
-    assert np.dot(worst.side, [1.0, 2.0]) > 0.0
-    assert abs(worst.value - highest_on_the_edge()) <= worst.error
-
-
-def test_points_without_an_answer_do_not_hide_the_maximum(monkeypatch: pytest.MonkeyPatch) -> None:
-    def partly(phases: Array) -> Array:
-        return np.where(np.cos(phases - TOP - 2.0).sum(axis=1) > 1.0, np.nan, hill(phases))
-
-    worst = reference.worst_phases(scene_with(monkeypatch, partly, level))
-    assert abs(worst.value - 4.0) <= worst.error
+    assert 0.01 <= reference.worst_phases(scene_with(monkeypatch, numerator, denominator)).error < 0.03
 
 
 def test_a_lower_maximum_is_the_runner_up_and_every_pair_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:

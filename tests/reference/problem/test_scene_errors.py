@@ -45,6 +45,8 @@ BROKEN = [
     ("[isolator] -> [acceptance]\nmedian = -1.0\n[isolator]", "acceptance.median", -1.0, "greater"),
     ("[isolator] -> [isolator", "file", None, "valid TOML"),
     ("duration = 2.0\nduration = 3.0", "file", None, "valid TOML"),
+    (f"duration = {11 * '['}2.0{11 * ']'}", "file", None, "at most 10 tables and lists within one another"),
+    (f"duration = {9 * '['}2.0{9 * ']'}", "duration", None, "number"),
     # links
     ("mass = 3.0 -> mass = 3.0\nperiod = [1.0, 1.0]", "bodies.0.period", None, "platform"),
     ("mass = 3.0 -> mass = 3.0\nstiffness = [1.0, 1.0]", "bodies.0.stiffness", None, "platform"),
