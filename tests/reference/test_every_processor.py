@@ -1,8 +1,9 @@
-"""The compiled solver gives the same numbers on every processor and in every process."""
+"""The compiled solver gives the same numbers on every processor, in every process and in threads."""
 
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -74,3 +75,28 @@ def test_a_cache_folder_holds_a_build_per_version_of_the_source(tmp_path: Path) 
     build = build_folder(ROOT / "reference" / "solver")
     assert build is not None
     assert chosen.name == build.name
+
+
+ASKED = """
+import reference
+result = reference.amplification(reference.load_scene("fig4-dry"), [(0.3, 1.1), (2.0, 0.7)], "small", tolerance=1e-4)
+mu = result.mu.ravel().tolist()
+"""
+
+
+def answer(*_: object) -> list[float]:
+    names: dict[str, list[float]] = {}
+    exec(ASKED, names)
+    return names["mu"]
+
+
+def test_a_script_on_standard_input_and_threads_have_the_same_answer() -> None:
+    """Without a guard for the main module."""
+    words, environment = ASKED + "print(*mu)", {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        [sys.executable, "-"], input=words, cwd=ROOT, env=environment, capture_output=True, text=True, check=True
+    )
+    expected = answer()
+    assert [float(word) for word in done.stdout.split()] == expected
+    with ThreadPoolExecutor(2) as pool:
+        assert list(pool.map(answer, range(2))) == [expected] * 2

@@ -157,3 +157,4 @@ def test_a_terminal_and_a_notebook_show_scene_surface_and_motion(motion):
     table = scene._repr_html_().removesuffix("</tbody></table>")
     assert "7 s: a &lt; b; friction coefficient at most 0.07</p>" in table
     assert cells(table) == [["1", "3", "", ""], ["2", "2", "150, 110", "5, 6"]]
+    assert "; lubrication 0.4 s/m</p>" in chain(lubrication=0.4)._repr_html_()

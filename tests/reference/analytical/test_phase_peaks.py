@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from reference.analytical.phase_peaks import Series, _bounds, _turns, largest, reached
+from reference.analytical.phase_peaks import Series, largest, reached
 
 INTERVALS, ORDERS, HALF, DENSE = 40, 14, 0.05, 41
 
@@ -43,19 +43,6 @@ def test_the_largest_is_that_of_many_samples(seed: int) -> None:
     np.testing.assert_allclose(peaks, seen, rtol=1e-3)  # samples lie 2.5e-3 apart, at 10 rad/s or less of |v|^2
     assert np.all(doubts <= 1e-10 * peaks)
     assert np.all(peaks <= series.envelope)
-
-
-@settings(max_examples=30, deadline=None)
-@given(st.integers(0, 10**6))
-def test_no_length_exceeds_the_bound_of_its_interval(seed: int) -> None:
-    rates, weights, series, phases = example(seed)
-    seen = sampled(rates, weights, phases).max(axis=2)
-    least, most = np.empty((2, INTERVALS))
-    for m, turn in enumerate(_turns(phases)):
-        for body in range(2):
-            _bounds(series.terms, series.rest, turn, body, least, most)
-            assert np.all(seen[m, :, body] <= most * (1.0 + 1e-12))
-            assert np.all(least <= most)
 
 
 def test_a_bound_may_be_reached_only_close_to_the_largest():

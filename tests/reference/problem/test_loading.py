@@ -73,10 +73,10 @@ def test_displacement_keeps_its_digits_at_small_times():
 @pytest.mark.parametrize("decay", [(0.0, 0.0), (0.3, 2.0)])
 def test_ground_peak_is_the_maximum_of_dense_samples(duration, decay):
     """Between samples |u|^2 rises by at most half its curvature times (step / 2)^2."""
-    phases = np.random.default_rng(5).uniform(0.0, 6.3, (60, 2))
+    phases = np.random.default_rng(5).uniform(0.0, 6.3, (20, 2))
     for amplitudes in (((1.0, 0.4), (-0.3, 1.2), (0.2, 0.7)), ((0.0, 2.0), (0.0, 0.0)), ((1.0, 0.0), (0.0, 1.0))):
         load = scene(amplitudes, (0.4, 0.55), decay, duration)
-        times = np.linspace(0.0, duration, 20_001)
+        times = np.linspace(0.0, duration, 4_001)
         envelope, fastest = np.abs(amplitudes).sum(), 2.0 * np.pi / 0.4 + max(decay)
         for phase, peak in zip(phases, ground_peak(load, phases)):
             sampled = np.sqrt((ground_acceleration(load, phase, times) ** 2).sum(axis=1).max())

@@ -105,13 +105,10 @@ def test_the_peak_is_at_a_knot_or_at_the_end(values, duration):
     assert dense >= peak - duration / 2000 * 10.0 * np.sqrt(3.0) / 0.2
 
 
-def test_the_amplitude_is_the_largest_sample(folder):
+def test_the_amplitude_is_the_largest_sample_and_the_hash_that_of_the_samples(folder):
     scene = load_scene(written(folder, 'record = "a.csv"'), amplitude=8.0)
     assert np.abs(scene.record[:, 1:]).max() == pytest.approx(8.0, rel=1e-15)
     assert loading_period(scene) == pytest.approx(2.0 * np.pi * 4.0 / 50.0)
-
-
-def test_the_hash_is_of_the_samples_not_of_their_file(folder):
     (folder / "copy.csv").write_text("# another name\n" + CSV)
     one, same, other = (load_scene(written(folder, f'record = "{name}.csv"')) for name in ("a", "copy", "b"))
     assert one.digest() == same.digest() != other.digest()

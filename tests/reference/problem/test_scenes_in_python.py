@@ -50,30 +50,24 @@ def test_a_record_from_arrays_is_that_of_a_file_and_counts_time_from_its_start(t
     assert Scene.model_validate(table(record=str(tmp_path / "a.csv"))).digest() == scene.digest()
 
 
-@pytest.mark.parametrize("axes", [1, 2, 3])
-def test_accelerations_are_along_x_y_and_z_in_this_order(axes):
-    values = np.arange(1.0, 13.0).reshape(4, 3)[:, :axes]
-    scene = recorded(acceleration=values, duration=0.2)
-    np.testing.assert_array_equal(scene.record[:4, 1 : 1 + axes], values)
-    assert not scene.record[:, 1 + axes :].any()
-    assert scene.duration == 0.2
+def test_accelerations_are_along_x_y_and_z_in_this_order():
+    for axes in (1, 2, 3):
+        values = np.arange(1.0, 13.0).reshape(4, 3)[:, :axes]
+        scene = recorded(acceleration=values, duration=0.2)
+        np.testing.assert_array_equal(scene.record[:4, 1 : 1 + axes], values)
+        assert not scene.record[:, 1 + axes :].any()
+        assert scene.duration == 0.2
 
 
-def test_the_record_of_a_scene_is_changed_by_arrays():
+def test_the_record_of_a_scene_is_changed_by_arrays_and_by_nothing_else():
     record = {"time": TIME, "acceleration": 2.0 * ALONG_X}
     np.testing.assert_array_equal(recorded().with_values({"excitation.record": record}).record[:, 1], 2.0 * ALONG_X)
     replaced = FIG3.with_values({"excitation": {"record": record, "scale": 0.5}})
+    record["acceleration"][:] = 7.0
     np.testing.assert_array_equal(replaced.record[:, 1], ALONG_X)
     assert replaced.duration == FIG3.duration
-
-
-def test_what_was_given_may_change_and_the_samples_may_not():
-    values = ALONG_X.copy()
-    scene = recorded(acceleration=values)
-    values[:] = 7.0
-    np.testing.assert_array_equal(scene.record[:, 1], ALONG_X)
     with pytest.raises(ValueError, match="read-only"):
-        scene.excitation.samples[0, 1] = 7.0
+        replaced.excitation.samples[0, 1] = 7.0
 
 
 @pytest.mark.parametrize(
