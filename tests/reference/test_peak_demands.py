@@ -28,11 +28,12 @@ def same(first: PeakDemands, second: PeakDemands) -> None:
             assert (theirs.error <= 1e-2 * theirs.value).all(), name
 
 
-def test_a_surface_has_the_demands_of_its_motions() -> None:
+@pytest.mark.parametrize("law", [{"regularization": V_REG}, {"equations": "small", "rest_condition": "printed"}])
+def test_a_surface_has_the_demands_of_its_motions(law) -> None:
     scene, phases = reference.load_scene("fig3-I"), phase_grid(2)
-    surface = reference.peak_demands(scene, phases, regularization=V_REG)
+    surface = reference.peak_demands(scene, phases, **law)
     for row, phase in enumerate(phases):
-        single = demands(reference.trajectory(scene, phase, regularization=V_REG))
+        single = demands(reference.trajectory(scene, phase, **law))
         for name, estimates in surface.items():
             value = getattr(single, name)
             listed = [value] if isinstance(value, Estimate) else value

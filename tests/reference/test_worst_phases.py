@@ -21,6 +21,7 @@ Surface = Callable[[Array], Array]
 
 TOP = np.array([1.234, 4.321])  # of a smooth hill, rad
 ERROR = 1e-12  # of every mu
+asked: list[dict[str, object]] = []  # options of the equations
 EDGE = np.array([0.9, 4.6])  # on a line of slope -1/2 beside it, rad
 
 
@@ -43,7 +44,10 @@ def highest_on_the_edge() -> float:
 def scene_with(monkeypatch: pytest.MonkeyPatch, numerator: Surface, denominator: Surface) -> Scene:
     """A scene without symmetries whose mu_1 is the quotient of two functions of the phases (M, 2), rad."""
 
+    asked.clear()
+
     def amplification(scene: Scene, phases: Array, **options: object) -> Amplification:
+        asked.append(options)
         mu = (numerator(phases) / denominator(phases))[:, None]
         ok, never = np.full(len(phases), "ok"), np.full(len(phases), np.nan)
         return Amplification(mu, np.full_like(mu, ERROR), ok, never, 0.0)
@@ -113,7 +117,10 @@ def test_a_lower_maximum_is_the_runner_up_and_every_pair_is_counted(monkeypatch:
     assert (worst.value, worst.runner_up) == (pytest.approx(4.0, abs=1e-6), pytest.approx(3.5, abs=1e-2))
     assert (worst.climbs, worst.reached, worst.evaluations) == (4, 2, sum(computed))
     shifted = scene_with(monkeypatch, lambda phases: hills(phases - np.pi), level)
-    assert all(0.0 <= phase < 2.0 * np.pi for phase in reference.worst_phases(shifted).phases)
+    law = {"equations": "small", "regularization": None, "cutoff": 1e-3}
+    assert all(0.0 <= phase < 2.0 * np.pi for phase in reference.worst_phases(shifted, tolerance=1e-7, **law).phases)
+    assert asked[0] == law | {"tolerance": 1e-4}, "the grid"
+    assert asked[-1] == law | {"tolerance": 1e-7}
 
 
 def test_a_wrong_argument_and_a_record_are_refused_in_one_line() -> None:
