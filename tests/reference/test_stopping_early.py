@@ -88,11 +88,9 @@ def test_both_runs_stop_early_and_full_ones_do_not(monkeypatch: pytest.MonkeyPat
     last_peak = motion.time[size.argmax(axis=0)].max()
     assert last_peak < coarser < last_peak + 0.05 * scene.duration < 0.25 * scene.duration
     assert coarser < finer < 0.25 * scene.duration
-    np.testing.assert_allclose(ends_of_runs(monkeypatch, scene, full=True), scene.duration, rtol=1e-9)
-    early, whole = (reference.amplification(scene, [(0.3, 1.1)], full=full) for full in (False, True))
-    np.testing.assert_array_equal(early.mu, whole.mu)
-    np.testing.assert_array_equal(early.error, whole.error)
-    np.testing.assert_array_equal(early.cap_share, whole.cap_share)
+    # a rough run knows the consistent condition for rest alone
+    for asked in ({"full": True}, {"full": False, "rest_condition": "printed"}):
+        np.testing.assert_allclose(ends_of_runs(monkeypatch, scene, **asked), scene.duration, rtol=1e-9)
 
 
 def test_a_peak_at_a_stop_is_not_lost_where_a_small_drive_turns() -> None:
@@ -110,11 +108,3 @@ def test_a_peak_at_a_stop_is_not_lost_where_a_small_drive_turns() -> None:
     phases = np.array([(4.811469561084016, 4.148635980663768)])
     early, whole = (peaks_at(system, phases, asked, STEP_TOLERANCE) for asked in (demand._replace(early=True), demand))
     np.testing.assert_allclose(early.value, whole.value, rtol=1e-12)
-
-
-def test_no_run_looks_ahead_under_the_printed_condition_for_rest(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A rough run knows the consistent one."""
-    scene = load_scene("fig3-I")
-    np.testing.assert_allclose(
-        ends_of_runs(monkeypatch, scene, full=False, rest_condition="printed"), scene.duration, rtol=1e-9
-    )

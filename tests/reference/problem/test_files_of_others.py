@@ -57,15 +57,12 @@ def test_a_file_that_is_no_scene_is_not_quoted(tmp_path: Path) -> None:
         assert (said.key, SECRET in str(said)) == ("file", False)
 
 
-def test_a_link_to_a_regular_file_is_followed(tmp_path: Path) -> None:
+def test_a_file_is_read_up_to_the_largest_size_and_a_link_followed(tmp_path: Path) -> None:
     (tmp_path / "a").write_bytes(b"time [s],ax [g]\n0,0\n1,1\n")
     (tmp_path / "a.csv").symlink_to(tmp_path / "a")
     (tmp_path / "scene").write_text(SCENE.format(record='"a.csv"'), encoding="utf-8")
     (tmp_path / "mine.toml").symlink_to(tmp_path / "scene")
     assert load_scene(tmp_path / "mine.toml").duration == 1.0
-
-
-def test_a_file_is_read_up_to_the_largest_size(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(10 * b"x")
     assert read_file(tmp_path / "file", 10) == 10 * b"x"
     with pytest.raises(OSError, match="larger than"):

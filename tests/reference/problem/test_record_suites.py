@@ -33,7 +33,7 @@ def written(folder, record):
     return folder / "mine.toml"
 
 
-def test_motions_of_a_directory_are_numbered_and_labeled_by_name(folder):
+def test_motions_of_a_directory_beside_the_scene_are_numbered_and_labeled_by_name(folder, monkeypatch):
     scenes = [load_scene(written(folder, f'suite = "suite", motion = {motion}')) for motion in (1, 2, 3)]
     assert [scene.record[1, 2] for scene in scenes] == [-2.0, -3.0, -1.0]
     assert [scene.duration for scene in scenes] == [3.0, 4.0, 2.0]
@@ -41,6 +41,10 @@ def test_motions_of_a_directory_are_numbered_and_labeled_by_name(folder):
     assert scenes[0].excitation.files == "suite 1"
     family = load_family(written(folder, 'suite = "suite", motion = "all"'))
     assert (family.labels, family.values) == ({"excitation.record.motion": ("a", "b", "c")}, (1, 2, 3))
+    monkeypatch.chdir(folder)
+    second = scenes[0].with_values({"excitation.record": {"suite": "suite", "motion": 2}})
+    assert second.record[1, 2] == -3.0
+    assert Scene.model_validate(second.model_dump(exclude_none=True)) == second
 
 
 def test_components_of_a_motion_are_told_by_the_names_of_their_files(folder):
@@ -79,14 +83,6 @@ def test_files_of_no_suite_are_one_line(folder):
         "bad": "b.csv: line 2: 'one': must be a number",
     }.items():
         assert rule in refusal(load_scene, written(folder, f'suite = "{suite}", motion = 1'), kind=SceneError).rule
-
-
-def test_a_suite_is_relative_to_the_scene_file(folder, monkeypatch):
-    scene = load_scene(written(folder, 'suite = "suite", motion = 1'))
-    monkeypatch.chdir(folder)
-    second = scene.with_values({"excitation.record": {"suite": "suite", "motion": 2}})
-    assert second.record[1, 2] == -3.0
-    assert Scene.model_validate(second.model_dump(exclude_none=True)) == second
 
 
 @pytest.mark.parametrize(
