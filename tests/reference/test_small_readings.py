@@ -93,7 +93,9 @@ def test_the_error_of_a_peak_counts_the_other_run() -> None:
         assert accuracy is not None
         (other,), (share,) = accuracy.coarser, accuracy.share
         left = accuracy.peak_error - accuracy.floor * motion.peak
-        assert (left >= share * np.abs(motion.peak - other.peak) * (1.0 - 1e-6)).all()
+        reading = left - share * np.abs(motion.peak - other.peak)
+        assert (reading >= -1e-6 * left).all()
+        assert reading[1] > 1e-5 or phase != (2.0, 0.7), "both runs read this peak inside a long step"
 
 
 def test_bodies_above_have_the_arc_s_vertical_part(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -67,7 +67,7 @@ def test_a_record_is_read_beside_its_scene_and_scaled(folder, monkeypatch):
 
 def test_between_samples_the_acceleration_is_linear(folder):
     scene = load_scene(written(folder, 'record = "a.csv"'))
-    time = np.linspace(0.0, 0.8, 33)
+    time = np.linspace(-0.2, 0.8, 41)
     knots = np.array(KNOTS)
     expected = np.column_stack([np.interp(time, knots[:, 0], knots[:, k], left=0.0, right=0.0) for k in (1, 2, 3)])
     assert ground_acceleration(scene, ANY, time) == pytest.approx(expected, abs=1e-14)
