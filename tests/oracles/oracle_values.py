@@ -7,6 +7,7 @@ one and so an upper estimate for the finer one that is kept.
 
 import json
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -32,10 +33,7 @@ def solved(case: Case) -> dict[str, Any]:
     fine = answer(case, STIFF_FINE if stiff else FINE)
     return {
         "name": case.name,
-        "scene": case.scene,
-        "phase": list(case.phase),
-        "equations": case.equations,
-        "regularization": case.regularization,
+        **asdict(case),
         "cutoff": list(CUTOFFS) if case in SET_VALUED else [0.0],
         "mu": fine.mu.tolist(),
         "error": np.maximum(np.abs(fine.mu - coarse.mu), 1e-12).tolist(),
@@ -58,14 +56,7 @@ def main(names: list[str]) -> None:
             print(f"{case.name}: {fault!r}", flush=True)
             continue
         kept = known[case.name]
-        print(
-            case.name,
-            kept["mu"][0],
-            np.max(kept["error"]),
-            f"swing {kept['swing']:.3f}",
-            len(kept["rests"]),
-            flush=True,
-        )
+        print(case.name, kept["mu"][0], np.max(kept["error"]), kept["swing"], len(kept["rests"]), flush=True)
         ordered = [known[c.name] for c in CASES if c.name in known]
         STORE.write_text("[\n" + ",\n".join(json.dumps(entry) for entry in ordered) + "\n]\n")
 

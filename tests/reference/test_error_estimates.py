@@ -98,15 +98,6 @@ def test_a_run_of_fig3_takes_few_steps():
     assert peaks_at(system, phase_grid(8) + 0.1, demand, 1e-5).steps.mean() <= 170.0
 
 
-def test_a_point_does_not_depend_on_its_company():
-    scene, phases = FIG3, phase_grid(4)
-    whole = reference.amplification(scene, phases)
-    for m in (0, 7, 15):
-        alone = reference.amplification(scene, phases[m : m + 1])
-        np.testing.assert_array_equal(alone.mu[0], whole.mu[m])
-        np.testing.assert_array_equal(alone.error[0], whole.error[m])
-
-
 def test_what_is_known_remains_where_a_finer_run_fails():
     """A platform of a millionth of the mass: rounding ends the steps of the runs that a tolerance of 1e-8 asks for."""
     loading = {"amplitudes": 2.0 * np.eye(2), "decay": [1.0 / 3.0, 0.3 / 1.1]}

@@ -5,7 +5,7 @@ import pytest
 from heated_motion import heated_motion, temperature_rise
 
 import reference
-from reference.problem import DryFriction, State, load_scene
+from reference.problem import DryFriction, load_scene
 from reference.problem.friction import Heat
 from reference.solver.collocation import NODES
 from reference.solver.heating import warm
@@ -105,27 +105,6 @@ def test_what_the_published_sum_of_heat_tends_to_is_solved():
     rough, fine = (summed(LAWS[0], 5e-3 / parts)[200 * parts] / solved - 1.0 for parts in (1, 64))
     assert 0.01 < rough < 0.04
     assert fine == pytest.approx(rough / 8.0, abs=0.1 * rough / 8.0)
-
-
-def test_a_slide_on_a_plane_warms_like_the_root_of_time():
-    """Constant flux q: T - T0 = 2 sqrt(D t / pi) q / k; its effect on the speed is 2/3 t of that on the friction."""
-    table = {"contact_radius": 1.0, "conductivity": 100.0, "diffusivity": 1e-5}
-    scene = load_scene("fig3-I").with_values({
-        "isolator.period": None, "isolator.radius": np.inf, "duration": 1e-3, "excitation.scale": 1e-9,
-        "isolator.friction": {"slow": 0.1, "heating": table}, "isolator.supports": None, "isolator.ring": None,
-        "isolator.sphere_radius": None, "bodies": [{"mass": 1e6}],
-    })  # fmt: skip
-    cold = scene.with_values({"isolator.friction.heating.conductivity": 1e4})
-    start, times = State(np.zeros((1, 2)), np.array([[1.0, 0.0]])), np.array([2.5e-4, 1e-3])
-    speed, without = (
-        reference.trajectory(each, PHASE, tolerance=1e-10, initial=start, times=times).velocity[:, 0, 0]
-        for each in (scene, cold)
-    )
-    k_t, gravity = 0.79 * (0.7**0.4 + 0.4), 9.80665
-    flux = 0.1 * k_t * 1e6 * gravity / np.pi
-    slope = 0.79 * 0.02 * np.log(0.7) * 0.7**0.4
-    rise = 2.0 * np.sqrt(1e-5 * times / np.pi) * flux * (1.0 / 100.0 - 1.0 / 1e4)
-    np.testing.assert_allclose(speed - without, -0.1 * gravity * slope * rise * times * 2.0 / 3.0, rtol=5e-3)
 
 
 def test_heat_and_motion_on_a_plane_settle():

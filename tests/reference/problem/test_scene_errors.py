@@ -6,7 +6,7 @@ import pytest
 from chains import refusal
 from scene_text import GOOD, edited
 
-from reference.problem import SceneError, builtin_scenes, load_scene, parse_scene
+from reference.problem import SceneError, builtin_scenes, example_scenes, load_scene, parse_scene
 
 CENTER = "bodies: center of mass of all [x, y] in m"
 BARS = "bending_stiffness = 1, length = 1"
@@ -94,15 +94,34 @@ def test_an_impossible_amplitude_is_refused():
     assert str(refusal(silent.with_amplitude, 1.0)).startswith("mine: excitation.amplitudes = 0.0: all entries are 0")
 
 
+BUILT_IN = {  # law of friction, periods of the link, amplitudes
+    "fig3-I": ("friction", 0.1, [1.5, 1.2], [[1, 0], [0, 1], [0, 0]]),
+    "fig3-II": ("friction", 0.1, [1.5, 1.2], [[1, 1], [1, 1], [0, 0]]),
+    "fig4-dry": ("friction", 0.1, [1.5, 1.5], [[1, 1], [1, 1], [0, 0]]),
+    "fig4-viscous": ("lubrication", 0.5, [1.5, 1.5], [[1, 1], [1, 1], [0, 0]]),
+    "synthetic-pair": ("friction", 0.1, [1.5, 1.2], None),
+    "synthetic-triple": ("friction", 0.1, [1.5, 1.2], None),
+}
+
+
 def test_built_in_scenes_are_the_paper_s():
-    assert builtin_scenes() == ["fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"]
-    for name in builtin_scenes():
+    assert builtin_scenes() + example_scenes() == list(BUILT_IN)
+    for name, (law, coefficient, periods, amplitudes) in BUILT_IN.items():
         scene = load_scene(name)
-        assert scene.name == name
-        assert scene.duration == 20.0
-        assert scene.total_mass / scene.masses[0] == 2.0
-        assert scene.excitation.periods == [0.9, 1.1]
-        assert scene.excitation.decay == pytest.approx([0.3 / 0.9, 0.3 / 1.1], rel=1e-15)
+        platform, upper = scene.bodies
+        assert (scene.name, scene.duration) == (name, 16.0 if name == "synthetic-triple" else 20.0)
+        assert (platform.mass, upper.mass, upper.period) == (1.0, 1.0, periods)
+        assert (platform.height, upper.height) == (0.2, 1.2)
+        assert platform.size == upper.size == [2.0, 2.0, 0.2]
         assert scene.radius == pytest.approx(9.81 / (4.0 * 3.141592653589793**2), rel=1e-15)
-        assert scene.lubricated == (name == "fig4-viscous")
-        assert scene.amplitudes[:2].tolist() == ([[1, 0], [0, 1]] if name == "fig3-I" else [[1, 1], [1, 1]])
+        geometry = {"period": 1.0, "supports": 4, "ring": 1.0, "sphere_radius": 0.05}
+        assert scene.isolator.model_dump(exclude_none=True) == {**geometry, law: coefficient}
+        close = 1e-4 if amplitudes else 1e-3
+        limits = {"median": close, "maximum": 1e-3, "ratio": 2.0, "closure": 1e-12, "failed": 0}
+        assert scene.acceptance.model_dump(exclude_none=True) == limits
+        if amplitudes:
+            assert scene.excitation.periods == [0.9, 1.1]
+            assert scene.excitation.decay == pytest.approx([0.3 / 0.9, 0.3 / 1.1], rel=1e-15)
+            assert scene.amplitudes.tolist() == amplitudes
+        else:
+            assert scene.excitation.scale == 1.0
