@@ -23,6 +23,7 @@ DEATHS = TESTS + "runner/test_sweep.py::test_"
 CACHED = TESTS + "runner/test_cache.py::test_"
 FILES = TESTS + "runner/test_users_files.py::test_"
 BESIDE = TESTS + "report/test_results_beside.py::test_"
+RECORDED = TESTS + "report/test_recorded_report.py::test_the_report_says_what_was_last_read"
 OF = TESTS + "analyses/test_"
 
 # fmt: off
@@ -166,7 +167,7 @@ MISTAKES = (
             (RECORDED,)),
     Mistake(ANALYSES + "demands/section.html.j2", "if value.probability in (0.5, 0.84)",
             "if value.probability in (0.16, 0.84)", "16 % is in the column of the median.",
-            (OF + "demand_surfaces.py::test_the_report_shows_them_where_they_are_asked_for",)),
+            (RECORDED,)),
     Mistake(ANALYSES + "ensemble/section.html.j2", "{% for size in (each.largest, each.like_for_like, each.errors) %}",
             "{% for size in (each.largest, each.errors, each.like_for_like) %}",
             "Error and like-for-like difference are swapped.",
@@ -202,7 +203,7 @@ MISTAKES = (
             (OF + "measured_peaks.py::test_what_is_not_known_exceeds_nothing",)),
     Mistake(REPORT + "plots.py", '("drift", 2, "drift of the lowest story", "mm", 1e3)',
             '("drift", 2, "drift of the lowest story", "mm", 1.0)', "Values in m have the unit mm.",
-            (OF + "demand_surfaces.py::test_panels_are_in_the_units_of_their_axes",)),
+            (RECORDED,)),
     # runner
     Mistake(RUNNER + "processes.py", "        made.shutdown(wait=False, cancel_futures=True)\n        raise",
             "        raise", "An executor is not shut down after an exception.",
@@ -331,10 +332,10 @@ MISTAKES = (
     Mistake(ANALYSES + "families/analysis.py", "float(np.median(row))", "float(np.mean(row))",
             "A mean is called a median.", (OF + "families_in_the_report.py::test_demands_of_stored_motions_have_their_band",)),
     Mistake(ANALYSES + "families/feature.py", "[100.0 * size for size in step.size]", "[*step.size]",
-            "Shares are drawn as percent.", (OF + "families_in_the_report.py::test_panels_of_a_family_are_in_the_units_of_their_axes",)),
+            "Shares are drawn as percent.", (RECORDED,)),
     Mistake(ANALYSES + "families/feature.py", "median, *band = ([scale * value for value in column]",
             "median, *band = ([value for value in column]", "A median in m stands in a panel in mm.",
-            (OF + "families_in_the_report.py::test_panels_of_a_family_are_in_the_units_of_their_axes",)),
+            (RECORDED,)),
     Mistake(ANALYSES + "demands/analysis.py", "lowest=extreme(int(np.nanargmin(value)))", "lowest=extreme(int(np.nanargmax(value)))",
             "The largest demand is called the smallest.", (OF + "demand_surfaces.py::test_statistics_are_those_of_the_surface",)),
     Mistake(ANALYSES + "demands/feature.py", '"drift", None, MILLI', '"drift", None, 1.0',

@@ -1,26 +1,18 @@
 """Demands of every phase pair in a study: the surfaces, their symmetry, statistics, gaps, and the report."""
 
-from collections.abc import Callable
-from dataclasses import fields, replace
-from types import SimpleNamespace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
-from fake_models import fake_hierarchy
-from known_analyses import analyses_are, collected
-from report_texts import Tables, page_of, summary_of
-from runs import Run
+from known_analyses import collected
 
 import reference
 from comparison.analyses.demands.analysis import PREFIX, DemandSurfaces, demand_statistics, with_demands
-from comparison.analyses.demands.feature import _cell, demand_panels
-from comparison.report.plots import DEMANDS
+from comparison.analyses.demands.feature import _cell
 from comparison.result_types import UncertainNumber
 from comparison.study.models import EXACT, REGULARIZED, SMALL
 from comparison.study.study import Study
-from reference.measures import Demands
-from reference.measures.peak_demands import QUANTITIES
 from reference.problem import Scene, load_scene, phase_axis
 
 MODELS = (SMALL, EXACT, REGULARIZED)
@@ -38,10 +30,6 @@ def study() -> Study:
 def demands(study: Study) -> xr.Dataset:
     found: xr.Dataset = collected(DemandSurfaces(), study)
     return found
-
-
-def test_every_demand_has_a_name_and_a_unit() -> None:
-    assert {field.name for field in fields(Demands)} - {"status"} <= set(QUANTITIES)
 
 
 def test_every_pair_has_the_demands_of_its_own_motion(study: Study, demands: xr.Dataset) -> None:
@@ -118,49 +106,6 @@ def test_one_body_has_no_drift() -> None:
     rows = {(row.quantity, row.body) for row in demand_statistics(study, found, study.scenes[0])}
     assert ("acceleration", 1) in rows
     assert not [row for row in rows if row[0] == "drift"]
-
-
-def test_the_report_shows_them_where_they_are_asked_for(
-    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, demands: xr.Dataset
-) -> None:
-    every = [model.key for model in fake_hierarchy()]
-    analyses_are(monkeypatch, motions=[], demands=demands.sel(scene=["fig3-I"]).reindex(model=every))
-    run = command("fig3-I", "--grid", "4", "--only", "demands", hierarchy=fake_hierarchy())
-    assert (run.code, run.err) == (0, "")
-    page = page_of(run.report)
-    assert "Demands over all phases</h2>" in page
-    assert "fig3-I, base shear" in page
-    [scene] = summary_of(run.report)["scenes"]
-    models = {row["model"] for row in scene["demand_statistics"] if row["quantity"] == "base_shear"}
-    assert models == {"small", "exact", "regularised"}
-    shown = Tables(page).headed("demand", "median", "84 %")
-    for row in scene["demand_statistics"]:
-        if (row["quantity"], row["model"]) == ("base_shear", "small"):
-            [cells] = [r for r in shown if "base shear" in r["demand"] and r["model"] == "small equations"]
-            share = {each["probability"]: each["value"] for each in row["fractiles"]}
-            numbers = [row["lowest"]["value"], share[0.5], share[0.84], row["highest"]["value"]]
-            assert len({*share.values()}) > 2, "fractiles can be told apart"
-            assert [cells[name] for name in ("smallest", "median", "84 %", "largest")] == [f"{n:.4g}" for n in numbers]
-    stored = xr.load_dataset(run.report / "surfaces.nc")
-    assert float(stored["demand_base_shear"].sel(model="small").max()) == pytest.approx(
-        float(demands["base_shear"].sel(scene="fig3-I", model="small").max())
-    )
-
-
-def test_panels_are_in_the_units_of_their_axes(study: Study, demands: xr.Dataset) -> None:
-    scene, models = study.scenes[0], [SimpleNamespace(key=model.key, title=model.title) for model in MODELS]
-    rows = demand_statistics(study, demands, scene)
-    shown = SimpleNamespace(recorded=False, name=scene.name, of={"demand_statistics": rows}.get)
-    panels = demand_panels(shown, SimpleNamespace(models=models))  # type: ignore[arg-type]
-    assert len(panels) > 5
-    for (quantity, body, title, unit, _), panel in zip(
-        [each for each in DEMANDS if any((row.quantity, row.body) == each[:2] for row in rows)], panels, strict=True
-    ):
-        assert panel["plot"]["x"]["title"] == f"{title}, {unit}"
-        factor = {("mm", "m"): 1e3}.get((unit, demands[quantity].attrs["units"]), 1.0)
-        row = next(row for row in rows if (row.model, row.quantity, row.body) == ("small", quantity, body))
-        assert panel["plot"]["series"][0]["x"] == pytest.approx([factor * value for value in row.curve])
-        assert panel["plot"]["series"][0]["name"] == "small equations"
 
 
 def test_the_least_force_of_a_support_is_the_smallest_of_all_phases() -> None:

@@ -1,21 +1,18 @@
 """A range in a scene file, or many files, is one study; its budget is drawn against the value that runs."""
 
-from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 from places import SCENES
-from report_texts import page_of, summary_of
-from runs import RUN, Run
+from runs import RUN
 from studies import solved
 
 from comparison.analyses.demands.analysis import DemandStatistics, PhaseExtreme
-from comparison.analyses.families.analysis import FamilyDemand, family_demands, family_demands_over_phases
+from comparison.analyses.families.analysis import family_demands, family_demands_over_phases
 from comparison.analyses.families.feature import family_panels
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.registry import report_of
@@ -34,18 +31,6 @@ def file(tmp_path: Path) -> Path:
     place = tmp_path / "mine.toml"
     place.write_text(text.replace("friction = 0.1", "friction = {range = [0.1, 0.2], steps = 3}"), encoding="utf-8")
     return place
-
-
-def test_a_range_and_other_files_are_one_study(command: Callable[..., Run], file: Path) -> None:
-    run = command(str(file), str(SCENES / "fig4-viscous.toml"), "--grid", "2")
-    assert run.code == 0
-    names = [scene["name"] for scene in summary_of(run.report)["scenes"]]
-    assert names == ["mine[friction=0.1]", "mine[friction=0.15]", "mine[friction=0.2]", "fig4-viscous"]
-    page = page_of(run.report)
-    assert "Families of scenes" in page
-    assert "3 values of isolator.friction" in page
-    for body in (1, 2):
-        assert (run.report / "figures" / f"mine-body{body}-family.png").exists()
 
 
 def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
@@ -130,37 +115,3 @@ def test_an_axis_is_logarithmic_over_decades_and_names_a_few(file: Path) -> None
     assert len(few) == 12
     assert [tick[1] for tick in many][:3] == ["0, 0.5", "19, 0.5", "38, 0.5"]
     assert len(many) <= 12
-
-
-def test_panels_of_a_family_are_in_the_units_of_their_axes() -> None:
-    known = {"displacement": (0, "isolator displacement, mm", 1e3), "base_shear": (0, "base shear, N", 1.0),
-             "drift": (2, "drift of the lowest story, mm", 1e3)}  # fmt: skip
-    demands = [
-        FamilyDemand("small", name, body, (0.2 + body, 0.5), (0.1, 0.4), (0.3, 0.6), (3, 3))
-        for name, (body, *_) in known.items()
-    ]
-    step = SimpleNamespace(model="small", body=1, size=(0.01, -0.02))
-    family = SimpleNamespace(
-        name="mine", key="isolator.friction", values=[0.1, 0.2], scenes=["a"], curves=[], steps=[step], demands=demands,
-        demands_over_phases=False,
-    )  # fmt: skip
-    results = SimpleNamespace(
-        scenes=[SimpleNamespace(name="a", title="A", bodies=2)],
-        models=[SimpleNamespace(key="small", title="small equations", effect="")],
-        of={"families": [family]}.get,
-    )
-    [listed] = family_panels(results)  # type: ignore[arg-type]
-    [steps] = [panel["plot"] for panel in listed["panels"] if panel["title"] == "what each effect adds to mu_1"]
-    assert (steps["y"]["title"], steps["series"][0]["y"]) == ("% of the first model", [1.0, -2.0])
-    shown = {
-        panel["plot"]["y"]["title"]: panel["plot"]["series"][0]
-        for panel in listed["panels"]
-        if "of the stored" in panel["title"]
-    }
-    assert len(shown) == 3
-    for body, title, factor in known.values():
-        line = shown[title]
-        numbers = [0.2 + body, 0.5], [0.1, 0.4], [0.3, 0.6]
-        for key, values in zip(("y", "low", "high"), numbers):
-            assert line[key] == pytest.approx([factor * value for value in values]), (title, key)
-        assert (line["name"], line["x"]) == ("small equations", [0.1, 0.2])

@@ -4,17 +4,15 @@ import base64
 import gzip
 import json
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
-from fake_models import KNOWN, fake_hierarchy, known_spectra, sliding
+from fake_models import fake_hierarchy, sliding
 from known_analyses import collected
 from numpy.typing import NDArray
-from report_texts import summary_of
 from studies import solved
 
 import multibody
@@ -42,7 +40,6 @@ from comparison.analyses.motions.page_data import (
 from comparison.study.models import REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from multibody.film import contact_paths
-from reference.measures.demands import MOVING
 from reference.problem import Scene, Trajectory, builtin_scenes, load_scene
 
 PHASE = (2.0, 0.7)
@@ -181,28 +178,6 @@ def test_the_motions_of_the_default_study_stay_small() -> None:
     sample = [stored(load_scene(name), model) for name in builtin_scenes() for model in (SMALL, REGULARIZED)]
     sample.append(stored(load_scene("fig3-I"), SPATIAL))
     assert len(packed_motions(found(*sample))) / len(sample) * MOTIONS < MAX_LETTERS
-
-
-def test_the_summary_lists_the_demands_of_every_stored_motion(finished: Path) -> None:
-    summary = summary_of(finished)
-    for result in summary["scenes"]:
-        scene = load_scene(result["name"])
-        models = {entry["model"] for entry in result["demands"]}
-        assert "small" in models
-        assert "spatial" in models
-        for entry in result["demands"]:
-            for name in ("displacement", "base_shear", "contact_force_min", "contact_force_max", "friction_energy"):
-                assert entry[name] == {"value": KNOWN[name], "error": pytest.approx(0.01 * KNOWN[name])}, name
-            assert [each["value"] for each in entry["acceleration"]] == pytest.approx([2.1, 2.31])
-            alpha = 0.5 * np.pi * np.arange(4)
-            assert set(entry["phases"]) <= {*alpha.tolist()}
-            assert entry["residual"] == {"value": None, "error": None, "reason": MOVING}
-            assert (len(entry["acceleration"]), len(entry["drift"])) == (len(scene.bodies), len(scene.bodies) - 1)
-            assert (entry["support_force_min"] is None) == (entry["model"] != "spatial")
-            assert (entry["uplift"] is None) == (entry["model"] != "spatial") == (entry["energy_balance"] is not None)
-            assert entry["spectra"]["period"] == [0.1, 1.0]
-            assert entry["spectra"]["acceleration"] == known_spectra(scene).acceleration.tolist()
-            assert entry["spectra"]["error"] == known_spectra(scene).error.tolist()
 
 
 def test_supports_stand_off_the_center_of_an_eccentric_platform(scene) -> None:
