@@ -18,7 +18,7 @@ from comparison.analyses.extremes.command import main
 from comparison.analyses.extremes.engine import amplification
 from comparison.analyses.extremes.figure import draw_extremes
 from comparison.analyses.extremes.matrix import STORED, Extreme, Matrix, Verdict
-from comparison.analyses.extremes.rows import CAUSES, Row, rows, scene
+from comparison.analyses.extremes.rows import CAUSES, rows, scene
 from comparison.runner.cache import Cache
 from comparison.runner.processes import Pool, TimeLimitError, WorkerDiedError, process_pool
 from comparison.runner.runner import Runner
@@ -59,10 +59,6 @@ def computed(extremes: analysis.Extremes, results: TaskResults | None = None, ex
     return extremes.collect(None, None, results)
 
 
-def named(group: str) -> list[Row]:
-    return [row for row in analysis.reduced(list(rows())) if row.group == group]
-
-
 @pytest.mark.parametrize("model", FAILING)
 def test_a_model_that_is_wrong_fails_and_is_told_why(model):
     cell = analysis.solve_cell(analysis.Cell(PLAIN, fake(model)))
@@ -70,26 +66,19 @@ def test_a_model_that_is_wrong_fails_and_is_told_why(model):
     assert FAILING[model] in cell.reason
 
 
-def test_models_that_crash_in_a_worker_fail_with_the_reason():
-    columns = [replace(fake(model), key=model) for model in ("crashes", "raises")]
-    (row,) = computed(analysis.Extremes([replace(PLAIN, columns=("crashes", "raises"))], columns)).rows
-    assert {entry.verdict for entry in row.entries.values()} == {Verdict.FAILED}
-    assert "exit code 3" in row.entries["crashes"].reason
-    assert FAILING["raises"] in row.entries["raises"].reason
-
-
-def test_a_model_that_hangs_costs_its_cell_alone(tmp_path):
-    other = replace(fake("honest"), key="other")
-    extremes = analysis.Extremes([replace(PLAIN, columns=("fake", "other"))], [fake("hangs"), other], 2.0)
+def test_a_model_that_hangs_or_crashes_costs_its_cell_alone(tmp_path):
+    columns = [replace(fake(model), key=model) for model in ("hangs", "crashes", "raises", "honest")]
+    extremes = analysis.Extremes([replace(PLAIN, columns=tuple(each.key for each in columns))], columns, 2.0)
     (row,) = computed(extremes, TaskResults(Cache(tmp_path))).rows
-    hanging = row.entries["fake"]
-    assert (hanging.verdict, hanging.status) == ("FAILED", "time limit")
-    assert hanging.reason == "hangs: no answer within 2 s of processor time"
-    assert row.entries["other"].verdict == Verdict.CONVERGED
+    found = {key: (entry.verdict, entry.status, entry.reason) for key, entry in row.entries.items()}
+    assert found["hangs"] == ("FAILED", "time limit", "hangs: no answer within 2 s of processor time")
+    assert found["crashes"] == ("FAILED", "worker died", "crashes: the worker process died 2 times (exit code 3)")
+    assert found["raises"] == ("FAILED", "", "raises ZeroDivisionError: an inner fault")
+    assert found["honest"][0] == Verdict.CONVERGED
     results = TaskResults(Cache(tmp_path))
-    assert results.missing(extremes.tasks()) == []
-    assert extremes.collect(None, None, results).rows == [row]
-    assert len(TaskResults(Cache(tmp_path)).missing(replace(extremes, limit=3.0).tasks())) == 1, "allowed more"
+    assert [task.argument.column.key for task in results.missing(extremes.tasks())] == ["crashes"]
+    assert computed(extremes, results).rows == [row]
+    assert len(TaskResults(Cache(tmp_path)).missing(replace(extremes, limit=3.0).tasks())) == 4, "allowed more"
 
 
 AGAINST_A_RULE = replace(PLAIN, scene=scene(friction=-0.1))
@@ -115,13 +104,50 @@ def test_every_kind_of_answer_has_its_verdict(row, column, verdict, reason):
     assert (cell.verdict, reason in cell.reason) == (verdict, True), cell.reason
 
 
-@pytest.mark.parametrize("group", ["friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"])
-def test_the_equations_fail_at_no_extreme(group):
-    tasks = analysis.cells(named(group))
-    assert tasks
-    for cell in tasks:
+def test_the_equations_fail_at_no_extreme():
+    groups = {"friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"}
+    chosen = [row for row in analysis.reduced(list(rows())) if row.group in groups]
+    assert {row.group for row in chosen} == groups
+    for cell in analysis.cells(chosen):
         entry = analysis.solve_cell(cell)
         assert entry.verdict != Verdict.FAILED, (cell.row.title, cell.column.key, entry.reason)
+        assert entry.total >= entry.seconds, "with its finer runs"
+
+
+QUANTITIES = {
+    "friction": lambda at: at.friction_coefficient,
+    "lubrication, s/m": lambda at: at.friction_coefficient,
+    "amplitude, m/s^2": lambda at: at.amplitudes[0, 0],
+    "vertical loading, m/s^2": lambda at: at.amplitudes[2, 0],
+    "rho, m": lambda at: at.radius,
+    "travel, m": lambda at: at.isolator.travel,
+    "bodies N": lambda at: len(at.bodies),
+    "total mass, kg": lambda at: at.total_mass,
+    "platform's share of the mass": lambda at: at.masses[0] / at.total_mass,
+    "link periods, s": lambda at: at.bodies[1].period[0],
+    "load over the buckling load of bars": lambda at: 9.81 / (4.0 * np.pi**2 * at.bodies[1].bars.bending_stiffness),
+    "decay, 1/s": lambda at: at.excitation.decay[1],
+    "duration, s": lambda at: at.duration,
+    "three supports, ring in m": lambda at: at.isolator.ring,
+    "offset over the ring": lambda at: np.hypot(*at.offsets[1]) / at.isolator.ring,
+    "yaw, rad": lambda at: at.yaws[1],
+}
+
+
+def test_a_row_has_the_quantity_that_it_names():
+    seen = set()
+    for row in rows():
+        number = row.title.replace("-g exactly", "9.81").partition(",")[0]
+        if row.group in QUANTITIES and re.fullmatch(r"[-+.\de]+|inf", number) and not row.invalid:
+            found = QUANTITIES[row.group](analysis.read_scene(row.scene))
+            assert found == pytest.approx(float(number), rel=1e-2), row.name
+            seen.add(row.group)
+        for key in ("regularization", "cutoff", "contact_stiffness", "step", "tolerance"):
+            if key in row.settings and not (key == "tolerance" and row.amplification) and not row.invalid:
+                assert row.settings[key] == pytest.approx(float(row.title)), row.name
+    assert seen == {*QUANTITIES}
+    asked = {((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.cells(list(rows()))}
+    assert {(extreme, model) for extreme, models in CAUSES.items() for model in models} <= asked
 
 
 @pytest.mark.long
@@ -153,11 +179,18 @@ def test_the_command_writes_the_matrix_and_computes_once(tmp_path, capsys):
     assert "tasks are in" not in capsys.readouterr().out, "what --fresh dropped is computed by the next run"
 
 
-def test_a_failed_cell_is_an_exit_code_and_in_the_picture(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr("comparison.analyses.extremes.command.COLUMNS", (fake("calls_nan_ok"),))
-    monkeypatch.setattr("comparison.analyses.extremes.command.rows", lambda: iter([PLAIN]))
+def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
+    columns = tuple(replace(fake(model), key=model) for model in ("calls_nan_ok", "unable", "at_the_rim", "honest"))
+    plain = replace(PLAIN, columns=tuple(each.key for each in columns))
+    monkeypatch.setattr("comparison.analyses.extremes.command.COLUMNS", columns)
+    monkeypatch.setattr("comparison.analyses.extremes.command.rows", lambda: iter([plain]))
     assert main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
-    assert "FAILED: anything plain" in capsys.readouterr().out
+    limit, failed, counts, *_ = capsys.readouterr().out.splitlines()[-5:]
+    assert (limit, failed) == (
+        "limit: anything plain, unable: step limit",
+        "FAILED: anything plain, calls_nan_ok: ok, but no finite number",
+    )
+    assert counts.endswith(": 1 converged, 1 refused, 1 limit, 1 FAILED.")
 
 
 @pytest.mark.parametrize(
@@ -175,13 +208,13 @@ def test_a_wrong_option_is_one_line(words, rule, tmp_path, capsys):
     assert rule in line
 
 
-@pytest.mark.parametrize(("models", "groups"), [(1, 1), (3, 2)])
-def test_the_legend_of_the_picture_lies_within_it(tmp_path: Path, models: int, groups: int) -> None:
-    columns = {f"model {number}": "an engine" for number in range(models)}
-    rows = [Extreme(f"group {number % groups}", "1", {}) for number in range(8)]
-    draw_extremes(tmp_path / "picture.png", Matrix(columns, rows, {}))
-    picture = imread(tmp_path / "picture.png")
-    assert (picture[:, [0, -1]] == 1.0).all(), "nothing goes on beyond its borders"
+def test_the_legend_of_the_picture_lies_within_it(tmp_path: Path) -> None:
+    for models, groups in ((1, 1), (3, 2)):
+        columns = {f"model {number}": "an engine" for number in range(models)}
+        rows = [Extreme(f"group {number % groups}", "1", {}) for number in range(8)]
+        draw_extremes(tmp_path / "picture.png", Matrix(columns, rows, {}))
+        picture = imread(tmp_path / "picture.png")
+        assert (picture[:, [0, -1]] == 1.0).all(), "nothing goes on beyond its borders"
 
 
 def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -193,11 +226,6 @@ def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.Monke
     amplification(brief, [(0.3, 1.1)], step=0.1)
     assert asked["first"].step * np.sqrt(brief.radius / 9.81) == pytest.approx(0.1)
     assert asked["first"].error_floor / usual.error_floor == pytest.approx((asked["first"].step / usual.step) ** 2)
-
-
-def test_every_known_cause_of_a_limit_is_that_of_a_cell():
-    asked = {((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.cells(list(rows()))}
-    assert {(extreme, model) for extreme, models in CAUSES.items() for model in models} <= asked
 
 
 def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):
@@ -216,6 +244,16 @@ def test_a_value_that_says_nothing_is_not_confirmed() -> None:
         (Outcome.STEP_LIMIT, 1.0, False),
     ):
         assert analysis.answers(analysis.Reply(mu, share * mu, (status.value,))) == says, (status, share)
+
+
+def test_a_motion_that_leaves_the_model_is_refused() -> None:
+    mu, verdicts = np.full((1, 2), np.nan), {}
+    for outcome in Outcome:
+        reply = analysis.Reply(mu, mu, (outcome.value,))
+        verdicts.setdefault(str(analysis.judged(reply, [reply], 1e-3, False, ()).verdict), set()).add(outcome.value)
+    physics = {"rim reached", "travel reached", "contact lost", "overturned", "painleve paradox"}
+    assert verdicts["refused"] == physics | {"non-finite load", "no ground motion"}
+    assert verdicts["limit"] == {"step limit", "solver failed"}
 
 
 def test_the_body_that_is_farthest_beyond_its_own_error_fails() -> None:
