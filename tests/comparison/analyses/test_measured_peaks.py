@@ -1,16 +1,12 @@
 """Measured peaks beside the models: synthetic data made by one model, and what fails."""
 
 import math
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from known_analyses import collected
-from report_texts import page_of, schema_errors, summary_of
-from runs import Run
 
 import reference
 from comparison.analyses.measured import analysis
@@ -75,10 +71,11 @@ def test_a_model_that_fails_leaves_the_others_their_numbers():
 
 
 def test_a_motion_that_ends_early_has_no_peaks_and_says_why():
-    scene = PLAIN.with_values({"isolator.travel": 1e-3, "measured": [peak("displacement", 0.03, 0.001)]})
-    (only,) = compared(scene, EXACT)
-    assert only.computed[0].status == "travel reached"
-    assert only.computed[0].exceeds is None
+    ends = {"isolator.travel": 1e-3, "measured": [peak("displacement", 0.03, 0.001)]}
+    lacks = {"measured": [peak("torsion", 0.01, 0.001, 1)]}
+    for values, status in ((ends, "travel reached"), (lacks, "the model has no such value")):
+        (only,) = compared(PLAIN.with_values(values), EXACT)
+        assert (only.computed[0].status, only.computed[0].exceeds) == (status, None)
 
 
 def test_both_functions_of_a_model_have_its_tolerance_and_law(monkeypatch):
@@ -90,12 +87,6 @@ def test_both_functions_of_a_model_have_its_tolerance_and_law(monkeypatch):
     assert asked == [{"tolerance": 1e-4, **REGULARIZED.settings}] * 2
 
 
-def test_a_quantity_that_a_model_lacks_is_not_known():
-    (only,) = compared(PLAIN.with_values({"measured": [peak("torsion", 0.01, 0.001, 1)]}), EXACT)
-    assert only.computed[0].exceeds is None
-    assert only.computed[0].status == "the model has no such value"
-
-
 def test_a_record_is_compared_without_phases():
     scene = load_scene("synthetic-pair").with_values({"duration": 3.0})
     stated = peak("displacement", 0.01, 0.001)
@@ -105,38 +96,15 @@ def test_a_record_is_compared_without_phases():
     assert math.isfinite(only.computed[0].value)
 
 
-def test_a_user_engine_which_has_no_motions_is_not_asked():
-    study = Study((synthetic(0.0),), 1, 1e-3, (EXACT, user_model("mine", {"function": "nowhere:mu"})))
-    assert {task.argument[1].key for task in MeasuredPeaks().tasks(study)} == {"exact"}
-
-
-def test_without_measured_peaks_nothing_is_computed():
-    study = Study((PLAIN,), 1, 1e-3, MODEL_HIERARCHY)
-    assert MeasuredPeaks().tasks(study) == []
-    assert collected(MeasuredPeaks(), study) is None
-
-
-def test_the_report_shows_measured_peaks(command: Callable[..., Run], tmp_path: Path):
-    file = tmp_path / "rig.toml"
-    file.write_text(
-        'title = "rig"\nduration = 1.0\nisolator = {period = 1.0, friction = 0.1}\nbodies = [{mass = 1.0}]\n'
-        "excitation = {amplitudes = [[2.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.3, 0.3]}\n"
-        '[[measured]]\nquantity = "mu"\nbody = 1\nvalue = 7.0\nuncertainty = 0.25\nphases = [0.0, 1.5]\n'
-        'source = "run <7>"\n'
-    )
-    done = command(str(file), "--grid", "2", "--only", "surfaces,measured")
-    assert done.code == 0, done.err
-    summary = summary_of(done.report)
-    assert schema_errors(done.report) == []
-    assert summary["measured"][0]["value"] == 7.0
-    page = page_of(done.report)
-    assert 'id="measured"' in page
-    assert "7 ± 0.25" in page
-    assert "run &lt;7&gt;" in page
-    line = "1 measured peak stands beside the models, and"
-    assert line in page
-    assert line in done.out
-    assert line in (done.report / "summary.md").read_text(encoding="utf-8")
+def test_every_model_with_motions_is_asked_what_a_test_measured_at_its_phases():
+    other = peak("drift", 0.01, 0.001, 2, phases=[1.0, 2.0])
+    scene = PLAIN.with_values({"measured": [peak("mu", 3.0, 0.1, 1), other]})
+    study = Study((scene,), 1, 1e-3, (EXACT, user_model("mine", {"function": "nowhere:mu"})))
+    asked = [(task.argument[1].key, *task.argument[3:]) for task in MeasuredPeaks().tasks(study)]
+    assert asked == [("exact", PHASES, [("mu", 1)]), ("exact", (1.0, 2.0), [("drift", 2)])]
+    nothing = Study((PLAIN,), 1, 1e-3, MODEL_HIERARCHY)
+    assert MeasuredPeaks().tasks(nothing) == []
+    assert collected(MeasuredPeaks(), nothing) is None
 
 
 def test_what_is_not_known_exceeds_nothing():

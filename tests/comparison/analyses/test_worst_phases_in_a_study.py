@@ -78,11 +78,11 @@ def test_the_engine_is_asked_where_its_ratio_says(monkeypatch: pytest.MonkeyPatc
 
     sides = {TRANSLATIONAL.amplification: answering(engine), REGULARIZED.amplification: answering(equations)}
     monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", sides.__getitem__)
-    monkeypatch.setattr("reference.measures.local_search.ground_peak", lambda scene, phases: np.ones(len(phases)))
+    monkeypatch.setattr("reference.measures.local_search.ground_peak", lambda scene, phases: np.full(len(phases), 0.5))
     worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
     beside = analysis._engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
     assert beside.evaluations == analysis.ENGINE_POINTS
-    assert (beside.at_start, beside.start_error) == pytest.approx((2.0 - 2e-5, 2e-9), rel=1e-4)
+    assert (beside.value, beside.at_start, beside.start_error) == pytest.approx((2.00001, 1.99998, 2e-9), rel=2e-6)
     assert beside.phases == pytest.approx((1.005, 2.002), abs=1e-4)  # 1e-3 of slope over 2 of curvature
 
 
