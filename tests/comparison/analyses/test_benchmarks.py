@@ -30,7 +30,7 @@ from comparison.analyses.benchmarks.cases import LIMITS, Case, Reading, cases, m
 from comparison.analyses.benchmarks.command import main, print_benchmarks
 from comparison.analyses.benchmarks.table import STORED, Benchmarks, Number, Verdict, page, stated, with_error
 from reference.analytical import den_hartog
-from reference.problem import SceneError, State
+from reference.problem import SceneError
 
 CASES = cases()
 CHEAP = ("sdnd104-0.99", "frame", "pendulum")  # the last by the command
@@ -114,21 +114,6 @@ def test_closed_forms_give_the_published_digits():
 
 
 # readings ------------------------------------------------------------------------------------------------------------
-
-
-def test_a_reading_does_not_depend_on_where_the_instants_are():
-    case = BY_NAME["pendulum"]
-    start = State(np.array(case.start), np.zeros((1, 2)))
-    coarse, fine = (
-        reference.trajectory(
-            case.scene, (0.0, 0.0), initial=start, tolerance=1e-8, times=np.linspace(0.0, 8.0, samples)
-        )
-        for samples in (161, 40_001)
-    )
-    assert readings.half_range(coarse, 1.0) == pytest.approx(case.start[0][0], rel=1e-5)
-    assert readings.path_length(coarse, 1.0, 7.0) == pytest.approx(readings.path_length(fine, 1.0, 7.0), rel=1e-5)
-    assert readings.period(coarse) == pytest.approx(readings.period(fine), rel=1e-5)
-    assert readings.positions_at(coarse, [1.01]) == pytest.approx(readings.positions_at(fine, [1.01]), rel=1e-5)
 
 
 def test_the_error_covers_that_of_few_instants(monkeypatch):

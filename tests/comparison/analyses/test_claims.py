@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from claims_literal import literal_peaks
 from known_analyses import collected
 from numpy.typing import NDArray
 from terminal_tables import rows_under
@@ -23,7 +22,6 @@ from comparison.analyses.claims.readings import (
     CASES,
     EVERY_READING,
     LIGHT_BODY,
-    LITERAL,
     OWN_PERIOD,
     READINGS,
     Reading,
@@ -248,9 +246,6 @@ def test_a_range_of_a_twentieth_of_the_mean_or_of_the_errors_is_flat(half: float
     assert Evidence(1.0 + half * np.cos(A1)[..., None], error, ("ok",)).flat(1) == flat
 
 
-PHASES = np.array([(0.3, 1.1), (2.0, 0.7)])
-
-
 def test_readings_change_the_keys_they_name() -> None:
     light = CASES["fig4-dry"](LIGHT_BODY)
     assert light.masses.tolist() == [1.0, 0.1]
@@ -274,19 +269,6 @@ def test_the_platform_alone_is_loaded_close_to_its_own_period() -> None:
     oscillator = CASES["fig3-II oscillator"](Reading())
     assert oscillator.isolator.period == 1.5, "T_3x of the second body"
     assert oscillator.friction_coefficient == 0.0
-
-
-@pytest.mark.long
-def test_the_literal_reading_tends_to_the_printed_rest() -> None:
-    scene = CASES["fig3-I"](LITERAL)
-    limit = amplification(scene, PHASES, "small", cutoff=1e-3, tolerance=1e-4, rest_condition="printed").mu
-    steps = 1e-3, 5e-4, 2.5e-4
-    gaps = [np.abs(literal_peaks(scene, PHASES, step, spike=False).mu / limit - 1.0).max() for step in steps]
-    assert gaps[0] > gaps[1] > gaps[2]
-    assert gaps[2] < 5e-3
-    spikes = [literal_peaks(scene, PHASES, step).mu[:, 0] for step in (1e-3, 1.25e-4)]
-    assert np.abs(spikes[0] / spikes[1] - 1.0).max() < 5e-3, "its height does not fade with its length"
-    assert (spikes[1] > 1.8 * limit[:, 0]).all()
 
 
 def test_forced_ratios_are_those_of_oscillator_and_chain() -> None:

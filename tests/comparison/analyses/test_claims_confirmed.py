@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from claims_literal import LiteralClaims, gathered, literal_peaks
+from claims_literal import LiteralClaims, gathered
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 from second_integration import LITERAL as LITERAL_LAW
@@ -133,12 +133,3 @@ def test_the_regularized_reading_has_the_factors_of_scipy() -> None:
     first = amplification(scene, PROBES, equations="small", tolerance=1e-5, **settings(scene, reading)).mu
     second, _ = by_scipy(scene, PROBES, SPEED)
     assert np.abs(first / second - 1.0).max() < 1e-3
-
-
-def test_the_literal_reading_has_the_factors_of_a_midpoint_rule() -> None:
-    """Two explicit methods and codes: the same spike of one step, and body 2 alike."""
-    scene = CASES["fig3-I"](LITERAL).with_values({"duration": 2.0})
-    first = literal_peaks(scene, PROBES, 1e-3).mu
-    second, _ = stepped(scene, PROBES, LITERAL_LAW, 1e-3)
-    assert np.abs(first / second - 1.0).max() < 1e-2
-    assert (first[:, 0] > 1.5 * first[:, 1]).all()

@@ -8,7 +8,7 @@ import xarray as xr
 from known_analyses import collected
 
 import reference
-from comparison.analyses.demands.analysis import PREFIX, DemandSurfaces, demand_statistics, with_demands
+from comparison.analyses.demands.analysis import DemandSurfaces, demand_statistics
 from comparison.analyses.demands.feature import _cell
 from comparison.result_types import UncertainNumber
 from comparison.study.models import EXACT, REGULARIZED, SMALL
@@ -75,17 +75,6 @@ def test_statistics_are_those_of_the_surface(study: Study, demands: xr.Dataset) 
     unsure = demands.assign(drift_error=demands["drift_error"].where(demands["alpha1"] > 0.0))
     rows = {(row.model, row.quantity, row.body): row for row in demand_statistics(study, unsure, scene)}
     assert [np.isnan(rows[SMALL.key, name, 2].mean.error) for name in ("drift", "acceleration")] == [True, False]
-
-
-def test_surfaces_nc_has_them_beside_mu(study: Study, demands: xr.Dataset) -> None:
-    bodies = 2
-    surfaces = xr.Dataset(coords={"scene": ["other", *demands["scene"].values], "body": np.arange(1, bodies + 1)})
-    together = with_demands(surfaces, demands)
-    assert list(together["scene"].values) == ["other", *(scene.name for scene in study.scenes)]
-    assert np.isnan(together[f"{PREFIX}base_shear"].sel(scene="other")).all()
-    assert set(together[f"{PREFIX}status"].sel(scene="other").values.ravel()) == {"not asked"}
-    assert together[f"{PREFIX}base_shear"].attrs["units"] == "N"
-    assert with_demands(surfaces, None) is surfaces
 
 
 def test_a_task_that_fails_costs_its_own_pairs_alone(study: Study) -> None:

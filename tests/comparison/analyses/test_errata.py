@@ -48,8 +48,8 @@ def test_the_mended_matrices_are_the_exact_equations(name: str, within: Callable
 
 
 def test_a_slip_changes_only_what_it_names() -> None:
-    wet = load_scene("fig4-viscous").with_values({"duration": 2.0})  # T_3x = T_3y: the springs are alike
-    unequal = load_scene("fig3-II").with_values({"duration": 2.0})
+    wet = load_scene("fig4-viscous").with_values({"duration": 1.0})  # T_3x = T_3y: the springs are alike
+    unequal = load_scene("fig3-II").with_values({"duration": 1.0})
     changes = {
         (scene.name, slip): printed_amplification(scene, PHASES, [slip]) / printed_amplification(scene, PHASES) - 1.0
         for scene in (wet, unequal)

@@ -3,21 +3,18 @@
 import re
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from known_results import PLAIN, fake
-from matplotlib.image import imread
 from runs import no_executor
 
 import multibody
 from comparison.analyses.extremes import analysis
 from comparison.analyses.extremes.command import main
 from comparison.analyses.extremes.engine import amplification
-from comparison.analyses.extremes.figure import draw_extremes
-from comparison.analyses.extremes.matrix import STORED, Extreme, Matrix, Verdict
+from comparison.analyses.extremes.matrix import STORED, Matrix, Verdict
 from comparison.analyses.extremes.rows import CAUSES, rows, scene
 from comparison.runner.cache import Cache
 from comparison.runner.processes import Pool, TimeLimitError, WorkerDiedError, process_pool
@@ -207,15 +204,6 @@ def test_a_wrong_option_is_one_line(words, rule, tmp_path, capsys):
     assert main([*words, "--out", str(tmp_path / "report")], no_executor) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert rule in line
-
-
-def test_the_legend_of_the_picture_lies_within_it(tmp_path: Path) -> None:
-    for models, groups in ((1, 1), (3, 2)):
-        columns = {f"model {number}": "an engine" for number in range(models)}
-        rows = [Extreme(f"group {number % groups}", "1", {}) for number in range(8)]
-        draw_extremes(tmp_path / "picture.png", Matrix(columns, rows, {}))
-        picture = imread(tmp_path / "picture.png")
-        assert (picture[:, [0, -1]] == 1.0).all(), "nothing goes on beyond its borders"
 
 
 def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,5 +1,6 @@
 """The measured trade and how the cost grows: fronts, errors along every parameter, checked solutions, known slopes."""
 
+import inspect
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -13,38 +14,16 @@ from rich.console import Console
 from scipy.stats import linregress
 
 from comparison.analyses.tradeoff import analysis, command, growth, outside, single_runs
-from comparison.analyses.tradeoff.analysis import Measured, Measurement, TradeOff, entry, joined, sample
+from comparison.analyses.tradeoff.analysis import Measured, Measurement, entry, joined, sample
 from comparison.analyses.tradeoff.growth import QUANTITIES, STORED, Growth, fitted_slope, tall, with_slope
 from comparison.analyses.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
-from comparison.analyses.tradeoff.trade import Trade, load, quantile, unbeaten, with_pareto_fronts
+from comparison.analyses.tradeoff.trade import load, quantile, unbeaten, with_pareto_fronts
+from comparison.study.batches import imported
 from comparison.study.study import Study
 from reference import amplification
 from reference.problem import Amplification, Scene, load_scene
 
 SCENE = load_scene("fig3-I")
-SECONDS = 1.5  # of motion: a slide and a stop
-
-
-@pytest.fixture(scope="module")
-def scene() -> Scene:
-    return SCENE.with_values({"duration": SECONDS})
-
-
-@pytest.fixture(scope="module")
-def trade(scene: Scene) -> Trade:
-    """The quick trade, without what is dear, in this process."""
-    dear = "Exudyn", "Radau", "DOP853"
-    planar = [setting for setting in settings(scene, quick=True) if setting.question != "spatial"]
-    cheap = [setting for setting in planar if not any(name in setting.method for name in dear)]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(analysis, "settings", lambda scene, quick: cheap)
-        patch.setattr(
-            analysis, "asked", lambda scene: [question for question in QUESTIONS if question.key != "spatial"]
-        )
-        (measured,) = collected(
-            TradeOff(quick=True), Study((scene,), 1, 1e-3), executor=lambda jobs: ThreadPoolExecutor(1)
-        )
-    return measured.trade
 
 
 def test_nothing_on_the_front_is_beaten_and_all_else_is() -> None:
@@ -107,18 +86,6 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
     ]
 
 
-@pytest.mark.long
-def test_scipy_and_the_engine_tend_to_the_truth_of_the_reference(trade: Trade) -> None:
-    """The check that the diagram states: codes and methods with little in common meet."""
-    for method, within in (("SciPy LSODA", 1e-7), ("translational engine, two levels", 1e-5)):
-        curve = [setting for setting in trade.of("regularised") if setting.method.startswith(method)]
-        assert max(curve[-1].most) < within
-        assert max(curve[-1].most) < 0.1 * max(curve[0].most)
-    checks = next(question.checks for question in trade.questions if question.key == "regularised")
-    assert any("SciPy LSODA" in line for line in checks)
-    assert any("translational engine" in line for line in checks)
-
-
 @pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
 def test_scipy_has_the_factors_of_the_equations(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     for function in ("slope", "slopes", "exact_acceleration"):  # not compiled
@@ -154,6 +121,8 @@ def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
     assert loosest["reference, two runs and an estimate"] == 1e-2
     assert loosest["reference, one run"] == 1e-1, "of a step"
     assert min(each.value for each in every if each.method == "SciPy LSODA") == pytest.approx(1e-10)
+    for each in every:
+        inspect.signature(imported(each.function)).bind(SCENE, sample(1), **each.settings)
     model_errors = [each for each in every if each.model_error]
     for each in model_errors:
         assert each.settings == {"tolerance": 1e-6, "regularization": each.value}

@@ -186,6 +186,8 @@ def _study(*names: str) -> Study:
 
 def test_a_lubricated_scene_has_only_the_limit_of_the_contact(monkeypatch: pytest.MonkeyPatch) -> None:
     def planted(scene: Scene) -> tuple[Array, Array]:
+        if scene.lubricated:
+            raise RuntimeError("no engine")
         sizes = np.array(PENETRATIONS)[None, :, None] * np.array([1.0, -2.0])[None, None, :]
         return sizes, 1e-3 * np.abs(sizes)
 
@@ -194,7 +196,8 @@ def test_a_lubricated_scene_has_only_the_limit_of_the_contact(monkeypatch: pytes
     trends = collected(Convergence(), _study("fig3-I", "fig4-viscous"))
     assert [trend.scene for trend in trends] == ["fig3-I"] * 10 + ["fig4-viscous"] * 2
     assert [trend.body for trend in trends] == [1, 2] * 6
-    assert {trend.verdict for trend in trends} == {"like the power 1"}
+    verdicts = [trend.verdict for trend in trends]
+    assert verdicts == ["like the power 1"] * 10 + ["solver failed: RuntimeError: no engine"] * 2
 
 
 def _regularized(power: float, supremum: float = 3.0) -> object:
@@ -224,15 +227,6 @@ def test_the_order_in_v_reg_is_that_of_the_law(monkeypatch: pytest.MonkeyPatch, 
     expected = [(3.0 + v**power) / limit - 1.0 for v in bodies_that_turn.parameter]
     assert bodies_that_turn.medians == pytest.approx(expected, rel=1e-9)
     assert bodies_that_turn.expected == 1.0
-
-
-def test_a_limit_that_fails_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(scene: Scene) -> None:
-        raise RuntimeError("no engine")
-
-    monkeypatch.setattr(convergence, "LIMITS", [LIMITS[4]._replace(measure=broken)])
-    trends = collected(Convergence(), _study("fig3-I"))
-    assert [trend.verdict for trend in trends] == ["solver failed: RuntimeError: no engine"] * 2
 
 
 def test_a_contact_ten_times_stiffer_is_ten_times_closer(monkeypatch: pytest.MonkeyPatch) -> None:
