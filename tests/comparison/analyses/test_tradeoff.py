@@ -15,6 +15,7 @@ from scipy.stats import linregress
 
 from comparison.analyses.tradeoff import analysis, command, growth, outside, single_runs
 from comparison.analyses.tradeoff.analysis import Measured, Measurement, entry, joined, sample
+from comparison.analyses.tradeoff.feature import tradeoff_answers
 from comparison.analyses.tradeoff.growth import QUANTITIES, STORED, Growth, fitted_slope, tall, with_slope
 from comparison.analyses.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
 from comparison.analyses.tradeoff.trade import load, quantile, unbeaten, with_pareto_fronts
@@ -84,6 +85,24 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
         "SciPy Radau (step 1e-06), another method on the same equations, agrees with it to 3e-05 at 95 %",
         "translational engine, one run (step 5e-01), other code from the bodies up, agrees with it to 2e-03 at 95 %",
     ]
+
+
+def test_the_answer_is_the_fastest_that_estimates_its_error() -> None:
+    plain, _ = (known := known_trade("fig3-I")).entries
+    entries = [
+        replace(plain, method=method, seconds=seconds, most=(most, most), controlled=controlled, answered=answered)
+        for method, seconds, most, controlled, answered in (
+            ("slow", 3.0, 9e-3, True, 3),
+            ("fast", 0.2, 9e-3, True, 3),
+            ("rough", 0.1, 0.5, True, 3),  # its median is below
+            ("lost", 0.1, 1e-9, True, 2),
+            ("alone", 0.05, 5e-4, False, 3),
+        )
+    ]
+    (answer,) = tradeoff_answers(replace(known, entries=entries))
+    ask = f"ask {{}}, {plain.setting} ({{}} ms{{}})".format
+    unsure = f"for 1e-03 {ask('alone', 50, ', no error estimate')}"
+    assert answer["text"] == f"for 1e-02 {ask('fast', 200, '')}; {unsure}; for 1e-04 none; for 1e-06 none."
 
 
 @pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])

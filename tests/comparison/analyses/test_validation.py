@@ -18,8 +18,9 @@ from scipy.special import ellipk
 from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.analyses.validation import frame, pendulum, table
 from comparison.analyses.validation.command import compared, main
+from comparison.analyses.validation.feature import panels
 from comparison.analyses.validation.files import DECAY, LARGE, Shaken, read_folder
-from comparison.analyses.validation.table import COVERAGE, LAW, NONE, VALID, recorded
+from comparison.analyses.validation.table import COVERAGE, LAW, NONE, VALID, Validation, recorded
 
 MASS, STIFFNESS, DAMPING, RATIO = 3.0799, 1191.0, 0.6690, 0.24
 FREQUENCY, AMPLITUDE, RATE, GRAVITY = 1.003, 1.8e-3, 250.0, 9.80665
@@ -142,6 +143,11 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     assert abs(loaded.sides[EQUATIONS].error) < 0.05 * abs(constant.sides[EQUATIONS].error)
     source = "fitted to the motion of the run with 250 g; its scatter over the cycles"
     assert found.inputs[-1] == f"frame: friction ratio 0.24 ± {spread:.2g} ({source})"
+    (plot, *_), titles = panels(Validation([], [], [], found.curves, {})), ("phase of the base, deg", "top plate, mm")
+    assert (plot["title"], plot["plot"]["x"]["title"], plot["plot"]["y"]["title"]) == ("frame, 250 g", *titles)
+    lines = {line["name"]: line["y"] for line in plot["plot"]["series"]}
+    assert lines["measured"] == pytest.approx(cycle(frame.Setup(ratio=RATIO)).tolist(), abs=1e-9)
+    assert lines["equations"] == pytest.approx(lines["measured"], abs=1e-3)
     power = "as the load to the power 0.150 meets the motion of both frame, 250 g and frame, 450 g"
     assert any(power in fact for fact in found.facts)
 
