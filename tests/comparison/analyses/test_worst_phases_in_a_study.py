@@ -9,6 +9,7 @@ import xarray as xr
 
 import reference
 from comparison.analyses.worst_phases import analysis
+from comparison.analyses.worst_phases.feature import _kind
 from comparison.runner.task import unfinished
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, TRANSLATIONAL
@@ -84,6 +85,18 @@ def test_the_engine_is_asked_where_its_ratio_says(monkeypatch: pytest.MonkeyPatc
     assert beside.evaluations == analysis.ENGINE_POINTS
     assert (beside.value, beside.at_start, beside.start_error) == pytest.approx((2.00001, 1.99998, 2e-9), rel=2e-6)
     assert beside.phases == pytest.approx((1.005, 2.002), abs=1e-4)  # 1e-3 of slope over 2 of curvature
+
+
+def test_what_a_largest_value_is_stands_beside_it() -> None:
+    beside = "the engine's largest value beside the phases above, "
+    for known, words in (
+        ({"kind": "nearby", "at_start": 1.25}, f"{beside}where it has 1.25"),
+        ({"kind": "nearby"}, f"{beside}at which it has none"),
+        ({"reason": "step limit"}, "step limit"),
+        ({"kind": "kink"}, "on an edge of the surface"),
+        ({"kind": "smooth"}, "on a smooth maximum"),
+    ):
+        assert _kind(analysis.Worst("fig3-I", "exact", "amplification", 1, **known)) == words  # type: ignore[arg-type]
 
 
 def test_searches_begin_at_the_hills_of_what_they_search() -> None:
