@@ -170,6 +170,8 @@ def test_the_engine_is_asked_at_different_motions_and_scales(folder: Path) -> No
         chosen = analysis.Ensemble(members, count).chosen()
         assert len(chosen) <= min(count, 12)
         assert (len(chosen) > 0) == (count > 0)
+    asked = {task.argument[1].key: task.argument[2] for task in analysis.Ensemble(members, 1).tasks()}
+    assert asked == {"exact": 1e-6, "regularised": 1e-6, "translational": 1e-2}, "relative errors"
     three = [members[place] for place in analysis.Ensemble(members, 3).chosen()]
     assert len({member.motion for member in three}) == len({member.scale for member in three}) == 3
 
