@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 from known_analyses import collected
-from places import scene_text
 
 from comparison.analyses.assumptions import command
 from comparison.analyses.assumptions.validity import (
@@ -27,7 +26,6 @@ from comparison.analyses.assumptions.validity import (
     uneven_lines,
     varied,
 )
-from comparison.analyses.tradeoff import command as tradeoff
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from multibody import amplification
@@ -201,30 +199,3 @@ def test_the_command_prints_the_change_of_every_body(
     ):
         assert cells_of_row in rows
     assert {file.suffix for file in (tmp_path / "drawn").iterdir()} == {".png", ".pdf", ".json"}
-
-
-def test_a_scene_that_a_command_cannot_vary_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "bare.toml").write_bytes(BARE)
-    loaded = scene_text("fig3-I", ("friction = 0.1", "friction = {slow = 0.1, load_exponent = -0.2}"))
-    (tmp_path / "loaded.toml").write_text(loaded, encoding="utf-8")
-    for main, scene, line in (
-        (
-            command.main,
-            "synthetic-pair",
-            "excitation.record = 'synthetic-pair': rings and heights are varied at phases",
-        ),
-        (
-            command.main,
-            "bare.toml",
-            "isolator, bodies = 'bare': the spatial model needs supports, ring and sphere_radius",
-        ),
-        (tradeoff.main, "synthetic-pair", "excitation.record = 'synthetic-pair': reference solutions need phases"),
-        (
-            tradeoff.main,
-            "loaded.toml",
-            "isolator.friction.load_exponent = -0.2: the solvers outside the package know no",
-        ),
-    ):
-        assert main([str(tmp_path / scene) if scene.endswith("toml") else scene]) == 2
-        said = capsys.readouterr().err
-        assert (line in said, said.count("\n")) == (True, 1), said

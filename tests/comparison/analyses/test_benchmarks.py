@@ -30,7 +30,6 @@ from comparison.analyses.benchmarks.cases import LIMITS, Case, Reading, cases, m
 from comparison.analyses.benchmarks.command import main, print_benchmarks
 from comparison.analyses.benchmarks.table import STORED, Benchmarks, Number, Verdict, page, stated, with_error
 from reference.analytical import den_hartog
-from reference.problem import SceneError
 
 CASES = cases()
 CHEAP = ("sdnd104-0.99", "frame", "pendulum")  # the last by the command
@@ -160,30 +159,6 @@ def test_the_command_writes_tables_and_goes_on_where_it_stopped(tmp_path, capsys
     assert STORED.as_json(table) == (tmp_path / "report" / "benchmarks.json").read_bytes()
     assert (tmp_path / "report" / "benchmarks.md").read_text(encoding="utf-8") == page(table)
     assert json.loads(STORED.as_json(table))["benchmarks"][0]["name"] == "pendulum"
-
-
-@pytest.mark.parametrize(
-    ("words", "line"),
-    [
-        (["--only", "nothing"], "--only = 'nothing': no benchmark is left"),
-        (["--mastodon", "nowhere.csv"], "--mastodon = 'nowhere.csv': No such file or directory"),
-        (["--jobs", "0"], "--jobs = 0: must be a whole number"),
-    ],
-)
-def test_a_wrong_option_is_one_line(words, line, tmp_path, capsys, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert main(words) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert line in error
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_an_input_motion_without_three_directions_is_refused(tmp_path):
-    file = tmp_path / "flat.csv"
-    file.write_text("time [s],ax [m/s^2]\n0,0\n1,1\n")
-    with pytest.raises(SceneError, match="ax, ay and az"):
-        mastodon(file)
 
 
 def test_the_page_in_docs_has_every_benchmark():

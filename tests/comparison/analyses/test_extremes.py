@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from known_results import PLAIN, fake
+from known_results import FOUND, PLAIN, fake
 from runs import no_executor
 
 import multibody
@@ -189,21 +189,9 @@ def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
         "FAILED: anything plain, calls_nan_ok: ok, but no finite number",
     )
     assert counts.endswith(": 1 converged, 1 refused, 1 limit, 1 FAILED.")
-
-
-@pytest.mark.parametrize(
-    ("words", "rule"),
-    [
-        (["--jobs", "0"], "must be a whole number from 1"),
-        (["--limit", "-1"], "--limit = "),
-        (["--rows", "no such extreme"], "no cell is left: take part of a row's name"),
-        (["--only", "friction"], "selects analyses of a study; the extremes are chosen with --rows TEXT"),
-    ],
-)
-def test_a_wrong_option_is_one_line(words, rule, tmp_path, capsys):
-    assert main([*words, "--out", str(tmp_path / "report")], no_executor) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert rule in line
+    monkeypatch.setattr(analysis.Extremes, "collect", lambda *rest: FOUND)
+    main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor)
+    assert "1.0 s of processor time: 1 converged, 0 refused, 1 limit, 1 FAILED" in capsys.readouterr().out
 
 
 def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -214,7 +202,17 @@ def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.Monke
     assert asked["first"].penetration == pytest.approx(brief.total_mass * 9.81 / (1e4 * brief.radius))
     amplification(brief, [(0.3, 1.1)], step=0.1)
     assert asked["first"].step * np.sqrt(brief.radius / 9.81) == pytest.approx(0.1)
-    assert asked["first"].error_floor / usual.error_floor == pytest.approx((asked["first"].step / usual.step) ** 2)
+    longer = asked["first"].step / usual.step
+    assert asked["first"].error_floor / usual.error_floor == pytest.approx(longer**2)
+    assert asked["first"].max_divisions - usual.max_divisions == np.ceil(np.log(longer) / np.log(4.0))
+
+
+def test_the_engine_does_the_work_that_a_row_allows(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr(analysis, "imported", lambda path: lambda *given, **settings: asked.append(settings))
+    column = replace(fake("honest"), settings={"max_work": 6e5})
+    analysis.solve_cell(analysis.Cell(replace(PLAIN, max_work=123.0), column))
+    assert asked == [{"max_work": 123.0, "tolerance": 1e-3}]
 
 
 def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):

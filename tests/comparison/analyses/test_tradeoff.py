@@ -220,6 +220,7 @@ def test_a_tall_scene_has_its_bodies_one_above_the_other(bodies: int) -> None:
     assert scene.isolator.ring >= bodies
     assert scene.masses[1:].tolist() == pytest.approx([SCENE.masses[1] / (bodies - 1)] * (bodies - 1))
     assert scene.amplitudes.tolist() == (3.0 * SCENE.amplitudes).tolist(), "else friction holds it"
+    assert QUANTITIES[1].scene(SCENE, 30.0).duration == 30.0
 
 
 def test_the_front_is_printed_with_median_and_95_percent(capsys: pytest.CaptureFixture[str]) -> None:

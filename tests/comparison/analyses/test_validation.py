@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -104,6 +105,29 @@ def test_a_run_is_folded_at_the_turns_of_its_base():
     assert cycles.second == pytest.approx(0.2 * np.exp(-1j * np.radians(40.0)), abs=1e-6)
     expected = 3.0 * np.cos(2.0 * math.pi * np.arange(frame.SAMPLES) / frame.SAMPLES - np.radians(50.0))
     assert cycles.mean == pytest.approx(expected - expected.mean(), abs=2e-3)
+
+
+def test_the_scene_of_a_run_has_the_force_of_disc_and_base():
+    cycles = frame.Cycles(Shaken(0.25, *np.zeros((3, 1))), np.zeros((4, frame.SAMPLES)), 1.0, 2.0, 0.3 + 0.4j)
+    scene, phases = frame.scene_of(cycles, frame.Setup(disc=1.1, ratio=0.2, scale=1.5, second=0.5))
+    law, weight = scene.dry_friction, scene.total_mass * 9.81
+    assert law.slow * weight == pytest.approx(0.2 * 1.1 * 0.25 * 9.81)
+    assert weight / scene.radius == pytest.approx(STIFFNESS)
+    assert (law.fast - law.slow) * law.rate * weight == pytest.approx(DAMPING)
+    for number, base in enumerate((2e-3, 0.5 * (0.3 + 0.4j) * 1e-3), start=1):
+        force = -1.5 * base * (STIFFNESS + 2j * math.pi * number * DAMPING) / MASS
+        assert scene.amplitudes[0, number - 1] == pytest.approx(abs(force))
+        assert phases[number - 1] == pytest.approx(np.angle(force))
+
+
+def test_the_numbers_of_a_motion_have_its_errors():
+    """The errors are what the motion itself states of a number and those of its coarser runs."""
+    accuracy = SimpleNamespace(coarser=[[1.5, 2.5], [3.0, 7.0]], error_of=lambda value, others: sum(others) - 2 * value)
+    motion = SimpleNamespace(status="ok", accuracy=accuracy)
+    found = table.answer(motion, lambda each: np.array([1.0, 2.0] if each is motion else each), 2)
+    assert (found.values.tolist(), found.errors.tolist()) == ([1.0, 2.0], [2.5, 5.5])
+    ended = SimpleNamespace(status="rim reached", accuracy=accuracy)
+    assert np.isnan(np.concatenate(table.answer(ended, np.asarray, 2))).all()
 
 
 def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):

@@ -103,12 +103,13 @@ def test_searches_begin_at_the_hills_of_what_they_search() -> None:
     study = Study((SHORT,), GRID, 1e-3, MODEL_HIERARCHY)
     alpha = 2.0 * np.pi * np.arange(GRID) / GRID
     hill = 2.0 + np.cos(alpha - alpha[5])[:, None] + np.cos(alpha - alpha[9])[None, :]
+    of_bodies = np.stack([np.roll(hill, shift, axis=1) for shift in (2, 3)])
     models, scenes = [model.key for model in MODEL_HIERARCHY], [SHORT.name]
     plane, body = ("scene", "model", "alpha1", "alpha2"), ("scene", "model", "body", "alpha1", "alpha2")
     shape = (1, len(models), GRID, GRID)
     surfaces = xr.Dataset(
         {
-            "mu": (body, np.broadcast_to(np.roll(hill, 3, axis=1), (1, len(models), 2, GRID, GRID))),
+            "mu": (body, np.broadcast_to(of_bodies, (1, len(models), 2, GRID, GRID))),
             "error": (body, np.zeros((1, len(models), 2, GRID, GRID))),
             "displacement": (plane, np.broadcast_to(hill, shape)),
             "stride": (("scene", "model"), [[study.stride(model) for model in MODEL_HIERARCHY]]),
@@ -117,7 +118,7 @@ def test_searches_begin_at_the_hills_of_what_they_search() -> None:
     )
     tasks = analysis.WorstPhases().tasks(study, surfaces)
     for task in tasks:
-        shift = 0 if task.argument[3] == "displacement" else 3
+        shift = 0 if task.argument[3] == "displacement" else 1 + task.argument[4]
         assert task.argument[6].tolist() == [[alpha[5], alpha[9 + shift]]]
 
 

@@ -1,0 +1,54 @@
+"""What a command of an analysis cannot do is one line at its start, and nothing is computed or written."""
+
+from pathlib import Path
+
+import pytest
+from places import scene_text
+from runs import no_executor
+
+from comparison.analyses.assumptions import command as assumptions
+from comparison.analyses.benchmarks import command as benchmarks
+from comparison.analyses.extremes import command as extremes
+from comparison.analyses.tradeoff import command as tradeoff
+
+BARE = """title = "no word about supports"
+duration = 1.0
+isolator = {period = 1.0, friction = 0.1}
+bodies = [{mass = 1.0}]
+excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay = [0.0, 0.0]}"""
+PAIR = "excitation.record = 'synthetic-pair': "
+
+
+@pytest.mark.parametrize(
+    ("command", "words", "line"),
+    [
+        (assumptions, ["synthetic-pair"], f"{PAIR}rings and heights are varied at phases"),
+        (
+            assumptions,
+            ["bare.toml"],
+            "isolator, bodies = 'bare': the spatial model needs supports, ring",
+        ),
+        (benchmarks, ["--only", "nothing"], "--only = 'nothing': no benchmark is left"),
+        (benchmarks, ["--mastodon", "nowhere.csv"], "--mastodon = 'nowhere.csv': No such file or directory"),
+        (benchmarks, ["--mastodon", "flat.csv"], "must have accelerations along x, y and z: columns ax, ay and az"),
+        (benchmarks, ["--jobs", "0"], "--jobs = 0: must be a whole number"),
+        (extremes, ["--jobs", "0"], "must be a whole number from 1"),
+        (extremes, ["--limit", "-1"], "--limit = "),
+        (extremes, ["--rows", "no such extreme"], "no cell is left: take part of a row's name"),
+        (extremes, ["--only", "friction"], "selects analyses of a study; the extremes are chosen with --rows TEXT"),
+        (tradeoff, ["synthetic-pair"], f"{PAIR}reference solutions need phases"),
+        (tradeoff, ["loaded.toml"], "isolator.friction.load_exponent = -0.2: the solvers outside the package know no"),
+    ],
+)
+def test_a_wrong_command_is_one_line(
+    command, words: list[str], line: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    loaded = scene_text("fig3-I", ("friction = 0.1", "friction = {slow = 0.1, load_exponent = -0.2}"))
+    files = {"bare.toml": BARE, "loaded.toml": loaded, "flat.csv": "time [s],ax [m/s^2]\n0,0\n1,1\n"}
+    for name, text in files.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    assert command.main(words, no_executor) == 2
+    said = capsys.readouterr().err
+    assert (line in said, said.count("\n")) == (True, 1), said
+    assert {file.name for file in tmp_path.iterdir()} == {*files}
