@@ -313,7 +313,7 @@ MISTAKES = (
             (OF + "ensemble.py::test_the_error_of_a_fractile_covers_every_change",)),
     Mistake(ANALYSES + "ensemble/analysis.py", "np.where(np.isfinite(value), x, worst)", "np.where(np.isfinite(value), x, -worst)",
             "A motion that reaches the rim demands least.",
-            (OF + "ensemble.py::test_what_has_no_answer_counts_as_larger_than_all_others",)),
+            (OF + "ensemble.py::test_the_error_of_a_fractile_covers_every_change",)),
     Mistake(CLI + "computing.py", "        runner.run(first, compiling_task)\n", "",
             "An ensemble shows nothing of the equations before its engine has run.",
             (OF + "ensemble.py::test_the_equations_are_shown_before_the_engine_runs",)),

@@ -158,10 +158,6 @@ def test_the_equations_fail_at_none_of_the_extremes():
 def test_the_command_writes_the_matrix_and_computes_once(tmp_path, capsys):
     words = ["--models", "small", "--rows", "amplitude, m/s^2 1e", "--jobs", "1", "--out", str(tmp_path / "report")]
     assert main(words, ThreadPoolExecutor) == 0
-    out = capsys.readouterr().out
-    assert re.search(
-        r"^3 cells in .* s of processor time: \d+ converged, \d+ refused, \d+ limit, 0 FAILED\.$", out, re.M
-    )
     matrix = STORED.load(tmp_path / "report")
     assert matrix.run["command"].startswith("python -m comparison.extremes --models small ")
     assert {row.group for row in matrix.rows} == {"amplitude, m/s^2"}
@@ -172,9 +168,6 @@ def test_the_command_writes_the_matrix_and_computes_once(tmp_path, capsys):
     assert (again.rows, again.run["stored_before"]) == (matrix.rows, 3)
     with pytest.raises(AssertionError, match="computed"):
         main([*words, "--fresh"], no_executor)
-    capsys.readouterr()
-    assert main(words, ThreadPoolExecutor) == 0
-    assert "tasks are in" not in capsys.readouterr().out, "what --fresh dropped is computed by the next run"
 
 
 def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
