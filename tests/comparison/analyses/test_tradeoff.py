@@ -105,12 +105,17 @@ def test_the_answer_is_the_fastest_that_estimates_its_error() -> None:
     assert answer["text"] == f"for 1e-02 {ask('fast', 200, '')}; {unsure}; for 1e-04 none; for 1e-06 none."
 
 
-@pytest.mark.parametrize("name", ["fig3-I", "fig4-viscous"])
-def test_scipy_has_the_factors_of_the_equations(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "friction"),
+    [("fig3-I", 0.1), ("fig3-I", {"slow": 0.05, "fast": 0.15, "rate": 0.9}), ("fig4-viscous", None)],
+    ids=str,
+)
+def test_scipy_has_the_factors_of_the_equations(monkeypatch: pytest.MonkeyPatch, name: str, friction: object) -> None:
     for function in ("slope", "slopes", "exact_acceleration"):  # not compiled
         monkeypatch.setattr(outside, function, getattr(outside, function).py_func)
     bodies = [{"mass": 1.0}, *({"mass": 0.5, "period": [0.6, 0.5], "damping": ratio} for ratio in (0.3, 0.1))]
-    scene = load_scene(name).with_values({"duration": 0.8, "bodies": bodies}).with_amplitude(3.0)
+    values = {"duration": 0.8, "bodies": bodies} | ({"isolator.friction": friction} if friction else {})
+    scene = load_scene(name).with_values(values).with_amplitude(3.0)
     expected = amplification(scene, [(0.3, 1.1)], regularization=None if scene.lubricated else 1e-2)
     found = outside.factors_by_scipy(scene, [(0.3, 1.1)], "LSODA", 1e-8, 1e-2)
     np.testing.assert_allclose(found, expected.mu, rtol=2e-6)
@@ -220,6 +225,7 @@ def test_a_tall_scene_has_its_bodies_one_above_the_other(bodies: int) -> None:
     assert scene.isolator.ring >= bodies
     assert scene.masses[1:].tolist() == pytest.approx([SCENE.masses[1] / (bodies - 1)] * (bodies - 1))
     assert scene.amplitudes.tolist() == (3.0 * SCENE.amplitudes).tolist(), "else friction holds it"
+    assert [(each.name, each.unit) for each in QUANTITIES] == [("bodies", ""), ("duration", "s"), ("phase pairs", "")]
     assert QUANTITIES[1].scene(SCENE, 30.0).duration == 30.0
 
 

@@ -185,7 +185,9 @@ def test_losses_and_later_turns_of_a_known_swing_are_met(tmp_path: Path):
     angle[number >= 13] = angle[number < 13][-1]
     values = math.pi + step * np.round(angle / step)
     savemat(tmp_path / DECAY, {"Theta1": {"time": time, "signals": {"values": values}}})
-    found = pendulum.compare_decay(read_folder(tmp_path).decay)
+    swing = read_folder(tmp_path).decay
+    np.testing.assert_allclose(swing.angle, values - math.pi, atol=1e-12)
+    found = pendulum.compare_decay(swing)
     assert float(found.inputs[1].split("swing ")[1].split(" ")[0]) == pytest.approx(loss, abs=3e-5)
     turns = np.array(found.curves[0].y[:11])  # mrad
     design = np.column_stack([np.ones(11), np.arange(11), (-1.0) ** np.arange(11)])
@@ -217,7 +219,9 @@ def test_half_periods_are_those_of_elliptic_integrals(tmp_path: Path):
         angle = math.pi + np.interp(even[part], instants, angles)
         cells[f"Time_{kind}"][number % 2], cells[f"Y_{kind}"][number % 2] = even[part], np.array([angle, 0.0 * angle])
     savemat(tmp_path / LARGE, cells)
-    found = pendulum.compare_large(read_folder(tmp_path).large)
+    swing = read_folder(tmp_path).large
+    np.testing.assert_allclose(swing.angle, np.interp(even, instants, angles), atol=1e-12)
+    found = pendulum.compare_large(swing)
     for each in found.quantities:
         assert abs(each.sides[EQUATIONS].error) < 2e-4 * each.measured, each
         assert abs(each.sides[ENGINE].error) < 4e-4 * each.measured, each
