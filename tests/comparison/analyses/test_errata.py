@@ -8,7 +8,13 @@ from known_analyses import collected
 
 from comparison.analyses.errata import analysis as errata
 from comparison.analyses.errata.analysis import ERRATA, PHASES, Errata, MeasuredErratum, cut_platform, measured
-from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING, _fixed, printed_amplification
+from comparison.analyses.errata.printed_matrices import (
+    WRONG_DAMPING,
+    WRONG_SPRING,
+    _accelerations,
+    _fixed,
+    printed_amplification,
+)
 from comparison.study.models import V_REG
 from comparison.study.study import Study
 from reference import amplification
@@ -119,3 +125,18 @@ def test_the_wrong_spring_of_y_is_that_of_x() -> None:
     printed, mended = (_fixed(scene, slips).links for slips in ([WRONG_SPRING], []))
     assert (mended[0, 2], mended[1, 3]) == (-k_x, -k_y)
     assert (printed[0, 2], printed[1, 3]) == (-k_x, -k_x)
+
+
+def test_the_wrong_damping_has_no_rho_and_xi_in_the_place_of_eta() -> None:
+    """At x = 0 and x' = 0 the matrix M is diagonal; the printed h_12 y' and h_22 y' differ as (3.15) is misprinted."""
+    scene, y, vy, (xi, eta) = load_scene("fig4-viscous"), 0.05, 0.3, (0.7, 0.4)
+    place, rate = np.array([0.0, y, 0.0, y]), np.array([0.0, vy, 0.0, vy])
+    printed, mended = (
+        _accelerations(_fixed(scene, slips), place, rate, np.array([xi, eta, 0.0])) for slips in ([WRONG_DAMPING], [])
+    )
+    m, rho, f = scene.masses[0], scene.radius, scene.friction_coefficient
+    delta = -np.sqrt(rho**2 - y**2)
+    r, s = y / delta, f * rho
+    own = m * (delta - s * vy * r)
+    expected = m * xi * r * f * (1.0 - rho) * vy / own, m * (xi - eta) * r * s * vy / (own + 2.0 * m * r * (y + s * vy))
+    assert (printed - mended)[:2] == pytest.approx(expected, rel=1e-9)
