@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy
 from known_analyses import collected
+from places import scene_text
 
 from comparison.analyses.assumptions import command
 from comparison.analyses.assumptions.validity import (
@@ -185,17 +186,21 @@ def test_the_command_prints_the_change_of_every_body(
         AssumptionCell(
             "fig3-I", variation, ((0.01 * number, -0.02 * number),), ((1e-4 * number, 2e-4 * number),), ("ok",)
         )
-        for number, variation in enumerate((Variation(ring=0.5), Variation(height=2.0, supports=3)), start=1)
+        for number, variation in enumerate(
+            (Variation(ring=0.5), Variation(height=2.0, supports=3), Variation(offset=0.1, yaw=0.3)), start=1
+        )
     ]  # fmt: skip
     validity = Validity(ASSUMPTIONS, ((0.0, 0.0),), 1.0, tuple(cells), tuple(ranges(STATED, cells)))
     monkeypatch.setattr(command, "computed", lambda *rest: None)
     monkeypatch.setattr(Assumptions, "collect", lambda *rest: validity)
-    assert command.main(["fig3-I", "--out", str(tmp_path / "report"), "--figures", str(tmp_path / "drawn")]) == 0
+    file = tmp_path / "fig3-I.toml"
+    file.write_text(scene_text("fig3-I", ("ring = 1.0 ", "ring = 2.0 ")), encoding="utf-8")
+    assert command.main([str(file), "--out", str(tmp_path / "report"), "--figures", str(tmp_path / "drawn")]) == 0
     rows = [re.split(r"\s{2,}", line.strip()) for line in capsys.readouterr().out.splitlines()]
-    radius = STATED.support_radius or 0.0
     for cells_of_row in (
-        [f"{0.5 * radius:g}", "1", "4", "0", "0", "1.000", "2.000", "0.010", "0.020", "ok"],
-        [f"{radius:g}", "2", "3", "0", "0", "2.000", "4.000", "0.020", "0.040", "ok"],
+        ["1", "1", "4", "0", "0", "1.000", "2.000", "0.010", "0.020", "ok"],
+        ["2", "2", "3", "0", "0", "2.000", "4.000", "0.020", "0.040", "ok"],
+        ["2", "1", "4", "0.2", "0.3", "3.000", "6.000", "0.030", "0.060", "ok"],
     ):
         assert cells_of_row in rows
     assert {file.suffix for file in (tmp_path / "drawn").iterdir()} == {".png", ".pdf", ".json"}
