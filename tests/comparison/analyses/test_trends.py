@@ -133,8 +133,8 @@ def test_a_geometric_step_has_the_exponent_two(
 def test_a_step_enters_the_slope_where_known_to_a_fifth(monkeypatch: pytest.MonkeyPatch) -> None:
     """Errors of 3e-4 on both sides: 4.2e-4 together, a fifth of 2.1e-3. At s = 1/4 both differences are 1.9e-3."""
     monkeypatch.setattr(reference, "amplification", _model(lambda s: 0.03 * s**2, 3e-4))
-    points = {trend.what.split(",")[0]: trend.points for trend in collected(Scaling(), _study("fig3-I"))}
-    assert points == {STEP: 4 * 2, PRINTED.split(",")[0]: 0}, "of four phase pairs; one value has no slope"
+    points = {(trend.what.split(",")[0], trend.points) for trend in collected(Scaling(), _study("fig3-I"))}
+    assert points == {(STEP, 4 * 2), (PRINTED.split(",")[0], 0)}, "of four phase pairs; one value has no slope"
 
 
 def test_a_lubricated_scene_has_one_peak(monkeypatch: pytest.MonkeyPatch) -> None:
