@@ -85,6 +85,11 @@ def uneven(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bo
     return smooth(scene, phases, tolerance)
 
 
+def nearing(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
+    """Half of the tolerance above the smooth model."""
+    return smooth(scene, phases, tolerance, 0.5 * tolerance)
+
+
 def refused(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
     """Takes no step at any phase pair."""
     answer = smooth(scene, phases, tolerance)

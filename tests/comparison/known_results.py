@@ -1,5 +1,6 @@
 """Known results that commands leave beside a report, and columns whose models fail in known ways."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -49,9 +50,12 @@ SEARCHED = [
     Worst("fig3-I", "exact", "displacement", 1, 0.123, 2e-5, (3.0, 4.0), "kink", runner_up=0.11, climbs=6, reached=5),
     Worst("fig3-I", "exact", "amplification", 2, 7.321, 3e-4, (5.0, 6.0), "jump", (0.25, -0.75), 7.1, 8, 7),
 ]
-MEASURED = [
-    MeasuredPeak("fig3-I", "mu", 1, (1.0, 2.0), 4.0, 0.25, "run 7", [ComputedPeak("exact", 5.0, 1e-3, 1.0, True, "ok")])
+COMPUTED = [
+    ComputedPeak("exact", 5.0, 1e-3, 1.0, True, "ok"),
+    ComputedPeak("translational", 4.125, 2e-3, 0.125, False, "ok"),
+    ComputedPeak("spatial", math.nan, math.nan, math.nan, None, "rim reached"),
 ]
+MEASURED = [MeasuredPeak("fig3-I", "mu", 1, (1.0, 2.0), 4.0, 0.25, "run 7", COMPUTED)]
 
 
 def known_assumptions() -> Validity:
