@@ -11,6 +11,8 @@ import io
 import json
 import math
 import re
+import subprocess
+import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import redirect_stderr, redirect_stdout
@@ -22,10 +24,11 @@ from typing import Any
 
 import pytest
 import xarray as xr
+from browsers import CHROMIUM
 from distinct_models import GRID, distinct_hierarchy, distinct_motions, known_demand_surfaces, lacking_hierarchy
 from known_analyses import analyses_are, known_others
 from known_results import FILES, MEASURED, SEARCHED, known_assumptions, known_ensemble, leave_beside
-from places import scene_text
+from places import HELPERS, scene_text
 from recorded_figures import figures_are_told
 from report_texts import data_of, motions_of, page_of, schema_errors, summary_of, text_of
 from runs import Here, quick_figures
@@ -184,7 +187,15 @@ def reported(place: Path, words: Sequence[str], hierarchy: Sequence[Any]) -> lis
     with redirect_stdout(io.StringIO()) as printed, redirect_stderr(printed):
         code = comparison.run.main([*words, "--out", str(place)], hierarchy, ThreadPoolExecutor)
     (place / "terminal").write_text(f"{printed.getvalue()}\nexit code {code}", encoding="utf-8")
-    return lines_of(place)
+    return [*lines_of(place), *drawn(place)]
+
+
+def drawn(place: Path) -> list[str]:
+    """What a browser, if there is one, draws of the report; in a process of its own, since another may be open here."""
+    if CHROMIUM is None:
+        return []
+    command = [sys.executable, str(HELPERS / "drawn_page.py"), str(place)]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
 
 
 def recorded_lines(folder: Path) -> list[str]:

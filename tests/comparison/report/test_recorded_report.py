@@ -5,6 +5,7 @@ import re
 from difflib import unified_diff
 from pathlib import Path
 
+from browsers import CHROMIUM
 from recorded_report import RECORD, recorded_lines
 
 NUMBER = re.compile(r"[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
@@ -20,5 +21,7 @@ def alike(before: str, now: str) -> bool:
 
 def test_the_report_says_what_was_last_read(tmp_path: Path) -> None:
     before, now = RECORD.read_text(encoding="utf-8").splitlines(), recorded_lines(tmp_path)
+    if CHROMIUM is None:
+        before = [line for line in before if not line.removeprefix("lacking ").startswith("drawn ")]
     same = len(before) == len(now) and all(map(alike, before, now))
     assert same, "\n".join(line for line in unified_diff(before, now, lineterm="", n=0))
