@@ -56,6 +56,8 @@ def test_a_wrong_object_is_one_line_that_says_what_to_pass(
         function(**dict.fromkeys(required, (0.0, 0.0)) | {name: wrong})
 
 
+SHORT, START = SCENE.with_values({"isolator.travel": 0.1}), reference.State(np.full((2, 2), 0.08), np.zeros((2, 2)))
+TOO_FAR = "initial: the platform must start within isolator.travel = 0.1 m"
 MASKED = np.ma.masked_array([0.0, 1.0], mask=[True, False])
 WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "max_work as text": (lambda: multibody.refusal(SCENE, max_work="1"), "max_work = '1': must be finite and positive"),
@@ -75,6 +77,12 @@ WRONG: dict[str, tuple[Callable[[], Any], str]] = {
     "time as text": (
         lambda: reference.problem.ground_displacement(SCENE, (0.0, 0.0), "x"),
         "time = 'x': must be numbers: must be instants (T,), s",
+    ),
+    "start of the equations": (lambda: reference.trajectory(SHORT, (0.0, 0.0), initial=START), TOO_FAR),
+    "start of the engine": (lambda: multibody.trajectory(SHORT, (0.0, 0.0), initial=START), TOO_FAR),
+    "start of a single run": (
+        lambda: multibody.single_run(SHORT, (0.0, 0.0), step=1e-3, initial=START),
+        TOO_FAR,
     ),
     "masked grid": (
         lambda: reference.phase_distribution(np.ma.masked_array(np.ones((2, 2)), [[1, 0], [0, 0]]), np.zeros((2, 2))),

@@ -65,7 +65,10 @@ def refuses_what_can_be_done(scene: Scene, phases: NDArray[np.float64], toleranc
 
 
 def gives_a_value_with_a_refusal(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
-    return _answer(phases, 1.0, 1e-9, Outcome.CONTACT_LOST)
+    """Of one of two bodies."""
+    answer = _answer(phases, 1.0, 1e-9, Outcome.CONTACT_LOST)
+    answer.mu[:, 0] = np.nan
+    return answer
 
 
 def invents_a_status(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:

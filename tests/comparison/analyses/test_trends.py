@@ -52,9 +52,13 @@ def test_the_uncertainty_covers_the_scatter() -> None:
 def test_error_bars_alone_make_an_uncertainty() -> None:
     """The logarithms lie 1.5, 0.5, -0.5 and -1.5 times log 2 off their mean: squares of 5 together."""
     sizes = _power(1.0, 1e-2)
+    scattered = sizes * np.exp([[0.01, -0.03, 0.03, -0.01]])  # of no slope
+    spread = fitted(SCALES, scattered, 1e-9 * scattered).uncertainty
     for share in (0.1, 0.01):
         expected = 2.0 * share / (np.sqrt(5.0) * np.log(2.0))
         assert fitted(SCALES, sizes, share * sizes).uncertainty == pytest.approx(expected, rel=1e-6)
+        both = fitted(SCALES, scattered, share * scattered).uncertainty
+        assert both == pytest.approx(np.hypot(expected, spread), rel=1e-6)
 
 
 def test_values_within_their_error_bars_are_not_fitted() -> None:

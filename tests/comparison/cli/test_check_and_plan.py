@@ -79,6 +79,16 @@ def test_a_limit_that_is_broken_at_first_stays_broken(command: Callable[..., Run
     assert (run.code, run.err.count("acceptance.median: 0.0005 found")) == (1, 2)
 
 
+@pytest.mark.parametrize(("limits", "code"), [("closure = 1.0", 1), ("maximum = 9.0", 1), ("failed = 2", 0)])
+def test_a_point_without_an_answer_breaks_any_limit(
+    limits: str, code: int, command: Callable[..., Run], tmp_path: Path
+) -> None:
+    """The engine fails at one of 4 x 4 phase pairs, in both of its models."""
+    scene = limited_scene(tmp_path, f"[acceptance]\n{limits}\n", "mine.toml")
+    run = command(scene, "--grid", "4", "--check", "--only", "budget", hierarchy=fake_hierarchy("failing_point"))
+    assert (run.code, run.err.count("failed: 2 points without an answer")) == (code, code), run.err
+
+
 def test_plan_counts_the_work_and_computes_and_writes_nothing(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
