@@ -23,7 +23,6 @@ DEATHS = TESTS + "runner/test_sweep.py::test_"
 CACHED = TESTS + "runner/test_cache.py::test_"
 FILES = TESTS + "runner/test_users_files.py::test_"
 BESIDE = TESTS + "report/test_results_beside.py::test_"
-RECORDED = TESTS + "report/test_recorded_report.py::test_the_report_says_what_was_last_read"
 OF = TESTS + "analyses/test_"
 
 # fmt: off
@@ -504,5 +503,23 @@ MISTAKES = (
             "The weight of the disc has no uncertainty.", (OF + "validation.py::test_the_scene_of_a_run_has_the_force_of_disc_and_base",)),
     Mistake(ANALYSES + "scaling/analysis.py", "cutoff = None if supremum else CUTOFF * s", "cutoff = CUTOFF * s if supremum else None",
             "Supremum and resolved peak have each other's names.", (OF + "trends.py::test_a_geometric_step_has_the_exponent_two",)),
+    # scripts of the page
+    Mistake(REPORT + "templates/plot.js", "down = shown[i]; });", "down = down || shown[i]; });",
+            "A line is drawn across what is not known.", (RECORDED,)),
+    Mistake(REPORT + "templates/viewer.js", "row.map(value => known(value) ? 100 * value : null)",
+            "row.map(value => known(value) ? value : null)", "Errors in percent are shares.", (RECORDED,)),
+    Mistake(REPORT + "templates/motions.js", "MM, i => `body ${i + 2}`]", "MM, i => `body ${i + 1}`]",
+            "A story drift has the name of the body below.", (RECORDED,)),
+    Mistake(REPORT + "results.py", "sum(verdict is True for verdict", "sum(verdict is not False for verdict",
+            "What could not be judged exceeds.", (RECORDED,)),
+    Mistake("comparison/run.py", "return max(code, again)", "return again",
+            "A limit broken at first is forgotten.", (CHECK + "a_limit_that_is_broken_at_first_stays_broken",)),
+    Mistake("reference/problem/acceptance.py", "(self.differences() or self.closure is not None)", "self.differences()",
+            "A limit of the closure allows lost points.", (CHECK + "a_point_without_an_answer_breaks_any_limit",)),
+    Mistake(ANALYSES + "trends.py", "np.sqrt(scatter + carried)", "np.sqrt(max(scatter, carried))",
+            "Scatter and error bars do not add.", (OF + "trends.py::test_error_bars_alone_make_an_uncertainty",)),
+    Mistake(ANALYSES + "extremes/analysis.py", "if not np.isnan(mu).all():", "if not np.isnan(mu).any():",
+            "A refusal with a value for one body is right.",
+            (OF + "extremes.py::test_a_model_that_is_wrong_fails_and_is_told_why",)),
 )
 # fmt: on
