@@ -28,6 +28,12 @@ def test_a_sound_run_has_no_alert_and_its_limits_hold(command: Callable[..., Run
     assert "**Every acceptance limit holds.**" in (report / "summary.md").read_text(encoding="utf-8")
     suites = ElementTree.parse(report / "junit.xml").getroot()
     assert (suites.get("tests"), suites.get("failures")) == ("5", "0")
+    for error, found in (
+        (0.4, []),
+        (0.6, [("red", "refused"), ("red", "limit")]),
+    ):  # of the value: more than half of it is none
+        worthless = command(*words, hierarchy=errors_in({}, {"spatial": error})).report
+        assert [(each["level"], each["kind"]) for each in summary_of(worthless)["alerts"]] == found
 
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])
