@@ -134,6 +134,12 @@ def test_flights_begin_and_end_when_free_fall_says() -> None:
         # the contact follows the force within the square root of its penetration, some 1e-4 s
         np.testing.assert_allclose(intervals[0, 0], expected[0][0], atol=2e-4)
         np.testing.assert_allclose(intervals[:, 1], [end for _, end in expected], atol=3e-5)
+    start, end = expected[0]
+    aloft = np.linspace(0.0, end - start, 10_001)  # s since its start: the plate falls away faster than the platform
+    sine, cosine = math.sin(PACE * start), math.cos(PACE * start)
+    plate = 15.0 / PACE**2 * (np.cos(PACE * (start + aloft)) - cosine) + 15.0 / PACE * sine * aloft
+    highest = (plate - 0.5 * GRAVITY * aloft**2).max()
+    np.testing.assert_allclose(motion.extra["uplift"].max(axis=0), highest, rtol=1e-3)
 
 
 @pytest.mark.parametrize("number", [0, 1])
