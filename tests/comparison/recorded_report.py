@@ -249,5 +249,6 @@ def variables(place: Path) -> list[str]:
 if __name__ == "__main__":
     import tempfile
 
+    assert CHROMIUM is not None, "what the pages draw is recorded with a Chromium"
     with tempfile.TemporaryDirectory() as name:
         RECORD.write_text("\n".join(recorded_lines(Path(name))) + "\n", encoding="utf-8")
