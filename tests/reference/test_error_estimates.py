@@ -1,12 +1,15 @@
 """The error that comes with every mu holds, and the work it costs is asserted, not only the answer."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 from chains import chain
 
 import reference
 from reference.problem import Scene, phase_grid
-from reference.solver.error_estimate import peaks_at
+from reference.solver.error_estimate import _error, peaks_at
 from reference.surface import checked_demand
 
 FIG3 = reference.load_scene("fig3-I")
@@ -27,6 +30,16 @@ def test_an_error_counts_what_equal_steps_between_knots_miss(period):
         found = reference.amplification(scene, [(0.0, 0.0)])
         truth = reference.amplification(scene, [(0.0, 0.0)], tolerance=1e-9)
         assert np.all(np.abs(found.mu - truth.mu) <= found.error + truth.error), seed
+
+
+def test_reading_and_states_add_to_an_error() -> None:
+    """Twice what reading leaves, 0.4 of what the states leave, or all of it at a peak too small for the steps."""
+    before, after = (
+        SimpleNamespace(value=np.array([[3.0, 1e-6]]) * k, error=np.array([[0.02, 1e-7]])) for k in (1.1, 1)
+    )
+    found: Any = _error(before, after, 1e-3, 1.0)  # type: ignore[arg-type]
+    expected = [0.04 + 0.4 * 0.3 + 5e-4 * 1e-3 * 3.0, 2e-7 + 1e-7 + 5e-4 * 1e-3 * 1e-6]
+    np.testing.assert_allclose(found[0], expected, rtol=1e-9)
 
 
 def asked(isolator: dict, bodies: list, amplitudes: list, periods: list, decay: list, duration: float) -> Scene:
