@@ -225,7 +225,7 @@ MISTAKES = (
             "abs(readings[0] - readings[1])",
             "The error at a corner lacks when it is.", (PEAK + "test_two_instants_of_one_corner_are_part_of_its_error",)),
     Mistake("multibody/motion.py", "(motion.slip < model.corner).all(axis=1)", "(motion.slip < model.corner).any(axis=1)",
-            "A platform rests where one support does.", (TESTS + "test_spatial.py::test_the_overturning_moment_is_that_of_inertia",)),
+            "A platform rests where one support does.", (TESTS + "test_spatial.py::test_a_platform_rests_while_every_support_creeps",)),
     Mistake(INTEGRATION + "level_runs.py", "if compliances[0] != compliances[-2]:", "if False:",
             "The estimate takes a change of springs for a rate of convergence.",
             (TESTS + "test_bars_in_space.py::test_levels_on_other_springs_show_no_rate_of_convergence",)),
