@@ -38,14 +38,15 @@ def chromium() -> Iterator[Browser]:
         browser.close()
 
 
-def opened(browser: Browser, file: Path, width: int, scheme: Scheme = "light") -> Visit:
-    """A page that is ready."""
+def opened(browser: Browser, file: Path, width: int, scheme: Scheme = "light", first: str = "") -> Visit:
+    """A page that is ready; first: a script that runs before the page's own."""
     page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)
     page.set_default_timeout(PATIENCE)
     visit = Visit(page)
     page.on("console", lambda message: visit.complaints.append(message.text))
     page.on("pageerror", lambda error_message: visit.complaints.append(str(error_message)))
     page.on("request", lambda r: visit.requests.append(r.url) if not r.url.startswith(("data:", "blob:")) else None)
+    page.add_init_script(first)
     page.goto(file.as_uri())
     page.wait_for_selector("html[data-ready]", state="attached")
     return visit

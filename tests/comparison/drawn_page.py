@@ -7,7 +7,7 @@ What the scripts of a report's pages draw and say for every scene, body and pair
 import sys
 from pathlib import Path
 
-from browsers import LAPTOP, chromium
+from browsers import LAPTOP, chromium, opened
 from places import HELPERS
 
 SCRIPT = HELPERS / "drawn_page.js"
@@ -18,14 +18,9 @@ def drawn_lines(place: Path) -> list[str]:
     lines = []
     with chromium() as browser:
         for name in ("index.html", "verification.html"):
-            page = browser.new_page(viewport={"width": LAPTOP, "height": 900})
-            complaints: list[str] = []
-            page.on("pageerror", lambda error, complaints=complaints: complaints.append(str(error)))
-            page.add_init_script(SCRIPT.read_text(encoding="utf-8"))
-            page.goto((place / name).as_uri())
-            page.wait_for_selector("html[data-ready]", state="attached")
-            assert complaints == []
-            lines += [f"drawn {name}: {line}" for line in page.evaluate("toldPage()")]
+            visit = opened(browser, place / name, LAPTOP, first=SCRIPT.read_text(encoding="utf-8"))
+            lines += [f"drawn {name}: {line}" for line in visit.page.evaluate("toldPage()")]
+            assert visit.complaints == []
     return lines
 
 

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from PIL import Image
-
-DOT = '<svg xmlns="http://www.w3.org/2000/svg" width="8" height="2"/>'
+from runs import QUICK_MAPS
 
 
 def figures_are_told(patch: pytest.MonkeyPatch) -> dict[str, list[str]]:
@@ -25,9 +24,9 @@ def figures_are_told(patch: pytest.MonkeyPatch) -> dict[str, list[str]]:
         lines = list(_told(figure))
         if not isinstance(place, str | Path):
             told.setdefault("maps", []).extend(lines)
-            place.write(DOT.encode())
+            place.write(QUICK_MAPS)
         elif Path(place).suffix == ".svg":
-            Path(place).write_text(DOT)
+            Path(place).write_bytes(QUICK_MAPS)
         else:
             told[Path(place).stem] = lines
             Image.new("RGB", (1, 1)).save(place, "PDF" if str(place).endswith(".pdf") else "PNG")

@@ -195,7 +195,7 @@ def drawn(place: Path) -> list[str]:
     if CHROMIUM is None:
         return []
     command = [sys.executable, str(HELPERS / "drawn_page.py"), str(place)]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines()
 
 
 def recorded_lines(folder: Path) -> list[str]:
