@@ -80,7 +80,7 @@ def distinct(scene: Scene, phases: Array, tolerance: float, key: str) -> Amplifi
     )  # fmt: skip
 
 
-# of a model: the row and column on a grid of 8 x 8 phases, and the outcome there
+# of a model: the row and column on the grid, and the outcome there
 GAPS = {
     "resolved": (1, 2, Outcome.RIM_REACHED),
     "regularised": (4, 6, Outcome.OK),  # with an error of 60 %
@@ -94,7 +94,7 @@ def lacking(
     """As `distinct`, with gaps; the spatial model fails at a phase pair, the other engine refuses a flat slider."""
     answer = distinct(scene, phases, tolerance, key)
     mu, error, status = answer.mu.copy(), answer.error.copy(), answer.status.astype("U32")
-    row, column = np.rint(phases * 8.0 / (2.0 * np.pi)).astype(int).T
+    row, column = np.rint(phases * GRID / (2.0 * np.pi)).astype(int).T
     if key == "spatial" and (row == 6).any():
         raise RuntimeError("the matrix is <singular>")
     if key == "translational":

@@ -39,7 +39,6 @@ function toldPlot(box) {
 const text = node => node.innerText.replace(/\s+/g, " ").trim();
 
 globalThis.toldPage = async () => {
-  document.querySelectorAll("details").forEach(part => { part.open = true; });
   dispatchEvent(new Event("beforeprint"));
   const lines = [...document.querySelectorAll("[data-plot]")].map(box => `plot ${toldPlot(box)}`);
   const shaken = study?.scenes.find(scene => !scene.recorded);  // the scene whose pairs are all told
