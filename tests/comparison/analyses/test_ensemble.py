@@ -13,13 +13,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from runs import no_picture
 from terminal_tables import rows_under
 
 import reference
 from comparison.analyses.ensemble import analysis
 from comparison.analyses.ensemble.command import FILES, main, table_text
 from comparison.analyses.ensemble.feature import demand_rows, ensemble_panels, labels, largest_differences
-from comparison.analyses.ensemble.result import STORED, EnsembleResult
+from comparison.analyses.ensemble.result import STORED
 from comparison.analyses.ensemble.target import matched
 from comparison.runner.runner import Runner
 from comparison.wording import percent
@@ -48,12 +49,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (tmp_path / "suite" / f"m{number}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{rows}\n")
     (tmp_path / "mine.toml").write_text(SCENE)
     monkeypatch.chdir(tmp_path)
-
-    def draw(path: Path, result: EnsembleResult) -> None:
-        for each in (path, path.with_suffix(".pdf")):
-            each.write_text(str(result.motions))
-
-    monkeypatch.setattr("comparison.analyses.ensemble.command.draw_ensemble", draw)
+    monkeypatch.setattr("comparison.analyses.ensemble.command.draw_ensemble", no_picture)
     return tmp_path
 
 

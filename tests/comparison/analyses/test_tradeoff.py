@@ -11,6 +11,7 @@ import xarray as xr
 from known_analyses import collected
 from known_results import known_trade
 from rich.console import Console
+from runs import no_picture
 from scipy.stats import linregress
 
 from comparison.analyses.tradeoff import analysis, command, growth, outside, single_runs
@@ -169,11 +170,6 @@ def test_a_model_that_raises_leaves_points_without_a_value() -> None:
 
 
 GAPS = 1e-3, 1e-2
-
-
-def no_picture(path: Path, shown: object) -> None:
-    for each in (path, path.with_suffix(".pdf")):
-        each.write_bytes(b"")
 
 
 def test_the_command_measures_nothing_twice(
