@@ -29,7 +29,6 @@ from comparison.analyses.benchmarks.analysis import (
 from comparison.analyses.benchmarks.cases import LIMITS, Case, Reading, cases, mastodon, published, shipped
 from comparison.analyses.benchmarks.command import main, print_benchmarks
 from comparison.analyses.benchmarks.table import STORED, Benchmarks, Number, Verdict, page, stated, with_error
-from reference.analytical import den_hartog
 
 CASES = cases()
 CHEAP = ("sdnd104-0.99", "frame", "pendulum")  # the last by the command
@@ -95,33 +94,10 @@ def test_both_sides_meet_mastodon_within_three_percent():
     assert (np.abs(plain - LIMITS) > 15.0).all()
 
 
-# the numbers themselves ----------------------------------------------------------------------------------------------
-
-
-def test_closed_forms_give_the_published_digits():
-    assert math.sqrt(1.0 - (0.2 * math.pi) ** 2) == pytest.approx(0.777956, abs=5e-7)
-    assert den_hartog(0.6, 0.3).amplitude == pytest.approx(BY_NAME["den-hartog"].published[0].published, abs=5e-7)
-    pulse = (3.0 * 0.5) ** 2 / 2.0 * (1.0 - 1.0 / 3.0)
-    assert pulse == pytest.approx(BY_NAME["newmark"].published[0].published)
-    chain = [2.0 * math.sin(math.pi / 22.0) / math.sin((2 * n - 1) * math.pi / 22.0) for n in range(1, 6)]
-    assert chain == pytest.approx([each.published for each in BY_NAME["stories"].published], abs=5e-5)
-    limit, pace = 1.875 / 30.0, math.sqrt(30.0 * 386.0 / 10.0)
-    swings = [-limit - (1.0 - limit) * math.cos(0.09 * pace)]
-    for time in (0.102, 0.183):
-        swings.append(limit + (1.0 - 3.0 * limit) * math.cos(pace * time - math.pi))
-    assert swings == pytest.approx([each.published for each in BY_NAME["vm73"].published], abs=5e-6)
-
-
-# readings ------------------------------------------------------------------------------------------------------------
-
-
 def test_the_error_covers_that_of_few_instants(monkeypatch):
     monkeypatch.setattr(analysis, "SAMPLES", 201)
     solved, known = solve((BY_NAME["sdnd104-15"], EQUATIONS)), BY_NAME["sdnd104-15"].published[0].published
     assert 1e-4 < abs(solved.values[0] - known) <= solved.errors[0] < 0.01
-
-
-# verdicts ------------------------------------------------------------------------------------------------------------
 
 
 def _verdicts(difference: str = "", **sides: tuple[float, float]) -> dict[str, str]:
@@ -142,9 +118,6 @@ def test_a_number_is_met_within_both_errors():
     assert _verdicts("heating", equations=far, smoothed=far, engine=far)[EQUATIONS] == Verdict.MODEL
     assert _verdicts(equations=(math.nan, math.nan), smoothed=far, engine=far)[EQUATIONS] == Verdict.NONE
     assert with_error(Number(2.02423, 3e-4, Verdict.MET)) == "2.0242 ± 3e-04"
-
-
-# the command ---------------------------------------------------------------------------------------------------------
 
 
 def test_the_page_in_docs_has_every_benchmark():
