@@ -9,11 +9,9 @@ from known_analyses import collected
 
 import reference
 from comparison.analyses.demands.analysis import DemandSurfaces, demand_statistics
-from comparison.analyses.demands.feature import _cell
-from comparison.result_types import UncertainNumber
 from comparison.study.models import EXACT, REGULARIZED, SMALL
 from comparison.study.study import Study
-from reference.problem import Scene, load_scene, phase_axis
+from reference.problem import load_scene, phase_axis
 
 MODELS = (SMALL, EXACT, REGULARIZED)
 
@@ -83,21 +81,3 @@ def test_a_task_that_fails_costs_its_own_pairs_alone(study: Study) -> None:
     assert set(found["status"].sel(scene="fig3-I", model="exact").values.ravel()) == {"solver failed"}
     assert np.isnan(found["base_shear"].sel(model="exact")).all()
     assert np.isfinite(found["base_shear"].sel(scene="fig3-I", model="small")).all()
-
-
-def test_one_body_has_no_drift() -> None:
-    bodies = [{"mass": 3.0}]
-    alone = load_scene("fig3-I").model_dump(exclude_none=True) | {"bodies": bodies, "duration": 0.5, "name": "alone"}
-    for key in ("supports", "ring", "sphere_radius"):
-        alone["isolator"].pop(key, None)
-    study = Study((Scene.model_validate(alone),), 2, 1e-3, (SMALL,))
-    found = collected(DemandSurfaces(), study)
-    rows = {(row.quantity, row.body) for row in demand_statistics(study, found, study.scenes[0])}
-    assert ("acceleration", 1) in rows
-    assert not [row for row in rows if row[0] == "drift"]
-
-
-def test_the_least_force_of_a_support_is_the_smallest_of_all_phases() -> None:
-    numbers = [UncertainNumber(value=value, error=0.01) for value in (5.0, 3.0, float("nan"), 4.0)]
-    assert (_cell("support_force_min", numbers, 10.0), _cell("support_force", numbers, 10.0)) == ("30", "50")
-    assert _cell("residual", numbers, 10.0) == "50 ± 0.1"

@@ -6,11 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy, sliding
-from known_analyses import collected
 
-from comparison.analyses.effective_values.analysis import PHASES, EffectiveValues, read_back, stated
+from comparison.analyses.effective_values.analysis import PHASES, read_back, stated
 from comparison.study.models import EXACT, MODEL_HIERARCHY, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
-from comparison.study.study import Study
 from reference.problem import Scene, Trajectory, ground_acceleration, load_scene
 
 TRUE = {"radius": 0.31, "friction": 0.123, "mass": 2.2}  # the scene says 0.248 m, 0.1 and 2 kg
@@ -87,14 +85,6 @@ def test_a_motion_that_tells_nothing_has_no_value(model: Model, error_message: s
     assert values.error_message == error_message
     assert np.isnan([values.radius, values.friction]).all()
     assert [values.mass, values.contact] == pytest.approx([mass, 9.81 * mass], rel=1e-12, nan_ok=True)
-
-
-def test_every_scene_has_its_statement_and_its_models() -> None:
-    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 2, 1e-3, fake_hierarchy())
-    rows = collected(EffectiveValues(), study)
-    dry = ["scene", "small", "exact", "resolved", "regularised", "translational", "spatial"]
-    assert [row.model for row in rows if row.scene == "fig3-I"] == dry
-    assert [row.model for row in rows if row.scene == "fig4-viscous"] == ["scene", "small", "exact", *dry[-2:]]
 
 
 def test_the_dampers_of_both_sides_are_those_of_the_scene() -> None:

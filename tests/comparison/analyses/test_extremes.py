@@ -23,16 +23,6 @@ from comparison.runner.task import TaskResult
 from comparison.runner.task_results import TaskResults
 from reference.problem import Outcome
 
-FAILING = {
-    "raises": "an inner fault",
-    "calls_nan_ok": "no finite number",
-    "lies_about_its_error": "times what is claimed",
-    "misses_the_tolerance": "asked: 0.001",
-    "refuses_what_can_be_done": "but a finer run: ok",
-    "gives_a_value_with_a_refusal": "and yet a value",
-    "invents_a_status": "no answer of a model",
-}
-
 
 class Ending(ThreadPoolExecutor):
     """In place of worker processes: one that would hang takes too long, one that would crash dies."""
@@ -54,13 +44,6 @@ def computed(extremes: analysis.Extremes, results: TaskResults | None = None, ex
     results = results or TaskResults()
     Runner(results, 1, executor).run(extremes.tasks())
     return extremes.collect(None, None, results)
-
-
-@pytest.mark.parametrize("model", FAILING)
-def test_a_model_that_is_wrong_fails_and_is_told_why(model):
-    cell = analysis.solve_cell(analysis.Cell(PLAIN, fake(model)))
-    assert cell.verdict == Verdict.FAILED
-    assert FAILING[model] in cell.reason
 
 
 def test_a_model_that_hangs_or_crashes_costs_its_cell_alone(tmp_path):
@@ -95,6 +78,13 @@ AGAINST_A_RULE = replace(PLAIN, scene=scene(friction=-0.1))
         (replace(AGAINST_A_RULE, invalid=True), fake("honest"), "refused", "friction"),
         (AGAINST_A_RULE, fake("honest"), "FAILED", "friction"),
         (replace(PLAIN, invalid=True), fake("honest"), "FAILED", "accepts an input that is against the rules"),
+        (PLAIN, fake("raises"), "FAILED", "an inner fault"),
+        (PLAIN, fake("calls_nan_ok"), "FAILED", "no finite number"),
+        (PLAIN, fake("lies_about_its_error"), "FAILED", "times what is claimed"),
+        (PLAIN, fake("misses_the_tolerance"), "FAILED", "asked: 0.001"),
+        (PLAIN, fake("refuses_what_can_be_done"), "FAILED", "but a finer run: ok"),
+        (PLAIN, fake("gives_a_value_with_a_refusal"), "FAILED", "and yet a value"),
+        (PLAIN, fake("invents_a_status"), "FAILED", "no answer of a model"),
     ],
 )
 def test_every_kind_of_answer_has_its_verdict(row, column, verdict, reason):
@@ -160,7 +150,6 @@ def test_the_command_writes_the_matrix_and_computes_once(tmp_path, capsys):
     assert main(words, ThreadPoolExecutor) == 0
     matrix = STORED.load(tmp_path / "report")
     assert matrix.run["command"].startswith("python -m comparison.extremes --models small ")
-    assert {row.group for row in matrix.rows} == {"amplitude, m/s^2"}
     assert (tmp_path / "report" / "extremes.png").read_bytes().startswith(b"\x89PNG")
     assert main(words, no_executor) == 0
     assert f"3 of 3 tasks are in {tmp_path / 'report'}.tiles: only the others are computed." in capsys.readouterr().out
@@ -212,18 +201,6 @@ def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):
     monkeypatch.setitem(CAUSES, (PLAIN.group, PLAIN.title), {"fake": "the fake gives up"})
     assert analysis.solve_cell(analysis.Cell(PLAIN, fake("unable"))).reason == "step limit: the fake gives up"
     assert "gives up" not in analysis.solve_cell(analysis.Cell(PLAIN, fake("honest"))).reason
-
-
-def test_a_value_that_says_nothing_is_not_confirmed() -> None:
-    mu = np.array([[1.0, 2.0]])
-    for status, share, says in (
-        (Outcome.TOLERANCE_NOT_MET, 1.0, False),
-        (Outcome.TOLERANCE_NOT_MET, 0.9, True),
-        (Outcome.OK, 1.0, True),
-        (Outcome.RIM_REACHED, 1.0, True),
-        (Outcome.STEP_LIMIT, 1.0, False),
-    ):
-        assert analysis.answers(analysis.Reply(mu, share * mu, (status.value,))) == says, (status, share)
 
 
 def test_a_motion_that_leaves_the_model_is_refused() -> None:

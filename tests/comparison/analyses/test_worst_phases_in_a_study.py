@@ -40,15 +40,6 @@ def test_a_record_has_no_worst_phases() -> None:
     assert analysis.WorstPhases().collect(study, None, TaskResults()) is None
 
 
-@pytest.mark.long
-def test_the_engine_confirms_the_maximum_of_the_equations() -> None:
-    equations, engine = analysis.worst_of((SHORT, REGULARIZED, TRANSLATIONAL, "amplification", 2, 1e-3, None))
-    assert engine.model == "translational"
-    assert abs(engine.at_start - equations.value) <= engine.start_error + equations.error
-    assert engine.value >= engine.at_start
-    assert math.dist(engine.phases, equations.phases) <= 0.03
-
-
 def test_an_engine_without_an_answer_there_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
     def refusing(scene, phases, **settings):  # type: ignore[no-untyped-def]
         answer = reference.amplification(SHORT, phases, tolerance=1e-2)
@@ -93,8 +84,6 @@ def test_what_a_largest_value_is_stands_beside_it() -> None:
         ({"kind": "nearby", "at_start": 1.25}, f"{beside}where it has 1.25"),
         ({"kind": "nearby"}, f"{beside}at which it has none"),
         ({"reason": "step limit"}, "step limit"),
-        ({"kind": "kink"}, "on an edge of the surface"),
-        ({"kind": "smooth"}, "on a smooth maximum"),
     ):
         assert _kind(analysis.Worst("fig3-I", "exact", "amplification", 1, **known)) == words  # type: ignore[arg-type]
 
