@@ -1,7 +1,6 @@
 """Measured peaks beside the models: synthetic data made by one model, and what fails."""
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -27,7 +26,7 @@ def peak(quantity: str, value: float, uncertainty: float, body: int | None = Non
 
 
 def compared(scene: Scene, *hierarchy):
-    return collected(MeasuredPeaks(), Study((scene,), 1, 1e-3, hierarchy), executor=ThreadPoolExecutor)
+    return collected(MeasuredPeaks(), Study((scene,), 1, 1e-3, hierarchy))
 
 
 def synthetic(noise: float) -> Scene:
@@ -53,21 +52,16 @@ def test_a_difference_exceeds_the_sum_of_both_uncertainties(noise, exceeds):
 
 
 def test_both_sides_stand_beside_a_measured_peak():
-    peaks = compared(synthetic(0.0), SMALL, EXACT, RESOLVED, TRANSLATIONAL)
-    assert [each.model for each in peaks[0].computed] == ["small", "exact", "resolved", "translational"]
-    assert [each.model for each in peaks[1].computed] == ["small", "exact", "translational"], "one motion, read twice"
-    engine = peaks[1].computed[-1]
-    assert engine.value == pytest.approx(peaks[1].value, rel=0.02), "friction linear below v_reg"
-    assert 0.0 < engine.error < 1e-2 * engine.value
-
-
-def test_a_model_that_fails_leaves_the_others_their_numbers():
     absent = replace(EXACT, key="absent", amplification="nowhere:amplification", trajectory="nowhere:trajectory")
-    peaks = compared(synthetic(0.0), EXACT, absent)
-    good, bad = peaks[1].computed
-    assert good.exceeds is False
+    peaks = compared(synthetic(0.0), SMALL, EXACT, RESOLVED, TRANSLATIONAL, absent)
+    assert [each.model for each in peaks[0].computed] == ["small", "exact", "resolved", "translational", "absent"]
+    *others, engine, bad = peaks[1].computed
+    assert [each.model for each in others] == ["small", "exact"], "one motion, read twice"
+    assert others[1].exceeds is False
     assert bad.exceeds is None
     assert math.isnan(bad.value)
+    assert engine.value == pytest.approx(peaks[1].value, rel=0.02), "friction linear below v_reg"
+    assert 0.0 < engine.error < 1e-2 * engine.value
 
 
 def test_a_motion_that_ends_early_has_no_peaks_and_says_why():
