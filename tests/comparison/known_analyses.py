@@ -1,8 +1,6 @@
 """Known answers in place of what a study finds beside its surfaces, and the answers of one analysis alone."""
 
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,7 +14,6 @@ from comparison.analyses.claims.readings import READINGS
 from comparison.analyses.claims.table import table_of
 from comparison.analyses.trends import trend
 from comparison.runner.analysis import Analysis
-from comparison.runner.processes import Pool
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -24,39 +21,20 @@ from comparison.study.study import Study
 from reference.problem import Amplification
 
 SCALES = (1.0, 0.5, 0.25)
-ASKED = (
-    "effective",
-    "assumptions",
-    "measured",
-    "completion",
-    "pictures",
-)  # of the models of the hierarchy, or drawn from their surfaces
+ASKED = "effective", "assumptions", "measured", "completion", "pictures"  # of the hierarchy, or of its surfaces
 
 
-@dataclass(frozen=True)
 class Known(Analysis[Any]):
     """In place of another analysis: computes nothing and says `value`, or what that returns for study and surfaces."""
 
-    other: Analysis[Any]
-    value: Any = None
-
-    @property
-    def key(self) -> str:  # type: ignore[override]
-        return self.other.key
-
-    @property
-    def stage(self) -> str:  # type: ignore[override]
-        return self.other.stage
+    def __init__(self, other: Analysis[Any], value: Any) -> None:
+        self.key, self.stage, self.level, self.value = other.key, other.stage, other.level, value
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         return []
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Any:
         return self.value(study, surfaces) if callable(self.value) else self.value
-
-    @property
-    def level(self) -> int:  # type: ignore[override]
-        return self.other.level
 
 
 def analyses_are(patch: pytest.MonkeyPatch, **known: Any) -> None:
@@ -68,12 +46,7 @@ def analyses_are(patch: pytest.MonkeyPatch, **known: Any) -> None:
     patch.setattr(comparison.registry, "ANALYSES", analyses)
 
 
-def collected(
-    analysis: Analysis[Any],
-    study: Study,
-    surfaces: xr.Dataset | None = None,
-    executor: Pool | Callable[[int], Any] = ThreadPoolExecutor,
-) -> Any:
+def collected(analysis: Any, study: Any, surfaces: xr.Dataset | None = None, executor: Any = ThreadPoolExecutor) -> Any:
     """What an analysis says of a study, its tasks executed on two workers and stored nowhere."""
     results = TaskResults()
     Runner(results, 2, executor).run(analysis.tasks(study, surfaces))

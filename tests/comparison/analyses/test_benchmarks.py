@@ -4,7 +4,6 @@ import math
 import os
 import re
 from collections import Counter
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -46,10 +45,6 @@ def test_the_equations_meet_every_published_number(name, within):
         assert error <= max(row.uncertainty, 1e-7 * abs(value)), "smaller than what the published digits leave"
 
 
-def _judged(chosen: list[Case]) -> Benchmarks:
-    return collected(BenchmarkTable(chosen), None, executor=ThreadPoolExecutor)
-
-
 def _every_number_is_met_or_explained(table: Benchmarks) -> None:
     for each in table.benchmarks:
         assert each.seconds[ENGINE] > 0.0
@@ -60,7 +55,8 @@ def _every_number_is_met_or_explained(table: Benchmarks) -> None:
 
 def test_a_side_that_fails_costs_the_others_nothing():
     broken = replace(BY_NAME["pendulum"], start=((5.0, 0.0),))  # beyond the rim: both sides refuse
-    first, *others = _judged([broken, *(BY_NAME[name] for name in CHEAP[:2])]).benchmarks
+    chosen = [broken, *(BY_NAME[name] for name in CHEAP[:2])]
+    first, *others = collected(BenchmarkTable(chosen), None).benchmarks
     assert {number.verdict for number in first.rows[0].numbers.values()} == {Verdict.NONE}
     assert "rim" in first.endings[EQUATIONS]
     _every_number_is_met_or_explained(Benchmarks(others, {}))
@@ -68,7 +64,7 @@ def test_a_side_that_fails_costs_the_others_nothing():
 
 @pytest.mark.long
 def test_the_engine_meets_all_published_numbers(within):
-    table = _judged([BY_NAME[name] for name in BY_NAME if name not in CHEAP])
+    table = collected(BenchmarkTable([BY_NAME[name] for name in BY_NAME if name not in CHEAP]), None)
     _every_number_is_met_or_explained(table)
     for row in (row for each in table.benchmarks for row in each.rows):
         if (found := row.numbers[ENGINE]).verdict == Verdict.MET:
@@ -77,9 +73,9 @@ def test_the_engine_meets_all_published_numbers(within):
 
 @pytest.mark.skipif(not INPUT.exists(), reason="the input motion of MASTODON's test is not shipped")
 def test_both_sides_meet_mastodon_within_three_percent():
-    """The small equations meet it to 3 mm, as it was read; without heating they are 15 to 83 mm smaller."""
+    """To 3 mm, as it was read, by the small equations; without heating they are 15 to 83 mm smaller."""
     case = mastodon(INPUT)
-    for row in _judged([case]).benchmarks[0].rows:
+    for row in collected(BenchmarkTable([case]), None).benchmarks[0].rows:
         equations, smoothed, engine = (row.numbers[side] for side in (EQUATIONS, SMOOTHED, ENGINE))
         assert equations.verdict == engine.verdict
         assert equations.verdict in (Verdict.MET, Verdict.MODEL)

@@ -218,7 +218,7 @@ def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.Monk
 
     monkeypatch.setattr(growth, "measure", measured)
     few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 16))]
-    *bodies, pairs = collected(Growth(few), Study((SCENE,), 1, 1e-3), executor=ThreadPoolExecutor)
+    *bodies, pairs = collected(Growth(few), Study((SCENE,), 1, 1e-3))
     assert [each.seconds for each in bodies] == [[2.0, 4.0, 8.0]] * 3, "of every model"
     assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 32.0])
 
