@@ -1,9 +1,7 @@
 """How far the assumptions hold: variations, ranges, what is said of them, and the real models without heights."""
 
 import re
-from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -74,9 +72,7 @@ WIDE = _cell(Variation(ring=2.0), 0.004, 0.0)
         ([_cell(Variation(ring=2.0), 0.2, 0.0)], "ring", 0.01, (None, 2.0)),
     ],
 )
-def test_a_range_ends_at_the_first_value_that_fails(
-    cells: Sequence[AssumptionCell], key: str, share: float, expected: tuple[float | None, float | None]
-) -> None:
+def test_a_range_ends_at_the_first_value_that_fails(cells, key, share, expected):
     validity = next(line for line in ranges(STATED, cells) if (line.body, line.key, line.share) == (1, key, share))
     assert (validity.holds, validity.fails) == expected
 
@@ -147,9 +143,7 @@ def test_torsion_and_what_shortening_changes_are_said() -> None:
     assert uneven_lines(STATED, nothing)[-1].startswith("no value says")
 
 
-def test_the_command_prints_the_change_of_every_body(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_the_command_prints_the_change_of_every_body(monkeypatch, capsys, tmp_path):
     variations = Variation(ring=0.5), Variation(height=2.0, supports=3), Variation(offset=0.1, yaw=0.3)
     cells = [
         AssumptionCell("fig3-I", each, ((0.01 * n, -0.02 * n),), ((1e-4 * n, 2e-4 * n),), ("ok",))

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,14 +16,7 @@ from comparison.analyses.claims.claims import CLAIMS, Claim
 from comparison.analyses.claims.command import main
 from comparison.analyses.claims.evidence import MOTIONS, Evidence, Question, gathered
 from comparison.analyses.claims.peaks_and_valleys import Counts
-from comparison.analyses.claims.readings import (
-    CASES,
-    LIGHT_BODY,
-    OWN_PERIOD,
-    READINGS,
-    Reading,
-    without_effect,
-)
+from comparison.analyses.claims.readings import CASES, LIGHT_BODY, OWN_PERIOD, READINGS, Reading, without_effect
 from comparison.analyses.claims.smoothness import Bend
 from comparison.analyses.claims.table import Claims
 from comparison.analyses.convergence.analysis import Convergence
@@ -175,9 +167,7 @@ def test_a_case_that_fails_is_named_and_the_others_answered(monkeypatch: pytest.
     assert findings["mu_1 has two peaks separated by a valley"].finding.holds
 
 
-def test_the_command_prints_the_table(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_the_command_prints_the_table(monkeypatch, capsys, tmp_path):
     """Nothing is computed: the surfaces are those that the paper plots."""
     monkeypatch.setattr(table_module, "gathered", lambda question: PAPER[question.case])
     monkeypatch.setattr(computing, "compiling_task", lambda: Task(len, (), "compiling", 0.0, None, False))

@@ -220,9 +220,7 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
         ((*SUITE, "--target", "code.csv", "--periods", "0.5", "0.2"), f"{HEAD}0.1, 1\n1, 1", "the shorter first"),
     ],
 )
-def test_wrong_input_is_one_line_at_the_start(
-    folder: Path, capsys: pytest.CaptureFixture[str], words: tuple[str, ...], target: str, line: str
-) -> None:
+def test_wrong_input_is_one_line_at_the_start(folder, capsys, words, target, line):
     (folder / "code.csv").write_text(target)
     assert run("mine.toml", *words) == 2
     said = capsys.readouterr().err
@@ -356,9 +354,7 @@ def test_the_terminal_names_motions_without_value(folder: Path, capsys: pytest.C
     assert f"at the median displacement, {1e3 * reached[1]:.4g} mm" in said
 
 
-def test_the_equations_are_shown_before_the_engine_runs(
-    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_equations_are_shown_before_the_engine_runs(folder, capsys, monkeypatch):
     """The first tables stand on the terminal and on disk when the engine is asked; nothing is shown twice later."""
 
     compute, sweeps = Runner.run, iter([1])

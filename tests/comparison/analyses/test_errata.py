@@ -85,9 +85,7 @@ def test_a_platform_cut_in_two_moves_small_equations_alone(name: str) -> None:
     ("where", "change"),
     [("after (2.3)", (1.0, 1.0)), ("after (2.5)", (0.5, 0.5)), ("(4.6)", (5.0, 5.0)), ("(5.1)", (1.5, 0.0))],
 )
-def test_the_change_is_that_of_the_printed_form(
-    monkeypatch: pytest.MonkeyPatch, where: str, change: tuple[float, float]
-) -> None:
+def test_the_change_is_that_of_the_printed_form(monkeypatch, where, change):
     """mu = 2 mended; on links 144 times softer 4, with friction 1 3, by (4.6) as printed 12, of halves 5 and 9."""
     whole = load_scene("fig3-I")
 

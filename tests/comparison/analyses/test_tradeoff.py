@@ -3,7 +3,6 @@
 import inspect
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -147,9 +146,7 @@ def test_a_model_that_raises_leaves_points_without_a_value() -> None:
     assert measured.error_message == "TypeError: always_raising() missing 1 required positional argument: 'tolerance'"
 
 
-def test_the_command_measures_nothing_twice(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
     path, gaps = f"{__name__}:_known", (1e-3, 1e-2)
     question = Question("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
@@ -223,9 +220,7 @@ def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.Monk
     assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 32.0])
 
 
-def test_the_command_writes_and_prints_the_growth(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path):
     bodies = with_slope("bodies", "", "exact", (2.0, 4.0, 8.0), (0.5, 2.0, 8.0))
     workers = with_slope("workers", "", "exact", (1.0, 2.0), (3.0, float("nan")))
     monkeypatch.setattr(command, "computed", lambda *rest: None)

@@ -117,9 +117,7 @@ def _found(monkeypatch: pytest.MonkeyPatch, step: Callable[[float], float], name
         (lambda s: 0.2 if s == 0.25 else -0.03 * s**2, "no single slope: phase pairs or values do not agree"),
     ],
 )
-def test_a_geometric_step_has_the_exponent_two(
-    monkeypatch: pytest.MonkeyPatch, step: Callable[[float], float], says: str
-) -> None:
+def test_a_geometric_step_has_the_exponent_two(monkeypatch, step, says):
     trends = _found(monkeypatch, step)
     assert len(trends) == 2 * 2 * 2, "supremum and resolved, two bodies, two trends"
     of_step, of_small = ([each for each in trends if each.what.startswith(what)] for what in (STEP, PRINTED))

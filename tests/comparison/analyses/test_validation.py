@@ -3,7 +3,6 @@
 import math
 import os
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -294,9 +293,7 @@ def pipe(folder: Path) -> None:
         (lambda folder: folder.rename(folder.with_name("other")), "must be a folder"),
     ],
 )  # fmt: skip
-def test_wrong_files_end_in_one_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], spoil: Callable[[Path], None], said: str
-):
+def test_wrong_files_end_in_one_line(tmp_path, capsys, spoil, said):
     folder = tmp_path / "files"
     folder.mkdir()
     save(folder, 250)

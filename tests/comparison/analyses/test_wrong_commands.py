@@ -1,7 +1,6 @@
 """What a command of an analysis cannot do is one line at its start, and nothing is computed or written."""
 
 import re
-from pathlib import Path
 
 import pytest
 from places import scene_text
@@ -32,9 +31,7 @@ PAIR = "excitation.record = 'synthetic-pair': "
         (tradeoff, ["loaded.toml"], "isolator.friction.load_exponent = -0.2: the solvers outside the package know no"),
     ],
 )
-def test_a_wrong_command_is_one_line(
-    command, words: list[str], line: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch
-) -> None:
+def test_a_wrong_command_is_one_line(command, words, line, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     loaded = scene_text("fig3-I", ("friction = 0.1", "friction = {slow = 0.1, load_exponent = -0.2}"))
     bare = re.sub(r"(supports|ring|sphere_radius) = .*\n", "", scene_text("fig3-I"))
