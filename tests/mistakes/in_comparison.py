@@ -425,7 +425,7 @@ MISTAKES = (
     Mistake(ANALYSES + "assumptions/figure.py", "image[row, column] = size = cell.largest(body)", "image[row, column] = size = cell.largest(1)",
             "The map of every body is that of the platform.", (RECORDED,)),
     Mistake(ANALYSES + "motions/page_data.py", "(estimate.value, estimate.error)]", "(estimate.error, estimate.value)]",
-            "A demand of the page is its error.", (OF + "motion_data.py::test_the_packed_columns_are_the_motion",)),
+            "A demand of the page is its error.", (RECORDED,)),
     Mistake(ANALYSES + "worst_phases/analysis.py", "start_error=float(start.error[0])", "start_error=search.error",
             "The engine's error at the start is that of its maximum.", (OF + "worst_phases_in_a_study.py::test_the_engine_is_asked_where_its_ratio_says",)),
     Mistake(ANALYSES + "motions/page_data.py", "(supports - scene.offsets[0]).tolist()", "(supports + scene.offsets[0]).tolist()",

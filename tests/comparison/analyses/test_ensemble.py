@@ -260,15 +260,9 @@ def test_the_spatial_engine_adds_demands_of_supports(folder: Path, capsys: pytes
     row = next(row for row in printed if row["quantity"] == "largest displacement of the isolator")
     shown = row["largest difference"], row["like for like"], row["errors"]
     assert shown == tuple(percent(each) for each in (bound.largest, bound.like_for_like, bound.errors))  # type: ignore[arg-type]
-    rows = demand_rows(stored, stored.structures[0], 1.0)
-    names = {row["name"] for row in rows}
+    names = {row["name"] for row in demand_rows(stored, stored.structures[0], 1.0)}
     assert {"base shear", "largest support force (spatial engine)"} <= names
     assert "base shear (spatial engine)" not in names, "it is that of the equations"
-    factors = {"mm": 1e3, "kN": 1e-3, "kJ": 1e-3, "mrad": 1e3, "g": 1 / 9.81, "% of the weight": 100 / 9810, "%": 100.0}
-    for row in rows:
-        if row["stripe"].answered == 3:
-            expected = factors.get(row["unit"], 1.0) * row["stripe"].fractiles[1].value
-            assert float(row["cells"][2].partition(" ±")[0]) == pytest.approx(expected, rel=1e-3), row["name"]
 
 
 def test_the_plan_says_how_files_of_peer_are_paired(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from known_analyses import collected
 from known_results import FOUND, PLAIN, fake
 from runs import no_executor
 
@@ -14,13 +15,10 @@ import multibody
 from comparison.analyses.extremes import analysis
 from comparison.analyses.extremes.command import main
 from comparison.analyses.extremes.engine import amplification
-from comparison.analyses.extremes.matrix import STORED, Matrix, Verdict
+from comparison.analyses.extremes.matrix import STORED, Verdict
 from comparison.analyses.extremes.rows import CAUSES, rows, scene
-from comparison.runner.cache import Cache
-from comparison.runner.processes import Pool, TimeLimitError, WorkerDiedError, process_pool
-from comparison.runner.runner import Runner
+from comparison.runner.processes import TimeLimitError, WorkerDiedError, process_pool
 from comparison.runner.task import TaskResult
-from comparison.runner.task_results import TaskResults
 from reference.problem import Outcome
 
 
@@ -39,27 +37,15 @@ class Ending(ThreadPoolExecutor):
         return ended
 
 
-def computed(extremes: analysis.Extremes, results: TaskResults | None = None, executor: Pool = Ending) -> Matrix:
-    """The matrix, by one worker."""
-    results = results or TaskResults()
-    Runner(results, 1, executor).run(extremes.tasks())
-    return extremes.collect(None, None, results)
-
-
-def test_a_model_that_hangs_or_crashes_costs_its_cell_alone(tmp_path):
+def test_a_model_that_hangs_or_crashes_costs_its_cell_alone():
     columns = [replace(fake(model), key=model) for model in ("hangs", "crashes", "raises", "honest")]
     extremes = analysis.Extremes([replace(PLAIN, columns=tuple(each.key for each in columns))], columns, 2.0)
-    (row,) = computed(extremes, TaskResults(Cache(tmp_path))).rows
+    (row,) = collected(extremes, None, executor=Ending).rows
     found = {key: (entry.verdict, entry.status, entry.reason) for key, entry in row.entries.items()}
     assert found["hangs"] == ("FAILED", "time limit", "hangs: no answer within 2 s of processor time")
     assert found["crashes"] == ("FAILED", "worker died", "crashes: the worker process died 2 times (exit code 3)")
     assert found["raises"] == ("FAILED", "", "raises ZeroDivisionError: an inner fault")
     assert found["honest"][0] == Verdict.CONVERGED
-    results = TaskResults(Cache(tmp_path))
-    assert [task.argument.column.key for task in results.missing(extremes.tasks())] == ["crashes"]
-    assert computed(extremes, results).rows == [row]
-    longer = TaskResults(Cache(tmp_path)).missing(replace(extremes, limit=3.0).tasks())
-    assert [task.argument.column.key for task in longer] == ["hangs", "crashes"], "allowed more"
 
 
 AGAINST_A_RULE = replace(PLAIN, scene=scene(friction=-0.1))
@@ -140,7 +126,7 @@ def test_a_row_has_the_quantity_that_it_names():
 
 @pytest.mark.long
 def test_the_equations_fail_at_none_of_the_extremes():
-    matrix = computed(analysis.Extremes(analysis.reduced(list(rows())), limit=120.0), executor=process_pool)
+    matrix = collected(analysis.Extremes(analysis.reduced(list(rows())), limit=120.0), None, executor=process_pool)
     assert [(row.group, row.title, title, cell.reason) for row, title, cell in matrix.listed(Verdict.FAILED)] == []
     assert sum(matrix.counts().values()) >= 120
 

@@ -1,8 +1,5 @@
-"""The motions of the report: where and of which models, decimated as said, and packed as the layout says."""
+"""The motions of the report: where and of which models, decimated as said; where their contacts are."""
 
-import base64
-import gzip
-import json
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -11,7 +8,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from fake_models import fake_hierarchy, sliding
-from numpy.typing import NDArray
 from studies import solved
 
 import multibody
@@ -27,11 +23,9 @@ from comparison.analyses.motions.analysis import (
     swing,
 )
 from comparison.analyses.motions.page_data import (
-    ROUNDING,
     contact_geometry,
     packed_motions,
     places,
-    spectrum_axis,
     starts_of,
 )
 from comparison.study.models import SMALL, SPATIAL, TRANSLATIONAL, Model
@@ -54,56 +48,17 @@ def found(*motions: StoredMotion) -> Any:
     return SimpleNamespace(found={"motions": motions}, surfaces={"alpha1": axis, "alpha2": axis})
 
 
-def read_back(packed: str, about: dict[str, Any]) -> dict[str, NDArray[np.float64]]:
-    """The blocks of one motion, (T, C) each, read as the page reads them."""
-    numbers = np.frombuffer(gzip.decompress(base64.b64decode(packed)), "<i4")
-    start, count = about["start"], about["count"]
-
-    def column(number: int) -> NDArray[np.float64]:
-        changes = numbers[start + count * number : start + count * (number + 1)]
-        return changes.cumsum() * 2.0 ** about["exponents"][number]
-
-    return {
-        name: np.stack([column(number) for number in range(first, first + width)], axis=1)
-        for name, (first, width) in about["blocks"].items()
-    }
-
-
 @pytest.fixture(scope="module")
 def scene() -> Scene:
     return load_scene("fig3-I").with_values({"duration": 2.0})
 
 
-@pytest.fixture(scope="module")
-def motions(scene: Scene) -> list[StoredMotion]:
-    return [stored(scene, model) for model in (SMALL, TRANSLATIONAL, SPATIAL)]
-
-
-def test_the_packed_columns_are_the_motion(scene, motions) -> None:
-    everything = found(*motions)
-    [place] = json.loads(json.dumps(list(places(everything, scene, starts_of(motions))), allow_nan=False))
-    whole = reference.floor_spectra(reference.trajectory(scene, PHASE, equations="small"))
-    np.testing.assert_allclose(spectrum_axis(everything, scene)["period"], whole.period, rtol=1e-3)
-    np.testing.assert_allclose(place["motions"][0]["spectra"], whole.acceleration, rtol=1e-3)
-    packed = packed_motions(everything)
-    for about, motion in zip(place["motions"], motions, strict=True):
-        blocks = read_back(packed, about)
-        assert about["count"] == len(motion.time)
-        assert set(blocks) == set(motion.blocks())
-        largest = motion.demands.displacement
-        assert about["demands"]["displacement"] == pytest.approx([largest.value, largest.error], rel=1e-6)
-        assert ("support_force" in blocks) == ("yaw" in blocks) == (motion.model == "spatial")
-        for name, block in motion.blocks().items():
-            if name == "time":
-                np.testing.assert_allclose(blocks[name], block, atol=1e-6 * scene.duration)
-            else:
-                allowed = 0.5 * ROUNDING * swing(block) + 1e-6 * np.abs(block)
-                assert (np.abs(blocks[name] - block) <= allowed).all(), name
-
-
-def test_lines_between_packed_instants_give_the_motion(scene, motions) -> None:
-    whole = reference.trajectory(scene, PHASE, equations="small")
-    kept = motions[0].blocks()
+def test_lines_between_stored_instants_give_the_motion_with_its_demands(scene) -> None:
+    whole, motion = reference.trajectory(scene, PHASE, equations="small"), stored(scene, SMALL)
+    kept, others = motion.blocks(), [stored(scene, model).blocks() for model in (TRANSLATIONAL, SPATIAL)]
+    assert [*others[1]] == [*others[0], "support_force", "yaw"] == [*kept, "support_force", "yaw"]
+    assert motion.demands.displacement == reference.demands(whole).displacement
+    np.testing.assert_array_equal(motion.spectra.acceleration, reference.floor_spectra(whole).acceleration)
     parts = {
         "position": whole.position[:, :, :2],
         "acceleration": whole.absolute_acceleration[:, :, :2],

