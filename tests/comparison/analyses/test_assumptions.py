@@ -9,20 +9,8 @@ from fake_models import fake_hierarchy
 from known_analyses import collected
 from places import scene_text
 
-from comparison.analyses.assumptions import command
-from comparison.analyses.assumptions.validity import (
-    ASSUMPTIONS,
-    FEW,
-    PHASES,
-    UNDER_LOAD,
-    AssumptionCell,
-    Assumptions,
-    Validity,
-    Variation,
-    ranges,
-    uneven_lines,
-    varied,
-)
+from comparison.analyses.assumptions import command, validity
+from comparison.analyses.assumptions.validity import AssumptionCell, Assumptions, Variation, uneven_lines
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from multibody import amplification
@@ -73,8 +61,9 @@ WIDE = _cell(Variation(ring=2.0), 0.004, 0.0)
     ],
 )
 def test_a_range_ends_at_the_first_value_that_fails(cells, key, share, expected):
-    validity = next(line for line in ranges(STATED, cells) if (line.body, line.key, line.share) == (1, key, share))
-    assert (validity.holds, validity.fails) == expected
+    lines = validity.ranges(STATED, cells)
+    [found] = [(each.holds, each.fails) for each in lines if (each.body, each.key, each.share) == (1, key, share)]
+    assert found == expected
 
 
 def test_cells_compare_the_two_engine_models() -> None:
@@ -82,10 +71,10 @@ def test_cells_compare_the_two_engine_models() -> None:
     bare = STATED.with_values({"name": "bare", **dict.fromkeys(keys)})
     study = Study((STATED, bare), 2, 1e-3, fake_hierarchy(gap=0.0))
     cells = collected(Assumptions(), study).cells
-    assert [cell.variation for cell in cells] == list(FEW)
+    assert [cell.variation for cell in cells] == list(validity.FEW)
     for cell in cells:
         assert (np.array(cell.change) == 0.0).all(), "both fake models answer alike"
-        assert np.array(cell.change).shape == (len(PHASES), 2)
+        assert np.array(cell.change).shape == (len(validity.PHASES), 2)
         np.testing.assert_allclose(cell.uncertainty, 2e-3 * np.sqrt(2.0))  # both claim a fifth of 1 %: enough to tell
     assert collected(Assumptions(), Study((bare,), 2, 1e-3, fake_hierarchy())) is None
     for cell in collected(Assumptions(), replace(study, hierarchy=fake_hierarchy("always_raising"))).cells:
@@ -98,13 +87,13 @@ def test_an_uneven_variation_gives_factors_and_torsion() -> None:
     """Where motions raise, the factors alone."""
     spatial, uneven = MODEL_HIERARCHY[-1], Variation(offset=0.1)
     short = STATED.with_values({"duration": 1.0})
-    factors = amplification(uneven.of(short), PHASES, tolerance=1e-3, **spatial.settings)
-    solved = varied((short, spatial, uneven, 1e-3))
+    factors = amplification(uneven.of(short), validity.PHASES, tolerance=1e-3, **spatial.settings)
+    solved = validity.varied((short, spatial, uneven, 1e-3))
     assert solved.status == tuple(factors.status)
     assert (np.abs(solved.mu - factors.mu) <= np.minimum(solved.error, factors.error)).all()
     assert (solved.error <= 1e-3 * solved.mu).all()
     assert np.array(solved.torsion)[:, 1].min() > 1e-3
-    lacking = varied((short, replace(spatial, trajectory="comparison.nowhere:trajectory"), uneven, 1e-3))
+    lacking = validity.varied((short, replace(spatial, trajectory="comparison.nowhere:trajectory"), uneven, 1e-3))
     assert np.array_equal(lacking.mu, factors.mu)
     assert lacking.error_message == "no motion: ModuleNotFoundError: No module named 'comparison.nowhere'"
 
@@ -120,7 +109,7 @@ def test_with_all_heights_zero_the_real_models_agree() -> None:
 
 def test_bars_under_load_are_varied_only_where_they_give_way() -> None:
     bars = {"count": 4, "bending_stiffness": 0.8, "length": 1.0, "axial_stiffness": 2900.0, "spread": 0.8}
-    for stiffness, expected in ((2900.0, UNDER_LOAD), (None, ())):
+    for stiffness, expected in ((2900.0, validity.UNDER_LOAD), (None, ())):
         bars["axial_stiffness"] = stiffness
         scene = STATED.with_values({"bodies.1.period": None, "bodies.1.bars": bars})
         study = Study((scene,), 1, 1e-3, MODEL_HIERARCHY)
@@ -134,12 +123,12 @@ def test_torsion_and_what_shortening_changes_are_said() -> None:
     even = _cell(Variation(), 0.0, 0.0)
     moved = replace(_cell(Variation(offset=0.1), 0.03, 0.02), torsion=((1e-3, 5e-3), (2e-3, 4e-3), (0.0, 0.0)))
     broken = replace(_cell(Variation(yaw=0.2), 0.0, 0.0), error_message="it broke")
-    loaded = [_cell(variation, size, size, 1e-3) for variation, size in zip(UNDER_LOAD, (-0.1, -0.082))]
+    loaded = [_cell(variation, size, size, 1e-3) for variation, size in zip(validity.UNDER_LOAD, (-0.1, -0.082))]
     first, second, third = uneven_lines(STATED, [even, moved, broken, *loaded])
     assert first.endswith("change mu_1 by up to 3 %, mu_2 by up to 0 %; they turn by up to 5 mrad")
     assert second.endswith("no motion says how far they turn (it broke)")
     assert third.endswith("change mu_1 by up to 2 ± 0.1 %, mu_2 by up to 0 ± 0 %")
-    nothing = [even, loaded[0], _cell(UNDER_LOAD[1], float("nan"), 0.0)]
+    nothing = [even, loaded[0], _cell(validity.UNDER_LOAD[1], float("nan"), 0.0)]
     assert uneven_lines(STATED, nothing)[-1].startswith("no value says")
 
 
@@ -149,9 +138,10 @@ def test_the_command_prints_the_change_of_every_body(monkeypatch, capsys, tmp_pa
         AssumptionCell("fig3-I", each, ((0.01 * n, -0.02 * n),), ((1e-4 * n, 2e-4 * n),), ("ok",))
         for n, each in enumerate(variations, start=1)
     ]
-    validity = Validity(ASSUMPTIONS, ((0.0, 0.0),), 1.0, tuple(cells), tuple(ranges(STATED, cells)))
+    ranges = tuple(validity.ranges(STATED, cells))
+    found = validity.Validity(validity.ASSUMPTIONS, ((0.0, 0.0),), 1.0, tuple(cells), ranges)
     monkeypatch.setattr(command, "computed", lambda *rest: None)
-    monkeypatch.setattr(Assumptions, "collect", lambda *rest: validity)
+    monkeypatch.setattr(Assumptions, "collect", lambda *rest: found)
     file = tmp_path / "fig3-I.toml"
     file.write_text(scene_text("fig3-I", ("ring = 1.0 ", "ring = 2.0 ")), encoding="utf-8")
     assert command.main([str(file), "--out", str(tmp_path / "report"), "--figures", str(tmp_path / "drawn")]) == 0

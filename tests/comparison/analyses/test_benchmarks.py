@@ -16,18 +16,11 @@ from rich.console import Console
 
 import reference
 from comparison.analyses.benchmarks import analysis, readings
-from comparison.analyses.benchmarks.analysis import (
-    ENGINE,
-    EQUATIONS,
-    SMOOTHED,
-    Answer,
-    BenchmarkTable,
-    _benchmark,
-    solve,
-)
+from comparison.analyses.benchmarks.analysis import Answer, BenchmarkTable, _benchmark, solve
 from comparison.analyses.benchmarks.cases import LIMITS, Case, Reading, cases, mastodon, published, shipped
 from comparison.analyses.benchmarks.command import main, print_benchmarks
 from comparison.analyses.benchmarks.table import STORED, Benchmarks, Number, Verdict, page, stated, with_error
+from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
 
 CASES = cases()
 CHEAP = ("sdnd104-0.99", "frame", "pendulum")  # the last by the command

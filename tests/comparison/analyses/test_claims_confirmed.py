@@ -10,19 +10,10 @@ from numpy.typing import NDArray
 from second_integration import LITERAL as LITERAL_LAW
 from second_integration import SET_VALUED, by_scipy, fast, ground_tops, stepped
 
+from comparison.analyses.claims import readings
 from comparison.analyses.claims.claims import CLAIMS
 from comparison.analyses.claims.evidence import MOTIONS, Evidence
-from comparison.analyses.claims.readings import (
-    CASES,
-    LIGHT_BODY,
-    LITERAL,
-    OWN_PERIOD,
-    SPEED,
-    Reading,
-    has_stops,
-    settings,
-    without_effect,
-)
+from comparison.analyses.claims.readings import CASES, LIGHT_BODY, LITERAL, OWN_PERIOD, SPEED, Reading
 from comparison.analyses.claims.smoothness import bends
 from comparison.analyses.claims.table import recorded_verdict
 from reference import amplification, modes
@@ -38,7 +29,7 @@ ALL_CASES = sorted({case for claim in CLAIMS for case in claim.cases})
 
 
 def _solved(scene: Scene, reading: Reading, phases: Array, fine: bool) -> tuple[Array, Array]:
-    if not has_stops(scene):
+    if not readings.has_stops(scene):
         return by_scipy(scene, phases, None)
     if reading.peak == "literal (4.6)":
         return stepped(scene, phases, LITERAL_LAW, LITERAL_STEP, runner=fast())
@@ -91,7 +82,7 @@ def _second(case: str, reading: Reading) -> Evidence:
 def test_a_second_integration_gives_every_claim_the_same_verdict(reading: Reading) -> None:
     first, second = {}, {}
     for case in ALL_CASES:
-        asked = without_effect(reading, CASES[case](reading))
+        asked = readings.without_effect(reading, CASES[case](reading))
         first[case], second[case] = gathered(LiteralClaims(GRID).task(case, reading).argument), _second(case, asked)
     verdicts = {(c.figure, c.says): (c.verdict(first), c.verdict(second)) for c in CLAIMS}
     assert {key: pair for key, pair in verdicts.items() if pair[0].finding is not pair[1].finding} == {}
@@ -105,7 +96,7 @@ PROBES = np.array([(0.3, 1.1), (4.0, 5.5)])
 @pytest.mark.parametrize("reading", [Reading(), OWN_PERIOD, LIGHT_BODY], ids=lambda reading: reading.name)
 def test_readings_have_the_factors_of_time_stepping(reading: Reading) -> None:
     scene = CASES["fig3-I"](reading).with_values({"duration": 2.0})
-    law = settings(scene, reading)
+    law = readings.settings(scene, reading)
     first = amplification(scene, PROBES, equations="small", tolerance=1e-4, **law).mu
     second, _ = stepped(scene, PROBES, SET_VALUED, 1e-3, SPEED)
     assert np.abs(first / second - 1.0).max() < 5e-3
@@ -114,6 +105,6 @@ def test_readings_have_the_factors_of_time_stepping(reading: Reading) -> None:
 def test_the_regularized_reading_has_the_factors_of_scipy() -> None:
     reading = Reading(peak="regularised")
     scene = CASES["fig3-I"](reading).with_values({"duration": 1.0})
-    first = amplification(scene, PROBES, equations="small", tolerance=1e-5, **settings(scene, reading)).mu
+    first = amplification(scene, PROBES, equations="small", tolerance=1e-5, **readings.settings(scene, reading)).mu
     second, _ = by_scipy(scene, PROBES, SPEED)
     assert np.abs(first / second - 1.0).max() < 1e-3

@@ -13,15 +13,13 @@ from comparison.study.models import EXACT, REGULARIZED, SMALL
 from comparison.study.study import Study
 from reference.problem import load_scene, phase_axis
 
-MODELS = (SMALL, EXACT, REGULARIZED)
-
 
 @pytest.fixture(scope="module")
 def study() -> Study:
     """A scene with mirrored phases, shortened, and one under a record."""
     first = load_scene("fig3-I").with_values({"duration": 1.5})
     record = load_scene("synthetic-pair").with_values({"duration": 2.0})
-    return Study((first, record), 4, 1e-3, MODELS)
+    return Study((first, record), 4, 1e-3, (SMALL, EXACT, REGULARIZED))
 
 
 @pytest.fixture(scope="module")

@@ -171,6 +171,7 @@ def test_the_command_writes_the_demands_of_every_motion(folder: Path, capsys: py
     assert [each["value"] for each in stripe["fractiles"]] == pytest.approx(expected)
     assert (stripe["answered"], stripe["unit"], stripe["body"]) == (3, "m", None)
     (structure,) = summary["structures"]
+    assert structure["weight"] == pytest.approx(2e3 * 9.81)
     assert structure["isolator"]["displacement"] == stripe["mean"]["value"], "at the largest scale"
     curve = next(each for each in summary["curves"] if (each["quantity"], each["motion"]) == ("displacement", "m2"))
     assert (curve["scales"], curve["values"][1]) == ([0.5, 1.0], numbers.displacement.value)

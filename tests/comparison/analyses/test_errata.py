@@ -7,14 +7,9 @@ import pytest
 from known_analyses import collected
 
 from comparison.analyses.errata import analysis as errata
+from comparison.analyses.errata import printed_matrices
 from comparison.analyses.errata.analysis import ERRATA, PHASES, Errata, MeasuredErratum, cut_platform, measured
-from comparison.analyses.errata.printed_matrices import (
-    WRONG_DAMPING,
-    WRONG_SPRING,
-    _accelerations,
-    _fixed,
-    printed_amplification,
-)
+from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPRING, printed_amplification
 from comparison.study.models import V_REG
 from comparison.study.study import Study
 from reference import amplification
@@ -110,7 +105,7 @@ def test_the_wrong_spring_of_y_is_that_of_x() -> None:
     scene = load_scene("fig3-I")
     k_x, k_y = scene.stiffness[0]
     assert k_x != k_y
-    printed, mended = (_fixed(scene, slips).links for slips in ([WRONG_SPRING], []))
+    printed, mended = (printed_matrices._fixed(scene, slips).links for slips in ([WRONG_SPRING], []))
     assert (mended[0, 2], mended[1, 3]) == (-k_x, -k_y)
     assert (printed[0, 2], printed[1, 3]) == (-k_x, -k_x)
 
@@ -120,7 +115,8 @@ def test_the_wrong_damping_has_no_rho_and_xi_in_the_place_of_eta() -> None:
     scene, y, vy, (xi, eta) = load_scene("fig4-viscous"), 0.05, 0.3, (0.7, 0.4)
     place, rate = np.array([0.0, y, 0.0, y]), np.array([0.0, vy, 0.0, vy])
     printed, mended = (
-        _accelerations(_fixed(scene, slips), place, rate, np.array([xi, eta, 0.0])) for slips in ([WRONG_DAMPING], [])
+        printed_matrices._accelerations(printed_matrices._fixed(scene, slips), place, rate, np.array([xi, eta, 0.0]))
+        for slips in ([WRONG_DAMPING], [])
     )
     m, rho, f = scene.masses[0], scene.radius, scene.friction_coefficient
     delta = -np.sqrt(rho**2 - y**2)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fake_models import fake_hierarchy
-from places import SCENES
+from places import scene_text
 from runs import RUN
 from studies import solved
 
@@ -23,10 +23,8 @@ from reference.problem import load_family
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
-    text = (SCENES / "fig3-I.toml").read_text(encoding="utf-8")
-    assert "friction = 0.1" in text
-    place = tmp_path / "mine.toml"
-    place.write_text(text.replace("friction = 0.1", "friction = {range = [0.1, 0.2], steps = 3}"), encoding="utf-8")
+    place, friction = tmp_path / "mine.toml", "friction = {range = [0.1, 0.2], steps = 3}"
+    place.write_text(scene_text("fig3-I", ("friction = 0.1", friction)), encoding="utf-8")
     return place
 
 

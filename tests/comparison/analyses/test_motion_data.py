@@ -12,22 +12,9 @@ from studies import solved
 
 import multibody
 import reference
-from comparison.analyses.motions.analysis import (
-    SHARE,
-    Motions,
-    Place,
-    StoredMotion,
-    chosen_places,
-    decimated,
-    moved,
-    swing,
-)
-from comparison.analyses.motions.page_data import (
-    contact_geometry,
-    packed_motions,
-    places,
-    starts_of,
-)
+from comparison.analyses.motions import analysis
+from comparison.analyses.motions.analysis import SHARE, Motions, Place, StoredMotion, chosen_places, decimated, moved
+from comparison.analyses.motions.page_data import contact_geometry, packed_motions, places, starts_of
 from comparison.study.models import SMALL, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from multibody.film import contact_paths
@@ -70,7 +57,7 @@ def test_lines_between_stored_instants_give_the_motion_with_its_demands(scene) -
         for extreme in (np.min, np.max):
             np.testing.assert_array_equal(extreme(kept[name], axis=0), extreme(columns, axis=0))
         lines = np.stack([np.interp(whole.time, kept["time"][:, 0], column) for column in kept[name].T], axis=1)
-        assert (np.abs(lines - columns) <= 1.001 * SHARE * swing(columns)).all(), name
+        assert (np.abs(lines - columns) <= 1.001 * SHARE * analysis.swing(columns)).all(), name
 
 
 def test_the_path_of_the_contact_follows_from_the_layout(scene) -> None:
