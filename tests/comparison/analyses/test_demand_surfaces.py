@@ -29,9 +29,8 @@ def demands(study: Study) -> xr.Dataset:
 
 
 def test_every_pair_has_the_demands_of_its_own_motion(study: Study, demands: xr.Dataset) -> None:
-    """Mirrored ones, too, whose motions are not computed again."""
     scene, axis = study.scenes[0], phase_axis(4)
-    assert len(study.solved(scene, REGULARIZED)) < 16
+    assert len(study.solved(scene, REGULARIZED)) < 16, "mirrored ones are not computed again"
     pairs = [(axis[row], axis[column]) for row in range(4) for column in range(4)]
     expected = reference.peak_demands(scene, pairs, regularization=1e-3)
     for name, estimates in expected.items():

@@ -21,10 +21,8 @@ def _model(**settings: object) -> Model:
 def test_what_a_model_computed_with_is_read_from_its_motion() -> None:
     values = read_back((load_scene("fig3-I"), _model(**TRUE)))
     assert values.error_message == ""
-    assert values.radius == pytest.approx(TRUE["radius"], rel=1e-12)
-    assert values.mass == pytest.approx(TRUE["mass"], rel=1e-12)
-    assert values.contact == pytest.approx(TRUE["mass"] * 9.81, rel=1e-12)
-    assert values.friction == pytest.approx(TRUE["friction"], rel=1e-9)
+    found = [values.radius, values.mass, values.contact, values.friction]
+    assert found == pytest.approx([TRUE["radius"], TRUE["mass"], TRUE["mass"] * 9.81, TRUE["friction"]], rel=1e-9)
 
 
 def jolted(scene: Scene, phase: Sequence[float], **values: float) -> Trajectory:

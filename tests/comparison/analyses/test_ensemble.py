@@ -339,8 +339,6 @@ def test_the_terminal_names_motions_without_value(folder: Path, capsys: pytest.C
 
 
 def test_the_equations_are_shown_before_the_engine_runs(folder, capsys, monkeypatch):
-    """The first tables stand on the terminal and on disk when the engine is asked; nothing is shown twice later."""
-
     compute, sweeps = Runner.run, iter([1])
 
     def interrupted(*words: Any) -> None:

@@ -85,7 +85,6 @@ def test_a_refused_motion_has_no_numbers_and_unknown_demands() -> None:
 
 
 def test_supports_stand_off_the_center_of_an_eccentric_platform(scene) -> None:
-    """Seen from a center of mass that is moved along x, every support stands as far the other way."""
     even, moved = (
         contact_geometry(each)["supports"] for each in (scene, scene.with_values({"bodies.0.offset": [0.1, -0.05]}))
     )

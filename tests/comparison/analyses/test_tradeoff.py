@@ -182,8 +182,7 @@ def test_a_known_slope_is_found_in_the_larger_half() -> None:
 def test_a_tall_scene_has_its_bodies_one_above_the_other() -> None:
     scene = tall(SCENE, 6)
     heights = [body.height for body in scene.bodies]
-    assert len(heights) == 6
-    assert heights == sorted(heights)
+    assert (len(heights), heights) == (6, sorted(heights))
     assert scene.isolator.ring >= 6.0
     assert scene.masses[1:].tolist() == pytest.approx([SCENE.masses[1] / 5.0] * 5)
     assert scene.amplitudes.tolist() == (3.0 * SCENE.amplitudes).tolist(), "else friction holds it"

@@ -119,7 +119,6 @@ def test_the_scene_of_a_run_has_the_force_of_disc_and_base():
 
 
 def test_the_numbers_of_a_motion_have_its_errors():
-    """The errors are what the motion itself states of a number and those of its coarser runs."""
     accuracy = SimpleNamespace(coarser=[[1.5, 2.5], [3.0, 7.0]], error_of=lambda value, others: sum(others) - 2 * value)
     motion = SimpleNamespace(status="ok", accuracy=accuracy)
     found = table.answer(motion, lambda each: np.array([1.0, 2.0] if each is motion else each), 2)
