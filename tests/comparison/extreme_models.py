@@ -1,7 +1,6 @@
 """Models that fail at an extreme in every way that must be found, and two that do not. Workers import them by name."""
 
 import os
-import time
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,12 +29,6 @@ def unable(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Ampli
 def hangs(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
     while True:
         pass
-
-
-def is_kept_waiting(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
-    """What a busy machine does to a model: it takes long, and computes little."""
-    time.sleep(2.5)
-    return honest(scene, phases, tolerance)
 
 
 def crashes(scene: Scene, phases: NDArray[np.float64], tolerance: float) -> Amplification:
