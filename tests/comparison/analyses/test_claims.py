@@ -164,7 +164,10 @@ def test_a_case_that_fails_is_named_and_the_others_answered(monkeypatch: pytest.
 
 
 def test_the_command_prints_the_table(monkeypatch, capsys, tmp_path):
-    monkeypatch.setattr(table_module, "gathered", lambda question: PAPER[question.case])
+    def of_the_paper(question: Question) -> Evidence:
+        return PAPER[question.case]
+
+    monkeypatch.setattr(table_module, "gathered", of_the_paper)
     monkeypatch.setattr(computing, "compiling_task", lambda: Task(len, (), "compiling", 0.0, None, False))
     assert main(["--jobs", "2", "--grid", "16", "--words", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 0
     printed = capsys.readouterr().out
