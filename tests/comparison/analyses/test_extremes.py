@@ -187,6 +187,11 @@ def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):
     assert "gives up" not in analysis.solve_cell(analysis.Cell(PLAIN, fake("honest"))).reason
 
 
+def test_a_value_with_an_error_as_large_as_itself_is_not_confirmed() -> None:
+    mu, status = np.array([[1.0, 2.0]]), (Outcome.TOLERANCE_NOT_MET.value,)
+    assert [analysis.answers(analysis.Reply(mu, share * mu, status)) for share in (1.0, 0.9)] == [False, True]
+
+
 def test_a_motion_that_leaves_the_model_is_refused() -> None:
     mu, verdicts = np.full((1, 2), np.nan), {}
     for outcome in Outcome:
