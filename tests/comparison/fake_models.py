@@ -101,12 +101,6 @@ def why_refused(scene: Scene, tolerance: float) -> str:
     return "refused before any step: 3 times the work, shorten the duration to 7 s"
 
 
-def unmoved(scene: Scene, phase: Sequence[float], tolerance: float) -> Trajectory:
-    """A motion that was never begun."""
-    none = np.empty((0, len(scene.bodies), 3))
-    return Trajectory(np.empty(0), none, none, none, np.empty(0), [], Outcome.STEP_LIMIT.value, 0.0, scene)
-
-
 def never_refused(scene: Scene, **settings: object) -> str:
     return ""
 
@@ -242,8 +236,7 @@ def silenced(*keys: str, gap: float = 5e-5) -> tuple[Model, ...]:
     """The fake model hierarchy in which the models named refuse every phase pair."""
     functions = {"amplification": "fake_models:refused", "refusal": "fake_models:why_refused"}
     return tuple(
-        replace(model, **functions, trajectory="fake_models:unmoved", settings={}) if model.key in keys else model
-        for model in fake_hierarchy(gap=gap)
+        replace(model, **functions, settings={}) if model.key in keys else model for model in fake_hierarchy(gap=gap)
     )
 
 

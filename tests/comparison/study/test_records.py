@@ -1,22 +1,13 @@
-"""Records, real models and softened bars in a study."""
-
-from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
+"""Records and softened bars in a study."""
 
 import numpy as np
 import pytest
-from browsers import CHROMIUM, FLAGS, OVERLAPS, PHONE, opened, unfolded, until
-from fake_models import fake_hierarchy, known_motions
-from known_analyses import analyses_are
-from playwright.sync_api import sync_playwright
-from runs import RUN
 from studies import solved
 
 import multibody
 from comparison.analyses.assumptions.command import main as assumptions
 from comparison.analyses.motions.analysis import chosen_places
-from comparison.registry import ANALYSES, first_tasks, report_of
-from comparison.run import main
+from comparison.registry import ANALYSES, first_tasks
 from comparison.study.batches import refusal_of
 from comparison.study.costs import seconds_per_point
 from comparison.study.models import (
@@ -29,75 +20,21 @@ from comparison.study.models import (
 )
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
-from comparison.surfaces.budget import budget
 from comparison.surfaces.figures.pictures import Pictures
-from comparison.surfaces.surfaces import NOT_ASKED, labeled_surfaces
+from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.unanswered import advice
-from reference.problem import Outcome, Scene, example_scenes, load_scene
-
-MIXED = ("synthetic-pair", "fig4-viscous")
+from reference.problem import Outcome, Scene, load_scene
 
 
-@pytest.fixture
-def study() -> Study:
-    return Study(tuple(map(load_scene, MIXED)), 4, 1e-3, fake_hierarchy(gap=0.01))
-
-
-def test_a_record_is_one_point_beside_the_grid_of_others(study):
-    surfaces = solved(study)
-    record, grid = (surfaces.sel(scene=name) for name in MIXED)
-    assert [len(batch.phases) for batch in study.batches() if batch.scene.recorded] == [1] * 6
-    assert (record["status"].isel(alpha1=0, alpha2=0) == "ok").all()
-    assert (record["status"] == NOT_ASKED).sum() == 6 * 15
-    assert np.isfinite(grid["mu"].sel(model="small")).all()
-    entries = [entry for entry in budget(study, surfaces) if entry.scene == "synthetic-pair"]
-    total = next(entry for entry in entries if (entry.body, entry.step) == (1, "total"))
-    assert (total.asked, total.median) == (1, pytest.approx(0.01))
-    assert np.isnan([*total.phases, total.peak_moves]).all()
-    values = report_of(study, surfaces, {}, [], RUN).results.scenes[0].values
-    assert {(each.model, each.body): each.error for each in values} == {
-        (model.key, body): record["error"].sel(model=model.key, body=body).values[0, 0]
-        for model in study.hierarchy
-        for body in (1, 2)
-    }
-
-
-def test_what_needs_phases_is_not_asked_of_a_record(study, capsys):
-    stages = {task.stage for task in first_tasks(Study(study.scenes[:1], 4, 1e-3), ANALYSES)}
-    assert stages == {"effective values"}
-    assert Pictures().tasks(Study(study.scenes[:1], 4, 1e-3), labeled_surfaces(study, [], [])) == []
-    assert reductions(Study(study.scenes[:1], 4, 1e-3)) == []
+def test_what_needs_phases_is_not_asked_of_a_record(capsys):
+    study = Study((load_scene("synthetic-pair"),), 4, 1e-3)
+    assert {task.stage for task in first_tasks(study, ANALYSES)} == {"effective values"}
+    assert Pictures().tasks(study, labeled_surfaces(study, [], [])) == []
+    assert reductions(study) == []
     (place,) = chosen_places(study, None, study.scenes[0])
     assert (place.row, place.column) == (0, 0)
     assert assumptions(["synthetic-pair"]) == 2
     assert capsys.readouterr().err.count("\n") == 1, "rings of a record are not varied"
-
-
-@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
-def test_the_page_shows_table_and_motions_of_a_record(tmp_path: Path) -> None:
-    place = tmp_path / "report"
-    with pytest.MonkeyPatch.context() as patch:
-        analyses_are(patch, motions=known_motions)
-        words = [*example_scenes(), "--grid", "4", "--jobs", "1", "--out", str(place)]
-        assert main(words, fake_hierarchy(), ThreadPoolExecutor) == 0
-    with sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        visit = opened(browser, place / "index.html", PHONE)
-        page = visit.page
-        assert page.locator("canvas.surface:visible").count() == 0
-        assert page.locator("[data-record]:visible tbody tr").count() == 6, "one row for each model"
-        until(page, "document.querySelector('[data-part=plots] svg')")
-        page.locator("[data-part=pair]").select_option("like-for-like")
-        until(page, "document.querySelector('[data-part=plots] .legend')?.textContent.includes('translational')")
-        page.locator("[data-part=scene]").select_option(index=1)
-        page.locator("[data-part=body]").select_option("2")
-        assert page.locator("[data-record='1-2']").is_visible()
-        unfolded(page)
-        assert page.evaluate(OVERLAPS)["faults"] == []
-        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
-        assert "phases per axis" not in page.inner_text("main")
-        assert (visit.complaints, len(visit.requests)) == ([], 1)
-        browser.close()
 
 
 PLAIN = load_scene("fig3-I")
