@@ -1,6 +1,5 @@
 """A feature is one folder and its entry in the registry: one is added to a copy of the package, another deleted."""
 
-import json
 import os
 import shutil
 import subprocess
@@ -24,9 +23,7 @@ class Ratio:
     """mu_2 over mu_1 of one model."""
 
     model: str
-    """key of the model"""
     largest: Number
-    """largest ratio over the phase pairs"""
 
 
 def ratios(findings, scenes):
@@ -50,7 +47,7 @@ FEATURE = Feature(
 @pytest.mark.long
 def test_a_folder_and_its_entry_are_a_feature(tmp_path: Path) -> None:
     """A copy of the package has the feature `ratio` and not the claims: in file, page and figures."""
-    copy = tmp_path
+    copy, report = tmp_path, tmp_path / "report"
     for name in ("reference", "multibody"):
         (copy / name).symlink_to(ROOT / name)
     shutil.copytree(ROOT / "comparison", copy / "comparison", ignore=shutil.ignore_patterns("__pycache__"))
@@ -73,17 +70,12 @@ def test_a_folder_and_its_entry_are_a_feature(tmp_path: Path) -> None:
     registry.write_text(text, encoding="utf-8")
     command = [sys.executable, "-P", "-m", "comparison.run", "fig3-I", "--grid", "2", "--only", "surfaces,budget"]
     environment = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
-    done = subprocess.run(
-        [*command, "--out", str(copy / "report")], cwd=copy, env=environment, text=True, capture_output=True
-    )
-    assert done.returncode == 0, done.stderr
-    report = copy / "report"
-    summary, page = summary_of(report), page_of(report)
-    assert [row["model"] for row in summary["ratio"]] == [model["key"] for model in summary["models"]]
-    assert min(row["largest"] for row in summary["ratio"]) > 0.5
-    assert page.count('<p class="ratio">') == len(summary["models"])
-    assert (report / "figures" / "ratio.txt").read_text() == str(len(summary["models"]))
-    schema = json.loads((report / "summary.schema.json").read_text(encoding="utf-8"))
-    assert "ratio" in schema["properties"]
+    subprocess.run([*command, "--out", str(report)], cwd=copy, env=environment, check=True)
+    summary = summary_of(report)
+    models = [model["key"] for model in summary["models"]]
+    assert [row["model"] for row in summary["ratio"]] == models
+    assert page_of(report).count('<p class="ratio">') == len(models)
+    assert (report / "figures" / "ratio.txt").read_text() == str(len(models))
+    assert '"ratio"' in (report / "summary.schema.json").read_text(encoding="utf-8")
     assert "claims" not in summary
     assert 'id="claims"' not in page_of(report, "verification.html")

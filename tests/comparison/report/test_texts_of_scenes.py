@@ -27,12 +27,6 @@ from reference.drawing import verbatim
 from reference.problem import Scene, load_scene
 
 
-def _written(folder: Path, name: str, title: str = "plain", friction: str = "0.1") -> str:
-    _, rest = scene_text("fig3-I", ("friction = 0.1", f"friction = {friction}")).split("\n", 1)
-    (folder / name).write_text(f"title = '{title}'\n{rest}", encoding="utf-8")
-    return str(folder / name)
-
-
 def test_a_name_with_dots_keeps_them_and_a_long_one_is_cut() -> None:
     assert with_ending(Path("a[b=0.02]-paper"), ".pdf").name == "a[b=0.02]-paper.pdf"
     assert with_ending(Path("a[b=0.02].png"), ".pdf").name == "a[b=0.02].pdf"
@@ -42,14 +36,12 @@ def test_a_name_with_dots_keeps_them_and_a_long_one_is_cut() -> None:
 
 
 def test_brackets_in_names_and_titles_are_printed(command: Callable[..., Run], tmp_path: Path) -> None:
-    scene = _written(tmp_path, "fam.toml", "a [/b] [bold]c :warning:", "{values = [0.02, 0.04]}")
-    plan = command(scene, "--plan", "--out", str(tmp_path / "[x] y"))
-    assert plan.code == 0
-    for name in ("fam", "[x] y"):
-        assert name in plan.out
-    run = command(scene, "--grid", "2")
-    assert run.code == 0
-    assert "fam[friction=0.04]" in run.out.split("Relative differences")[1]
+    _, rest = scene_text("fig3-I", ("friction = 0.1", "friction = {values = [0.02, 0.04]}")).split("\n", 1)
+    (tmp_path / "fam.toml").write_text(f"title = 'a [/b] [bold]c :warning:'\n{rest}", encoding="utf-8")
+    scene = str(tmp_path / "fam.toml")
+    plan = command(scene, "--plan", "--out", str(tmp_path / "[x] y")).out
+    assert ("fam" in plan, "[x] y" in plan) == (True, True)
+    assert "fam[friction=0.04]" in command(scene, "--grid", "2").out.split("Relative differences")[1]
 
 
 def test_bars_and_consoles_print_brackets(capsys: pytest.CaptureFixture[str]) -> None:
@@ -63,22 +55,13 @@ def test_bars_and_consoles_print_brackets(capsys: pytest.CaptureFixture[str]) ->
 
 def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
     scene = load_scene("fig3-I").with_values({"title": r"x $\frac{$ y"})
-    nothing = (tuple([0.01] * 2),) * 3
-    cells = [AssumptionCell(scene.name, variation, nothing, nothing, ("ok",) * 3) for variation in FEW]
+    sizes = ((0.01, 0.01),) * 3
+    cells = [AssumptionCell(scene.name, variation, sizes, sizes, ("ok",) * 3) for variation in FEW]
     draw_assumptions(tmp_path / "assumptions.png", scene, cells)
     axes = {"title": "a$b$", "ticks": [[0.0, r"$\frac{$"]]}, {"title": "$"}
     odd = panel("$c$", "", *axes, [{"name": "$d", "x": [0.0], "y": [1.0]}])
     draw_panels(tmp_path / "family.png", scene.title, [odd])
     assert all((tmp_path / f"{name}.png").stat().st_size > 0 for name in ("assumptions", "family"))
-
-
-def test_two_scenes_of_one_name_are_refused_at_the_start(command: Callable[..., Run], tmp_path: Path) -> None:
-    family = _written(tmp_path, "fam.toml", friction="{values = [0.02, 0.4]}")
-    member = _written(tmp_path, "fam[friction=0.4].toml")
-    run = command(family, member, hierarchy=fake_hierarchy("forbidden"))
-    assert run.code == 2
-    assert run.err.startswith(f"{member}: scene = 'fam[friction=0.4]': same name as {family}")
-    assert run.err.count("\n") == 1
 
 
 def test_junit_and_summary_are_well_formed_for_any_name() -> None:
@@ -96,7 +79,6 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     assert r"\[a\](http://b) \#1 \$x\$ \&copy; \~\~c\~\~ \<b\> \| d" in text
     assert "`` run `a` ``" in text
     assert text.count("| 2 of 4 |") == 2, "totals of two bodies, whose status is ok"
-    assert np.unique([line.count("|") for line in text.splitlines() if line.startswith("| a")]).size <= 2
 
 
 def test_a_page_of_records_says_nothing_of_phases(command: Callable[..., Run]) -> None:
@@ -106,13 +88,9 @@ def test_a_page_of_records_says_nothing_of_phases(command: Callable[..., Run]) -
     assert "initial phases" not in top
     assert "of every body under a recorded motion" in top
     assert "Values and motions under the records" in top
-    assert "1 scene, one value under each recorded motion" in (run.report / "summary.md").read_text(encoding="utf-8")
-    assert "48 ×" not in (run.report / "summary.md").read_text(encoding="utf-8")
-    assert "over the phases" not in run.out
-    mixed = command("synthetic-pair", "fig3-I", "--grid", "2")
-    assert mixed.code == 0, mixed.err
-    page = page_of(mixed.report)
-    assert "over 2 × 2 initial phases of the two-frequency loading, or under a recorded motion" in page
+    summary = (run.report / "summary.md").read_text(encoding="utf-8")
+    assert "1 scene, one value under each recorded motion" in summary
+    assert ("48 ×" in summary, "over the phases" in run.out) == (False, False)
 
 
 NAN = float("nan")
