@@ -1,6 +1,5 @@
 """Studies that are solved here, batch after batch, and surfaces with a planted difference."""
 
-import numpy as np
 import xarray as xr
 from fake_models import errors_in
 
@@ -25,9 +24,3 @@ def planted_study(
     """Surfaces of the smooth fake model, every model `gaps` above it."""
     study = Study((load_scene(scene),), GRID, tolerance, errors_in(gaps, errors))
     return study, solved(study)
-
-
-def scattered(surfaces: xr.Dataset, seed: int = 0) -> xr.Dataset:
-    """The surfaces with every value changed by up to 30 %, another for every model and phase pair."""
-    factor = 1.0 + 0.3 * np.random.default_rng(seed).uniform(-1.0, 1.0, surfaces["mu"].shape)
-    return surfaces.assign(mu=surfaces["mu"] * factor)

@@ -116,7 +116,7 @@ class Mistake:
 
 
 def _by(hierarchy: Sequence[Model]) -> Solved:
-    study = Study((load_scene(SCENE).with_values({"duration": 3.0}),), 2, 1e-3, hierarchy)  # the loading is strongest
+    study = Study((load_scene(SCENE).with_values({"duration": 3.0}),), 2, 1e-3, hierarchy)  # of the strongest loading
     surfaces = solved(study)
     assert np.isfinite(surfaces["mu"]).all()
     return study, surfaces
