@@ -31,14 +31,14 @@ class Broken(Executor):
         return failed
 
 
-def _solved(gap: float = 0.01, grid: int = 4) -> tuple[Study, xr.Dataset]:
-    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), grid, 1e-3, fake_hierarchy(gap=gap))
-    return study, solved(study)
-
-
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     quick_figures(monkeypatch)
+
+
+def _solved(gap: float = 0.01) -> tuple[Study, xr.Dataset]:
+    study = Study((load_scene("fig3-I"), load_scene("fig4-viscous")), 4, 1e-3, fake_hierarchy(gap=gap))
+    return study, solved(study)
 
 
 def test_what_no_worker_draws_is_drawn_at_home() -> None:
@@ -47,16 +47,14 @@ def test_what_no_worker_draws_is_drawn_at_home() -> None:
 
 
 def test_pictures_are_stored_and_belong_to_their_numbers(tmp_path: Path) -> None:
-    def drawn_anew(study: Study, surfaces: xr.Dataset) -> int:
-        results = TaskResults(Cache(tmp_path))
-        tasks = Pictures().tasks(study, surfaces)
+    def drawn_anew(gap: float) -> int:
+        results, tasks = TaskResults(Cache(tmp_path)), Pictures().tasks(*_solved(gap))
         Runner(results, 1, ThreadPoolExecutor).run(tasks)
         return len(tasks) - results.parts["pictures"].stored
 
-    whole = drawn_anew(*_solved())
-    assert whole > 0
-    assert drawn_anew(*_solved()) == 0
-    assert drawn_anew(*_solved(gap=0.02)) == whole
+    first, again, others = map(drawn_anew, (0.01, 0.01, 0.02))
+    assert (again, others) == (0, first)
+    assert first > 0
 
 
 def test_a_flat_surface_has_room_above_and_below() -> None:
