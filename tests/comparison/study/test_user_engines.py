@@ -3,7 +3,7 @@
 import json
 import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import cache
@@ -64,24 +64,20 @@ def studied(*models: Model) -> tuple[Study, xr.Dataset]:
     return compared_study(study, surfaces), surfaces
 
 
-@pytest.fixture
-def stranger(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
-    """The engine of the documentation in a folder of its own, as a user would have it."""
-    (code,) = re.findall(r"```python\n(.*?)```", DOCS.read_text(encoding="utf-8"), re.DOTALL)
+def test_the_engine_of_the_documentation_appears_in_the_report(
+    command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = DOCS.read_text(encoding="utf-8")
+    (code,), (option,) = (
+        re.findall(r"(?s)```python\n(.*?)```", text),
+        re.findall(r"--grid 4 --model (mine=\S+)\n", text),
+    )
     assert len([line for line in code.splitlines() if line.strip()]) <= 22
-    (tmp_path / "my_engine.py").write_text(code, encoding="utf-8")
+    (tmp_path / "my_engine.py").write_text(code, encoding="utf-8")  # in a folder of its own, as a user would have it
+    (tmp_path / "short.toml").write_text(scene_text("fig3-I", ("duration = 20.0", "duration = 1.5")))
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
-    (option,) = re.findall(r"--grid 4 --model (mine=\S+)\n", DOCS.read_text(encoding="utf-8"))
-    yield option
-    sys.modules.pop("my_engine", None)
-
-
-def test_the_engine_of_the_documentation_appears_in_the_report(
-    command: Callable[..., Run], stranger: str, tmp_path: Path
-) -> None:
-    (tmp_path / "short.toml").write_text(scene_text("fig3-I", ("duration = 20.0", "duration = 1.5")))
-    run = command("short.toml", "--grid", "2", "--model", stranger, "--only", "surfaces,differences")
+    run = command("short.toml", "--grid", "2", "--model", option, "--only", "surfaces,differences")
     assert (run.code, run.err) == (0, "")
     with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as surfaces:
         mine = surfaces.sel(model="mine", scene="short")
@@ -93,13 +89,10 @@ def test_the_engine_of_the_documentation_appears_in_the_report(
     np.testing.assert_allclose(mu[:, 0, 0], exact, rtol=0.03)  # geometry left out
     shown = data_of(run.report)["scenes"][0]
     (pair,) = [pair for pair in shown["pairs"] if pair["key"] == "mine"]
-    assert (pair["first"], pair["second"]) == ("regularised", "mine")
     assert pair["uncertainty"] == [[[None, None]] * 2] * 2, "unknown"
     assert not shown["models"]["mine"]["surface"]
-    scene = summary_of(run.report)["scenes"][0]
-    rows = [row for row in scene["differences"] if row["pair"] == "mine"]
+    rows = [row for row in summary_of(run.report)["scenes"][0]["differences"] if row["pair"] == "mine"]
     assert [(row["beyond_error"], row["ratio"], row["not_ok"]) for row in rows] == [(None, None, 0)] * 2
-    assert "mine" in scene["models"]
 
 
 PLAIN, FORM = "mine=user_engines:plain", "must be NAME=module:function[@KEY], as mine=my_engine:amplification"
@@ -119,10 +112,7 @@ PLAIN, FORM = "mine=user_engines:plain", "must be NAME=module:function[@KEY], as
         (["like-for-like=my_engine:f"], "--model = 'like-for-like=my_engine:f': like-for-like names a model"),
         (["mine=my_engine:f@spatial"], "--model = 'mine=my_engine:f@spatial': KEY must be one of small, exact, res"),
         ([PLAIN, "--model", "mine=user_engines:raises"], "--model = 'mine=user_engines:plain': mine is there twice"),
-        (
-            [PLAIN, "--scheduler", "tcp://127.0.0.1:1"],
-            "--model = 'mine=user_engines:plain': is a function of this mach",
-        ),
+        ([PLAIN, "--scheduler", "tcp://127.0.0.1:1"], "--model = 'mine=user_engines:plain': is a function of this "),
         ([PLAIN, "--model-limit", "soon"], "--model-limit = 'soon': must be a number from 1 to 1e+06, s of processor"),
     ],
 )
@@ -139,10 +129,7 @@ def test_a_wrong_spelling_is_one_line_and_exit_code_2(command: Callable[..., Run
         ("user_engines:nothing", "user_engines has no nothing"),
         ("user_engines:NUMBER", "cannot be called as NUMBER(scene, phases): NUMBER is int, not a function"),
         ("user_engines:with_three", "cannot be called as with_three(scene, phases): missing a required argument"),
-        (
-            "engine_that_raises:f",
-            "importing engine_that_raises raises ZeroDivisionError: division by zero (engine_that_raises.py, line 2)",
-        ),
+        ("raises_at_once:f", "importing raises_at_once raises ZeroDivisionError: division by zero (raises_at_once.py"),
         ("engine_that_exits:f", "importing engine_that_exits raises SystemExit: 0"),
         ("engine_that_lacks:f", "there is no module no_such_package"),
     ],
@@ -150,7 +137,7 @@ def test_a_wrong_spelling_is_one_line_and_exit_code_2(command: Callable[..., Run
 def test_what_cannot_be_imported_or_called_is_named(
     path: str, fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "engine_that_raises.py").write_text("\n1 / 0\n")
+    (tmp_path / "raises_at_once.py").write_text("\n1 / 0\n")
     (tmp_path / "engine_that_exits.py").write_text("raise SystemExit(0)\n")
     (tmp_path / "engine_that_lacks.py").write_text("import no_such_package\n")
     monkeypatch.syspath_prepend(str(tmp_path))
@@ -224,15 +211,14 @@ def test_values_that_are_none_are_never_ok(monkeypatch: pytest.MonkeyPatch) -> N
     assert (list(nothing.status), nothing.mu.any(), nothing.error.any()) == (["ok", "ok"], False, False)
     assert PHASES[1].tolist() == [1.0, 2.0], "an engine has phases of its own to change"
     spent = iter([1.0, 8.5])
-    monkeypatch.setattr(
-        "comparison.study.user_models.os.times", lambda: SimpleNamespace(children_user=next(spent), children_system=0.0)
-    )
+    times = lambda: SimpleNamespace(children_user=next(spent), children_system=0.0)  # noqa: E731
+    monkeypatch.setattr("comparison.study.user_models.os.times", times)
     cost = amplification(SCENE, PHASES, engine={"function": "user_engines:plain"}).cost
     assert 7.5 <= cost < 8.5, "what its processes cost is its own"
 
 
 @pytest.mark.parametrize("like", ["small", "exact", "resolved", "regularised"])
-def test_the_documentation_names_every_argument_and_its_engine_answers(stranger: str, like: str) -> None:
+def test_the_documentation_names_every_argument(like: str) -> None:
     table = DOCS.read_text(encoding="utf-8").split("| by name | passed | value |")[1].split("\n\n")[0]
     rows = {line.split("`")[1]: line for line in table.splitlines()[2:]}
     user_engines.told.clear()
@@ -247,13 +233,6 @@ def test_the_documentation_names_every_argument_and_its_engine_answers(stranger:
     user_engines.told.clear()
     execute_batch(replace(batch, settings={**batch.settings, "engine": {"function": "user_engines:listens"}}))
     assert user_engines.told == {key: told[key] for key in ("tolerance", "regularization")}, "what it names"
-    sys.path.append(".")
-    model = user_model("mine", {"function": stranger.removeprefix("mine=")}, like)
-    (batch,) = Study((SCENE.with_values({"duration": 1.0}),), 1, 1e-3, [model]).batches()
-    answer = execute_batch(batch)
-    assert (answer.error_message, answer.status) == ("", ["ok"])
-    right = reference.amplification(batch.scene, batch.phases, regularization=1e-4, tolerance=1e-4).mu
-    np.testing.assert_allclose(answer.mu, right, rtol=0.03)  # geometry left out
 
 
 @pytest.mark.parametrize("function", ["plain", "raises"])
@@ -265,35 +244,21 @@ def test_a_user_engine_changes_no_other_number(function: str) -> None:
     assert repr(budget(study, surfaces)) == repr(budget(alone, without))  # repr: NaN is not equal to itself
     theirs = [row for row in differences(study, surfaces) if row.pair != "mine"]
     assert repr(theirs) == repr(differences(alone, without))
-    for body in (1, 2):
-        alike = [
-            headline(each, data, SCENE, waterfall(each, data, SCENE, body), differences(each, data))
-            for each, data in ((alone, without), (study, surfaces))
-        ]
-        assert repr(replace(alike[0], sentence="")) == repr(replace(alike[1], sentence=""))
     keys = [task.key for task in surface_tasks(study) if task.argument.model != "mine"]
     assert keys == [task.key for task in surface_tasks(alone)]
     assert {gap.model for gap in unanswered(study, surfaces)} == ({"mine"} if function == "raises" else set())
     assert ("mine" in {pair.key for pair in study.pairs(SCENE)}) == (function == "plain")
 
 
-@pytest.mark.parametrize(
-    ("function", "said"),
-    [
-        ("off", "mine differs by up to 2.1 % from the exact equations, v_reg (mean +2.1 % over 4 × 4 initial phases; "),
-        ("off_with_error", "mine differs by up to 2.1 % from the exact equations, v_reg (mean +2.1 % over 4 × 4 "),
-        ("with_error", "mine agrees to 0 % with the exact equations, v_reg (mean 0 % over 4 × 4 initial phases; "),
-    ],
-)
-def test_the_headline_begins_with_the_users_engine(function: str, said: str) -> None:
-    study, surfaces = studied(supplied(function))
+def test_an_unknown_error_explains_no_difference_of_a_users_engine() -> None:
+    study, surfaces = studied(supplied("off"))
     rows = differences(study, surfaces)
     assert [pair.key for pair in study.pairs(SCENE)] == ["mine", "total", "translational", "like-for-like"]
-    for body in (1, 2):
-        sentence = headline(study, surfaces, SCENE, waterfall(study, surfaces, SCENE, body), rows).sentence
-        assert sentence.split(": ", 1)[1].startswith(said)
-        assert "The engine gives 1.0 % more than the paper's equations" in sentence
-        assert "the two codes" not in sentence, "it would be taken for the engine of the user"
+    sentence = headline(study, surfaces, SCENE, waterfall(study, surfaces, SCENE, 2), rows).sentence
+    said = "mine differs by up to 2.1 % from the exact equations, v_reg (mean +2.1 % over 4 × 4 initial phases; "
+    assert sentence.split(": ", 1)[1].startswith(said)
+    assert "The engine gives 1.0 % more than the paper's equations" in sentence
+    assert "the two codes" not in sentence, "it would be taken for the engine of the user"
 
 
 def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tmp_path: Path) -> None:
@@ -305,30 +270,25 @@ def test_a_scene_limits_every_engine_by_its_name(command: Callable[..., Run], tm
     scene = limited_scene(tmp_path, "[acceptance]\nfailed = 3\n" + tables)
     run = command(scene, "--grid", "2", *engines, *ONLY, "--check")
     assert run.code == 1
-    assert run.err.splitlines() == [
-        *(
-            f"limit broken: limited: body {body}: acceptance.bad.{key}: {found} found, {limits[key]:g} allowed"
-            for key, found in (("median", "0.021"), ("maximum", "0.021"), ("ratio", "3"))  # it claims 7e-3
-            for body in (1, 2)
-        ),
-        *(
-            f"limit broken: limited: body {n}: acceptance.half.ratio: an error estimate is missing, 2 allowed"
-            for n in (1, 2)
-        ),
-        "limit broken: limited: acceptance.failed: 4 points without an answer (vague 4 of 4), 3 allowed",
+    broken = [
+        f"body {body}: acceptance.bad.{key}: {found} found, {limits[key]:g} allowed"
+        for key, found in (("median", "0.021"), ("maximum", "0.021"), ("ratio", "3"))  # it claims 7e-3
+        for body in (1, 2)
     ]
+    broken += [f"body {body}: acceptance.half.ratio: an error estimate is missing, 2 allowed" for body in (1, 2)]
+    broken.append("acceptance.failed: 4 points without an answer (vague 4 of 4), 3 allowed")
+    assert run.err.splitlines() == [f"limit broken: limited: {line}" for line in broken]
     assert "vague: only values with errors above half of them at any of 4 phase pairs" in run.out
     junit = (run.report / "junit.xml").read_text(encoding="utf-8")
     assert all(f'name="acceptance.good.{key} = {value:g}"' in junit for key, value in limits.items())
     assert 'tests="8" failures="5"' in junit
-    assert summary_of(run.report)["scenes"][0]["acceptance"]["bad"] == {**limits}
+    assert summary_of(run.report)["scenes"][0]["acceptance"]["bad"] == limits
     absent = command(scene, "--grid", "2", *ONLY, "--check", hierarchy=fake_hierarchy("forbidden"))
     assert (absent.code, absent.err.count("\n")) == (2, 1)
     assert "acceptance.good = {'median': 0.02, 'maximum': 0.02, 'ratio': 2.0}: this study has no" in absent.err
     assert "--model good=module:function enters it" in absent.err
-    unchecked = command(scene, "--grid", "2", *ONLY)
-    assert unchecked.code == 0
-    assert "no engine bad in this study" in (unchecked.report / "summary.md").read_text(encoding="utf-8")
+    unchecked = command(scene, "--grid", "2", *ONLY).report
+    assert "no engine bad in this study" in (unchecked / "summary.md").read_text(encoding="utf-8")
 
 
 def test_it_is_compared_with_the_model_of_its_law() -> None:
@@ -361,24 +321,16 @@ def test_its_results_belong_to_its_source_and_its_helpers(tmp_path: Path, monkey
 
 @pytest.mark.long
 def test_engines_that_hang_or_crash_cost_nobody_else(command: Callable[..., Run]) -> None:
-    engines = ("plain", "prints", "computes-for-ever", "waits-for-ever", "leaves", "spoils-its-process")
+    engines = ("prints", "computes-for-ever", "waits-for-ever", "leaves", "spoils-its-process")
     words = [word for name in engines for word in ("--model", f"{name}=user_engines:{name.replace('-', '_')}")]
-    words += ["--only", "differences", "--model-limit", "2"]
-    run = command("fig3-I", "--grid", "2", *words, executor=process_pool)
+    run = command("fig3-I", "--grid", "2", *words, *ONLY, "--model-limit", "2", executor=process_pool)
     assert run.code == 0
     assert "noise" not in run.out + run.err
     with xr.open_dataset(run.report / "surfaces.nc", engine="h5netcdf") as data:
-        outcomes = {name: set(data["status"].sel(model=name).values.ravel().tolist()) for name in engines}
-        mu = data["mu"].sel(model=["small", "plain", "prints"]).values
-    assert outcomes.pop("leaves") - {"time limit"} == {"worker died"}, "after two deaths it may not be asked again"
-    assert outcomes == {
-        "plain": {"ok"},
-        "prints": {"ok"},
-        "computes-for-ever": {"time limit"},
-        "waits-for-ever": {"time limit"},
-        "spoils-its-process": {"ok"},
-    }
-    assert np.isfinite(mu).all()
+        outcomes = [set(data["status"].sel(model=name).values.ravel().tolist()) for name in engines]
+        assert np.isfinite(data["mu"].sel(model=["small", "prints"])).all()
+    assert outcomes.pop(3) - {"time limit"} == {"worker died"}, "after two deaths it may not be asked again"
+    assert outcomes == [{"ok"}, {"time limit"}, {"time limit"}, {"ok"}]
 
 
 def test_extremes_of_its_law_concern_a_user_engine() -> None:
