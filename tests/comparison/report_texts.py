@@ -4,6 +4,7 @@ import base64
 import gzip
 import json
 import re
+from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -60,3 +61,34 @@ def text_of(path: Path) -> tuple[int, str]:
 def flat(text: str) -> str:
     """The letters alone: where lines break, a reader of the file may add or lose a space or a hyphen."""
     return "".join(letter for letter in text if letter.isalnum())
+
+
+class Tables(HTMLParser):
+    """Every table of a page: rows of cells, each a text."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.tables: list[list[list[str]]] = []
+        self._inside = False
+        self.feed(page)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append([])
+        elif tag in ("td", "th"):
+            self.tables[-1][-1].append("")
+            self._inside = True
+
+    def handle_endtag(self, tag: str) -> None:
+        self._inside = self._inside and tag not in ("td", "th")
+
+    def handle_data(self, data: str) -> None:
+        if self._inside:
+            self.tables[-1][-1][-1] += data
+
+    def headed(self, *headings: str) -> list[dict[str, str]]:
+        """Rows of the one table with these headings, as cells by heading."""
+        [table] = [table for table in self.tables if set(headings) <= set(table[0])]
+        return [dict(zip(table[0], row, strict=True)) for row in table[1:]]

@@ -68,10 +68,8 @@ def test_the_engine_of_the_documentation_appears_in_the_report(
     command: Callable[..., Run], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     text = DOCS.read_text(encoding="utf-8")
-    (code,), (option,) = (
-        re.findall(r"(?s)```python\n(.*?)```", text),
-        re.findall(r"--grid 4 --model (mine=\S+)\n", text),
-    )
+    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    (option,) = re.findall(r"--grid 4 --model (mine=\S+)\n", text)
     assert len([line for line in code.splitlines() if line.strip()]) <= 22
     (tmp_path / "my_engine.py").write_text(code, encoding="utf-8")  # in a folder of its own, as a user would have it
     (tmp_path / "short.toml").write_text(scene_text("fig3-I", ("duration = 20.0", "duration = 1.5")))
