@@ -32,6 +32,7 @@ def test_a_report_is_exactly_its_parts(finished: Path) -> None:
     assert {entry.name for entry in finished.iterdir()} == PARTS
     beside = {entry.name for entry in finished.parent.iterdir()}
     assert beside == {"report", "report.tiles"}, "the store, and no working directory left"
+    assert (finished / "index.html").stat().st_size < 1.5e6, "a page that opens quickly"
 
 
 def test_every_file_says_how_long_the_study_took_and_how_it_was_made(finished: Path) -> None:

@@ -26,8 +26,6 @@ def test_a_sound_run_has_no_alert_and_its_limits_hold(command: Callable[..., Run
 
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])
-
-
 STRONG = load_scene("fig3-I", amplitude=2.5).with_values({"isolator.friction": 0.05, "duration": 8.0})
 
 
