@@ -82,7 +82,7 @@ MISTAKES = (
             "Error bars are drawn on one side.", (RECORDED,)),
     Mistake(SURFACES + "waterfall_chart.py", '"up" if bar.size >= 0.0 else "down"',
             '"down" if bar.size >= 0.0 else "up"', "Bars have the colors of the other sign.",
-            (TESTS + "surfaces/test_waterfall.py::test_every_bar_begins_where_the_one_before_it_ends",)),
+            (RECORDED,)),
     Mistake(SURFACES + "headline.py", "bar.size * total.size > 0.0", "bar.size * total.size < 0.0",
             "What offsets a difference is called its cause.",
             (HEADLINE + "the_sentence_says_what_is_planted",)),

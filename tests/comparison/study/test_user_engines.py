@@ -99,18 +99,12 @@ PLAIN, FORM = "mine=user_engines:plain", "must be NAME=module:function[@KEY], as
 @pytest.mark.parametrize(
     ("words", "rule"),
     [
-        (["mine"], f"--model = 'mine': {FORM}"),
-        (["mine=my_engine"], f"--model = 'mine=my_engine': {FORM}"),
-        (["mine=my engine:f"], f"--model = 'mine=my engine:f': {FORM}"),
-        (["=my_engine:f"], "--model = '=my_engine:f': NAME must begin with a letter"),
-        (["../a=my_engine:f"], "--model = '../a=my_engine:f': NAME must begin with a letter"),
-        (["my_name=my_engine:f"], "--model = 'my_name=my_engine:f': NAME must begin with a letter"),
-        (["spatial=my_engine:f"], "--model = 'spatial=my_engine:f': spatial names a model, a difference or a limit"),
-        (["total=my_engine:f"], "--model = 'total=my_engine:f': total names a model, a difference or a limit"),
-        (["like-for-like=my_engine:f"], "--model = 'like-for-like=my_engine:f': like-for-like names a model"),
+        *(([word], f"--model = '{word}': {FORM}") for word in ("mine", "mine=my_engine", "mine=my engine:f")),
+        *(([f"{name}=e:f"], f"--model = '{name}=e:f': NAME must begin") for name in ("", "../a", "my_name")),
+        *(([f"{name}=e:f"], f"--model = '{name}=e:f': {name} names a model") for name in ("spatial", "like-for-like")),
         (["mine=my_engine:f@spatial"], "--model = 'mine=my_engine:f@spatial': KEY must be one of small, exact, res"),
-        ([PLAIN, "--model", "mine=user_engines:raises"], "--model = 'mine=user_engines:plain': mine is there twice"),
-        ([PLAIN, "--scheduler", "tcp://127.0.0.1:1"], "--model = 'mine=user_engines:plain': is a function of this "),
+        ([PLAIN, "--model", "mine=user_engines:raises"], f"--model = '{PLAIN}': mine is there twice"),
+        ([PLAIN, "--scheduler", "tcp://127.0.0.1:1"], f"--model = '{PLAIN}': is a function of this machine"),
         ([PLAIN, "--model-limit", "soon"], "--model-limit = 'soon': must be a number from 1 to 1e+06, s of processor"),
     ],
 )
@@ -127,7 +121,7 @@ def test_a_wrong_spelling_is_one_line_and_exit_code_2(command: Callable[..., Run
         ("user_engines:nothing", "user_engines has no nothing"),
         ("user_engines:NUMBER", "cannot be called as NUMBER(scene, phases): NUMBER is int, not a function"),
         ("user_engines:with_three", "cannot be called as with_three(scene, phases): missing a required argument"),
-        ("raises_at_once:f", "importing raises_at_once raises ZeroDivisionError: division by zero (raises_at_once.py"),
+        ("at_once:f", "importing at_once raises ZeroDivisionError: division by zero (at_once.py, line 2)"),
         ("engine_that_exits:f", "importing engine_that_exits raises SystemExit: 0"),
         ("engine_that_lacks:f", "there is no module no_such_package"),
     ],
@@ -135,7 +129,7 @@ def test_a_wrong_spelling_is_one_line_and_exit_code_2(command: Callable[..., Run
 def test_what_cannot_be_imported_or_called_is_named(
     path: str, fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "raises_at_once.py").write_text("\n1 / 0\n")
+    (tmp_path / "at_once.py").write_text("\n1 / 0\n")
     (tmp_path / "engine_that_exits.py").write_text("raise SystemExit(0)\n")
     (tmp_path / "engine_that_lacks.py").write_text("import no_such_package\n")
     monkeypatch.syspath_prepend(str(tmp_path))

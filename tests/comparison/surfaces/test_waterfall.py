@@ -83,19 +83,6 @@ STEPS = [WaterfallBar(*bar, 1e-4) for bar in (("exact", 0.02), ("resolved", -0.1
 TOTAL = WaterfallBar("spatial", -0.05, 1e-4)
 
 
-def test_every_bar_begins_where_the_one_before_it_ends() -> None:
-    scale = scale_of([(STEPS, TOTAL)])
-    assert scale.ticks == pytest.approx([-0.05, 0.0]), "round, and inside"
-    *steps, total = bars_of(STEPS, TOTAL, scale)
-    starts = [0.0, 0.02, -0.08]
-    for bar, start, step in zip(steps, starts, STEPS, strict=True):
-        ends = sorted((scale.at(start), scale.at(start + step.size)))
-        assert [bar.left, bar.left + bar.width] == pytest.approx(ends, abs=2e-3)
-        assert bar.end == pytest.approx(scale.at(start + step.size), abs=2e-3)
-    assert steps[-1].end == pytest.approx(total.end, abs=2e-3)
-    assert [bar.kind for bar in steps] == ["up", "down", "up"]
-
-
 def test_a_step_without_a_value_has_no_bar_and_moves_nothing() -> None:
     steps = [STEPS[0], WaterfallBar("resolved", math.nan, math.nan), STEPS[2]]
     scale = scale_of([(steps, TOTAL)])
