@@ -45,10 +45,3 @@ def test_every_task_is_explained_and_there_are_no_others() -> None:
     sessions = {node.name for node in tree.body if isinstance(node, ast.FunctionDef) and node.decorator_list}
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     assert set(re.findall(r"^\| `(\w+)` \|", text, flags=re.MULTILINE)) == sessions
-
-
-def test_the_changes_are_grouped_as_keep_a_changelog_has_it() -> None:
-    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
-    groups = re.findall(r"^### (.*)$", text, flags=re.MULTILINE)
-    assert set(groups) <= {"Added", "Changed", "Deprecated", "Removed", "Fixed", "Security"}
-    assert re.search(r"^## \[Unreleased\]$", text, flags=re.MULTILINE)

@@ -23,12 +23,6 @@ def hangs_in_compiled_code(place: str) -> int:
     return sum(itertools.repeat(0))
 
 
-def is_kept_waiting(place: str) -> int:
-    """What a busy machine does to a task: it takes long, and computes little."""
-    time.sleep(2.5)
-    return 1
-
-
 def raises(place: str) -> int:
     raise RuntimeError("singular")
 

@@ -16,9 +16,9 @@ DEADLINE = 300.0  # s for programs to start: nothing here takes that long, howev
 
 
 class LocalCluster:
-    """A scheduler with `workers` single-threaded workers. `nanny`: a worker that dies is started anew."""
+    """A scheduler with two single-threaded workers."""
 
-    def __init__(self, folder: Path, workers: int = 2, nanny: bool = False) -> None:
+    def __init__(self, folder: Path) -> None:
         self._log = (folder / "cluster.log").open("w")
         self._folder = folder
         self._workers: list[subprocess.Popen[bytes]] = []
@@ -28,11 +28,11 @@ class LocalCluster:
         )
         try:
             self.address: str = json.loads(_written(file))["address"]
-            words = ["--nthreads", "1", "--no-dashboard", "--nanny" if nanny else "--no-nanny", "--host", "127.0.0.1"]
-            for _ in range(workers):
+            words = ["--nthreads", "1", "--no-dashboard", "--no-nanny", "--host", "127.0.0.1"]
+            for _ in range(2):
                 self._workers.append(self._start(["worker", self.address, *words]))
             with Client(self.address, timeout=DEADLINE, set_as_default=False) as client:
-                client.wait_for_workers(workers, timeout=DEADLINE)
+                client.wait_for_workers(2, timeout=DEADLINE)
         except BaseException:
             self.end()  # a test without a cluster leaves no programs behind
             raise
@@ -59,7 +59,7 @@ class LocalCluster:
     def end(self) -> None:
         for process in (*self._workers, self._scheduler):
             with suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)  # a nanny's worker is in its group
+                os.killpg(process.pid, signal.SIGKILL)
             process.wait()
         self._log.close()
 

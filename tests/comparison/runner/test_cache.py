@@ -35,36 +35,36 @@ from comparison.runner.task import Task, TaskResult, execute, fingerprint
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
-from reference.problem import Outcome, builtin_scenes, load_scene
+from reference.problem import Outcome, Scene, builtin_scenes, load_scene
+
+SCENE = load_scene("fig3-I")
 
 
-def _batch_task(**changed: object) -> Task:
-    study = Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy(batch=1))
-    (task, *_) = surface_tasks(replace(study, **changed))  # type: ignore[arg-type]
-    return task
+def _batch_task(**changed: Any) -> Task:
+    return surface_tasks(replace(Study((SCENE,), 4, 1e-3, fake_hierarchy(batch=1)), **changed))[0]
 
 
-def _task(argument: tuple[Any, ...] = (load_scene("fig3-I"), 1, 0.5, np.arange(3.0))) -> Task:
-    return Task(motion, argument, "motions", 0.1, argument[0])
+def _task(scene: Scene = SCENE, *rest: Any) -> Task:
+    return Task(motion, (scene, *(rest or (1, 0.5, np.arange(3.0)))), "motions", 0.1, scene)
 
 
 def test_a_key_has_all_that_a_result_depends_on(monkeypatch: pytest.MonkeyPatch) -> None:
     task, batch = _task(), _batch_task()
-    (scene, *rest), model = task.argument, fake_hierarchy(batch=1)[0]
+    array, model = np.arange(3.0), fake_hierarchy(batch=1)[0]
+    shorter, renamed = SCENE.with_values({"duration": 3.0}), SCENE.with_values({"name": "other", "title": "another"})
     tasks = {
         "it": task,
         "function": replace(task, function=another_motion),
-        "scene": _task((scene.with_values({"duration": 3.0}), *rest)),
-        "name, which the answer may hold": _task((scene.with_values({"name": "other"}), *rest)),
-        "number": _task((scene, 2, *rest[1:])),
-        "last bit": _task((scene, 1, np.nextafter(0.5, 1.0), rest[2])),
-        "array": _task((scene, 1, 0.5, np.arange(3.0) + 1e-16 * np.array([1.0, 0.0, 0.0]))),
-        "shape": _task((scene, 1, 0.5, np.arange(3.0)[None])),
-        "kind": _task((scene, 1, 0.5, np.arange(3.0).view(int))),
+        "scene": _task(shorter),
+        "name, which the answer may hold": _task(renamed),
+        "last bit": _task(SCENE, 1, np.nextafter(0.5, 1.0), array),
+        "array": _task(SCENE, 1, 0.5, array + 1e-16 * (array == 0.0)),
+        "shape": _task(SCENE, 1, 0.5, array[None]),
+        "kind": _task(SCENE, 1, 0.5, array.view(int)),
         "model": replace(task, argument=model),
         "settings of a model": replace(task, argument=replace(model, settings={"gap": 2.0})),
         "batch": batch,
-        "scene of a batch": _batch_task(scenes=(scene.with_values({"duration": 3.0}),)),
+        "scene of a batch": _batch_task(scenes=(shorter,)),
         "model of a batch": _batch_task(hierarchy=[replace(model, amplification="fake_models:uneven")]),
         "settings of a batch": _batch_task(hierarchy=[replace(model, settings={"gap": 2.0})]),
         "tolerance of a batch": _batch_task(tolerance=1e-7),
@@ -72,8 +72,7 @@ def test_a_key_has_all_that_a_result_depends_on(monkeypatch: pytest.MonkeyPatch)
     }
     keys = {name: other.key for name, other in tasks.items()}
     assert len(set(keys.values())) == len(keys)
-    named = scene.with_values({"name": "other", "title": "another title"})
-    assert _batch_task(scenes=(named,)).key == batch.key, "a name is no number"
+    assert _batch_task(scenes=(renamed,)).key == batch.key, "a name is no number"
     assert fingerprint(replace(model, most=8)) == fingerprint(model), "a study with another grid asks it the same"
     monkeypatch.delenv("EXUDYN_MODULE", raising=False)
     with monkeypatch.context() as patch:
@@ -188,13 +187,14 @@ def _run(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolE
 
 def test_an_answer_is_kept_to_the_last_bit_and_a_damaged_one_is_mended(tmp_path: Path) -> None:
     task = _task()
-    runs = [_run(task, tmp_path), _run(task, tmp_path, no_executor)]
-    assert [(results.parts["motions"].tasks, results.parts["motions"].stored) for results in runs] == [(1, 0), (1, 1)]
-    first, second = (results[task].value for results in runs)
-    assert pickle.dumps(first) == pickle.dumps(second) == pickle.dumps(motion(task.argument))
+    first, second = _run(task, tmp_path), _run(task, tmp_path, no_executor)
+    assert [(results.parts["motions"].tasks, results.parts["motions"].stored) for results in (first, second)] == [
+        (1, 0), (1, 1),
+    ]  # fmt: skip
+    assert pickle.dumps(second[task].value) == pickle.dumps(first[task].value) == pickle.dumps(motion(task.argument))
     assert TaskResults(Cache(tmp_path)).holds(task)
-    assert not TaskResults(Cache(tmp_path), fresh=True).holds(task)
-    assert TaskResults(Cache(tmp_path), fresh=True).missing([task]) == [task]
+    fresh = TaskResults(Cache(tmp_path), fresh=True)
+    assert (fresh.holds(task), fresh.missing([task])) == (False, [task])
     (file,) = tmp_path.glob("*/*.result")
     content, number = file.read_bytes(), np.float64(0.1).tobytes()
     assert number in content

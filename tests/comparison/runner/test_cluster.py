@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from distributed import KilledWorker
 from fake_models import fake_hierarchy
-from light_tasks import doubled, hangs_in_compiled_code
 from local_cluster import LocalCluster
 from report_texts import summary_of
 from runs import Run
@@ -21,12 +20,11 @@ from comparison.runner.dask import cluster
 from comparison.runner.processes import ExecutorLostError, Pool, WorkerDiedError
 from comparison.runner.progress import Display
 from comparison.runner.runner import Runner
-from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import BatchResult
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import batch_results, surface_tasks
-from reference.problem import Outcome, load_scene
+from reference.problem import load_scene
 
 
 def _results(
@@ -93,25 +91,6 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on(
     summary = summary_of(again.report)["run"]
     # a batch of the first model stands for that of three others, which are the same function here
     assert (again.code, summary["tiles_stored_before"], summary["jobs"]) == (0, 4 * kept, 3)
-
-
-@pytest.mark.long
-def test_a_hang_costs_no_worker_of_the_cluster(tmp_path: Path) -> None:
-    started = LocalCluster(tmp_path, workers=1, nanny=True)
-    tasks = [
-        Task(hangs_in_compiled_code, str(tmp_path / "hanging"), "test", 2.0, timeout=4.0),
-        Task(doubled, str(tmp_path / "other"), "test", 1.0, timeout=60.0),
-        Task(doubled, str(tmp_path / "without a limit"), "test", 0.5),
-    ]
-    results = TaskResults()
-    try:
-        with cluster(started.address, {"fake_models:uneven"}) as there:
-            Runner(results, 1, there).run(tasks)
-    finally:
-        started.end()
-    assert results[tasks[0]].outcome == Outcome.TIME_LIMIT
-    assert [results[task].value for task in tasks[1:]] == [2, 2]
-    assert len(list(tmp_path.glob("hanging-*"))) == 1, "not tried again on another worker"
 
 
 @pytest.mark.parametrize("address", ["nowhere", "tls://127.0.0.1:1", "ucx://127.0.0.1:1"])
