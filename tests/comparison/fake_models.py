@@ -3,8 +3,6 @@
 `full` asks a model for all that a scene does not require: these leave nothing out.
 """
 
-import os
-import signal
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -67,13 +65,6 @@ def misshapen_there(scene: Scene, phases: NDArray[np.float64], tolerance: float,
     return replace(answer, mu=answer.mu[:-1]) if deadly(phases).any() else answer
 
 
-def killing(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
-    """Takes its process with it, as a fault in a native library does."""
-    if deadly(phases).any():
-        os.kill(os.getpid(), signal.SIGKILL)
-    return smooth(scene, phases, tolerance)
-
-
 def endless(scene: Scene, phases: NDArray[np.float64], tolerance: float, full: bool = False) -> Amplification:
     while True:
         time.sleep(1.0)
@@ -114,19 +105,9 @@ def forbidden(scene: Scene, phases: object, **settings: object) -> Amplification
 
 
 def sliding(
-    scene: Scene,
-    phase: Sequence[float],
-    radius: float,
-    friction: float,
-    mass: float,
-    swing: float = 0.05,
-    status: str = "ok",
+    scene: Scene, phase: object, radius: float, friction: float, mass: float, swing: float = 0.05, status: str = "ok"
 ) -> Trajectory:
-    """
-    Slides to and fro on a sphere of `radius` under the contact force that `mass` and `friction` give.
-
-    The bodies together are accelerated by exactly that force; the scene's own masses make them lighter or heavier.
-    """
+    """Bodies slide to and fro on a sphere of `radius` under the contact force that `mass` and `friction` give."""
     time = np.linspace(0.0, scene.duration, 601)
     angle, rate = swing / radius * np.sin(2.0 * time), 2.0 * swing / radius * np.cos(2.0 * time)
     zero = np.zeros_like(time)
@@ -152,24 +133,14 @@ def known_motions(study: Study, surfaces: xr.Dataset, *rest: object) -> list[Sto
         circle = np.stack([np.cos(time), np.sin(time)], axis=1)[:, None, :].repeat(len(scene.bodies), axis=1)
         for place in chosen_places(study, surfaces, scene):
             for number, model in enumerate(shown_models(study, scene)):
-                at = 0.01 * (1 + number) * circle
+                at, spatial = 0.01 * (1 + number) * circle, model.key == "spatial"
                 force = np.full((len(time), 4), 0.25 * scene.total_mass * GRAVITY)
-                found.append(
-                    StoredMotion(
-                        place,
-                        model.key,
-                        time,
-                        at,
-                        -at,
-                        ((2.0, 3.0),),
-                        contact_force=force.sum(axis=1),
-                        isolator_force=scene.total_mass * at[:, 0],
-                        support_force=force if model.key == "spatial" else np.zeros(0),
-                        yaw=0.001 * np.sin(time) if model.key == "spatial" else np.zeros(0),
-                        demands=known_demands(scene, model.key == "spatial"),
-                        spectra=known_spectra(scene),
-                    )
-                )
+                found.append(StoredMotion(
+                    place, model.key, time, at, -at, ((2.0, 3.0),),
+                    contact_force=force.sum(axis=1), isolator_force=scene.total_mass * at[:, 0],
+                    support_force=force if spatial else np.zeros(0), yaw=0.001 * np.sin(time) if spatial else np.zeros(0),
+                    demands=known_demands(scene, spatial), spectra=known_spectra(scene),
+                ))  # fmt: skip
     return found
 
 
@@ -215,10 +186,7 @@ def planted(
 
 
 def errors_in(gaps: Mapping[str, float], error_estimates: Mapping[str, float] | None = None) -> tuple[Model, ...]:
-    """
-    The real model hierarchy: the models named lie `gaps` above the others and state the relative errors
-    `error_estimates`.
-    """
+    """The real hierarchy: the models named lie `gaps` above the others and state relative errors."""
     return tuple(
         replace(
             model,
@@ -245,12 +213,9 @@ def fake_hierarchy(engine: str = "smooth", gap: float = 0.01, batch: int = 4) ->
     models = []
     for model in MODEL_HIERARCHY:
         name = engine if model.side == "engine" else "smooth"
+        functions = {"amplification": f"fake_models:{name}", "trajectory": "fake_models:forbidden"}
+        functions |= {"refusal": "fake_models:never_refused"} if model.refusal else {}
         settings = {"gap": gap} if (model.side, name) == ("engine", "smooth") else {}
-        functions = {
-            "amplification": f"fake_models:{name}",
-            "trajectory": "fake_models:forbidden",
-            "refusal": None if model.refusal is None else "fake_models:never_refused",
-        }
         most = MOST.get(model.key)
         models.append(replace(model, **functions, settings=settings, batch=batch, symmetric=never, most=most))
     return tuple(models)

@@ -4,7 +4,6 @@ import os
 import re
 import subprocess
 import sys
-import tomllib
 from importlib import import_module
 from pathlib import Path
 
@@ -14,7 +13,7 @@ from places import ROOT
 import reference
 from comparison.cli.start import COMMANDS, main
 
-PLANTED = ("multiprocessing", "threading", "socket", "pickle", "numpy", "numba", "typing_extensions")
+PLANTED = ("reference", "multibody", "comparison", "multiprocessing", "pickle", "numpy", "numba", "typing_extensions")
 TELLING = """
 import pathlib
 pathlib.Path(__file__).with_name("imported").open("a").write(__name__ + " ")
@@ -22,39 +21,10 @@ raise ImportError(__name__)
 """
 
 
-@pytest.fixture
-def script(tmp_path: Path) -> Path:
-    """The script as an installer writes it, for this copy of the project."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    module, function = project["scripts"]["phase-resonance"].split(":")
-    file = tmp_path / "bin" / "phase-resonance"
-    file.parent.mkdir()
-    lines = [
-        "import sys",
-        f"from {module} import {function}",
-        "if __name__ == '__main__':",
-        f"    sys.exit({function}())",
-    ]
-    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    return file
-
-
-def called(script: Path, *words: str) -> subprocess.CompletedProcess[str]:
-    """The script in a directory of the user whose modules have the names of others and tell when they are imported."""
-    place = script.parent.parent / "work"
-    place.mkdir()
-    for name in ("reference", "multibody", "comparison"):
-        (place / f"{name}.py").write_text("raise SystemExit('a module of the user was imported')\n", encoding="utf-8")
-    for name in PLANTED:
-        (place / f"{name}.py").write_text(TELLING, encoding="utf-8")
-    command = [sys.executable, str(script), *words]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
-    run = subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True, check=False)
-    assert not (place / "imported").exists(), (place / "imported").read_text(encoding="utf-8")
-    return run
-
-
-def test_workers_of_a_program_elsewhere_import_nothing_there(script: Path) -> None:
+def test_workers_of_a_program_elsewhere_import_nothing_there(tmp_path: Path) -> None:
+    """The working directory has modules with the names of others, which tell when they are imported."""
+    script, place = tmp_path / "bin" / "script", tmp_path / "work"
+    script.parent.mkdir()
     script.write_text(
         "import os\n"
         "from comparison.runner.processes import process_pool\n"
@@ -63,7 +33,12 @@ def test_workers_of_a_program_elsewhere_import_nothing_there(script: Path) -> No
         "        print(workers.submit(os.getenv, 'PYTHONSAFEPATH').result(), os.getenv('PYTHONSAFEPATH'))\n",
         encoding="utf-8",
     )
-    run = called(script)
+    place.mkdir()
+    for name in PLANTED:
+        (place / f"{name}.py").write_text(TELLING, encoding="utf-8")
+    command, environment = [sys.executable, str(script)], {**os.environ, "PYTHONPATH": str(ROOT)}
+    run = subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True, check=False)
+    assert not (place / "imported").exists(), (place / "imported").read_text(encoding="utf-8")
     assert (run.returncode, run.stdout) == (0, "None None\n"), "what a task starts is searched as ever"
 
 

@@ -78,7 +78,7 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on(
 ) -> None:
     with Lost(3) as lost:
         monkeypatch.setattr("comparison.cli.computing.cluster", lambda address, models: nullcontext(lost))
-        run = command("fig3-I", "--grid", "4", "--scheduler", "tcp://there:1")
+        run = command("fig3-I", "--grid", "4", "--fresh", "--scheduler", "tcp://there:1")
         assert (run.code, run.report.exists()) == (4, False)
         kept = len(list(run.report.with_name("report.tiles").glob("*/*.batch")))
         assert 0 < kept <= 5
