@@ -138,7 +138,8 @@ def known_motions(study: Study, surfaces: xr.Dataset, *rest: object) -> list[Sto
                 found.append(StoredMotion(
                     place, model.key, time, at, -at, ((2.0, 3.0),),
                     contact_force=force.sum(axis=1), isolator_force=scene.total_mass * at[:, 0],
-                    support_force=force if spatial else np.zeros(0), yaw=0.001 * np.sin(time) if spatial else np.zeros(0),
+                    support_force=force if spatial else np.zeros(0),
+                    yaw=0.001 * np.sin(time) if spatial else np.zeros(0),
                     demands=known_demands(scene, spatial), spectra=known_spectra(scene),
                 ))  # fmt: skip
     return found

@@ -27,11 +27,6 @@ def raises(place: str) -> int:
     raise RuntimeError("singular")
 
 
-def dies(place: str) -> int:
-    os.kill(os.getpid(), signal.SIGKILL)
-    return 0
-
-
 def counted(path: str) -> str:
     """Leaves a mark of every call; the one named "kills" dies at its first, "kills always" at each."""
     place = Path(path)

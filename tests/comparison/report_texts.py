@@ -4,13 +4,15 @@ import base64
 import gzip
 import json
 import re
-from html.parser import HTMLParser
+from html import unescape
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from jsonschema import Draft202012Validator
 from pypdf import PdfReader
+
+CELL = re.compile(r"<t[dh]\b[^>]*>(.*?)</t[dh]>", re.DOTALL)
 
 
 def summary_of(report: Path) -> dict[str, Any]:
@@ -63,30 +65,14 @@ def flat(text: str) -> str:
     return "".join(letter for letter in text if letter.isalnum())
 
 
-class Tables(HTMLParser):
+class Tables:
     """Every table of a page: rows of cells, each a text."""
 
     def __init__(self, page: str) -> None:
-        super().__init__()
-        self.tables: list[list[list[str]]] = []
-        self._inside = False
-        self.feed(page)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        if tag == "table":
-            self.tables.append([])
-        elif tag == "tr":
-            self.tables[-1].append([])
-        elif tag in ("td", "th"):
-            self.tables[-1][-1].append("")
-            self._inside = True
-
-    def handle_endtag(self, tag: str) -> None:
-        self._inside = self._inside and tag not in ("td", "th")
-
-    def handle_data(self, data: str) -> None:
-        if self._inside:
-            self.tables[-1][-1][-1] += data
+        self.tables = [
+            [[unescape(re.sub("<[^>]*>", "", cell)) for cell in CELL.findall(row)] for row in table.split("<tr")[1:]]
+            for table in page.split("<table")[1:]
+        ]
 
     def headed(self, *headings: str) -> list[dict[str, str]]:
         """Rows of the one table with these headings, as cells by heading."""

@@ -3,6 +3,7 @@
 import os
 import sys
 import time
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
@@ -20,37 +21,35 @@ def plain(scene: Scene, phases: np.ndarray) -> np.ndarray:
     return shape[:, None] + np.arange(1, len(scene.bodies) + 1)
 
 
-def as_list(scene: Scene, phases: np.ndarray) -> list[list[float]]:
-    return plain(scene, phases).tolist()
+def answering(answer: Callable[[np.ndarray], Any]) -> Callable[[Scene, np.ndarray], Any]:
+    """An engine that makes its answer of the amplification of `plain`."""
+
+    def engine(scene: Scene, phases: np.ndarray) -> Any:
+        return answer(plain(scene, phases))
+
+    return engine
 
 
-def with_error(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    return plain(scene, phases), 1e-3 * plain(scene, phases)
-
-
-def off(scene: Scene, phases: np.ndarray) -> np.ndarray:
-    return 1.021 * plain(scene, phases)
-
-
-def off_with_error(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    return 1.021 * plain(scene, phases), 7e-3 * plain(scene, phases)
+as_list = answering(lambda mu: mu.tolist())
+with_error = answering(lambda mu: (mu, 1e-3 * mu))
+off = answering(lambda mu: 1.021 * mu)
+off_with_error = answering(lambda mu: (1.021 * mu, 7e-3 * mu))
+vague = answering(lambda mu: (mu, mu))
+as_object = answering(lambda mu: SimpleNamespace(mu=mu))
+misshapen = answering(lambda mu: np.zeros(3))
+texts = answering(lambda mu: [["a", "b"]] * len(mu))
+nothing_at_all = answering(lambda mu: None)
+complex_numbers = answering(lambda mu: mu + 1j)
+too_few_outcomes = answering(lambda mu: SimpleNamespace(mu=mu, status=["ok"]))
 
 
 def with_one_error(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return plain(scene, phases), np.where(phases.any(axis=1)[:, None], np.nan, 1e-3 * plain(scene, phases))
 
 
-def vague(scene: Scene, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    return plain(scene, phases), plain(scene, phases)
-
-
 def takes_all(scene: Scene, phases: np.ndarray, **settings: Any) -> np.ndarray:
     told.update(settings)
     return plain(scene, phases)
-
-
-def as_object(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
-    return SimpleNamespace(mu=plain(scene, phases))
 
 
 def as_full_object(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
@@ -98,26 +97,6 @@ def asks_us_wrongly(scene: Scene, phases: np.ndarray) -> None:
     import reference
 
     reference.amplification(scene, phases, equations="none")
-
-
-def misshapen(scene: Scene, phases: np.ndarray) -> np.ndarray:
-    return np.zeros(3)
-
-
-def texts(scene: Scene, phases: np.ndarray) -> list[list[str]]:
-    return [["a", "b"]] * len(phases)
-
-
-def nothing_at_all(scene: Scene, phases: np.ndarray) -> None:
-    return None
-
-
-def complex_numbers(scene: Scene, phases: np.ndarray) -> np.ndarray:
-    return plain(scene, phases) + 1j
-
-
-def too_few_outcomes(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
-    return SimpleNamespace(mu=plain(scene, phases), status=["ok"])
 
 
 def exits(scene: Scene, phases: np.ndarray) -> None:

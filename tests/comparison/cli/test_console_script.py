@@ -1,7 +1,6 @@
 """The console script does what the modules do, and a user's own reference.py beside it is never imported."""
 
 import os
-import re
 import subprocess
 import sys
 from importlib import import_module
@@ -81,22 +80,3 @@ def test_every_command_states_its_version_and_refuses_a_wrong_option_in_one_line
         out, err = capsys.readouterr()
         assert (out, err.count("\n")) == ("", 1), err
         assert err.startswith("command line: ")
-
-
-COMPUTING = tuple(name for name in COMMANDS if name not in ("init", "animate", "validation"))  # these have no workers
-
-
-def test_shared_options_are_the_same_in_every_command(capsys: pytest.CaptureFixture[str]) -> None:
-    helps = set()
-    for name in COMPUTING:
-        with pytest.raises(SystemExit):
-            import_module(COMMANDS[name][0]).main(["--help"])
-        text = " ".join(capsys.readouterr().out.split())
-        options = text[text.index("--jobs N worker") :]
-        helps.add(options[: options.index("is used") + len("is used")])
-        assert re.search(r"--out DIR .*\(default report\)", text), name
-        if name == "run":
-            for default in ("phases per axis (default 48)", "or better (default 0.001)", "phase pair (default 2e6)"):
-                assert default in text
-    (shared,) = helps
-    assert re.match(r"--jobs N .* --scheduler ADDRESS .* --fresh .*", shared)

@@ -115,23 +115,15 @@ class Interrupted(ThreadPoolExecutor):
 def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """COUNT extremes for models of known answer."""
+    """COUNT extremes for models of known answer, of which one lies and fails."""
     models = "honest", "lies_about_its_error"
     rows = [replace(PLAIN, title=str(number), columns=models) for number in range(COUNT // len(models))]
     monkeypatch.setattr(extremes, "COLUMNS", tuple(replace(fake(model), key=model) for model in models))
     monkeypatch.setattr(extremes, "rows", lambda: iter(rows))
     monkeypatch.setattr(extremes, "made_by", lambda draw: {PICTURE: b"a picture"})
     monkeypatch.chdir(tmp_path)
-
-    def run(executor: Any, out: str = "report") -> int:
-        return int(extremes.main(["--jobs", "2", "--out", out], executor))
-
-    def judged(out: str) -> list[object]:
-        found = STORED.load(Path(out)).rows
-        return [(e.verdict, e.reason, e.status, e.error) for row in found for e in row.entries.values()]
-
-    assert run(ThreadPoolExecutor, "whole") == 1, "a model that lies fails"
-    assert run(Interrupted) == 130
+    words = ["--jobs", "2", "--out", "report"]
+    assert extremes.main(words, Interrupted) == 130
     stopped = re.fullmatch(
         r"interrupted: (\d+) results are kept in 'report.tiles'; "
         r"go on with: python -m comparison.extremes --jobs 2 --out report\n",
@@ -140,10 +132,11 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     assert stopped
     assert 0 < int(stopped[1]) == len(list(tmp_path.glob("report.tiles/*/*.result"))) < COUNT
     assert not (tmp_path / "report").exists()
-    assert run(ThreadPoolExecutor) == 1
-    assert (
-        f"{stopped[1]} of {COUNT} tasks are in report.tiles: only the others are computed." in capsys.readouterr().out
-    )
-    assert judged("report") == judged("whole")
-    assert STORED.load(Path("report")).run["stored_before"] == int(stopped[1])
-    assert run(no_executor) == 1, "nothing is computed twice"
+    assert extremes.main(words, ThreadPoolExecutor) == 1
+    said = capsys.readouterr().out
+    assert f"{stopped[1]} of {COUNT} tasks are in report.tiles: only the others are computed." in said
+    found = STORED.load(Path("report"))
+    verdicts = [row.entries[model].verdict for row in found.rows for model in models]
+    assert verdicts == ["converged", "FAILED"] * len(rows)
+    assert found.run["stored_before"] == int(stopped[1])
+    assert extremes.main(words, no_executor) == 1, "nothing is computed twice"

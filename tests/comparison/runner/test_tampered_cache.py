@@ -1,7 +1,6 @@
 """Whatever stands in the cache, it costs a recomputation at most: nothing is unpickled, imported or believed unseen."""
 
 import hashlib
-import os
 import pickle
 import sys
 from collections.abc import Callable, Mapping
@@ -143,15 +142,3 @@ def test_a_batch_of_another_shape_or_ok_without_numbers_is_computed_again(tmp_pa
         damaged[0, 0] = np.nan
         assert not is_taken(**{name: damaged})
         assert is_taken(**{name: damaged}, status=["step limit", *whole.status[1:]]), "no result, no numbers"
-
-
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no pipes with names")
-def test_what_is_no_regular_file_is_no_result(tmp_path: Path) -> None:
-    cache = Cache(tmp_path)
-    cache.put(KEY, VALUE)
-    (tmp_path / KEY.name).unlink()
-    os.mkfifo(tmp_path / KEY.name)
-    assert cache.get(KEY, Outer) is None
-    (tmp_path / KEY.name).unlink()
-    (tmp_path / KEY.name).symlink_to("/dev/zero")
-    assert cache.get(KEY, Outer) is None
