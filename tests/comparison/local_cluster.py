@@ -2,11 +2,9 @@
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
-from contextlib import suppress
 from pathlib import Path
 
 from distributed import Client
@@ -38,28 +36,20 @@ class LocalCluster:
             raise
 
     def _start(self, words: list[str]) -> subprocess.Popen[bytes]:
-        paths = os.pathsep.join([str(HELPERS), str(ROOT), os.environ.get("PYTHONPATH", "")])
         settings = {
-            "PYTHONPATH": paths,
+            "PYTHONPATH": os.pathsep.join([str(HELPERS), str(ROOT), os.environ.get("PYTHONPATH", "")]),
             "PYTHONWARNINGS": "ignore",
             "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "1",  # one retry, so that a test does not take minutes
         }
-        return subprocess.Popen(
-            [sys.executable, "-m", "dask", *words],
-            cwd=self._folder,
-            env={**os.environ, **settings},
-            stdout=self._log,
-            stderr=self._log,
-            start_new_session=True,
-        )
+        command, environment = [sys.executable, "-m", "dask", *words], {**os.environ, **settings}
+        return subprocess.Popen(command, cwd=self._folder, env=environment, stdout=self._log, stderr=self._log)
 
     def kill_a_worker(self) -> None:
         self._workers[0].kill()
 
     def end(self) -> None:
         for process in (*self._workers, self._scheduler):
-            with suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
+            process.kill()
             process.wait()
         self._log.close()
 

@@ -18,7 +18,6 @@ CLOSING = TESTS + "cli/test_closing.py::test_"
 GATE = TESTS + "study/test_assert_consistent.py::test_"
 ENGINES = TESTS + "study/test_user_engines.py::test_"
 LEVELS = TESTS + "study/test_levels.py::test_"
-FORGED = TESTS + "runner/test_tampered_cache.py::test_"
 DEATHS = TESTS + "runner/test_sweep.py::test_"
 CACHED = TESTS + "runner/test_cache.py::test_"
 FILES = TESTS + "runner/test_users_files.py::test_"
@@ -226,7 +225,7 @@ MISTAKES = (
     Mistake(RUNNER + "cache.py", " or _checksum(key, content) != digest", "",
             "A damaged result is believed.", (CACHED + "an_answer_is_kept_to_the_last_bit_and_a_damaged_one_is_mended",)),
     Mistake(RUNNER + "cache.py", 'hashlib.sha256(key.name.encode() + b"\\0" + content)', "hashlib.sha256(content)",
-            "A result is taken for that of another question.", (FORGED + "no_file_of_another_result_is_taken",)),
+            "A result is taken for that of another question.", (CACHED + "no_file_of_another_result_is_taken",)),
     Mistake(RUNNER + "progress.py", "begin + seconds - EARLY", "begin + seconds",
             "A run ends after its budget.", (LEVELS + "the_time_is_up_at_the_deadline_less_what_is_kept_free",)),
     Mistake(RUNNER + "progress.py", "rough / self._jobs", "rough",
@@ -235,7 +234,7 @@ MISTAKES = (
             "A changed file of the user counts as the study's own.", (FILES + "what_appears_in_out_meanwhile_stays",)),
     Mistake(RUNNER + "environment.py", '        "exudyn module": os.environ.get("EXUDYN_MODULE", ""),\n', "",
             "Results of another module of the engine are taken.",
-            (TESTS + "runner/test_cache.py::test_a_key_has_all_that_a_result_depends_on",)),
+            (CACHED + "a_key_has_all_that_a_result_depends_on",)),
     Mistake(RUNNER + "task.py", "return TaskResult(value, time.process_time() - clock)", "return TaskResult(value, clock)",
             "The cost of a task is all that its process has computed.",
             (CACHED + "the_cost_of_a_task_is_its_own_processor_time",)),
@@ -260,7 +259,7 @@ MISTAKES = (
     Mistake(STUDY + "batches.py", "sum(result.cost for result in results)", "results[-1].cost",
             "Halves of a batch cost what the last one does.", (DEATHS + "halves_of_a_batch_are_its_points_in_order",)),
     Mistake(STUDY + "batches.py", "(np.isfinite(error) | bool(self.group))", "(np.isfinite(error) | True)",
-            "A model of ours may be ok without an error.", (FORGED + "a_batch_of_another_shape_or_ok_without_numbers_is_computed_again",)),
+            "A model of ours may be ok without an error.", (CACHED + "a_batch_of_another_shape_or_ok_without_numbers_is_computed_again",)),
     Mistake(STUDY + "user_models.py", "lines.append(f\"{place.name}, line {line}\")", "lines.append(f\"{place.name}, line {frame.f_lineno}\")",
             "An exception names the line of the call that made it.", equivalent="The frame of a traceback that is "
             "unwound stands at the line that raised."),
@@ -284,7 +283,7 @@ MISTAKES = (
             "A run that was stopped ends well.", (LEVELS + "a_run_that_ends_early_has_its_last_level_and_goes_on_alike",)),
     Mistake(CLI + "computing.py", "raise EndedEarlyError(3, f\"{error}; {hint(words)}\")", "raise EndedEarlyError(4, f\"{error}; {hint(words)}\")",
             "A full disk has the exit code of a lost cluster.",
-            (TESTS + "runner/test_killed.py::test_a_full_disk_is_exit_3_and_the_run_goes_on_later",)),
+            (TESTS + "cli/test_interrupted.py::test_a_full_disk_is_exit_3_and_the_run_goes_on_later",)),
     Mistake(CLI + "arguments.py", "raise EndedEarlyError(3, line)", "raise EndedEarlyError(2, line)",
             "A file that cannot be written is called a wrong option.",
             (TESTS + "runner/test_users_files.py::test_a_report_that_cannot_be_finished_leaves_the_old_one",)),
@@ -296,7 +295,7 @@ MISTAKES = (
             "The terminal counts missing values as not ok.", (RECORDED,)),
     Mistake(CLI + "reports.py", "sum(task.key in runner.results.stored for task in complete.tasks)", "len(runner.results.stored)",
             "Results of analyses count as stored batches.",
-            (TESTS + "runner/test_killed.py::test_nothing_is_computed_twice_and_fresh_computes_all",)),
+            (TESTS + "cli/test_interrupted.py::test_nothing_is_computed_twice_and_fresh_computes_all",)),
     Mistake(CLI + "reports.py", '"processor_seconds": round(took.processor, 1)', '"processor_seconds": round(took.wall, 1)',
             "Wall time is called processor time.", (CLOSING + "the_times_of_a_run_are_the_same_in_every_place",)),
     Mistake(CLI + "study_template/study.py", "demands.base_shear.value / 1e3:.1f} kN", "demands.base_shear.value:.1f} kN",

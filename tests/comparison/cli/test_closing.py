@@ -23,7 +23,6 @@ from runs import Run
 
 import comparison.run
 from comparison.cli import reports, terminal
-from comparison.cli.arguments import changed
 from comparison.cli.computing import run_facts
 from comparison.cli.start import Clock
 from comparison.cli.terminal import new_table
@@ -38,9 +37,9 @@ def next_commands(run: Run) -> list[list[str]]:
 def test_the_next_command_works_as_it_is_printed(
     command: Callable[..., Run], capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    run = command("fig3-I", "--grid", "2", "--amplitude", "0.5", hierarchy=errors_in({"spatial": 0.1}))
+    run = command("fig3-I", "--grid=2", "--amplitude", "0.5", hierarchy=errors_in({"spatial": 0.1}))
     (words,) = next_commands(run)  # no film: it would be of another loading
-    assert (words[:3], words.count("--grid")) == (["python", "-m", "comparison.run"], 1)
+    assert (words[:3], "--grid=2" in words) == (["python", "-m", "comparison.run"], False)
     assert main([*words[3:], "--out", str(tmp_path / "other")], fake_hierarchy(), ThreadPoolExecutor) == 0
     assert "4 x 4 phases" in capfd.readouterr().out.replace("\n", " ")
     assert next_commands(command("synthetic-pair", hierarchy=fake_hierarchy())) == [], "a record has no grid to refine"
@@ -58,14 +57,6 @@ def test_printed_options_stand_before_scenes_with_a_dash(
     assert film[film.index("multibody.animate") + 1] == "./-my scene.toml"
     assert finer[-5:] == ["--grid", "4", "--plan", "--", "-my scene.toml"]
     assert main(finer[3:], fake_hierarchy(), ThreadPoolExecutor, models={"mine": "user_engines:plain"}) == 0
-
-
-def test_a_changed_command_keeps_what_stands_behind_two_dashes() -> None:
-    words = ["--grid=4", "--grid", "8", "--fresh", "--out", "r", "--", "--grid", "--fresh", "-a.toml"]
-    assert changed(words, ["--plan"], flags=["--fresh"], options=["--grid"]) == [
-        "--out", "r", "--plan", "--", "--grid", "--fresh", "-a.toml",
-    ]  # fmt: skip
-    assert changed(["--", "--grid", "b"], options=["--grid"]) == ["--", "--grid", "b"]
 
 
 def test_a_long_name_of_a_scene_cuts_no_number(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,11 +1,14 @@
 """What ends a command early is one line; what is finished is kept, and the line says how to go on."""
 
+import errno
+import io
 import os
 import re
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import replace
@@ -17,11 +20,12 @@ import pytest
 from fake_models import fake_hierarchy
 from known_results import PLAIN, fake
 from places import HELPERS, ROOT
-from runs import no_executor
+from report_texts import summary_of
+from runs import Run, no_executor
 
 from comparison.analyses.extremes import command as extremes
 from comparison.analyses.extremes.matrix import PICTURE, STORED
-from comparison.runner.cache import Cache
+from comparison.runner.cache import Cache, store_beside
 from comparison.runner.output import publish
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import MODEL_HIERARCHY
@@ -69,7 +73,7 @@ def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: signal.Sig
     assert workers
     os.killpg(process.pid, number) if number == signal.SIGINT else os.kill(process.pid, number)
     _, err = process.communicate(timeout=HANGS)  # does not wait for the points under way
-    while any(map(runs, workers)):
+    while any(map(still_runs, workers)):
         assert time.monotonic() < end
         time.sleep(0.1)
     tasks = surface_tasks(Study((load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy("endless", batch=1)))
@@ -90,7 +94,7 @@ def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: signal.Sig
     assert sorted(entry.name for entry in old.iterdir()) == ["manifest.json", "summary.json"]
 
 
-def runs(process: psutil.Process) -> bool:
+def still_runs(process: psutil.Process) -> bool:
     """Neither gone nor dead and waiting to be collected."""
     with suppress(psutil.NoSuchProcess):
         return bool(process.is_running() and process.status() != psutil.STATUS_ZOMBIE)
@@ -140,3 +144,57 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     assert verdicts == ["converged", "FAILED"] * len(rows)
     assert found.run["stored_before"] == int(stopped[1])
     assert extremes.main(words, no_executor) == 1, "nothing is computed twice"
+
+
+def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[..., Run]) -> None:
+    def stored(grid: int, *words: str) -> tuple[str, int, int, dict[str, tuple[int, int]]]:
+        run = command("fig3-I", "--grid", str(grid), *words)
+        about = summary_of(run.report)["run"]
+        parts = {stage: (part["tasks"], part["stored_before"]) for stage, part in about["parts"].items()}
+        return " ".join(run.out.split()), about["tiles_stored_before"], about["tiles"], parts
+
+    first, again = stored(4), stored(4)
+    assert (first[1], again[1]) == (0, again[2])
+    assert (first[3]["pictures"], again[3]["pictures"]) == ((9, 0), (9, 9))
+    line = f"{again[2]} of {again[2]} batches, 7 of 15 analyses are in "  # the models have no motions for the others
+    assert (line in again[0], "are in " in first[0]) == (True, False)
+    planned = command("fig3-I", "--grid", "4", "--plan").out
+    assert line in " ".join(planned.split())
+    assert "batches are in" not in command("fig3-I", "--grid", "4", "--fresh", "--plan").out
+    fresh = stored(4, "--fresh")
+    assert ("only the others are computed" in fresh[0], fresh[1]) == (False, 0)
+    hierarchy, scenes = fake_hierarchy(), (load_scene("fig3-I"),)
+    coarse, fine = ([task.key for task in surface_tasks(Study(scenes, n, 1e-3, hierarchy))] for n in (4, 8))
+    out, before, *_ = stored(8)
+    assert before == sum(key in coarse for key in fine) > 0
+    assert "Level 1 of" not in out, "a level that is done at once has no report of its own"
+
+
+def test_a_full_disk_is_exit_3_and_the_run_goes_on_later(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[str] = []
+
+    class Full(io.FileIO):
+        def write(self, content: Any) -> int:
+            written.append(str(self.name))
+            if len(written) > 3:
+                super().write(content[:100])  # as much as there was room for
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return super().write(content)
+
+    words = ["fig3-I", "--grid", "4"]
+    with monkeypatch.context() as patch:
+        patch.setattr("reference.problem.files.os.fdopen", lambda handle, mode: Full(handle, mode))
+        run = command(*words)
+    assert run.code == 3
+    assert run.err.count("\n") == 1
+    assert "a result could not be stored: No space left on device; 3 of " in run.err
+    assert "go on with: python -m comparison.run fig3-I --grid 4 " in run.err
+    store = store_beside(run.report)
+    assert len(list(store.glob("*/*.batch"))) == 3
+    assert not list(store.glob("*/.phase*"))
+    assert not run.report.exists()
+    again = command(*words)
+    assert again.code == 0
+    assert "only the others are computed" in again.out
