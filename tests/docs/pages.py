@@ -21,7 +21,6 @@ PACKAGES = ("reference", "multibody", "comparison")
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), *(ROOT / name / "README.md" for name in PACKAGES)])
 FENCE = re.compile(r"(?:^<!-- test: ([^>]*?) -->\n)?^```([a-z]*)\n(.*?)^```$", flags=re.MULTILINE | re.DOTALL)
 DIRECTIVE = re.compile(r"^(`{3,})\{.*?^\1$", flags=re.MULTILINE | re.DOTALL)  # of sphinx, such as a table of contents
-FILE = re.compile(r"# ([\w./-]+\.[a-z]+)\n")
 
 
 @dataclass(frozen=True)
@@ -36,29 +35,20 @@ class Block:
 
     @property
     def name(self) -> str:
-        """Page and line."""
         return f"{self.page.relative_to(ROOT)}:{self.line}"
 
     @property
     def long(self) -> bool:
-        """Is it left to `pytest -m long`?"""
         return self.comment.startswith("long")
 
     @property
     def skipped(self) -> bool:
-        """Is its syntax all that is checked?"""
         return self.comment.startswith("not run: ")
 
     @property
     def words(self) -> list[str]:
         """Words that the test adds to its command."""
         return self.comment.split("with ", 1)[1].split() if "with " in self.comment and not self.skipped else []
-
-    @property
-    def file(self) -> str:
-        """Name of the file that it is, or an empty string."""
-        named = FILE.match(self.source)
-        return named[1] if named else ""
 
 
 def blocks(page: Path) -> list[Block]:

@@ -1,6 +1,7 @@
 """Every block of code in the documentation does what it says; pages.py has the rules."""
 
 import json
+import re
 import shlex
 import subprocess
 import tomllib
@@ -16,6 +17,7 @@ from pages import PAGES, ROOT, Block, blocks
 
 from comparison.cli.start import COMMANDS
 
+FILE = re.compile(r"# ([\w./-]+\.[a-z]+)\n")
 COMMENTS = ("long", "with ", "not run: ")
 WITH_CODE = [page for page in PAGES if blocks(page)]
 MODULES = {f"python -m comparison.{name}": module for name, (module, _) in COMMANDS.items()}
@@ -57,8 +59,8 @@ def test_what_a_page_shows_runs_from_top_to_bottom(page: Path, long: bool, capfd
 
 def run_block(block: Block, names: dict[str, Any]) -> None:
     check_syntax(block)
-    if block.file:
-        place = Path(block.file)
+    if named := FILE.match(block.source):
+        place = Path(named[1])
         place.parent.mkdir(parents=True, exist_ok=True)
         place.write_text(block.source, encoding="utf-8")
     elif block.language == "python":

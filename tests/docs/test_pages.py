@@ -1,0 +1,137 @@
+"""The pages say what is so: links lead somewhere, examples run, and numbers are those that are recorded."""
+
+import ast
+import json
+import re
+import tomllib
+from pathlib import Path
+from types import SimpleNamespace
+
+import compare_engines
+import evidence_table
+import gallery_pictures as gallery
+import numpy as np
+import pytest
+from pages import PAGES, ROOT
+from PIL import Image
+
+from comparison.analyses.validation.table import recorded
+from comparison.report.results import VALIDATED
+from reference.problem import Scene
+
+DOCS = ROOT / "docs"
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+LINK = re.compile(r"\]\((?!https?://|mailto:)([^)\s]+)\)")
+CODE = re.compile(r"^```.*?^```$|`[^`\n]+`", flags=re.MULTILINE | re.DOTALL)
+EXAMPLES = sorted([*(ROOT / "examples").glob("*.py"), *(ROOT / "examples").glob("*.ipynb")])
+MAX_LINES = 60
+
+
+def test_the_readme_is_short_and_has_two_commands_of_one_line() -> None:
+    assert README.count("\n") <= 100
+    assert README.count("![") == 1
+    blocks = re.findall(r"^```sh\n(.*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
+    assert [block.count("\n") for block in blocks] == [1, 1]
+    assert all(block.startswith("python3 -m venv .venv && .venv/bin/pip install ") for block in blocks)
+    assert blocks[0].endswith("-m comparison.run\n")
+    assert blocks[1].endswith("-m pytest -n auto --dist loadfile\n"), "by continuous integration"
+
+
+def test_the_keys_that_the_guide_shows_make_a_scene() -> None:
+    page = (DOCS / "guide/building.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"^```toml\n(.*?)^```$", page, flags=re.MULTILINE | re.DOTALL)
+    shown = next(tomllib.loads(block) for block in blocks if "bars" in block)
+    box = {"size": [5.0, 5.0, 0.6]}
+    scene = Scene.model_validate(
+        {
+            "title": "as shown",
+            "duration": 5.0,
+            "isolator": {**shown["isolator"], "sphere_radius": 0.1},
+            "bodies": [{"mass": 3e4, "height": 0.5, **box}, {**shown["bodies"][0], "height": 3.5, **box}],
+            "excitation": {"amplitudes": [[1.5, 0.0], [0.0, 1.5]], "periods": [1.1, 0.7], "decay": [0.3, 0.3]},
+        }
+    )
+    assert scene.stiffness[0, 0] == pytest.approx(12 * 4 * 2e6 / 3.0**3)
+    assert scene.isolator.travel == 0.3
+
+
+def test_the_numbers_from_outside_are_those_of_their_page() -> None:
+    page = (DOCS / "benchmarks.md").read_text(encoding="utf-8")
+    rows = [line for line in page.split("\n## ")[0].splitlines() if line.startswith("|")]
+    assert len(rows) == 2 + 5
+    assert "\n".join(rows) in README
+
+
+def test_the_page_of_evidence_has_the_table_that_its_command_writes() -> None:
+    page = (DOCS / "evidence.md").read_text(encoding="utf-8")
+    assert evidence_table.with_table(page) == page
+    assert page.index("|") > page.index(evidence_table.BEGIN)
+
+
+def test_what_is_said_to_be_validated_is_what_is_recorded() -> None:
+    found = {(each.experiment, each.name): each for each in recorded().quantities}
+    half, rest = (found["frame, 450 g", name] for name in ("half range", "share of time at rest"))
+    row = next(line for line in README.splitlines() if "**measured**" in line)
+    errors = [100.0 * half.sides[side].error / half.measured for side in ("equations", "engine")]
+    shares = [rest.sides[side].error for side in ("equations", "engine")]
+    assert f"half range {max(map(abs, errors)):.1f} %, beyond it" in row
+    assert f"time at rest {max(map(abs, shares)):.1f} % of a cycle, within u" in row
+    for side, error in zip(("equations", "engine"), errors):
+        assert f"half range at nearly twice the load {error:.1f} % too large" in VALIDATED
+        assert (half.sides[side].verdict, rest.sides[side].verdict) == ("law", "within u_val")
+        assert f"within its uncertainty, {rest.sides[side].validation:.1f} % of a cycle" in VALIDATED
+        assert abs(rest.sides[side].error) < 0.2, "of a cycle, in percent"
+
+
+def anchors(page: Path) -> set[str]:
+    """Names of the headings, as GitHub and the pages make them."""
+    headings = re.findall(
+        r"^#+ (.*)$", CODE.sub(lambda m: m[0] if m[0][:3] != "```" else "", page.read_text("utf-8")), re.M
+    )
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_the_links_of_a_page_lead_to_files_and_headings(page: Path) -> None:
+    text = CODE.sub("", page.read_text(encoding="utf-8"))
+    for target in LINK.findall(text):
+        file, _, heading = target.partition("#")
+        place = (page.parent / file).resolve() if file else page
+        assert place.exists(), target
+        if heading:
+            assert heading in anchors(place), target
+    for path in re.findall(r"`((?:comparison|reference|tests|\.github)/[\w/.]+)`", page.read_text(encoding="utf-8")):
+        assert page.parent != ROOT or (ROOT / path).exists(), path
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
+def test_an_example_runs_and_draws_its_picture(example: Path, tmp_path: Path) -> None:
+    with Image.open(gallery.run(example, tmp_path)) as drawn:
+        assert np.unique(np.asarray(drawn.convert("RGB")).reshape(-1, 3), axis=0).shape[0] > 20  # not an empty page
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda example: example.name)
+def test_an_example_has_its_picture_in_the_gallery(example: Path) -> None:
+    script = gallery.script_of(example)
+    ast.parse(script)
+    assert len(script.splitlines()) < MAX_LINES
+    page = (DOCS / "gallery.md").read_text(encoding="utf-8")
+    assert f"(gallery/{example.stem}.png)" in page
+    assert f"../examples/{example.name}" in page
+    assert (DOCS / "gallery" / f"{example.stem}.png").stat().st_size > 5000
+
+
+def test_the_page_of_engines_and_the_question_are_as_measured_and_as_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept_question = json.loads((DOCS / "question.json").read_text(encoding="utf-8"))
+    nothing = SimpleNamespace(mu=np.zeros((64, 2)), error=np.zeros((64, 2)))
+    monkeypatch.setattr(compare_engines.reference, "amplification", lambda *rest, **law: nothing)
+    asked = compare_engines.question()
+    for made, kept in zip(asked["scenes"].values(), kept_question["scenes"].values()):
+        made.update(mu=kept["mu"], error=kept["error"])
+    assert asked == kept_question
+    order = [engine.name for engine in compare_engines.ENGINES]
+    rows = json.loads((DOCS / "engines.json").read_text(encoding="utf-8"))
+    rows.sort(key=lambda row: (row["scene"], order.index(row["engine"]), row["seconds"]))
+    text, page = compare_engines._page(rows), (DOCS / "engines.md").read_text(encoding="utf-8")
+    assert text.split("\nMeasured with")[0] == page.split("\nMeasured with")[0]
