@@ -12,11 +12,6 @@ import pytest
 NOTEBOOK = Path(__file__).parents[1] / "docs" / "tour.ipynb"
 
 
-def code_cells() -> list[str]:
-    cells = json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]
-    return ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
-
-
 def run(source: str, names: dict[str, Any]) -> Any:
     """Run a cell; the value of its last line, if that is an expression."""
     tree = ast.parse(source)
@@ -33,7 +28,8 @@ def test_the_notebook_is_valid() -> None:
 def test_every_cell_of_the_notebook_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(plt, "show", lambda: None)
     names: dict[str, Any] = {}
-    values = [run(source, names) for source in code_cells()]
+    cells = json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]
+    values = [run("".join(cell["source"]), names) for cell in cells if cell["cell_type"] == "code"]
     plt.close("all")
     printed = capsys.readouterr().out
     assert "as built" in values

@@ -39,13 +39,8 @@ GRID, COARSE = 8, 4  # phases per axis of the equations, and of the engine
 def first_mu(body: int, phases: Array) -> Array:
     """mu of the first model at phases (P, 2); alpha1 and alpha2 are no mirror images."""
     alpha1, alpha2 = phases.T
-    return (
-        1.3
-        + 0.9 * body
-        + 0.5 * np.cos(alpha1 - 0.3 * body + 1.4)
-        + 0.21 * np.sin(alpha2 + 0.2)
-        + 0.13 * np.cos(2 * alpha2)
-    )
+    mu = 1.3 + 0.9 * body + 0.5 * np.cos(alpha1 - 0.3 * body + 1.4)
+    return mu + 0.21 * np.sin(alpha2 + 0.2) + 0.13 * np.cos(2 * alpha2)
 
 
 def differences_of(key: str, body: int, phases: Array) -> Array:
@@ -191,14 +186,7 @@ def known_demand_surfaces(study: Study, surfaces: xr.Dataset) -> xr.Dataset:
 
 def distinct_hierarchy() -> tuple[Model, ...]:
     """The real hierarchy with these models, which leave no phase pair to a symmetry."""
+    every = {"amplification": "distinct_models:distinct", "symmetric": never, "refusal": None}
     return tuple(
-        replace(
-            model,
-            amplification="distinct_models:distinct",
-            settings={"key": model.key},
-            symmetric=never,
-            refusal=None,
-            most=MOST.get(model.key),
-        )
-        for model in MODEL_HIERARCHY
+        replace(model, **every, settings={"key": model.key}, most=MOST.get(model.key)) for model in MODEL_HIERARCHY
     )

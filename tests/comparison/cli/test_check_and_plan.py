@@ -80,9 +80,7 @@ def test_a_point_without_an_answer_breaks_any_limit(
     assert (run.code, run.err.count("failed: 2 points without an answer")) == (code, code), run.err
 
 
-def test_plan_counts_the_work_and_computes_and_writes_nothing(
-    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_plan_counts_the_work_and_computes_and_writes_nothing(command: Callable[..., Run]) -> None:
     words = ["fig3-I", "fig4-viscous", "--plan", "--grid", "16", "--jobs", "2"]
     run = command(*words, "--only", "differences", hierarchy=fake_hierarchy("forbidden"), executor=no_executor)
     assert (run.code, run.report.exists()) == (0, False)

@@ -15,19 +15,12 @@ from typing import Any
 import numpy as np
 import pytest
 from known_analyses import with_engine_off_by
-from packaging.requirements import Requirement
 from places import ROOT
 
 import multibody
 import reference
 from comparison.cli import requirement as source
 from comparison.cli.init import TEMPLATE, main, study_files
-
-COMMANDS = (  # of continuous integration
-    "python -m pip install -r requirements.txt",
-    "python -m pytest",
-    "phase-resonance run building.toml --grid 8 --check",
-)
 
 
 @pytest.fixture
@@ -51,7 +44,8 @@ def test_it_writes_every_file_of_the_template(study: Path, monkeypatch: pytest.M
     assert [name for name, content in study_files("x").items() if b"@NAME@" in content or b"@REQ" in content] == []
     for name in (".github/workflows/study.yml", ".gitlab-ci.yml"):
         text = (study / name).read_text(encoding="utf-8")
-        assert all(f"- {command}\n" in text.replace("run: ", "") for command in COMMANDS), name
+        for command in ("python -m pytest", "phase-resonance run building.toml --grid 8 --check"):
+            assert f"- {command}\n" in text.replace("run: ", ""), name
     assert "junit: report/junit.xml\n" in text
     limits = reference.load_scene(study / "building.toml").acceptance
     assert (limits.median, limits.maximum, limits.failed) == (1e-4, 2e-3, 0)
@@ -92,7 +86,6 @@ def test_the_requirement_is_where_others_find_the_project(
     if recorded is None:  # not installed: it runs from a checkout
         (tmp_path / "pyproject.toml").touch()
     assert source.requirement() == f"phase-resonance{address}"
-    assert Requirement(source.requirement()).name == "phase-resonance"
     assert f"\nphase-resonance{address}\n".encode() in study_files("x")["requirements.txt"]
 
 

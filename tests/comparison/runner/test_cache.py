@@ -226,16 +226,11 @@ def test_a_task_that_fails_has_its_reason_and_costs_no_other(tmp_path: Path) -> 
     def on_failure(argument: object, failed: TaskResult) -> object:
         return argument, failed.outcome, failed.error_message
 
-    tasks = [
-        Task(raises, "1", "errata", 0.3),
-        Task(doubled, str(tmp_path / "2"), "errata", 0.1),
-    ]
+    tasks = [Task(raises, "1", "errata", 0.3), Task(doubled, str(tmp_path / "2"), "errata", 0.1)]
     results = TaskResults(Cache(tmp_path))
     Runner(results, 2, process_pool).run(tasks)
-    assert [results.value(task, on_failure) for task in tasks] == [
-        ("1", Outcome.SOLVER_FAILED, "RuntimeError: singular"),
-        2,
-    ]
+    failed = "1", Outcome.SOLVER_FAILED, "RuntimeError: singular"
+    assert [results.value(task, on_failure) for task in tasks] == [failed, 2]
     assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[:1], "the next run tries them again"
     assert len(list(tmp_path.glob("*/*.result"))) == 1, "no file is left of them"
     assert results.parts["errata"].tasks == 2
