@@ -189,14 +189,12 @@ def planted(
 def errors_in(gaps: Mapping[str, float], error_estimates: Mapping[str, float] | None = None) -> tuple[Model, ...]:
     """The real hierarchy: the models named lie `gaps` above the others and state relative errors."""
     every = {"amplification": "fake_models:planted", "symmetric": never, "refusal": None}
-    claimed = error_estimates or {}
-    return tuple(
-        replace(
-            model, **every, settings={"gap": gaps.get(key, 0.0), "claimed": claimed.get(key, 1e-5)}, most=MOST.get(key)
-        )
-        for model in MODEL_HIERARCHY
-        if (key := model.key)
-    )
+    models = []
+    for model in MODEL_HIERARCHY:
+        claimed = (error_estimates or {}).get(model.key, 1e-5)
+        settings = {"gap": gaps.get(model.key, 0.0), "claimed": claimed}
+        models.append(replace(model, **every, settings=settings, most=MOST.get(model.key)))
+    return tuple(models)
 
 
 def silenced(*keys: str, gap: float = 5e-5) -> tuple[Model, ...]:
