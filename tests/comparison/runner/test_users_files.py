@@ -28,7 +28,7 @@ from comparison.runner.output import (
     refuse_foreign_files,
     replace_report,
 )
-from reference.problem.files import TEMPORARY, write_new
+from reference.problem.files import TEMPORARY
 
 TABLES = ["extremes.json", "extremes.png"]
 
@@ -183,14 +183,6 @@ def test_extremes_replace_no_file_of_the_user(
     assert all(map(is_mine, files))
     assert {"extremes-2.json", "extremes-2.png"} <= {entry.name for entry in (tmp_path / "meanwhile").iterdir()}
     assert capsys.readouterr().err.count("not a file of this study") == 2
-
-
-def test_a_new_file_never_takes_a_name_that_something_has(tmp_path: Path) -> None:
-    first = mine(tmp_path / "run.gif")
-    (tmp_path / "run-2.gif").symlink_to(tmp_path / "nowhere")
-    assert write_new(first, b"film") == tmp_path / "run-3.gif"
-    assert is_mine(first)
-    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["run-2.gif", "run-3.gif", "run.gif"]
 
 
 def test_files_of_other_commands_in_the_report_are_kept(tmp_path: Path) -> None:
