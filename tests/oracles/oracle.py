@@ -15,7 +15,7 @@ from oracle_integration import Observation, Peaks, march
 from oracle_law import Law, RefusalError
 from scipy.optimize import brentq, minimize_scalar
 
-from reference.problem import GRAVITY, Scene, State, ground_peak
+from reference.problem import GRAVITY, Scene, ground_peak
 
 STILL = 1e-15  # m/s, where a sliding platform counts as stopped or about to reverse
 STIFF_BELOW = 2e-3  # m/s, after an onset
@@ -34,19 +34,14 @@ class Answer:
 
 
 def smooth_run(
-    scene: Scene,
-    phase: tuple[float, float],
-    equations: str,
-    v_reg: float | None,
-    tolerance: float,
-    initial: State | None = None,
+    scene: Scene, phase: tuple[float, float], equations: str, v_reg: float | None, tolerance: float
 ) -> Answer:
     """Lubricated, frictionless, or linear below v_reg with the kink located."""
     law = Law(scene, phase, equations)
     n = law.count
     zones = not law.lubricated and law.mu > 0.0
     inside = True
-    state = _initial(law, initial)
+    state = np.zeros(4 * n)
     peaks = Peaks([0.0], n)
 
     def acceleration(t: float, y: np.ndarray) -> tuple[list[float], tuple[float, float, float, float]]:
@@ -68,9 +63,6 @@ def smooth_run(
         speed = math.sqrt(law.speed_square(*y[:2].tolist(), *y[2 * n : 2 * n + 2].tolist()))
         return (speed - v_reg if inside else v_reg - speed) / v_reg
 
-    if zones:
-        assert v_reg is not None
-        inside = law.speed_square(*state[:2].tolist(), *state[2 * n : 2 * n + 2].tolist()) <= v_reg**2
     floor = np.full(4 * n, 1e-3)
     floor[2 * n : 2 * n + 2] = 1e-3 if v_reg is None else min(1e-3, v_reg)  # creep is as slow as v_reg
     t = 0.0
@@ -84,16 +76,11 @@ def smooth_run(
 
 
 def set_valued_run(
-    scene: Scene,
-    phase: tuple[float, float],
-    equations: str,
-    cutoffs: list[float],
-    tolerance: float,
-    initial: State | None = None,
+    scene: Scene, phase: tuple[float, float], equations: str, cutoffs: list[float], tolerance: float
 ) -> Answer:
     """Set-valued dry law; cutoff 0 is the supremum of (5.1) with the arcs at stops."""
     law = Law(scene, phase, equations)
-    return _SetValued(law, Peaks(cutoffs, law.count), tolerance).run(scene, phase, initial)
+    return _SetValued(law, Peaks(cutoffs, law.count), tolerance).run(scene, phase)
 
 
 class _SetValued:
@@ -102,14 +89,9 @@ class _SetValued:
         self.n = law.count
         self.creep = 3e-5 * (tolerance / 1e-12) ** 0.25  # s, length of the first step after an onset, by series
 
-    def run(self, scene: Scene, phase: tuple[float, float], initial: State | None) -> Answer:
+    def run(self, scene: Scene, phase: tuple[float, float]) -> Answer:
         n, law = self.n, self.law
-        y = _initial(law, initial)
-        t, rests = 0.0, []
-        vx, vy = y[2 * n], y[2 * n + 1]
-        if math.hypot(vx, vy) > 0.0:
-            speed = math.hypot(vx, vy)
-            t, y = self.slide(t, y, vx / speed, vy / speed, math.log(speed))
+        t, y, rests = 0.0, np.zeros(4 * n), []
         while t < law.duration:
             force = law.link_forces(y[: 2 * n].tolist(), y[2 * n :].tolist())
             excess = law.excess(t, y[: 2 * n].tolist(), force)
@@ -286,12 +268,6 @@ class _SetValued:
                 )  # fmt: skip
                 self.peaks.offer((self.frozen(t, y, best.x)[2], 0.0))
             self.peaks.offer((list(squares[k]), 0.0))
-
-
-def _initial(law: Law, initial: State | None) -> np.ndarray:
-    if initial is None:
-        return np.zeros(4 * law.count)
-    return np.concatenate([np.ravel(initial.position), np.ravel(initial.velocity)]).astype(float)
 
 
 def _factors(scene: Scene, phase: tuple[float, float], peaks: Peaks) -> np.ndarray:

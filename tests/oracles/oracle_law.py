@@ -40,8 +40,7 @@ class Law:
         self.mu = self.slow or scene.friction_coefficient  # at rest, under the reference load
         self.lubricated = scene.lubricated
         self.duration = scene.duration
-        self.swing = 0.0  # largest sqrt(x1^2 + y1^2)/rho and smallest normal force of the states accepted so far
-        self.least_normal = math.inf
+        self.swing = 0.0  # largest sqrt(x1^2 + y1^2)/rho of the states accepted so far
         load = scene.excitation
         self.breaks = [scene.duration]  # s, where the ground acceleration has a kink, and the end
         self.record = scene.record if scene.recorded else None
@@ -57,7 +56,6 @@ class Law:
         if not normal > 0.0:
             raise RefusalError("contact lost")
         self.swing = max(self.swing, math.hypot(x, y) / self.rho)
-        self.least_normal = min(self.least_normal, normal)
 
     def next_break(self, t: float) -> float:
         return next((instant for instant in self.breaks if instant > t), self.duration)

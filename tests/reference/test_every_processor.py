@@ -5,43 +5,59 @@ import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy._core._multiarray_umath import __cpu_features__  # what this processor has, by NumPy's names
 
 from reference.build_cache import build_folder
-from reference.solver import chain, collocation
+from reference.solver import collocation
 
 ROOT = Path(__file__).parents[2]
-NAMES = ("NODES", "A", "A2", "AT_START", "MONOMIALS", "EIGENVALUES", "TO_CHANNELS", "FROM_CHANNELS")
-NAMES_OF_CHAIN = ("ONES_IN_CHANNELS", "NODES_IN_CHANNELS", "THROUGH_REAL", "THROUGH_IMAGINARY")
-# kernels of OpenBLAS, and what a processor must have to run them
+# kernels of OpenBLAS, and what a processor must have to run them: they would end in an illegal instruction
 KERNELS = {"Prescott": ("SSE3",), "Haswell": ("AVX2", "FMA3"), "SkylakeX": ("AVX512_SKX",)}
-CONSTANTS = f"""
-import sys
+CONSTANTS = """
 from reference.solver import chain, collocation
-for module, names in ((collocation, {NAMES}), (chain, {NAMES_OF_CHAIN})):
-    for name in names:
-        sys.stdout.buffer.write(getattr(module, name).tobytes())
+names = "NODES A A2 AT_START MONOMIALS EIGENVALUES TO_CHANNELS FROM_CHANNELS".split()
+result = [getattr(collocation, name).tobytes().hex() for name in names]
+names = "ONES_IN_CHANNELS NODES_IN_CHANNELS THROUGH_REAL THROUGH_IMAGINARY".split()
+result += [getattr(chain, name).tobytes().hex() for name in names]
+"""
+FACTORS = """
+import reference
+answer = reference.amplification(reference.load_scene("fig4-dry"), [(0.3, 1.1), (2.0, 0.7)], "small", tolerance=1e-4)
+result = answer.mu.ravel().tolist()
 """
 
 
-def lacking(kernels: str) -> list[str]:
-    """What kernels need and a processor does not have: they would end in an illegal instruction."""
-    return [feature for feature in KERNELS[kernels] if not __cpu_features__.get(feature)]
+def elsewhere(code: str, **environment: str) -> str:
+    """The result in another process that reads the code on standard input, without a guard for the main module."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
+    done = subprocess.run(
+        [sys.executable, "-"],
+        input=code + "print(result)",
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return done.stdout.strip()
+
+
+def here(code: str) -> Any:
+    names: dict[str, Any] = {}
+    exec(code, names)
+    return names["result"]
 
 
 @pytest.mark.parametrize("kernels", KERNELS)
 def test_the_constants_do_not_depend_on_linear_algebra(kernels: str) -> None:
-    if lacking(kernels):
-        pytest.skip(f"kernels {kernels} need {', '.join(lacking(kernels))}, which this processor does not have")
-    words = [sys.executable, "-c", CONSTANTS]
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "OPENBLAS_CORETYPE": kernels}
-    other = subprocess.run(words, cwd=ROOT, env=environment, check=True, capture_output=True).stdout
-    here = [getattr(collocation, name).tobytes() for name in NAMES]
-    here += [getattr(chain, name).tobytes() for name in NAMES_OF_CHAIN]
-    assert other == b"".join(here)
+    lacking = [feature for feature in KERNELS[kernels] if not __cpu_features__.get(feature)]
+    if lacking:
+        pytest.skip(f"kernels {kernels} need {', '.join(lacking)}, which this processor does not have")
+    assert elsewhere(CONSTANTS, OPENBLAS_CORETYPE=kernels) == str(here(CONSTANTS))
 
 
 def test_the_constants_of_the_method_are_accurate_to_rounding() -> None:
@@ -54,49 +70,16 @@ def test_the_constants_of_the_method_are_accurate_to_rounding() -> None:
     np.testing.assert_allclose(moments, 1.0 / powers, rtol=0.0, atol=1e-15)
 
 
-def test_no_part_of_the_solver_may_reorder_sums() -> None:
+def test_a_cache_folder_holds_a_build_per_version_and_no_part_may_reorder_sums(tmp_path: Path) -> None:
     """Such freedom is used otherwise on another processor, and otherwise where a part is not inlined."""
-    from reference.solver.run import runs
-
-    assert not runs.targetoptions.get("fastmath")
-
-
-def folder_of_builds(**environment: str) -> Path:
-    """Where another process keeps what it compiles of the solver."""
-    ask = "from reference.solver.run import runs; print(runs.stats.cache_path)"
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), **environment}
-    run = subprocess.run([sys.executable, "-c", ask], cwd=ROOT, env=environment, check=True, capture_output=True)
-    return Path(os.fsdecode(run.stdout.strip())).parent
-
-
-def test_a_cache_folder_holds_a_build_per_version_of_the_source(tmp_path: Path) -> None:
-    chosen = folder_of_builds(NUMBA_CACHE_DIR=str(tmp_path))
-    assert chosen.parent == tmp_path
+    code = "from reference.solver.run import runs; result = runs.stats.cache_path, runs.targetoptions.get('fastmath')\n"
     build = build_folder(ROOT / "reference" / "solver")
     assert build is not None
-    assert chosen.name == build.name
-
-
-ASKED = """
-import reference
-result = reference.amplification(reference.load_scene("fig4-dry"), [(0.3, 1.1), (2.0, 0.7)], "small", tolerance=1e-4)
-mu = result.mu.ravel().tolist()
-"""
-
-
-def answer(*_: object) -> list[float]:
-    names: dict[str, list[float]] = {}
-    exec(ASKED, names)
-    return names["mu"]
+    place, fastmath = eval(elsewhere(code, NUMBA_CACHE_DIR=str(tmp_path)))
+    assert (Path(place).parent, fastmath or None) == (tmp_path / build.name, None)
 
 
 def test_a_script_on_standard_input_and_threads_have_the_same_answer() -> None:
-    """Without a guard for the main module."""
-    words, environment = ASKED + "print(*mu)", {**os.environ, "PYTHONPATH": str(ROOT)}
-    done = subprocess.run(
-        [sys.executable, "-"], input=words, cwd=ROOT, env=environment, capture_output=True, text=True, check=True
-    )
-    expected = answer()
-    assert [float(word) for word in done.stdout.split()] == expected
+    assert elsewhere(FACTORS) == str(here(FACTORS))
     with ThreadPoolExecutor(2) as pool:
-        assert list(pool.map(answer, range(2))) == [expected] * 2
+        assert list(pool.map(here, 2 * [FACTORS])) == [here(FACTORS)] * 2

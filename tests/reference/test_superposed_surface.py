@@ -6,9 +6,9 @@ from chains import chain
 
 import reference
 from reference import surface
-from reference.problem import GRAVITY, Outcome, Scene, linear, load_scene
+from reference.problem import GRAVITY, Outcome, Scene, linear, load_scene, phase_grid
 
-PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (0.0, np.pi), (5.1, 3.3)])
+PHASES = np.vstack([(0.0, np.pi), phase_grid(4) + 0.1])
 TWO = {"masses": [1.0, 0.5], "stiffness": [[20.0, 30.0]], "amplitudes": [[0.3, 0.1], [-0.2, 0.2]]}
 
 
@@ -17,10 +17,10 @@ def frictionless(**changes) -> Scene:
 
 
 def both(scene: Scene, tolerance: float = 1e-6) -> tuple[reference.Amplification, reference.Amplification]:
-    options = {"equations": "small", "tolerance": tolerance}
-    return reference.amplification(scene, PHASES, **options), reference.amplification(
-        scene, PHASES, **options, full=True
+    reduced, full = (
+        reference.amplification(scene, PHASES, "small", tolerance=tolerance, full=full) for full in (False, True)
     )
+    return reduced, full
 
 
 RANDOM = np.random.default_rng(8)

@@ -32,42 +32,27 @@ def test_on_linux_the_cache_is_below_xdg_cache_home(fresh: Path) -> None:
     assert (fresh / "xdg" / "phase-resonance").is_dir()
 
 
-def nowhere(monkeypatch: pytest.MonkeyPatch, fresh: Path) -> None:
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners of files")
+@pytest.mark.parametrize("planted", ["nothing", "writable by others", "link", "of another user"])
+def test_without_a_home_a_private_directory_takes_its_place_and_none_of_others(
+    monkeypatch: pytest.MonkeyPatch, fresh: Path, planted: str
+) -> None:
     """The user's cache cannot be made: a file is in its place."""
     (fresh / "file").touch()
     monkeypatch.setattr(module.platformdirs, "user_cache_path", lambda *name, **rest: fresh / "file" / "below")
-
-
-@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners of files")
-def test_without_a_home_a_private_directory_takes_its_place(monkeypatch: pytest.MonkeyPatch, fresh: Path) -> None:
-    nowhere(monkeypatch, fresh)
     folder = module.user_cache()
     assert folder == fresh / f"phase-resonance-{os.getuid()}"
     assert folder.stat().st_mode & 0o777 == 0o700
-    assert module.user_cache() == folder, "the same in every process"
-
-
-@pytest.mark.skipif(not hasattr(os, "getuid"), reason="no owners of files")
-@pytest.mark.parametrize("planted", ["writable by others", "link", "file", "of another user"])
-def test_a_temporary_directory_of_others_is_not_used(
-    monkeypatch: pytest.MonkeyPatch, fresh: Path, planted: str
-) -> None:
-    nowhere(monkeypatch, fresh)
-    place = fresh / f"phase-resonance-{os.getuid()}"
-    if planted == "link":
-        (fresh / "elsewhere").mkdir(mode=0o700)
-        place.symlink_to(fresh / "elsewhere")
-    elif planted == "file":
-        place.touch(mode=0o600)
-    else:
-        place.mkdir(mode=0o700)
-        if planted == "writable by others":
-            place.chmod(0o777)
-        else:
-            other = os.getuid() + 1
-            monkeypatch.setattr(module.os, "getuid", lambda: other)
-            place.rename(fresh / f"phase-resonance-{other}")
-    assert module.user_cache() is None
+    if planted == "writable by others":
+        folder.chmod(0o777)
+    elif planted == "link":
+        folder.rename(fresh / "elsewhere").chmod(0o700)
+        folder.symlink_to(fresh / "elsewhere")
+    elif planted == "of another user":
+        other = os.getuid() + 1
+        monkeypatch.setattr(module.os, "getuid", lambda: other)
+        folder.rename(fresh / f"phase-resonance-{other}")
+    assert module.user_cache() == (folder if planted == "nothing" else None), "the same in every process"
 
 
 def test_every_kept_function_is_kept_in_the_user_s_cache() -> None:

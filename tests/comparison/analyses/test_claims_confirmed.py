@@ -8,7 +8,7 @@ import pytest
 from claims_literal import LiteralClaims, gathered
 from numpy.typing import NDArray
 from second_integration import LITERAL as LITERAL_LAW
-from second_integration import SET_VALUED, by_scipy, fast, ground_tops, stepped
+from second_integration import SET_VALUED, by_scipy, ground_tops, stepped
 
 from comparison.analyses.claims import readings
 from comparison.analyses.claims.claims import CLAIMS
@@ -32,8 +32,8 @@ def _solved(scene: Scene, reading: Reading, phases: Array, fine: bool) -> tuple[
     if not readings.has_stops(scene):
         return by_scipy(scene, phases, None)
     if reading.peak == "literal (4.6)":
-        return stepped(scene, phases, LITERAL_LAW, LITERAL_STEP, runner=fast())
-    return stepped(scene, phases, SET_VALUED, FINE if fine else STEP, SPEED, fast())
+        return stepped(scene, phases, LITERAL_LAW, LITERAL_STEP)
+    return stepped(scene, phases, SET_VALUED, FINE if fine else STEP, SPEED)
 
 
 @cache
