@@ -156,7 +156,7 @@ MISTAKES = (
             (DEMANDS + "test_a_body_released_in_a_smooth_cap_swings_back",)),
     Mistake(MEASURES + "demands.py", "_share(displacement, scene.isolator.travel)",
             "_share(displacement, scene.radius)", "The share of the travel is one of the radius.",
-            (TRAVEL + "test_the_demands_state_the_share_of_the_travel",)),
+            (TRAVEL + "test_a_travel_that_is_not_needed_changes_no_number_and_has_its_share",)),
     Mistake(MEASURES + "spectra.py", "top = max(top, abs(y + 0.5 * v * v / (v - v1) * angle))", "pass",
             "Spectra are read at the steps, not between them.", (SMALL + "test_a_spectrum_is_read_between_the_steps",)),
     Mistake(MEASURES + "spectra.py", "1.0 - s - 2.0 * damping * b, angle", "1.0 - s - damping * b, angle",

@@ -93,20 +93,12 @@ def test_the_modes_on_a_plane_begin_with_rigid_motion():
     np.testing.assert_allclose(natural.damping_ratio[:, 2:], np.column_stack([ratio, ratio]), rtol=1e-12)
 
 
-def test_a_flat_slider_has_no_rim_and_no_share_of_one():
+def test_a_flat_slider_has_no_rim_and_infinity_survives_json_as_a_word():
     scene = flat(duration=6.0)
     numbers = reference.demands(reference.trajectory(scene, PHASES[0]))
     answer = reference.amplification(scene, PHASES[:1])
     assert numbers.cap_share.value == answer.cap_share[0] == 0.0
     assert numbers.displacement.value == pytest.approx(answer.displacement[0], rel=1e-3)
-    assert numbers.displacement.value > 0.01
-
-
-def test_infinity_survives_json_as_a_word():
-    scene = flat()
-    assert scene.flat
-    assert not load_scene("fig3-I").flat
     assert '"radius":"inf"' in scene.model_dump_json()
     assert Scene.model_validate(scene.model_dump(exclude_none=True)) == scene
-    digests = {flat().digest(), load_scene("fig3-I").digest(), flat().with_values({"isolator.radius": 1e12}).digest()}
-    assert len(digests) == 3
+    assert scene.digest() != scene.with_values({"isolator.radius": 1e12}).digest()

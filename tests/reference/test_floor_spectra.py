@@ -28,9 +28,8 @@ def harmonic(period: float, duration: float, count: int) -> Trajectory:
     return floor(time, np.stack([wave, 2.0 * wave], axis=1))
 
 
-@pytest.mark.parametrize("name", ["fig3-I", "synthetic-pair"])
-def test_the_floors_of_a_motion_agree_with_scipy(name) -> None:
-    scene = reference.load_scene(name).with_values({"duration": 2.0})
+def test_the_floors_of_a_motion_agree_with_scipy() -> None:
+    scene = reference.load_scene("fig3-I").with_values({"duration": 2.0})
     motion = reference.trajectory(scene, PHASE)
     periods = [0.11, 0.6, 2.0]
     spectra = reference.floor_spectra(motion, periods)
@@ -52,7 +51,7 @@ def test_more_samples_change_less_than_the_error(name, regularization) -> None:
     scene = reference.load_scene(name).with_values({"duration": 10.0})
     motion = reference.trajectory(scene, PHASE, regularization=regularization)
     gaps = np.diff(motion.time) / 4.0
-    between = (motion.time[:-1, None] + gaps[:, None] * np.arange(1, 4))[gaps > 1e-9].ravel()
+    between = (motion.time[:-1, None] + gaps[:, None] * np.arange(1, 4))[gaps > 1e-9]
     times = np.union1d(motion.time, between)
     finer = reference.floor_spectra(reference.trajectory(scene, PHASE, regularization=regularization, times=times))
     spectra = reference.floor_spectra(motion)

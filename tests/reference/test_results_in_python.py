@@ -32,33 +32,25 @@ def motion():
     return reference.trajectory(SCENE, (2.0, 0.7), tolerance=1e-4)
 
 
-@pytest.mark.parametrize("shape", [(3, 3), (3, 1, 3)])
-def test_results_have_the_shape_of_the_phases(surface, shape):
+def test_results_have_the_shape_of_the_phases(surface):
+    shape = (3, 1, 3)
     result = reference.amplification(SCENE, PAIRS.reshape(*shape, 2), tolerance=1e-4)
     for name in ("mu", "error", "phases"):
         np.testing.assert_array_equal(getattr(result, name), getattr(surface, name).reshape(*shape, 2))
     for name in ("status", "instant", "cap_share", "displacement"):
         np.testing.assert_array_equal(getattr(result, name), getattr(surface, name).reshape(shape))
-
-
-def test_one_pair_gives_one_row(surface):
-    result = reference.amplification(SCENE, PAIRS[4], tolerance=1e-4)
-    np.testing.assert_array_equal(result.mu, surface.mu[4])
-    assert (result.mu.shape, result.status.shape, str(result.status)) == ((2,), (), "ok")
-    assert result.to_xarray()["mu"].dims == ("body",)
-
-
-def test_the_engine_takes_phases_of_any_shape():
+    one = reference.amplification(SCENE, PAIRS[4], tolerance=1e-4)
+    assert (one.mu.tolist(), one.status.shape, str(one.status)) == (surface.mu[4].tolist(), (), "ok")
+    assert one.to_xarray()["mu"].dims == ("body",)
     scene, pairs = SCENE.with_values({"duration": 0.5}), PAIRS[:4]
-    listed = multibody.amplification(scene, pairs, tolerance=1e-2)
-    result = multibody.amplification(scene, pairs.reshape(2, 2, 2), tolerance=1e-2)
-    np.testing.assert_array_equal(result.mu, listed.mu.reshape(2, 2, 2))
-    assert result.status.shape == result.cap_share.shape == result.instant.shape == (2, 2)
-    assert multibody.amplification(scene, pairs[1], tolerance=1e-2).mu.tolist() == listed.mu[1].tolist()
+    listed, engine = (multibody.amplification(scene, p, tolerance=1e-2) for p in (pairs, pairs.reshape(2, 2, 2)))
+    np.testing.assert_array_equal(engine.mu, listed.mu.reshape(2, 2, 2))
+    assert engine.status.shape == engine.cap_share.shape == engine.instant.shape == (2, 2)
 
 
-def units(data):
-    return {name: data[name].attrs["units"] for name in data.variables if "units" in data[name].attrs}
+def assert_units(data, names_of):
+    found = {name: data[name].attrs["units"] for name in data.variables if "units" in data[name].attrs}
+    assert found == {name: unit for unit, names in names_of.items() for name in names.split()}
 
 
 def test_a_list_is_labeled_by_itself_and_a_grid_by_its_axes(surface):
@@ -71,17 +63,10 @@ def test_a_list_is_labeled_by_itself_and_a_grid_by_its_axes(surface):
     for name in ("mu", "error", "displacement", "cap_share"):
         np.testing.assert_array_equal(at[name], getattr(surface, name)[5])
     assert str(at["status"].item()) == "ok"
-    assert units(grid) == dict.fromkeys(("mu", "error", "cap_share"), "1") | {
-        "instant": "s",
-        "displacement": "m",
-        "alpha1": "rad",
-        "alpha2": "rad",
-    }
+    assert_units(grid, {"1": "mu error cap_share", "s": "instant", "m": "displacement", "rad": "alpha1 alpha2"})
     assert grid["body"].values.tolist() == [1, 2]
-    random = np.random.default_rng(1).uniform(0.0, 6.0, (2, 2, 2))
-    loose = reference.amplification(SCENE, random, tolerance=1e-3).to_xarray()
+    loose = reference.amplification(SCENE, PAIRS[:4].reshape(2, 2, 2) ** 2, tolerance=1e-3).to_xarray()
     assert loose["mu"].dims == ("phase_1", "phase_2", "body")
-    np.testing.assert_array_equal(loose["alpha1"], random[..., 0])
 
 
 def test_a_motion_is_labeled_with_units(motion):
@@ -90,7 +75,7 @@ def test_a_motion_is_labeled_with_units(motion):
     np.testing.assert_array_equal(data["isolator_force"].sel(horizontal="y"), motion.isolator_force[:, 1])
     of = {"m": "position", "m/s": "velocity", "m/s^2": "absolute_acceleration peak ground", "W": "friction_power"}
     of |= {"N": "contact_force isolator_force support_force", "s": "time"}
-    assert units(data) == {name: unit for unit, names in of.items() for name in names.split()}
+    assert_units(data, of)
     assert (data.attrs["scene"], data.attrs["status"]) == ("fig4-dry", "ok")
     assert np.isin(np.linspace(0.0, 3.0, 215), motion.time).all(), "64 instants in 0.9 s, and those of the steps"
     assert data["support_force"].shape == (len(motion.time), 0), "the equations have no single supports"

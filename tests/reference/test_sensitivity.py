@@ -35,14 +35,13 @@ def test_a_kink_within_the_step_shows_in_the_error() -> None:
 def test_what_has_no_derivative_is_refused_or_unknown() -> None:
     found = sensitivity(ONE_BODY, ["isolator.friction"], lambda scene: Estimate(np.nan, np.nan))
     assert np.isnan(found["isolator.friction"].value)
-    for key, kind, said in (
-        ("isolator.frictio", SceneError, "friction"),
-        ("title", ValueError, "must be a number"),
-        ("isolator.lubrication", ValueError, "must be a number"),
+    for keys, kind, said in (
+        (["isolator.frictio"], SceneError, "did you mean friction"),
+        (["title"], ValueError, "must be a number"),
+        (["isolator.lubrication"], ValueError, "must be a number"),
+        ("isolator.friction", TypeError, "keys = 'isolator.friction': must be a list of keys"),
     ):
-        assert said in str(refusal(sensitivity, ONE_BODY, [key], lambda scene: Estimate(1.0, 0.0), kind=kind))
-    line = str(refusal(sensitivity, ONE_BODY, "isolator.friction", lambda scene: Estimate(1.0, 0.0), kind=TypeError))
-    assert line.startswith("keys = 'isolator.friction': must be a list of keys")
+        assert said in str(refusal(sensitivity, ONE_BODY, keys, lambda scene: Estimate(1.0, 0.0), kind=kind))
     line = str(refusal(sensitivity, ONE_BODY, ["isolator.friction"], lambda scene: scene.masses, kind=TypeError))
     assert line.startswith("quantity: returns array(")
     assert "must return an Amplification" in line

@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 from chains import chain
-from numba import types
 from scipy.integrate import quad
 
 import reference
 from reference.problem import GRAVITY, DryFriction, Scene, State, load_scene
-from reference.solver.work import _SystemType
 
 TOLERANCE = 1e-8
 STILL = ((0.0, 0.0), (0.0, 0.0))
@@ -88,9 +86,3 @@ def test_small_equations_have_the_friction_of_their_constant_load():
     load = {"slow": 0.1, "load_exponent": 0.5, "reference_load": SCENE.total_mass * GRAVITY / 0.64}
     small = {"equations": "small", "tolerance": 1e-8}
     np.testing.assert_allclose(factors(load, **small), factors(0.08, **small), rtol=3e-8)
-
-
-def test_builds_of_both_variants_have_functions_of_other_names():
-    """A build on disk would otherwise lend its functions to the other variant, which is compiled later."""
-    without, present = (_SystemType([("exponent", kind)]).mangling_args for kind in (types.none, types.float64))
-    assert without != present

@@ -30,16 +30,6 @@ def folded(first: Array, second: Array) -> Array:
     return value
 
 
-def test_fractiles_of_a_surface_are_those_of_random_phases() -> None:
-    samples = folded(*np.random.default_rng(4).uniform(0.0, 2.0 * np.pi, (2, 400_000)))
-    for points in (16, 24, 48):
-        mu = on_grid(points, folded)
-        distribution = phase_distribution(mu, np.zeros_like(mu))
-        assert abs(distribution.mean.value - samples.mean()) <= distribution.mean.error + 5e-3
-        for probability, fractile in zip(FRACTILES, distribution.fractiles):
-            assert abs(fractile.value - np.quantile(samples, probability)) <= fractile.error + 1e-2
-
-
 def test_errors_of_mu_widen_every_number() -> None:
     mu = on_grid(24, folded)
     exact, blurred = (phase_distribution(mu, np.full_like(mu, error)) for error in (0.0, 0.1))
