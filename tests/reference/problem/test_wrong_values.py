@@ -11,15 +11,11 @@ from reference.problem.ranges import brief
 
 PEAK = {"quantity": "mu", "body": 2, "value": 2.3, "uncertainty": 0.1, "phases": [0.3, 1.1]}
 BARS = {"count": 4, "bending_stiffness": 0.8, "length": 1.0}
-HEATING = {"contact_radius": 0.02, "conductivity": 0.02, "diffusivity": 1e-3}
+HOT = {"contact_radius": 0.02, "conductivity": 0.02, "diffusivity": 1e-3, "initial_temperature": 500.0}
 
 
 def law(**table: object) -> dict[str, Any]:
     return {"isolator.friction": {"slow": 0.1, **table}}
-
-
-def heating(**changes: object) -> dict[str, Any]:
-    return law(heating={key: value for key, value in {**HEATING, **changes}.items() if value is not None})
 
 
 def measured(**changes: object) -> dict[str, Any]:
@@ -34,27 +30,19 @@ def bars(**changes: object) -> dict[str, Any]:
 WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"isolator.frictoin": 0.1}, "isolator.frictoin", "unknown key; did you mean friction or"),
     ({"isolator.bearings": 12}, "isolator.bearings", "unknown key; did you mean supports?"),
-    ({"isolatr.friction": 0.1}, "isolatr", "unknown key; did you mean isolator?"),
-    ({"bodies.1.heigth": 0.1}, "bodies.1.heigth", "unknown key; did you mean height?"),
     ({"bodies.1.colour": 0.1}, "bodies.1.colour", "unknown key; the keys here are mass, period, stiffness"),
     ({"acceptance.maximun": 0.1}, "acceptance.maximun", "unknown key; did you mean maximum?"),
     ({"acceptance.mine.closure": 0.1}, "acceptance.mine.closure", "unknown key; the keys here are median, maximum"),
     ({"acceptance.my engine.ratio": 0.1}, "acceptance.my engine", "the name of an engine: letters, digits and -"),
-    ({"title.x": 0.1}, "title.x", "title has no keys to set one by one: give title as a whole"),
     ({"bodies.2.mass": 0.1}, "bodies.2.mass", "bodies has the indices 0 to 1"),
-    ({"bodies.mass": 0.1}, "bodies.mass", "bodies has the indices 0 to 1"),
-    ({"isolator.friction.x": 0.1}, "isolator.friction.x", "unknown key; the keys here are slow, fast"),
     ({"isolator.friction.slow": 0.1}, "isolator.friction.slow", "isolator.friction is 0.1 and no table: give isolator"),
     ({"": 0.1}, "", "unknown key; the keys here are title, duration"),
     ({".".join(["a"] * 5000): 0.1}, "a", "unknown key"),
     ({"isolator.friction": "0.1"}, "isolator.friction", "must be a valid number"),
     ({"excitation.periods.0": None}, "excitation.periods.0", "must be a number"),
     ({"excitation.record": "a.csv"}, "excitation.amplitudes", "a record takes the place of amplitudes, periods and"),
-    ({"excitation.amplitudes.0.0": 1e308, "excitation.scale": 1e10}, "excitation.scale", "leave every acceleration fi"),
     ({"title": "a\0b"}, "title", "must have no control characters"),
-    ({"name": "a\nb"}, "name", "must have no control characters"),
     ({"duration": 10**400}, "duration", "must be a valid number"),
-    ({"duration": 1e9}, "duration", "must be at most 1e+06 periods of 0.9 s, the shortest of loading and pendulum"),
     ({"duration": 1e9, "excitation.periods": [3.0, 2.0]}, "duration", "must be at most 1e+06 periods of 1 s"),
     # isolator
     (law(), "isolator.friction", "give fast and rate, load_exponent or heating, or one number"),
@@ -66,44 +54,31 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
         "isolator.friction: under the weight",
         "positive, from 1e-09 to 1000",
     ),
-    (heating(contact_radius=None), "isolator.friction.heating.contact_radius", "this key is required"),
-    (heating(conductivity=0.0), "isolator.friction.heating.conductivity", "must be greater than 0"),
-    (heating(initial_temperature=500.0), "isolator.friction.heating.initial_temperature", "from -50 to 300 degrees C"),
-    (heating(thickness=1.0), "isolator.friction.heating.thickness", "unknown key; the keys here are contact_radius"),
+    (law(heating=HOT), "isolator.friction.heating.initial_temperature", "from -50 to 300 degrees C"),
     ({"isolator.travel": 0.3}, "isolator.travel", "must be below the radius, rho = 0.24849 m"),
-    ({"isolator.travel": -1.0}, "isolator.travel", "must be greater than 0"),
     ({"isolator.support_damping": 0.5}, "isolator.support_damping", "damps supports with a support_stiffness"),
     ({"isolator.support_stiffness": 1e4, "isolator.restitution": 0.5}, "isolator.restitution", "rebound by it: remove"),
     # 19.62 N on four supports: each sinks by 0.0249 m, just above a tenth of the radius
     ({"isolator.support_stiffness": 197.0}, "isolator.support_stiffness", "gives way by 0.1 of the radius under the"),
     # links
     ({"bodies.1.stiffness": 6e8}, "bodies.1.stiffness", "must be [kx, ky], N/m"),
-    ({"bodies.1.period": 3.0}, "bodies.1.period", "must be [Tx, Ty], s"),
     ({"bodies.0.damping": 0.05}, "bodies.0.damping", "the platform has no link below: remove this key"),
     ({"bodies.1.damping": -0.1}, "bodies.1.damping", "must be finite, from 0 to 100"),
-    ({"bodies.1.damping": 1e3}, "bodies.1.damping", "must be finite, from 0 to 100"),
     ({"bodies.1.damping": [1.0]}, "bodies.1.damping", "must be a ratio of critical, or [cx, cy] in N s/m"),
-    ({"bodies.1.damping": "much"}, "bodies.1.damping", "must be a ratio of critical, or [cx, cy] in N s/m"),
     ({"bodies.1.damping": [1.0, -2.0]}, "bodies.1.damping.1", "must be finite, from 0 to 1e+30 N s/m"),
     # c / (2 m w), w = 2 pi / 1.2 s and 4 kg above the link: 110 along y
     ({"bodies.1.mass": 4.0, "bodies.1.damping": [1.0, 4608.0]}, "bodies.1: damping ratio along y = 110.00", "0 to 100"),
     (bars(load_effect="shortening"), "bodies.1.bars", "load_effect 'shortening' needs axial_stiffness"),
     (bars(load_effect="buckling"), "bodies.1.bars.load_effect", "must be 'softening' or 'shortening'"),
     (bars(axial_stiffness=10.0, count=2), "bodies.1.bars", "axial_stiffness needs 3 bars or more around the axis"),
-    (bars(axial_stiffness=0.0), "bodies.1.bars.axial_stiffness", "must be greater than 0"),
-    (bars(spread=-1.0), "bodies.1.bars.spread", "must be greater than or equal to 0"),
     # measured peaks
     (measured(quantity="base_sheer", body=None), "measured.0.quantity", "did you mean base_shear?"),
     (measured(quantity="base_shear"), "measured.0", "base_shear is of the isolator: remove body"),
     (measured(body=None), "measured.0", "mu needs the number of a body, 1 or more"),
     (measured(quantity="drift", body=1), "measured.0", "drift needs the number of a body, 2 or more"),
     (measured(body=3), "measured.0.body", "the scene has 2 bodies, the platform is 1"),
-    (measured(uncertainty=-0.1), "measured.0.uncertainty", "must be greater than or equal to 0"),
-    (measured(uncertainty=None), "measured.0.uncertainty", "this key is required"),
     (measured(value=float("nan")), "measured.0.value", "must be a finite number"),
     (measured(phases=None), "measured.0.phases", "give the phases of the test, [alpha1, alpha2]"),
-    (measured(phases=[0.3]), "measured.0.phases", "List should have at least 2 items"),
-    (measured(error=0.1), "measured.0.error", "unknown key; the keys here are quantity, body, value"),
 ]
 
 
