@@ -25,33 +25,23 @@ def chain(
     damping: float | None = None,
 ) -> Scene:
     """Bodies of `masses` on links of `stiffness` (N-1, 2), SI; lubrication f_c replaces the dry friction if given."""
-    law: dict[str, Any] = {"friction": friction} if lubrication is None else {"lubrication": lubrication}
-    bodies: list[dict[str, Any]] = [{"mass": masses[0]}]
     dampers = {} if damping is None else {"damping": damping}
-    bodies += [{"mass": m, "stiffness": list(k), **dampers} for m, k in zip(masses[1:], stiffness)]
-    return Scene.model_validate(
-        {
-            "title": "chain",
-            "duration": duration,
-            "isolator": {"radius": radius, **law},
-            "bodies": bodies,
-            "excitation": {
-                "amplitudes": [list(row) for row in amplitudes],
-                "periods": list(periods),
-                "decay": list(decay),
-            },
-        }
-    )
+    return Scene.model_validate({
+        "title": "chain",
+        "duration": duration,
+        "isolator": {"radius": radius, **({"friction": friction} if lubrication is None else {"lubrication": lubrication})},
+        "bodies": [{"mass": masses[0]}, *({"mass": m, "stiffness": k, **dampers} for m, k in zip(masses[1:], stiffness))],
+        "excitation": {"amplitudes": amplitudes, "periods": periods, "decay": decay},
+    })  # fmt: skip
 
 
 def made_up(scene: Scene, time: NDArray[np.float64], stick: Sequence[Any] = (), **parts: Any) -> Trajectory:
     """A motion that was not computed: at rest under one newton, but for the parts that are given."""
-    count = len(time)
-    vectors = {
-        key: np.zeros((count, len(scene.bodies), 3)) for key in ("position", "velocity", "absolute_acceleration")
-    }
-    plain = {"contact_force": np.ones(count), "status": "ok", "instant": np.nan}
-    return Trajectory(time=time, scene=scene, stick=list(stick), **(vectors | plain | parts))
+    still = np.zeros((len(time), len(scene.bodies), 3))
+    plain = {"position": still, "velocity": still, "absolute_acceleration": still, "contact_force": np.ones(len(time))}
+    return Trajectory(
+        time=time, scene=scene, stick=list(stick), **({"status": "ok", "instant": np.nan} | plain | parts)
+    )
 
 
 def refusal(asked: Callable[..., object], *given: Any, kind: type[Exception] = ValueError, **options: Any) -> Any:

@@ -11,6 +11,7 @@ damping. The start is the static equilibrium, in which fast motions of the beari
 
 import itertools
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,7 @@ def cross(a, b):
 
 
 @compiled
-def _exponential(v):
+def exponential(v):
     """Rotation matrix of a rotation vector, and the matrix (3, 3) of its angular velocity over its rates."""
     square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
     k = skew(v)
@@ -61,7 +62,7 @@ def _kinematics(q, free, centers):
     places, axes = np.zeros((bodies, 3)), np.zeros((bodies, 3, 3))
     moved, spun = np.zeros((bodies, 3, size)), np.zeros((bodies, 3, size))
     places[0] = q[:3] + centers[0]
-    axes[0], rates = _exponential(q[3:6])
+    axes[0], rates = exponential(q[3:6])
     moved[0, :, :3] = np.eye(3)
     spun[0, :, 3:6] = rates
     for i in range(1, bodies):
@@ -69,8 +70,8 @@ def _kinematics(q, free, centers):
         half = 0.5 * (centers[i, 2] - centers[i - 1, 2])
         shift, turn = q[own : own + 3], q[own + 3 : own + 6]
         lower = axes[i - 1] @ np.array([-centers[i - 1, 0], -centers[i - 1, 1], half])
-        relative, rates = _exponential(turn)
-        middle, middle_rates = _exponential(0.5 * turn)
+        relative, rates = exponential(turn)
+        middle, middle_rates = exponential(0.5 * turn)
         axes[i] = axes[i - 1] @ relative
         between = axes[i - 1] @ middle
         apart = between @ shift
@@ -89,13 +90,8 @@ def _kinematics(q, free, centers):
 
 
 @compiled
-def _forces(q, rates, ground, masses, tensors, centers, free, stiffness, damping, preload, rods, ring, numbers):
-    """
-    Generalized forces (n,), mass matrix (n, n), gaps' rates (K, n), Jacobians of velocity.
-
-    numbers: rho, radius of the spheres, penetration at rest, stiffness and damping of a support, friction, v_reg.
-    """
-    rho, sphere, pressed, spring, dashpot, friction, corner = numbers
+def _bodies(q, rates, ground, masses, tensors, centers, free, stiffness, damping, preload, rods):
+    """Generalized forces (n,) of all but the supports, and the mass matrix (n, n)."""
     bodies, size = len(masses), len(q)
     places, axes, moved, spun = _kinematics(q, free, centers)
     _, _, moved_later, spun_later = _kinematics(q + ALONG * rates, free, centers)
@@ -123,35 +119,45 @@ def _forces(q, rates, ground, masses, tensors, centers, free, stiffness, damping
             over = moved[i] - skew(upper) @ spun[i] - moved[i - 1] + skew(lower) @ spun[i - 1]
             stretch = direction @ over
             force -= stretch * (along * (math.sqrt(span @ span) - rods[i - 1, 3]) + lag * along * (stretch @ rates))
-    gap_rates = np.zeros((len(ring), size))
+    for k in range(size):
+        if not free[k]:
+            mass[k, k] = 1.0
+            force[k] = 0.0
+    return force, mass
+
+
+@compiled
+def _supports(q, rates, centers, free, ring, rho, sphere, pressed, friction, corner):
+    """
+    Generalized force of every support over its normal force (K, n), rates of the gaps (K, n), penetrations (K,), and
+    the vertical parts of the normal and of the force over the normal force (K, 2).
+
+    rho, radius of the spheres, penetration at rest, friction, v_reg.
+    """
+    places, axes, moved, spun = _kinematics(q, free, centers)
+    pushes, gap_rates = np.zeros((len(ring), len(q))), np.zeros((len(ring), len(q)))
+    penetrations, upright = np.zeros(len(ring)), np.zeros((len(ring), 2))
     for k in range(len(ring)):
         if math.isinf(rho):  # a plane on the tops of the spheres
             normal = axes[0][:, 2].copy()
             arm = np.array([ring[k, 0], ring[k, 1], -sphere]) - places[0]
-            penetration = sphere + pressed + normal @ arm + centers[0, 2]
-            touching = arm + normal * (sphere + pressed - 0.5 * penetration)
+            penetrations[k] = sphere + pressed + normal @ arm + centers[0, 2]
+            touching = arm + normal * (sphere + pressed - 0.5 * penetrations[k])
         else:
             arm = axes[0] @ np.array([ring[k, 0] - centers[0, 0], ring[k, 1] - centers[0, 1], -centers[0, 2]])
             away = np.array([ring[k, 0], ring[k, 1], rho]) - places[0] - arm
             distance = math.sqrt(away @ away)
             normal = away / distance
-            penetration = distance - rho + pressed
-            touching = arm + normal * (sphere + rho + 0.5 * penetration)
+            penetrations[k] = distance - rho + pressed
+            touching = arm + normal * (sphere + rho + 0.5 * penetrations[k])
         over = moved[0] - skew(touching) @ spun[0]
         gap_rates[k] = normal @ over
-        if penetration <= 0.0:
-            continue
         velocity = over @ rates
-        approach = -(normal @ velocity)
-        pressing = spring * penetration - dashpot * (normal @ velocity)
-        slip = velocity + approach * normal
-        speed = math.sqrt(slip @ slip)
-        force += over.T @ (pressing * (normal - friction * slip / max(speed, corner)))
-    for k in range(size):
-        if not free[k]:
-            mass[k, k] = 1.0
-            force[k] = 0.0
-    return force, mass, gap_rates, moved
+        slip = velocity - (normal @ velocity) * normal
+        push = normal - friction * slip / max(math.sqrt(slip @ slip), corner)
+        pushes[k] = over.T @ push
+        upright[k, 0], upright[k, 1] = normal[2], push[2]
+    return pushes, gap_rates, penetrations, upright
 
 
 def beam_column(beam: float, length: float, load: float) -> tuple[float, float, float]:
@@ -168,15 +174,6 @@ def beam_column(beam: float, length: float, load: float) -> tuple[float, float, 
     return sway(load), beam / length * x / math.tan(x), slope
 
 
-def ring_of(isolator: dict[str, Any]) -> Array:
-    """Places of the supports (K, 2), m."""
-    if isinstance(isolator["supports"], list):
-        return np.array(isolator["supports"], float)
-    angles = 2.0 * np.pi * (np.arange(isolator["supports"]) + 0.5) / isolator["supports"]
-    ring: Array = isolator["ring"] * np.column_stack([np.cos(angles), np.sin(angles)])
-    return ring
-
-
 class ElasticBuilding:
     """A building of a scene, given as the table that a scene file is."""
 
@@ -186,17 +183,20 @@ class ElasticBuilding:
         masses = np.array([body["mass"] for body in bodies], float)
         self.masses = masses
         rho = isolator["radius"] if "radius" in isolator else GRAVITY * (isolator["period"] / (2.0 * math.pi)) ** 2
-        ring = ring_of(isolator)
-        weight, spring = GRAVITY * masses.sum(), isolator["support_stiffness"]
-        pressed = weight / (len(ring) * spring)
-        ratio = isolator.get("support_damping", 1.0)
-        dashpot = 2.0 * ratio * math.sqrt(spring * masses.sum() / len(ring))
+        ring = isolator["supports"]
+        if isinstance(ring, int):
+            angles = 2.0 * np.pi * (np.arange(ring) + 0.5) / ring
+            ring = isolator["ring"] * np.column_stack([np.cos(angles), np.sin(angles)])
+        ring = np.array(ring, float)
+        self.spring = isolator.get("support_stiffness", math.inf)
+        self.dashpot = 2.0 * isolator.get("support_damping", 1.0) * math.sqrt(self.spring * masses.sum() / len(ring))
+        pressed = GRAVITY * masses.sum() / (len(ring) * self.spring)
         centers = np.array([[*body.get("offset", (0.0, 0.0)), body["height"]] for body in bodies], float)
         tensors = []
         for body in bodies:
             x, y, z = body["size"]
             own = np.diag([y * y + z * z, x * x + z * z, x * x + y * y]) * body["mass"] / 12.0
-            turned = _exponential(np.array([0.0, 0.0, body.get("yaw", 0.0)]))[0]
+            turned = exponential(np.array([0.0, 0.0, body.get("yaw", 0.0)]))[0]
             tensors.append(turned @ own @ turned.T)
         links, size = len(bodies) - 1, 6 * len(bodies)
         free = np.ones(size, dtype=bool)
@@ -211,13 +211,14 @@ class ElasticBuilding:
             k = np.array(body.get("stiffness") or (2.0 * np.pi / np.array(body["period"])) ** 2 * body["mass"], float)
             c = body.get("damping", 0.0)
             c = np.array(c, float) if isinstance(c, list) else 2.0 * c * np.sqrt(k * body["mass"])
-            turned = _exponential(np.array([0.0, 0.0, body.get("yaw", 0.0)]))[0][:2, :2]
+            turned = exponential(np.array([0.0, 0.0, body.get("yaw", 0.0)]))[0][:2, :2]
             stiffness[i, :2, :2] = turned @ np.diag(k) @ turned.T
             damping[i, :2, :2] = turned @ np.diag(c) @ turned.T
             stiffness[i, 5, 5] = (ring**2).sum(axis=1).mean() * k.mean()
         self.free = free
-        numbers = (rho, isolator["sphere_radius"], pressed, spring, dashpot, isolator["friction"], regularization)
-        self._model = (masses, np.array(tensors), centers, free, stiffness, damping, preload, rods, ring, numbers)
+        self._model = masses, np.array(tensors), centers, free, stiffness, damping, preload, rods
+        numbers = rho, isolator["sphere_radius"], pressed, isolator["friction"], regularization
+        self._bearings = centers, free, ring, *numbers
         self.ring = ring
 
     def _bars(self, i, body, load, moments, stiffness, damping, preload, rods) -> None:  # type: ignore[no-untyped-def]
@@ -240,9 +241,25 @@ class ElasticBuilding:
         preload[i, 4] = -GRAVITY * moments[0] / bending
         rods[i] = [rod, tension, lag, rod + load / tension]
 
-    def forces(self, q: Array, rates: Array, ground: Array) -> Any:
-        """What `_forces` returns."""
-        return _forces(np.ascontiguousarray(q), np.ascontiguousarray(rates), ground, *self._model)
+    def bodies(self, q: Array, rates: Array, ground: Array) -> Any:
+        """What `_bodies` returns."""
+        return _bodies(np.ascontiguousarray(q), np.ascontiguousarray(rates), ground, *self._model)
+
+    def supports(self, q: Array, rates: Array) -> Any:
+        """What `_supports` returns."""
+        return _supports(np.ascontiguousarray(q), np.ascontiguousarray(rates), *self._bearings)
+
+    def forces(self, q: Array, rates: Array, ground: Array) -> tuple[Array, Array]:
+        """Generalized forces (n,) and the mass matrix (n, n)."""
+        force, mass = self.bodies(q, rates, ground)
+        pushes, gap_rates, penetrations, _ = self.supports(q, rates)
+        pressing = self.spring * penetrations - self.dashpot * (gap_rates @ rates)
+        return force + np.where(penetrations > 0.0, pressing, 0.0) @ pushes, mass
+
+    def changes(self, q: Array, rates: Array, ground: Array) -> Array:
+        """Of the rates, (n,)."""
+        force, mass = self.forces(q, rates, ground)
+        return np.linalg.solve(mass, force)
 
     def start(self, ground: Array) -> Array:
         """Coordinates (n,) at time zero, with heave and tilt on the bearings in balance with the loading."""
@@ -250,7 +267,8 @@ class ElasticBuilding:
         rest = self._balanced(np.zeros(len(self.free)), everything, np.zeros((len(self.free), 0)), np.zeros(3))
         if not ground.any():
             return rest
-        _, mass, gap_rates, _ = self.forces(rest, np.zeros_like(rest), np.zeros(3))
+        still = np.zeros_like(rest)
+        mass, gap_rates = self.bodies(rest, still, np.zeros(3))[1], self.supports(rest, still)[1]
         patterns = np.column_stack([np.ones(len(self.ring)), self.ring])
         fast = patterns.T @ gap_rates
         slow = null_space(np.vstack([fast, np.eye(len(self.free))[~self.free]]))
@@ -277,30 +295,23 @@ class ElasticBuilding:
             raise RuntimeError("no equilibrium")
         return begin + moved @ unknown[:count]
 
-    def factors(self, phase: tuple[float, float], tolerance: float) -> Array:
-        """mu (N,) of the motion from its start to the end of the scene."""
-        size, ground = len(self.free), Ground(self.scene, phase)
-        start = self.start(ground(0.0))
+    def sizes(self, q: Array, rates: Array, changes: Array, ground: Array) -> Array:
+        """Absolute accelerations (N,) of the bodies, m/s^2."""
+        before, now, later = (
+            _kinematics(q + k * ALONG * rates, self.free, self._model[2])[2] for k in (-1.0, 0.0, 1.0)
+        )
+        moved = now @ changes + (later - before) @ rates / (2.0 * ALONG)
+        return np.asarray(np.linalg.norm(moved + ground, axis=1))
 
-        def solved(time: float, state: Array) -> tuple[Array, Any]:
-            found = self.forces(state[:size], state[size:], ground(time))
-            return np.linalg.solve(found[1], found[0]), found
+    def motion(self, start: Array, ground: Ground, tolerance: float) -> Iterator[tuple[Array, Array, Array]]:
+        """Coordinates, rates and the ground's acceleration from a start at rest to the end, PER_STEP times a step."""
 
         def rate(time: float, state: Array) -> Array:
-            return np.concatenate([state[size:], solved(time, state)[0]])
+            q, rates = np.split(state, 2)
+            return np.concatenate([rates, self.changes(q, rates, ground(time))])
 
-        def sizes(time: float, state: Array) -> Array:
-            changed, found = solved(time, state)
-            rates = state[size:]
-            later, before = (
-                _kinematics(state[:size] + sign * ALONG * rates, self.free, self._model[2])[2] for sign in (1.0, -1.0)
-            )
-            moved = found[3] @ changed + (later - before) @ rates / (2.0 * ALONG)
-            return np.asarray(np.linalg.norm(moved + ground(time), axis=1))
-
-        first = np.concatenate([start, np.zeros(size)])
-        peak = sizes(0.0, first)
-        state, longest = first, 1e-6
+        state, longest = np.concatenate([start, np.zeros_like(start)]), 1e-6
+        yield start, np.zeros_like(start), ground(0.0)
         for begin, end in itertools.pairwise(ground.knots):
             options = {"rtol": tolerance, "atol": 1e-3 * tolerance, "max_step": 0.02}
             solver = Radau(rate, begin, state, end, first_step=min(longest, end - begin), **options)
@@ -310,6 +321,12 @@ class ElasticBuilding:
                     raise RuntimeError(message)
                 dense, longest = solver.dense_output(), solver.step_size
                 for time in np.linspace(solver.t_old, solver.t, PER_STEP + 1)[1:]:
-                    peak = np.maximum(peak, sizes(time, dense(time)))
+                    yield *np.split(dense(time), 2), ground(time)
             state = solver.y
-        return peak / ground.largest()
+
+    def factors(self, phase: tuple[float, float], tolerance: float) -> Array:
+        """mu (N,) of the motion from its start to the end of the scene."""
+        ground = Ground(self.scene, phase)
+        motion = self.motion(self.start(ground(0.0)), ground, tolerance)
+        peaks: Array = np.max([self.sizes(q, rates, self.changes(q, rates, u), u) for q, rates, u in motion], axis=0)
+        return peaks / ground.largest()

@@ -36,16 +36,10 @@ class Turning(NamedTuple):
 
 def turning(masses: tuple[float, ...], stiffness: tuple[float, ...], damping: float | None, duration: float) -> Turning:
     """Bodies of these masses, links of the same stiffness along x and y."""
-    period = 2.0 * np.pi / RATE
-    count = len(masses)
-    plain: dict[str, Any] = {
-        "masses": masses,
-        "stiffness": [(k, k) for k in stiffness],
-        "damping": damping,
-        "duration": duration,
-    }
-    loading: dict[str, Any] = {"periods": (period, period), "decay": (0.0, 0.0)}
-    links = chain(RADIUS, FRICTION, **plain, **loading)
+    count, period = len(masses), 2.0 * np.pi / RATE
+    plain: dict[str, Any] = {"masses": masses, "stiffness": [(k, k) for k in stiffness], "damping": damping}
+    plain |= {"duration": duration, "periods": (period, period), "decay": (0.0, 0.0)}
+    links = chain(RADIUS, FRICTION, **plain)
     force = np.zeros((count, count), complex)  # of the links, on bodies, per displacement
     for i, (k, c) in enumerate(zip(links.stiffness[:, 0], links.damping[:, 0])):
         force[i : i + 2, i : i + 2] += (k + 1j * RATE * c) * np.array([[-1.0, 1.0], [1.0, -1.0]])
@@ -59,6 +53,6 @@ def turning(masses: tuple[float, ...], stiffness: tuple[float, ...], damping: fl
     ground, *above = np.linalg.solve(unknown, right)
     circles = np.array([CIRCLE, *above])
     size, angle = abs(ground), np.angle(ground)
-    scene = chain(RADIUS, FRICTION, **plain, **loading, amplitudes=((size, 0.0), (0.0, size)))
+    scene = chain(RADIUS, FRICTION, **plain, amplitudes=((size, 0.0), (0.0, size)))
     state = State(*(np.column_stack([z.real, z.imag]) for z in (circles, 1j * RATE * circles)))
     return Turning(scene, (angle, angle - np.pi / 2.0), state, circles, abs(ground - RATE**2 * circles))

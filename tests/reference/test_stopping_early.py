@@ -62,32 +62,20 @@ def test_no_peak_is_lost_by_stopping_early(seeds: range) -> None:
     assert stopped > len(seeds) // 2
 
 
-def ends_of_runs(monkeypatch: pytest.MonkeyPatch, scene: Scene, full: bool, **law: Any) -> np.ndarray:
-    """When each run of one point ended, s."""
-    ends: list[np.ndarray] = []
+def test_both_runs_stop_early_but_full_ones_and_those_with_the_printed_condition(monkeypatch) -> None:
+    scene, ends = load_scene("fig3-I"), []
 
     def noted(*arguments: Any) -> Peaks:
         ran = peaks_at(*arguments)
-        ends.append(ran.instant)
+        ends.append(ran.instant[0])
         return ran
 
-    with monkeypatch.context() as patched:
-        patched.setattr(error_estimate, "peaks_at", noted)
-        reference.amplification(scene, [(0.3, 1.1)], full=full, **law)
-    return np.concatenate(ends)
-
-
-def test_both_runs_stop_early_and_full_ones_do_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = load_scene("fig3-I")
-    finer, coarser = ends_of_runs(monkeypatch, scene, full=False)
-    motion = reference.trajectory(scene, (0.3, 1.1))
-    size = np.linalg.norm(motion.absolute_acceleration, axis=2)
-    last_peak = motion.time[size.argmax(axis=0)].max()
-    assert last_peak < coarser < last_peak + 0.05 * scene.duration < 0.25 * scene.duration
+    monkeypatch.setattr(error_estimate, "peaks_at", noted)
+    for asked in ({}, {"full": True}, {"rest_condition": "printed"}):
+        reference.amplification(scene, [(0.3, 1.1)], **asked)
+    finer, coarser, *whole = ends
     assert coarser < finer < 0.25 * scene.duration
-    # a rough run knows the consistent condition for rest alone
-    for asked in ({"full": True}, {"full": False, "rest_condition": "printed"}):
-        np.testing.assert_allclose(ends_of_runs(monkeypatch, scene, **asked), scene.duration, rtol=1e-9)
+    np.testing.assert_allclose(whole, scene.duration, rtol=1e-9)
 
 
 def test_a_peak_at_a_stop_is_not_lost_where_a_small_drive_turns() -> None:
