@@ -25,12 +25,14 @@ def chain(
     damping: float | None = None,
 ) -> Scene:
     """Bodies of `masses` on links of `stiffness` (N-1, 2), SI; lubrication f_c replaces the dry friction if given."""
+    law = {"friction": friction} if lubrication is None else {"lubrication": lubrication}
     dampers = {} if damping is None else {"damping": damping}
+    above = [{"mass": m, "stiffness": k, **dampers} for m, k in zip(masses[1:], stiffness)]
     return Scene.model_validate({
         "title": "chain",
         "duration": duration,
-        "isolator": {"radius": radius, **({"friction": friction} if lubrication is None else {"lubrication": lubrication})},
-        "bodies": [{"mass": masses[0]}, *({"mass": m, "stiffness": k, **dampers} for m, k in zip(masses[1:], stiffness))],
+        "isolator": {"radius": radius, **law},
+        "bodies": [{"mass": masses[0]}, *above],
         "excitation": {"amplitudes": amplitudes, "periods": periods, "decay": decay},
     })  # fmt: skip
 
@@ -38,10 +40,9 @@ def chain(
 def made_up(scene: Scene, time: NDArray[np.float64], stick: Sequence[Any] = (), **parts: Any) -> Trajectory:
     """A motion that was not computed: at rest under one newton, but for the parts that are given."""
     still = np.zeros((len(time), len(scene.bodies), 3))
-    plain = {"position": still, "velocity": still, "absolute_acceleration": still, "contact_force": np.ones(len(time))}
-    return Trajectory(
-        time=time, scene=scene, stick=list(stick), **({"status": "ok", "instant": np.nan} | plain | parts)
-    )
+    plain = {"position": still, "velocity": still, "absolute_acceleration": still, "status": "ok", "instant": np.nan}
+    plain |= {"contact_force": np.ones(len(time)), **parts}
+    return Trajectory(time=time, scene=scene, stick=list(stick), **plain)
 
 
 def refusal(asked: Callable[..., object], *given: Any, kind: type[Exception] = ValueError, **options: Any) -> Any:
