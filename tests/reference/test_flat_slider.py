@@ -19,16 +19,9 @@ FLAT = {"isolator.period": None, "isolator.radius": math.inf}
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (4.0, 5.5)])
 
 
-def flat(name: str = "fig3-I", **values) -> Scene:
+def flat(**values) -> Scene:
     """A scene of the paper on a plane; keys with double underscores for dots."""
-    changes = {key.replace("__", "."): value for key, value in values.items()}
-    return load_scene(name).with_values({**FLAT, **changes})
-
-
-def block(amplitude: float, friction: float, duration: float, period: float = 1.0) -> Scene:
-    """A rigid block under one undamped harmonic along x."""
-    rows = [[amplitude, 0.0], [0.0, 0.0]]
-    return chain(math.inf, friction, [3.0], (), rows, (period, period), (0.0, 0.0), duration)
+    return load_scene("fig3-I").with_values(FLAT | {key.replace("__", "."): value for key, value in values.items()})
 
 
 def test_a_sliding_rigid_block_is_accelerated_by_mu_g():
@@ -50,7 +43,8 @@ def test_a_block_under_a_harmonic_slides_as_newmark_says(share):
     z = brentq(lambda z: math.sin(z) / z - share, 1e-3, math.pi)
     way = amplitude / pace**2 * (1.0 - math.cos(z)) - share * amplitude * (z / pace) ** 2 / 2.0
     assert abs(math.cos(z)) < share, "friction holds the block when it stops"
-    scene = block(amplitude, share * amplitude / GRAVITY, 0.25 * period, period)
+    loading = {"amplitudes": [[amplitude, 0.0], [0.0, 0.0]], "periods": (period, period), "decay": (0.0, 0.0)}
+    scene = chain(math.inf, share * amplitude / GRAVITY, [3.0], duration=0.25 * period, **loading)
     run = reference.trajectory(scene, (0.0, 0.0), tolerance=1e-9, times=[0.0, z / pace, 0.25 * period])
     assert run.stick[0][0] == pytest.approx(z / pace, rel=1e-7)
     assert run.position[-1, 0, 0] == pytest.approx(-way, rel=1e-7)

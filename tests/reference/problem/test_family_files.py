@@ -1,5 +1,6 @@
 """Values of a scene that run make a scene of each, or of every combination; what is no range is one line."""
 
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -97,72 +98,47 @@ def test_the_value_that_runs_is_a_coordinate_of_results(tmp_path: Path) -> None:
         family.to_xarray(results[:1])
 
 
-SCENE = """{top}
-title = "combined"
-duration = 1.0
-isolator = {{radius = 0.25, friction = {friction}}}
-bodies = [{{mass = 1.0}}]
-excitation = {{record = {record}, scale = {scale}}}
-"""
-SUITE = '{suite = "suite", motion = "all"}'
-TWO = "{values = [0.05, 0.1]}"
+def combined(tmp_path: Path, top: str, friction: str, scale: str) -> Path:
+    """fig3-I with values of two keys that run, and a line on top."""
+    file = _file(tmp_path, "friction = 0.1", f"friction = {friction}")
+    text = file.read_text(encoding="utf-8").replace("[excitation]", f"[excitation]\nscale = {scale}")
+    file.write_text(f"{top}\n{text}", encoding="utf-8")
+    return file
 
 
-@pytest.fixture
-def written(tmp_path):
-    (tmp_path / "suite").mkdir()
-    for number in (1, 2, 3):
-        text = f"time [s],ax [m/s^2]\n0,0\n0.5,{number}\n1,0\n"
-        (tmp_path / "suite" / f"{number}.csv").write_text(text)
-
-    def write(top="", friction=0.1, record='"suite/1.csv"', scale=1.0):
-        path = tmp_path / "mine.toml"
-        path.write_text(SCENE.format(top=top, friction=friction, record=record, scale=scale))
-        return path
-
-    return write
+TWO, THREE = "{values = [0.05, 0.1]}", "{values = [3.0, 1.0, 2.0]}"
 
 
-def test_a_product_has_every_combination_last_key_fastest(written):
-    family = load_family(written('combine = "product"', record=SUITE, scale="{range = [0.5, 1.0], steps = 2}"))
-    assert family.key == "excitation.record.motion, excitation.scale"
-    assert family.columns == {
-        "excitation.record.motion": (1, 1, 2, 2, 3, 3),
-        "excitation.scale": (0.5, 1.0, 0.5, 1.0, 0.5, 1.0),
-    }
-    assert [float(scene.record[1, 1]) for scene in family.scenes] == [0.5, 1.0, 1.0, 2.0, 1.5, 3.0]
-    assert family.scenes[3].name == "mine[motion=2, scale=1]"
-    assert family.values[3] == "2, 1"
-    assert len({scene.name for scene in family.scenes}) == 6
-
-
-@pytest.mark.parametrize(("top", "dims"), [("product", {"scale": 2, "friction": 2}), ("zip", {"scene": 2})])
-def test_keys_of_a_product_are_axes_of_its_results(written, top, dims):
-    family = load_family(written(f'combine = "{top}"', friction=TWO, scale="{values = [3.0, 1.0]}"))
-    data = family.to_xarray([reference.amplification(scene, (0.0, 0.0), tolerance=1e-3) for scene in family.scenes])
+@pytest.mark.parametrize(("top", "dims"), [("product", {"scale": 3, "friction": 2}), ("zip", {"scene": 2})])
+def test_keys_that_run_together_are_axes_of_results_the_last_one_fastest(tmp_path, top, dims):
+    scales = THREE if top == "product" else "{values = [3.0, 1.0]}"
+    family = load_family(combined(tmp_path, f'combine = "{top}"', TWO, scales))
+    assert family.key == "isolator.friction, excitation.scale"
+    values = list(product((0.05, 0.1), (3.0, 1.0, 2.0))) if top == "product" else [(0.05, 3.0), (0.1, 1.0)]
+    assert family.columns == dict(zip(family.key.split(", "), zip(*values)))
+    assert [(s.friction_coefficient, s.amplitudes.max()) for s in family.scenes] == values
+    assert family.scenes[1].name == f"mine[friction={values[1][0]}, scale=1]"
+    assert family.values[1] == f"{values[1][0]}, 1"
+    results = [reference.amplification(scene, (0.3, 1.1), tolerance=1e-3) for scene in family.scenes]
+    data = family.to_xarray(results)
     assert dict(data["mu"].isel(body=0).sizes) == dims
-    assert (family.scenes[-1].friction_coefficient, float(family.scenes[-1].record[1, 1])) == (0.1, 1.0)
-    last = data["mu"].sel(friction=0.1, scale=1.0) if top == "product" else data["mu"].isel(scene=1)
-    np.testing.assert_array_equal(last, reference.amplification(family.scenes[-1], (0.0, 0.0), tolerance=1e-3).mu)
+    last = data["mu"].sel(friction=0.1, scale=2.0) if top == "product" else data["mu"].isel(scene=1)
+    np.testing.assert_array_equal(last, results[-1].mu)
 
 
 RANGE = "{range = [0.1, 0.2], steps = 100}"
 MISFITS = [
-    ({"friction": TWO, "scale": TWO}, "excitation.scale", 'add combine = "product" or combine = "zip"'),
-    ({"top": 'combine = "sum"', "friction": TWO, "scale": TWO}, "combine", "must be one of product, zip"),
-    ({"top": 'combine = "zip"', "friction": TWO}, "combine", "two or more keys must run"),
-    ({"top": 'combine = "zip"', "friction": TWO, "record": SUITE}, "combine", "friction 2, excitation.record.motion 3"),
-    (
-        {"top": 'combine = "product"', "friction": RANGE, "scale": RANGE.replace("100", "11")},
-        "combine",
-        "1100 scenes: must be at most 1000",
-    ),
+    ("", TWO, TWO, "excitation.scale", 'add combine = "product" or combine = "zip"'),
+    ('combine = "sum"', TWO, TWO, "combine", "must be one of product, zip"),
+    ('combine = "zip"', TWO, "1.0", "combine", "two or more keys must run"),
+    ('combine = "zip"', TWO, THREE, "combine", "friction 2, excitation.scale 3"),
+    ('combine = "product"', RANGE, RANGE.replace("100", "11"), "combine", "1100 scenes: must be at most 1000"),
 ]
 
 
-@pytest.mark.parametrize(("options", "key", "rule"), MISFITS)
-def test_keys_that_cannot_run_together_are_refused_in_one_line(written, options, key, rule):
-    said = refusal(load_family, written(**options), kind=SceneError)
+@pytest.mark.parametrize(("top", "friction", "scale", "key", "rule"), MISFITS)
+def test_keys_that_cannot_run_together_are_refused_in_one_line(tmp_path, top, friction, scale, key, rule):
+    said = refusal(load_family, combined(tmp_path, top, friction, scale), kind=SceneError)
     assert said.key == key
     assert rule in said.rule
 
