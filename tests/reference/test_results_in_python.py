@@ -16,12 +16,6 @@ SCENE = reference.load_scene("fig4-dry").with_values({"duration": 3.0})
 PAIRS = reference.phase_grid(3)
 
 
-@pytest.fixture(autouse=True)
-def _closed_figures():
-    yield
-    plt.close("all")
-
-
 @pytest.fixture(scope="module")
 def surface():
     return reference.amplification(SCENE, PAIRS, tolerance=1e-4)
@@ -89,6 +83,7 @@ def test_a_surface_is_drawn_with_its_heights_where_they_belong(surface):
     assert low <= surface.mu[:, 1].min() < surface.mu[:, 1].max() <= high
     flat = surface.plot(axes=plt.figure().add_subplot())
     (mesh,) = flat.collections
+    plt.close("all")
     np.testing.assert_array_equal(np.asarray(mesh.get_array()).reshape(3, 3), surface.mu[:, 0].reshape(3, 3).T)
 
 
@@ -99,6 +94,7 @@ def test_a_motion_is_drawn_with_a_line_for_every_body_and_axis(motion):
     assert [patch.get_x() for patch in axes.patches] == [start for start, _ in motion.stick] != []
     for name, unit in (("position", "m"), ("velocity", "m/s"), ("absolute_acceleration", "m/s$^2$")):
         assert motion.plot(name, axes=plt.figure().add_subplot()).get_ylabel().endswith(f", {unit}")
+    plt.close("all")
 
 
 def test_what_is_no_body_surface_or_quantity_is_refused(surface, motion):

@@ -3,14 +3,10 @@
 import os
 import subprocess
 import sys
-from importlib import import_module
 from pathlib import Path
-from pkgutil import walk_packages
 
-import numba.core.registry
 import pytest
 
-import reference
 from reference import build_cache as module
 from reference.build_cache import user_cache
 
@@ -53,24 +49,6 @@ def test_without_a_home_a_private_directory_takes_its_place_and_none_of_others(
         monkeypatch.setattr(module.os, "getuid", lambda: other)
         folder.rename(fresh / f"phase-resonance-{other}")
     assert module.user_cache() == (folder if planted == "nothing" else None), "the same in every process"
-
-
-def test_every_kept_function_is_kept_in_the_user_s_cache() -> None:
-    for found in walk_packages(reference.__path__, "reference."):
-        import_module(found.name)
-    dispatchers = [
-        value
-        for name, loaded in sorted(sys.modules.items())
-        if name.startswith("reference.")
-        for value in vars(loaded).values()
-        if isinstance(value, numba.core.registry.CPUDispatcher) and value.__module__ == name
-    ]
-    places = {dispatcher.__name__: dispatcher.stats.cache_path for dispatcher in dispatchers}
-    kept = {name: Path(place) for name, place in places.items() if place is not None}
-    assert {"runs", "_largest", "_ground_peaks", "_largest_accelerations"} <= set(kept)
-    parent = Path(os.environ["NUMBA_CACHE_DIR"]) if "NUMBA_CACHE_DIR" in os.environ else user_cache()
-    assert parent is not None
-    assert [name for name, place in kept.items() if parent not in place.parents] == []
 
 
 def test_a_first_call_says_once_that_it_compiles(tmp_path: Path) -> None:
