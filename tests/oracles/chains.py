@@ -1,6 +1,7 @@
 """Scenes and motions for the tests, in few words, and what is said of wrong ones."""
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,13 @@ def chain(
         "bodies": [{"mass": masses[0]}, *above],
         "excitation": {"amplitudes": amplitudes, "periods": periods, "decay": decay},
     })  # fmt: skip
+
+
+def scene_file(folder: Path, excitation: str, top: str = "") -> Path:
+    """A file of one body with this table of excitation."""
+    text = '{}title = "one body"\nisolator = {{radius = 0.25, friction = 0.1}}\nbodies = [{{mass = 1.0}}]\n'
+    (folder / "mine.toml").write_text(f"{text.format(top)}[excitation]\n{excitation}\n", encoding="utf-8")
+    return folder / "mine.toml"
 
 
 def made_up(scene: Scene, time: NDArray[np.float64], stick: Sequence[Any] = (), **parts: Any) -> Trajectory:

@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.integrate import DOP853
 
-from reference.problem import GRAVITY, Scene
+from reference.problem import GRAVITY, Scene, ground_peak
 
 Array = NDArray[np.float64]
 compiled = njit(cache=True)
@@ -116,22 +116,7 @@ def stepped(scene: Scene, phases: Array, law: int, step: float, cutoff: float = 
     steps, parts = round(scene.duration / step), system(scene)
     runs = [_run(phase, *parts, step, steps, law == LITERAL, cutoff) for phase in np.asarray(phases)]
     tops, facts = (np.array(part) for part in zip(*runs))
-    return np.sqrt(tops) / ground_tops(scene, phases)[:, None], facts
-
-
-def ground_tops(scene: Scene, phases: Array) -> Array:
-    """Denominator of (5.1), (M,), from 1000 samples a second and the vertex of a parabola through the three highest."""
-    t = np.arange(round(scene.duration * 1000) + 1) / 1000.0
-    tops = []
-    for phase in np.asarray(phases):
-        square = np.abs(ground.py_func(t, phase, *system(scene)[0])) ** 2
-        k = int(square.argmax())
-        top = square[k]
-        if 0 < k < len(t) - 1:
-            before, after = square[k - 1], square[k + 1]
-            top -= (after - before) ** 2 / (8.0 * (before - 2.0 * top + after))
-        tops.append(math.sqrt(top))
-    return np.array(tops)
+    return np.sqrt(tops) / ground_peak(scene, phases)[:, None], facts
 
 
 def by_scipy(scene: Scene, phases: Array, corner: float | None) -> tuple[Array, Array]:
@@ -159,4 +144,4 @@ def by_scipy(scene: Scene, phases: Array, corner: float | None) -> tuple[Array, 
         top = np.maximum(top, (np.abs(accelerations(u, x, v) + u) ** 2).max(axis=-1))
         facts = np.maximum(facts, facts_of.py_func(x).max(axis=-1))
     assert solver.status == "finished", "DOP853 reached the end"
-    return np.sqrt(top.T) / ground_tops(scene, phases)[:, None], facts.T
+    return np.sqrt(top.T) / ground_peak(scene, phases)[:, None], facts.T

@@ -8,7 +8,7 @@ import pytest
 from claims_literal import LiteralClaims, gathered
 from numpy.typing import NDArray
 from second_integration import LITERAL as LITERAL_LAW
-from second_integration import SET_VALUED, by_scipy, ground_tops, stepped
+from second_integration import SET_VALUED, by_scipy, stepped
 
 from comparison.analyses.claims import readings
 from comparison.analyses.claims.claims import CLAIMS
@@ -17,7 +17,7 @@ from comparison.analyses.claims.readings import CASES, LIGHT_BODY, LITERAL, OWN_
 from comparison.analyses.claims.smoothness import bends
 from comparison.analyses.claims.table import recorded_verdict
 from reference import amplification, modes
-from reference.problem import Scene
+from reference.problem import Scene, ground_peak
 
 Array = NDArray[np.float64]
 
@@ -61,8 +61,8 @@ def _second(case: str, reading: Reading) -> Evidence:
     probes = np.array([(0.3, 1.1), (2.0, 0.7)])
     twins = np.abs(factors(probes + np.pi) / factors(probes) - 1.0).max() < 1e-6
     natural = modes(scene).period.ravel()
-    tops = ground_tops(scene, phases.reshape(-1, 2)).reshape(grid, grid, 1)
-    numerators = bends(mu * tops, lambda at: factors(at) * ground_tops(scene, at)[:, None]) if scene.lubricated else []
+    tops = ground_peak(scene, phases.reshape(-1, 2)).reshape(grid, grid, 1)
+    numerators = bends(mu * tops, lambda at: factors(at) * ground_peak(scene, at)[:, None]) if scene.lubricated else []
     return Evidence(
         mu,
         1e-3,
@@ -72,7 +72,7 @@ def _second(case: str, reading: Reading) -> Evidence:
         float(facts[:, 0].max() / scene.radius**2),
         tuple((T, float(natural[np.abs(T / natural - 1.0).argmin()])) for T in scene.excitation.periods),
         bool(twins),
-        bends(tops, lambda at: ground_tops(scene, at)[:, None])[0],
+        bends(tops, lambda at: ground_peak(scene, at)[:, None])[0],
         tuple(numerators),
     )
 

@@ -5,17 +5,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from chains import refusal
+from chains import refusal, scene_file
 
 from reference.problem import SceneError, load_family, load_scene
 from reference.problem.files import read_file
 
 SECRET = "xK7-of-somebody-else"
-SCENE = """title = "of a record"
-isolator = {{radius = 0.25, friction = 0.1}}
-bodies = [{{mass = 1.0}}]
-excitation = {{record = {record}}}
-"""
 RECORDS = {"a.csv": '"a.csv"', "a.AT2": '{x = "a.AT2"}', "suite/a.csv": '{suite = "suite", motion = 1}'}
 NONE: dict[str, tuple[Callable[[Path], object], str]] = {
     "pipe": (lambda path: os.mkfifo(path), "not a regular file"),
@@ -36,8 +31,7 @@ def test_a_scene_and_its_record_are_regular_files_of_a_stated_size(
     (tmp_path / "suite").mkdir()
     for name, record in RECORDS.items():
         make(tmp_path / name)
-        (tmp_path / "mine.toml").write_text(SCENE.format(record=record), encoding="utf-8")
-        said = refusal(load_scene, tmp_path / "mine.toml", kind=SceneError)
+        said = refusal(load_scene, scene_file(tmp_path, f"record = {record}"), kind=SceneError)
         assert rule in said.rule
         assert said.key.startswith("excitation.record")
 

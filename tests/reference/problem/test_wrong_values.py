@@ -18,6 +18,10 @@ def law(**table: object) -> dict[str, Any]:
     return {"isolator.friction": {"slow": 0.1, **table}}
 
 
+def places(*supports: list[float]) -> dict[str, Any]:
+    return {"isolator.ring": None, "isolator.supports": list(supports)}
+
+
 def measured(**changes: object) -> dict[str, Any]:
     return {"measured": [{key: value for key, value in {**PEAK, **changes}.items() if value is not None}]}
 
@@ -44,7 +48,20 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"title": "a\0b"}, "title", "must have no control characters"),
     ({"duration": 10**400}, "duration", "must be a valid number"),
     ({"duration": 1e9, "excitation.periods": [3.0, 2.0]}, "duration", "must be at most 1e+06 periods of 1 s"),
+    ({"duration": None}, "duration", "this key is required"),
+    ({"acceptance.median": -1.0}, "acceptance.median", "must be greater than 0"),
     # isolator
+    ({"isolator.friction": None}, "isolator", "exactly one of friction and lubrication"),
+    ({"isolator.period": None}, "isolator", "exactly one of period and radius"),
+    ({"isolator.period": 1e200}, "isolator.period", "finite and positive"),
+    (law(slow=0.0, fast=0.2, rate=50.0), "isolator.friction.slow", "greater than 0"),
+    (law(fast=0.2, rat=50.0), "isolator.friction.rat", "did you mean rate"),
+    ({"isolator.supports": 2}, "isolator.supports", "equal to 3"),
+    ({"isolator.supports": [[0, 1], [1, -1], [-1, -1]]}, "isolator.ring", "remove this key"),
+    (places([0, 1], [1, 0], [1, 1e7]), "isolator.supports.2.1", "to 1e+06 m"),
+    (places([0.1, 0.1], [0.2, 0.2], [0.3, 0.3]), "isolator.supports", "on one line"),
+    (places([0, 1], [1, -1], [0, 1]), "isolator.supports", "at the same place"),
+    (places([1, 1], [2, 1], [1, 2]), "bodies: center of mass of all [x, y] in m", "would carry nothing at rest"),
     (law(), "isolator.friction", "give fast and rate, load_exponent or heating, or one number"),
     (law(fast=0.2), "isolator.friction", "give fast and rate together, or neither"),
     (law(fast=0.2, rate=1.0, reference_load=9.0), "isolator.friction", "reference_load belongs to a load_exponent"),
@@ -60,7 +77,14 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"isolator.support_stiffness": 1e4, "isolator.restitution": 0.5}, "isolator.restitution", "rebound by it: remove"),
     # 19.62 N on four supports: each sinks by 0.0249 m, just above a tenth of the radius
     ({"isolator.support_stiffness": 197.0}, "isolator.support_stiffness", "gives way by 0.1 of the radius under the"),
-    # links
+    # bodies and links
+    ({"bodies.0.mass": 1e308, "bodies.1.mass": 1e308}, "bodies.0.mass", "finite and positive"),
+    ({"bodies.1.yaw": 45.0}, "bodies.1.yaw", "rad"),
+    ({"bodies.0.stiffness": [1.0, 1.0]}, "bodies.0.stiffness", "platform"),
+    ({"bodies.0.bars": BARS}, "bodies.0.bars", "platform"),
+    ({"bodies.1.period": None}, "bodies.1", "exactly one of period, stiffness and bars"),
+    ({"bodies.1.period.0": 1e-200}, "bodies.1.period.0", "finite and positive"),
+    (bars(count=4.5), "bodies.1.bars.count", "int"),
     ({"bodies.1.stiffness": 6e8}, "bodies.1.stiffness", "must be [kx, ky], N/m"),
     ({"bodies.0.damping": 0.05}, "bodies.0.damping", "the platform has no link below: remove this key"),
     ({"bodies.1.damping": -0.1}, "bodies.1.damping", "must be finite, from 0 to 100"),
