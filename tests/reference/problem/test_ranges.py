@@ -11,9 +11,8 @@ from chains import refusal
 
 import multibody
 import reference
-from reference.problem import Outcome, SceneError, load_scene
-from reference.problem.ranges import REGULARIZATION, SCENE
-from reference.surface import checked_demand
+from reference.problem import SceneError, load_scene
+from reference.problem.ranges import SCENE
 
 FIG3 = load_scene("fig3-I")
 PHASES = [(0.1, 0.2)]
@@ -112,28 +111,3 @@ def test_both_sides_answer_a_phase_of_many_turns_like_the_phase(function):
     scene = load_scene("fig3-I").with_values({"duration": 0.5})
     many, one = (function(scene, [(first, 1.1)]) for first in (0.3 + 2.0 * np.pi * 1e5, 0.3))
     np.testing.assert_allclose(many.mu, one.mu, rtol=1e-8)
-
-
-@pytest.mark.parametrize("value", [REGULARIZATION.lowest, REGULARIZATION.highest])
-def test_the_ends_of_the_range_of_v_reg_are_answered_right(value):
-    """At the lower end like the set-valued law, at the upper end like no friction."""
-    scene = load_scene("fig4-dry")
-    found = reference.amplification(scene, PHASES, regularization=value)
-    limit = scene if value == REGULARIZATION.lowest else scene.with_values({"isolator.friction": 0.0})
-    expected = reference.amplification(limit, PHASES)
-    assert found.status[0] == Outcome.OK
-    np.testing.assert_allclose(found.mu, expected.mu, rtol=2e-6)
-
-
-def test_a_ground_whose_squares_lose_digits_is_at_rest():
-    none, ok = Outcome.NO_GROUND_MOTION, Outcome.OK
-    for amplitude, outcome in ((1e-170, none), (1e-145, none), (1e-138, ok), (1e-100, ok)):
-        assert reference.amplification(FIG3.with_amplitude(amplitude), PHASES, "small").status[0] == outcome, amplitude
-
-
-def test_a_run_of_many_cycles_ends():
-    """An undamped loading for as long as a scene may last: refused after so many steps, not hours later."""
-    scene = load_scene("fig3-I").with_values({"duration": 8e5, "excitation.decay": [0.0, 0.0]})
-    unlimited = 1000.0 * scene.duration / 0.9
-    _, demand = checked_demand(scene, "exact", None, 1e-6, None, "consistent")
-    assert demand.step_limit < 0.01 * unlimited
