@@ -114,6 +114,7 @@ NO_AT2 = [
     ({"x": at2([1.0, 2.0], sizes="{} values, {} s")}, "must have a line 'NPTS"),
     ({"x": at2([1.0, 2.0], count=3)}, "2 values: the header says NPTS = 3"),
     ({"x": at2([1.0, 2.0], count=0)}, "NPTS = '0'"),
+    ({"x": at2([1.0, 2.0], step=-0.01)}, "DT = -0.01 s"),
     ({"x": at2([1.0, float("nan")])}, "line 5: nan: must be finite"),
     ({"x": at2([1.0, 2.0]), "y": at2([1.0, 2.0], step=0.0101)}, "DT = 0.01 s along x and 0.0101 s along y"),
     ({"x": at2([1.0, 2.0], sizes="NPTS= {}, DT= 0.x{} SEC,")}, "line 4: '0.x0.01': must be a number"),

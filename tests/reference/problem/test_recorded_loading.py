@@ -104,6 +104,7 @@ def test_the_amplitude_is_the_largest_sample_and_the_hash_that_of_the_samples(fo
         ('record = {x = "x.AT2", y = "gone.AT2"}', "excitation.record.y", "No such file or directory"),
         ('record = {x = "x.AT2", y = "slow.AT2"}', "excitation.record", "must be the same"),
         ('record = "a.csv"\nsamples = [[0.0, 0.0, 0.0, 0.0]]', "excitation.samples", "unknown key"),
+        ('record = "a.csv"\nscale = 1e308', "excitation.scale", "must leave every acceleration finite"),
         ('record = "a.csv"\nscale = 0.0', "excitation.scale", "greater than 0"),
         ("scale = 2.0", "excitation.amplitudes", "required"),
     ],
