@@ -8,6 +8,7 @@ V = 1e-15 m/s. What is left of the turning of the slip direction there goes on w
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -81,6 +82,20 @@ def set_valued_run(
     """Set-valued dry law; cutoff 0 is the supremum of (5.1) with the arcs at stops."""
     law = Law(scene, phase, equations)
     return _SetValued(law, Peaks(cutoffs, law.count), tolerance).run(scene, phase)
+
+
+def answer(
+    scene: Scene,
+    phase: tuple[float, float],
+    equations: str,
+    v_reg: float | None,
+    tolerance: float,
+    cutoffs: Sequence[float] = (0.0,),
+) -> Answer:
+    """By the set-valued law if there is dry friction and no v_reg."""
+    if v_reg is None and not scene.lubricated and scene.friction_coefficient > 0.0:
+        return set_valued_run(scene, phase, equations, list(cutoffs), tolerance)
+    return smooth_run(scene, phase, equations, v_reg, tolerance)
 
 
 class _SetValued:
@@ -274,4 +289,4 @@ def _factors(scene: Scene, phase: tuple[float, float], peaks: Peaks) -> np.ndarr
     return np.sqrt(peaks.best) / ground_peak(scene, [phase])[0]
 
 
-__all__ = ["Answer", "RefusalError", "set_valued_run", "smooth_run"]
+__all__ = ["RefusalError", "answer"]

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from oracle import CREEP_IS_STIFF, Answer, RefusalError, set_valued_run, smooth_run
+from oracle import CREEP_IS_STIFF, RefusalError, answer
 from oracle_cases import CASES, CUTOFFS, SET_VALUED, Case, scene_of
 
 STORE = Path(__file__).with_name("oracle_values.json")
@@ -20,21 +20,15 @@ COARSE, FINE = 1e-10, 1e-12
 STIFF_COARSE, STIFF_FINE = 1e-9, 1e-11  # the implicit method pays more for each digit
 
 
-def answer(case: Case, tolerance: float) -> Answer:
-    scene = scene_of(case.scene)
-    if case in SET_VALUED:
-        return set_valued_run(scene, case.phase, case.equations, list(CUTOFFS), tolerance)
-    return smooth_run(scene, case.phase, case.equations, case.regularization, tolerance)
-
-
 def solved(case: Case) -> dict[str, Any]:
     stiff = case.regularization is not None and case.regularization < CREEP_IS_STIFF
-    coarse = answer(case, STIFF_COARSE if stiff else COARSE)
-    fine = answer(case, STIFF_FINE if stiff else FINE)
+    cutoffs, law = CUTOFFS if case in SET_VALUED else (0.0,), (case.phase, case.equations, case.regularization)
+    tolerances = (STIFF_COARSE, STIFF_FINE) if stiff else (COARSE, FINE)
+    coarse, fine = (answer(scene_of(case.scene), *law, tolerance, cutoffs) for tolerance in tolerances)
     return {
         "name": case.name,
         **asdict(case),
-        "cutoff": list(CUTOFFS) if case in SET_VALUED else [0.0],
+        "cutoff": list(cutoffs),
         "mu": fine.mu.tolist(),
         "error": np.maximum(np.abs(fine.mu - coarse.mu), 1e-12).tolist(),
         "position": fine.position.tolist(),

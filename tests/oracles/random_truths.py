@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from oracle import Answer, RefusalError, set_valued_run, smooth_run
+from oracle import RefusalError, answer
 from random_loadings import Case, random_case
 
 from reference.problem import Amplification, Outcome
@@ -41,20 +41,14 @@ def asked_of(seed: int, case: Case) -> list[tuple[str, float | None]]:
     return [like_for_like, ("exact" if seed % 2 else "small", None)]
 
 
-def answer(case: Case, equations: str, v_reg: float | None, tolerance: float) -> Answer:
-    if v_reg is None and case.regularization is not None:
-        return set_valued_run(case.scene, case.phase, equations, [0.0], tolerance)
-    return smooth_run(case.scene, case.phase, equations, v_reg, tolerance)
-
-
 def beyond_and_ratios(truths: list[dict[str, Any]], found: list[Amplification]) -> tuple[Array, Array]:
     """Of every value called ok: whether the truth is beyond its error, and that error over the true one."""
     beyond, ratios = [], []
-    for truth, answer in zip(truths, found, strict=True):
-        if answer.status[0] == Outcome.OK:
-            gap, own = np.abs(answer.mu[0] - truth["mu"]), np.array(truth["error"])
-            beyond.append(gap > answer.error[0] + own)
-            ratios.append(answer.error[0] / np.maximum(gap, own))
+    for truth, stated in zip(truths, found, strict=True):
+        if stated.status[0] == Outcome.OK:
+            gap, own = np.abs(stated.mu[0] - truth["mu"]), np.array(truth["error"])
+            beyond.append(gap > stated.error[0] + own)
+            ratios.append(stated.error[0] / np.maximum(gap, own))
     return np.concatenate(beyond), np.concatenate(ratios)
 
 
@@ -70,7 +64,8 @@ def main(first: int, last: int) -> None:
         for equations, v_reg in [] if case.scene.flat else asked_of(seed, case):
             signal.alarm(PATIENCE)
             try:
-                coarse, fine = (answer(case, equations, v_reg, tolerance).mu[0] for tolerance in (COARSE, FINE))
+                law = case.scene, case.phase, equations, v_reg
+                coarse, fine = (answer(*law, tolerance).mu[0] for tolerance in (COARSE, FINE))
             except (RefusalError, RuntimeError, AssertionError, ValueError) as fault:
                 print(seed, equations, v_reg, repr(fault), flush=True)
                 continue

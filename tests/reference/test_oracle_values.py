@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracle import set_valued_run, smooth_run
+from oracle import answer
 from oracle_cases import scene_of
 from oracle_values import STORE
 
@@ -17,23 +17,15 @@ TOLERANCE = 1e-7
 CUTOFF_LOSS = 10.0
 
 
-def ask(entry: dict[str, Any], tolerance: float, cutoff: float | None = None) -> reference.Amplification:
-    return reference.amplification(
-        scene_of(entry["scene"]),
-        [entry["phase"]],
-        equations=entry["equations"],
-        regularization=entry["regularization"],
-        tolerance=tolerance,
-        cutoff=cutoff,
-        full=True,  # the solver, even where a sum of motions would do
-    )
-
-
 @pytest.mark.parametrize("entry", VALUES, ids=lambda entry: entry["name"])
 def test_amplification_is_the_oracle_s(entry, within):
     """Supremum (or smooth law), and the resolved peak at every cutoff, each body."""
+    law = entry["equations"], entry["regularization"], TOLERANCE
     for cutoff, mu, error in zip(entry["cutoff"], entry["mu"], entry["error"], strict=True):
-        found = ask(entry, TOLERANCE, cutoff or None)
+        # by the solver, even where a sum of motions would do
+        found = reference.amplification(
+            scene_of(entry["scene"]), [entry["phase"]], *law, cutoff=cutoff or None, full=True
+        )
         assert found.status[0] == "ok"
         slack = CUTOFF_LOSS if cutoff else 1.0
         allowed = np.array(error) + slack * TOLERANCE * np.array(mu)
@@ -57,9 +49,6 @@ def test_trajectory_ends_and_rests_as_the_oracle_says(entry):
 @pytest.mark.long
 @pytest.mark.parametrize("entry", VALUES[::8], ids=lambda entry: entry["name"])
 def test_the_stored_values_are_what_the_oracle_says(entry):
-    scene, phase = scene_of(entry["scene"]), tuple(entry["phase"])
-    if entry["regularization"] is None and not scene.lubricated and scene.friction_coefficient > 0.0:
-        answer = set_valued_run(scene, phase, entry["equations"], entry["cutoff"], 1e-8)
-    else:
-        answer = smooth_run(scene, phase, entry["equations"], entry["regularization"], 1e-8)
-    np.testing.assert_allclose(answer.mu, entry["mu"], rtol=3e-6)
+    law = tuple(entry["phase"]), entry["equations"], entry["regularization"]
+    found = answer(scene_of(entry["scene"]), *law, 1e-8, entry["cutoff"])
+    np.testing.assert_allclose(found.mu, entry["mu"], rtol=3e-6)

@@ -92,6 +92,7 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"bodies.1.period.0": 1e-200}, "bodies.1.period.0", "finite and positive"),
     (bars(count=4.5), "bodies.1.bars.count", "int"),
     ({"bodies.1.stiffness": 6e8}, "bodies.1.stiffness", "must be [kx, ky], N/m"),
+    ({"bodies.1.period": 3.0}, "bodies.1.period", "must be [Tx, Ty], s"),
     ({"bodies.0.damping": 0.05}, "bodies.0.damping", "the platform has no link below: remove this key"),
     ({"bodies.1.damping": -0.1}, "bodies.1.damping", "must be finite, from 0 to 100"),
     ({"bodies.1.damping": [1.0]}, "bodies.1.damping", "must be a ratio of critical, or [cx, cy] in N s/m"),
