@@ -35,12 +35,7 @@ FAST = "{slow = 0.05, fast = {values = [0.1, 0.08]}, rate = 50.0}"
 KEYS = {
     "at the top": ("duration = 20.0", "duration = {range = [5, 20], steps = 4}", "duration", (5, 10, 15, 20)),
     "whole numbers": ("supports = 4", "supports = {range = [3, 5], steps = 3}", "isolator.supports", (3, 4, 5)),
-    "of a body": (
-        "mass = 1.0\nperiod",
-        "mass = {range = [1.1, 1.7], steps = 3}\nperiod",
-        "bodies.1.mass",
-        (1.1, 1.4, 1.7),
-    ),
+    "of a body": ("mass = 1.0\nperiod", "mass = {values = [1.1, 1.7]}\nperiod", "bodies.1.mass", (1.1, 1.7)),
     "in a list": ("[[1.0, 0.0]", "[[{range = [1.5, 2.5], steps = 2}, 0.0]", "excitation.amplitudes.0.0", (1.5, 2.5)),
     "fast friction": ("friction = 0.1", f"friction = {FAST}", "isolator.friction.fast", (0.1, 0.08)),
     "values": ("friction = 0.1", "friction = {values = [0.3, 0.05]}", "isolator.friction", (0.3, 0.05)),
