@@ -9,6 +9,7 @@ from reference.problem import SceneError, builtin_scenes, example_scenes, load_s
 from reference.problem.scene_file import scene_text
 
 TEXT = scene_text("fig3-I").decode()
+BODILESS = TEXT[: TEXT.index("[[bodies]]")] + TEXT[TEXT.index("[excitation]") :]
 
 
 def test_what_is_no_file_or_text_of_a_scene_is_one_line():
@@ -18,8 +19,8 @@ def test_what_is_no_file_or_text_of_a_scene_is_one_line():
         TEXT.replace("[isolator]", "[isolator"): "file = ",
         TEXT.replace("20.0", f"{11 * '['}2.0{11 * ']'}"): "file = ",
         TEXT.replace("20.0", f"{9 * '['}2.0{9 * ']'}"): "duration = ",
-        TEXT.replace("[[bodies]]", "[[others]]"): "bodies = None: this key is required",
-        "bodies = []\n" + TEXT.replace("[[bodies]]", "[[others]]"): "bodies = []: List should have at least 1 item",
+        BODILESS: "bodies = None: this key is required",
+        "bodies = []\n" + BODILESS: "bodies = []: List should have at least 1 item",
         b"\xff\xfe title": "file = ",
     }.items():
         content = content.encode() if isinstance(content, str) else content

@@ -91,7 +91,8 @@ def test_a_byte_order_mark_is_no_part_of_a_scene_or_record(duration: str, tmp_pa
     file.write_bytes(b"\xef\xbb\xbf" + text.encode())
     assert load_family(file).scenes[-1].duration == 2.0
     (tmp_path / "a.csv").write_bytes(b"\xef\xbb\xbftime [s],ax [g]\n0,0\n0.5,0.1\n1,0\n")
-    file.write_text(text[: text.index("[excitation]")] + '[excitation]\nrecord = "a.csv"\n')
+    head = text[: text.index("[excitation]")].replace(duration, "2.0")
+    file.write_text(head + '[excitation]\nrecord = "a.csv"\n')
     assert len(load_scene(file).record) == 3
 
 
