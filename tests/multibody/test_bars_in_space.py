@@ -14,16 +14,14 @@ from multibody.models.assembly import assemble
 from multibody.models.engine import exudyn, items
 from multibody.models.links import LINK_COMPLIANCE_RATIO, add_links
 from multibody.models.units import units_of
-from reference.problem import Outcome, Scene, load_scene, phase_grid
+from reference.problem import Outcome, Scene, load_scene
 
 SIZE = [2.0, 1.6, 0.2]
 GAP = 0.3  # m, from the upper ends of the bars to the center of mass
 TOWERS = {  # bars, mass above: from nearly no load to nearly buckling
     "a hundredth of the buckling load": ({"count": 4, "bending_stiffness": 60.0, "length": 1.0}, 2.5),
-    "a tenth": ({"count": 4, "bending_stiffness": 6.0, "length": 1.0}, 2.5),
     "half": ({"count": 6, "bending_stiffness": 3.0, "length": 1.3}, 5.4),
     "nine tenths": ({"count": 3, "bending_stiffness": 1.0, "length": 0.8}, 4.25),
-    "long bars": ({"count": 8, "bending_stiffness": 900.0, "length": 4.0}, 230.0),
     "heavy": ({"count": 4, "bending_stiffness": 2e6, "length": 3.0}, 4e5),
 }
 
@@ -37,13 +35,9 @@ def scene_of(name: str, load_effect: str = "softening", **bars: Any) -> Scene:
 
 
 def tower_of(scene: Scene) -> Tower:
-    body, bars = scene.bodies[1], scene.bodies[1].bars
-    assert bars is not None
-    assert bars.axial_stiffness is not None
-    assert bars.spread is not None
-    inertia = body.mass / 12.0 * (SIZE[0] ** 2 + SIZE[2] ** 2)
+    mass, bars = scene.masses[1], scene.bodies[1].bars
     ends = bars.count, bars.bending_stiffness, bars.length, bars.axial_stiffness, bars.spread
-    return Tower(*ends, body.mass, inertia, GAP)
+    return Tower(*ends, mass, mass / 12.0 * (SIZE[0] ** 2 + SIZE[2] ** 2), GAP)
 
 
 def on_the_ground(scene: Scene, force: float = 0.0) -> tuple[Any, Any, int]:
@@ -105,12 +99,9 @@ def test_every_bar_adds_to_the_stiffness_against_twist(
 
 
 @pytest.mark.parametrize("axial_stiffness", [None, 2e4], ids=["rigid in tension", "clamped beams"])
-@pytest.mark.parametrize("offset", [[0.1, 0.0], [-0.05, 0.08]], ids=str)
-def test_a_link_under_an_eccentric_weight_is_straight_at_rest(
-    offset: list[float], axial_stiffness: float | None
-) -> None:
+def test_a_link_under_an_eccentric_weight_is_straight_at_rest(axial_stiffness: float | None) -> None:
     """It is built to carry the moment of what stands on it: bodies on rigid supports do not lean against each other."""
-    bars = {"count": 4, "bending_stiffness": 40.0, "length": 0.9, "spread": 0.5}
+    offset, bars = [-0.05, 0.08], {"count": 4, "bending_stiffness": 40.0, "length": 0.9, "spread": 0.5}
     bars |= {"axial_stiffness": axial_stiffness} if axial_stiffness else {}
     values = {"bodies.1.period": None, "bodies.1.bars": bars, "bodies.1.offset": offset, "isolator.supports": 3}
     scene = load_scene("fig3-I").with_values(values)
@@ -139,9 +130,6 @@ def building(name: str, **values: Any) -> Scene:
     return load_scene("fig3-I").with_values({"duration": 2.0, **bars, **values}).with_amplitude(1.5)
 
 
-OFF_ITS_BARS = {"bodies.1.offset": [0.1, -0.05], "bodies.1.yaw": 0.5}
-
-
 def three_stories() -> dict[str, Any]:
     platform, first = building("shortening").bodies
     second = {"mass": 0.5, "height": 2.2, "size": SIZE, "stiffness": [30.0, 20.0]}
@@ -151,23 +139,20 @@ def three_stories() -> dict[str, Any]:
 
 @pytest.mark.long
 @pytest.mark.parametrize(
-    ("name", "values", "phases"),
+    ("name", "values"),
     [
-        *((name, {}, [(2.0, 0.7)]) for name in BUILDINGS),
-        *((name, OFF_ITS_BARS, [(2.0, 0.7)]) for name in ("softened", "shortening")),
-        ("softened", three_stories(), [(2.0, 0.7)]),
-        # turns by pi give the others of a whole surface
-        *((name, {}, phase_grid(8)[(phase_grid(8) < np.pi).all(axis=1)][::4]) for name in ("softened", "shortening")),
+        *((name, {}) for name in BUILDINGS),
+        ("shortening", {"bodies.1.offset": [0.1, -0.05], "bodies.1.yaw": 0.5}),
+        ("softened", three_stories()),
     ],
 )
-def test_factors_agree_with_newton_euler_equations(name: str, values: dict[str, Any], phases: Any) -> None:
-    for phase in phases:
-        assert_agrees_with_newton_and_euler(building(name, **values), tuple(phase))
+def test_factors_agree_with_newton_euler_equations(name: str, values: dict[str, Any]) -> None:
+    assert_agrees_with_newton_and_euler(building(name, **values), (2.0, 0.7))
 
 
 def test_levels_on_other_springs_show_no_rate_of_convergence() -> None:
     """mu_1 of rigid_chain.py at its tolerance of 1e-6; three levels, of which the first has other springs."""
-    engine = multibody.amplification(building("shortening"), [(np.pi / 2.0, np.pi / 2.0)], "spatial", tolerance=1e-3)
+    engine = multibody.amplification(building("shortening"), [(np.pi / 2.0, np.pi / 2.0)], "spatial")
     assert engine.status[0] == Outcome.OK
     assert abs(engine.mu[0, 0] - 0.92185809) <= engine.error[0, 0]
 
@@ -175,17 +160,15 @@ def test_levels_on_other_springs_show_no_rate_of_convergence() -> None:
 def test_a_peak_where_supports_stop_has_its_error() -> None:
     """There mu_1 changes by a fifth of the share of the weight that warping takes, four times as much as elsewhere."""
     phase, scene = [(np.pi / 2.0, np.pi / 2.0)], building("shortening", duration=1.4)
-    close = multibody.amplification(scene, phase, model="spatial", tolerance=1e-4)
+    close = multibody.amplification(scene, phase, "spatial", tolerance=1e-4)
     for tolerance in (1e-2, 1e-3):
-        answer = multibody.amplification(scene, phase, model="spatial", tolerance=tolerance)
-        assert_within(answer, close.mu, close.error)
+        assert_within(multibody.amplification(scene, phase, "spatial", tolerance=tolerance), close.mu, close.error)
 
 
 def test_a_body_on_shortening_bars_sinks_as_they_sway() -> None:
-    """At a small load, of bars in tension so stiff that nothing else lets it sink."""
+    """At a small load, of bars of 1 m so stiff in tension that nothing else lets it sink."""
     scene = scene_of("a hundredth of the buckling load", "shortening", spread=3.0, axial_stiffness=1e9)
-    length, units = 1.0, units_of(scene)
     _, mbs, node = on_the_ground(scene, force=0.5)
     mbs.SolveStatic(static_settings())
-    sway, _, sunk, *_ = units.length * mbs.GetNodeOutput(node, exudyn.OutputVariableType.Displacement)
-    assert sunk == pytest.approx(-0.6 * sway**2 / length, rel=0.01)
+    sway, _, sunk, *_ = units_of(scene).length * mbs.GetNodeOutput(node, exudyn.OutputVariableType.Displacement)
+    assert sunk == pytest.approx(-0.6 * sway**2, rel=0.01)

@@ -44,77 +44,48 @@ def two_bodies(link: str, damping: Any) -> Scene:
 CENTERS = np.array([[0.0, 0.0, 0.2], [0.2, -0.1, 1.2]]) / load_scene("fig3-I").radius  # at rest, in units of the model
 
 
-def motion_of_two(seed: int) -> tuple[Any, Any]:
-    """Coordinates (12,) of two bodies that are displaced and rotated against each other, and places of both (2, 3)."""
-    random = np.random.default_rng(seed)
-    coordinates = np.concatenate([*random.uniform(-0.3, 0.3, (4, 3))])
-    coordinates[9:] = coordinates[3:6] + random.uniform(-0.01, 0.01, 3)
-    return coordinates, coordinates.reshape(2, 6)[:, :3] + CENTERS
-
-
-def in_engine(coordinates: Any, velocities: Any, spins: Any) -> Any:
-    """Velocities (2, 3) and spins (2, 3) as the engine's rates (12,)."""
-    rates = np.zeros((2, 6))
-    rates[:, :3] = velocities
-    for body, angles in enumerate(np.reshape(coordinates, (2, 6))[:, 3:]):
-        rates[body, 3:] = np.linalg.solve(angular_velocity_matrix(angles), spins[body])
-    return rates.ravel()
-
-
-@pytest.mark.parametrize("axis", [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.3, -0.5, 0.8]], ids=str)
-@pytest.mark.parametrize("link", LINKS)
-def test_a_chain_that_turns_as_one_feels_no_damper(link: str, axis: list[float]) -> None:
-    """Displaced and twisted links: their dampers neither dissipate nor push."""
-    coordinates, places = motion_of_two(5)
-    spin = np.array(axis)
-    turning = np.cross(spin, places) + np.array([0.3, -0.2, 0.1])
-    rates = in_engine(coordinates, turning, [spin, spin])
-    scene = two_bodies(link, 2.0)
-    damped, bare = (forces_of_links(each, coordinates, rates) for each in (scene, two_bodies(link, 0.0)))
-    scale = 2.0 * scene.damping.max() * damped[2].units.time / scene.total_mass
-    for with_damper, without in zip(damped[:2], bare[:2]):
-        np.testing.assert_allclose(with_damper, without, atol=1e-8 * scale)
+DRAW = np.random.default_rng(6)
+COORDINATES = DRAW.uniform(-0.3, 0.3, 12)  # of bodies that are displaced and rotated against each other
+COORDINATES[9:] = COORDINATES[3:6] + DRAW.uniform(-0.01, 0.01, 3)
+PLACES = COORDINATES.reshape(2, 6)[:, :3] + CENTERS
 
 
 @pytest.mark.parametrize("link", LINKS)
 def test_a_link_keeps_the_momentum_of_its_bodies(link: str) -> None:
     """Linear and angular; the engine's middle axes are exact to a 24th of the square of a relative turn."""
-    coordinates, places = motion_of_two(6)
     scene = two_bodies(link, 0.0).with_amplitude(1e-12)
-    force, moment, model = forces_of_links(scene, coordinates, np.zeros(12))
+    force, moment, model = forces_of_links(scene, COORDINATES, np.zeros(12))
     force[:, 2] += scene.masses / model.units.mass  # without the weight
     np.testing.assert_allclose(force.sum(axis=0), 0.0, atol=1e-9)
-    about_the_origin = (moment + np.cross(places, force)).sum(axis=0)
+    about_the_origin = (moment + np.cross(PLACES, force)).sum(axis=0)
     np.testing.assert_allclose(about_the_origin, 0.0, atol=2e-5 * np.abs(force).max())
 
 
 @pytest.mark.parametrize("link", ["stiff", "at an angle", "bars"])
 def test_a_damper_takes_its_link_s_power_and_keeps_momentum(link: str) -> None:
     """Bars that give way damp every direction in proportion to its stiffness, as that in shear."""
-    scene, (coordinates, places) = two_bodies(link, 0.7 if link == "bars" else [0.7, 0.2]), motion_of_two(6)
-    random = np.random.default_rng(7)
-    velocities, spins = random.uniform(-0.5, 0.5, (2, 2, 3))
-    rates = in_engine(coordinates, velocities, spins)
+    scene, angles = two_bodies(link, 0.7 if link == "bars" else [0.7, 0.2]), COORDINATES.reshape(2, 6)[:, 3:]
+    velocities, spins = np.random.default_rng(7).uniform(-0.5, 0.5, (2, 2, 3))
+    turning = [np.linalg.solve(angular_velocity_matrix(each), spin) for each, spin in zip(angles, spins)]
+    rates = np.hstack([velocities, turning]).ravel()
     (force, moment, model), bare = (
-        forces_of_links(each, coordinates, rates) for each in (scene, two_bodies(link, 0.0))
+        forces_of_links(each, COORDINATES, rates) for each in (scene, two_bodies(link, 0.0))
     )
     force, moment = force - bare[0], moment - bare[1]
     np.testing.assert_allclose(force.sum(axis=0), 0.0, atol=1e-9)
-    np.testing.assert_allclose((moment + np.cross(places, force)).sum(axis=0), 0.0, atol=1e-8)
-
+    np.testing.assert_allclose((moment + np.cross(PLACES, force)).sum(axis=0), 0.0, atol=1e-8)
     half = 0.5 * (CENTERS[1, 2] - CENTERS[0, 2])
 
     def deformation(time: float) -> Any:
         """In the middle axes of both bodies, by SciPy's rotations."""
         turned = [
-            Rotation.from_rotvec(time * spin) * Rotation.from_euler("XYZ", angles)
-            for spin, angles in zip(spins, coordinates.reshape(2, 6)[:, 3:])
+            Rotation.from_rotvec(time * spin) * Rotation.from_euler("XYZ", each) for spin, each in zip(spins, angles)
         ]
         relative = (turned[0].inv() * turned[1]).as_rotvec()
         middle = turned[0] * Rotation.from_rotvec(0.5 * relative)
         ends = [
             place + time * velocity + turn.apply([-center[0], -center[1], sign * half])
-            for place, velocity, turn, center, sign in zip(places, velocities, turned, CENTERS, (1.0, -1.0))
+            for place, velocity, turn, center, sign in zip(PLACES, velocities, turned, CENTERS, (1.0, -1.0))
         ]
         return np.append(middle.inv().apply(ends[1] - ends[0]), relative)
 

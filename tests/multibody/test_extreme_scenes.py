@@ -2,15 +2,11 @@
 
 from typing import Any
 
-import numpy as np
 import pytest
-from rigid_chain import spatial_motion
 from scenes_at_hand import both_sides, changed
 
 import multibody
 import reference
-from multibody.integration import one_run
-from multibody.integration.adaptive import EngineRun, run_adaptively
 from multibody.integration.constant_step import Engine
 from multibody.integration.level import for_small_peaks
 from reference.problem import Outcome, Scene, load_scene
@@ -25,68 +21,17 @@ def strong(**tables: Any) -> Scene:
     return changed(load_scene("fig3-I"), excitation=load, **tables)
 
 
-def linked(period: float, **tables: Any) -> Scene:
-    return strong(bodies=[{"mass": 1.0}, {"mass": 1.0, "period": [period, 0.8 * period]}], **tables)
-
-
-@pytest.fixture
-def done(monkeypatch: pytest.MonkeyPatch) -> list[EngineRun]:
-    """The adaptive runs of a test."""
-    ran: list[EngineRun] = []
-
-    def kept(*given: Any, **more: Any) -> EngineRun:
-        ran.append(run_adaptively(*given, **more))
-        return ran[-1]
-
-    monkeypatch.setattr(one_run, "run_adaptively", kept)
-    return ran
-
-
-@pytest.mark.long  # half a minute of compiling the independent equations
-def test_an_answer_beyond_the_tolerance_is_the_last_exact_one() -> None:
-    """A link of 1000 s leaves the body 5e-5 g: stiffer contacts round by more, and the last level knew nothing."""
-    scene = strong(duration=3.0).with_values({"bodies.1.period": [1e3, 800.0]})
-    engine = multibody.amplification(scene, [(2.0, 0.7)], model="spatial", tolerance=1e-3)
-    independent = spatial_motion(scene, (2.0, 0.7), V_REG)
-    assert engine.status[0] == Outcome.TOLERANCE_NOT_MET
-    assert (engine.error[0] < 3e-3 * engine.mu[0]).all(), engine.error / engine.mu
-    assert (np.abs(engine.mu[0] - independent.mu) <= engine.error[0]).all(), (engine.mu, independent.mu, engine.error)
-
-
 @pytest.mark.parametrize(
     ("scene", "v_reg"),
     [
         (strong(duration=0.1, excitation={"decay": [1e3, 0.3]}), V_REG),
-        (linked(1e-2, duration=0.6), V_REG),  # undamped, it rings when the loading begins
+        (strong(duration=0.6).with_values({"bodies.1.period": [1e-2, 8e-3]}), V_REG),  # undamped, it rings at first
         (strong(duration=3.0), 1e-4),  # two levels agree to 0.9 of what both are off
     ],
     ids=["decay 1e3/s", "link 1e-2 s", "v_reg 1e-4 m/s"],
 )
 def test_the_error_holds_where_a_scene_is_quick(scene: Scene, v_reg: float) -> None:
     both_sides(scene, PHASE, v_reg)
-
-
-@pytest.mark.parametrize("scene", [strong(duration=1e5), linked(1e-4)], ids=["1e5 s", "link 1e-4 s"])
-def test_work_beyond_the_budget_is_refused_before_any_step(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Engine, "run", lambda *given: pytest.fail("a step was spent"))
-    result = multibody.amplification(scene, PHASE)
-    assert result.status[0] == Outcome.STEP_LIMIT
-    assert result.instant[0] == 0.0
-    assert np.isnan(result.mu).all()
-
-
-def test_levels_that_cannot_round_less_are_not_spent(done: list[EngineRun]) -> None:
-    """1e-11 m/s^2 is less than what a contact force rounds to."""
-    weak = strong(duration=0.5, excitation={"amplitudes": [[1e-11, 0.0], [0.0, 1e-11]]})
-    result = multibody.amplification(weak, PHASE)
-    assert result.status[0] == Outcome.TOLERANCE_NOT_MET
-    assert (result.error > 0.1 * result.mu).all()
-    assert len(done) <= 3, "two levels, and the compliance of the second"
-
-
-def test_what_the_compliance_leaves_is_part_of_the_error(done: list[EngineRun]) -> None:
-    both_sides(strong(duration=0.3), PHASE, tolerance=1e-9, outcome=Outcome.TOLERANCE_NOT_MET, strict=1e-8)
-    assert done[-1].work < 1.5 * done[-2].work, "the last run repeats the finest level with a softer contact"
 
 
 @pytest.mark.parametrize("model", ["translational", "spatial"])
@@ -115,8 +60,8 @@ def test_only_a_small_peak_asks_for_a_softer_contact() -> None:
 def test_a_loading_that_is_gone_sets_nothing_rocking() -> None:
     """Contacts in balance with its first value would throw the upper body about: mu_2 was ten times too large."""
     scene = load_scene("fig3-I").with_values({"duration": 1.0, "excitation.decay": [1e6, 1e6]})
-    result = multibody.amplification(scene, PHASE, "spatial", 1e-3, 1e-2)
-    expected = reference.amplification(scene, PHASE, regularization=1e-3)
+    result = multibody.amplification(scene, PHASE, "spatial", V_REG, 1e-2)
+    expected = reference.amplification(scene, PHASE, regularization=V_REG)
     assert result.status[0] == Outcome.OK
     assert result.mu[0] == pytest.approx(expected.mu[0], rel=2e-2)
 

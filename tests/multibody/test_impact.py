@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes_at_hand import assert_agree, changed, one_body, ring_that_opens
+from scenes_at_hand import assert_agree, changed, one_body
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
@@ -190,12 +190,12 @@ def test_a_contact_that_opens_again_does_not_end_the_run() -> None:
 
 def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
     """Of two bodies; the second of two supports opens, which lasts from the last instant of contact to the next."""
-    angles, model = np.array([[0.3, -0.4, 0.9], [0.1, 0.2, 0.5]]), SimpleNamespace(bodies=[[0, 1, 2], [6, 7, 8]])
-    model.bodies = np.array(model.bodies)
+    model: Any = SimpleNamespace(bodies=np.array([[0, 1, 2], [6, 7, 8]]))
+    angles = np.array([[0.3, -0.4, 0.9], [0.1, 0.2, 0.5]])
     coordinates = np.hstack([np.zeros((2, 3)), angles]).ravel()
     gap = np.array([[-1.0] * 5, [-1.0, -1.0, 1.0, 1.0, -1.0]]).T
-    motion = SimpleNamespace(coordinates=np.tile(coordinates, (5, 1)), gap=gap)
-    found = _attitude(model, motion, 0.1 * np.arange(5))  # type: ignore[arg-type]
+    motion: Any = SimpleNamespace(coordinates=np.tile(coordinates, (5, 1)), gap=gap)
+    found = _attitude(model, motion, 0.1 * np.arange(5))
     np.testing.assert_allclose(found["tilt"], np.arccos(rotation(angles[0])[2, 2]))
     np.testing.assert_array_equal(found["yaw"], [0.9] * 5)
     np.testing.assert_array_equal(found["turns"][3], angles)
@@ -204,33 +204,21 @@ def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
 
 def test_a_tower_that_overturns_ends_under_that_name() -> None:
     results = [
-        multibody.amplification(tower(0.1), [(0.3, 1.1)], model="spatial", tolerance=tolerance, full=True)
+        multibody.amplification(tower(0.1), [(0.3, 1.1)], "spatial", tolerance=tolerance, full=True)
         for tolerance in (1e-2, 1e-3)
     ]
-    assert [result.status.tolist() for result in results] == [["overturned"], ["overturned"]]
+    assert [result.status.tolist() for result in results] == [[Outcome.OVERTURNED]] * 2
     assert np.isnan(results[0].mu).all()
     assert results[0].instant[0] == pytest.approx(results[1].instant[0], rel=5e-3)
     assert 1.0 < results[0].instant[0] < 3.0
 
 
-LOAD = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [GRAVITY, 0.0]], "decay": [0.0, 0.0]}
-BRIEFLY = changed(load_scene("fig3-I"), excitation=LOAD, duration=1.0)
-
-
-@pytest.mark.parametrize(
-    ("scene", "phase", "max_work"),
-    [
-        (BRIEFLY, (0.0, 1.1), 5e4),
-        pytest.param(BRIEFLY, (math.pi, 0.7), 5e4, marks=pytest.mark.long),
-        pytest.param(tower(1.0), (0.3, 1.1), 2e6, marks=pytest.mark.long),
-        *(pytest.param(ring_that_opens(count), (0.3, 1.1), 2e6, marks=pytest.mark.long) for count in (4, 6)),
-    ],
-    ids=["falling at a turning point", "at another", "tower that hits its supports", "ring of 4", "ring of 6"],
-)
-def test_supports_that_open_leave_answers_that_agree(scene: Scene, phase: tuple[float, float], max_work: float) -> None:
+def test_supports_that_open_leave_answers_that_agree() -> None:
     """The plate falls as fast as the bodies at a turning point of its acceleration, and nothing chatters."""
+    load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [GRAVITY, 0.0]], "decay": [0.0, 0.0]}
+    scene = changed(load_scene("fig3-I"), excitation=load, duration=1.0)
     loose, strict = (
-        multibody.amplification(scene, [phase], "spatial", tolerance=tolerance, max_work=max_work)
+        multibody.amplification(scene, [(0.0, 1.1)], "spatial", tolerance=tolerance, max_work=5e4)
         for tolerance in (1e-2, 1e-3)
     )
     assert_agree(loose, strict)

@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes_at_hand import both_sides, changed, frame
+from scenes_at_hand import assert_within, both_sides, changed, frame
 
 import multibody
-import reference
 from reference.problem import Outcome, Scene, load_scene
 
 PHASES = np.array([(0.3, 1.1), (2.0, 0.7), (0.867, 4.951)])
@@ -29,15 +28,13 @@ def law(friction: dict[str, Any], **values: Any) -> dict[str, Any]:
 
 
 SCENES: dict[str, Scene] = {
-    name: load_scene(base).with_values(values)
+    name: load_scene(base).with_values({"duration": 5.0, **values})
     for name, base, values in (
         ("pressed", "fig3-I", law(PRESSED)),  # the first, as it takes long to compile
         ("pressed, plane, vertical", "fig3-I", law(PRESSED, **PLANE, **VERTICAL)),
-        ("eased", "fig3-I", law(EASED)),
         ("eased, vertical", "fig3-I", law(EASED, **VERTICAL)),
         ("heated", "fig3-I", law(HEATED)),
         ("heated, eased, vertical", "fig3-II", law({**EASED, "heating": HEATING}, **VERTICAL)),
-        ("heated, one axis", "fig3-I", law(HEATED) | {"excitation.amplitudes": [[1.0, 0.6], [0.0, 0.0]]}),
         ("heated, plane", "fig3-I", law(HEATED, **PLANE)),
         ("fig3-I", "fig3-I", {}),
         ("fig3-II", "fig3-II", {}),
@@ -45,7 +42,7 @@ SCENES: dict[str, Scene] = {
         ("fig4-viscous", "fig4-viscous", {}),
         ("three floors", "fig3-II", {"bodies": FLOORS}),
         ("vertical", "fig3-I", VERTICAL),
-        *((f"damped, {ratio:g}", "fig3-I", {"bodies.1.damping": ratio}) for ratio in (0.02, 5.0)),
+        ("damped", "fig3-I", {"bodies.1.damping": 5.0}),
         ("damped, unequal axes", "fig3-I", {"bodies.1.damping": [2.0, 0.5]}),
         ("damped, lubricated", "fig4-viscous", {"bodies.1.damping": [2.0, 0.5]}),
         *((f"lubrication {size:g}", "fig4-viscous", {"isolator.lubrication": size}) for size in (1e-3, 10.0, 1e5)),
@@ -53,24 +50,16 @@ SCENES: dict[str, Scene] = {
         ("falling", "fig3-II", law(FALLING)),
         ("rising, damped, vertical", "fig3-I", law(RISING, **VERTICAL) | {"bodies.1.damping": 0.05}),
         ("rising, one axis", "fig3-I", law(RISING) | {"excitation.amplitudes": [[1.0, 0.6], [0.0, 0.0]]}),
-        *((f"rising, rate {rate:g}", "fig3-I", law({**RISING, "rate": rate})) for rate in (1.0, 1e4, 1e6)),
-        *((f"falling, rate {rate:g}", "fig3-I", law({**FALLING, "rate": rate})) for rate in (1.0, 1e4, 1e6)),
+        *((f"rising, rate {rate:g}", "fig3-I", law({**RISING, "rate": rate})) for rate in (1.0, 1e6)),
+        ("falling, rate 1e4", "fig3-I", law({**FALLING, "rate": 1e4})),
         ("plane", "fig3-I", PLANE),
-        ("plane, oblique", "fig3-II", PLANE),
         ("plane, lubricated", "fig4-viscous", PLANE),
         ("plane, vertical", "fig3-I", {**PLANE, **VERTICAL}),
         ("plane, rising", "fig3-I", law(RISING, **PLANE)),
         ("plane, damped", "fig3-I", {**PLANE, "bodies.1.damping": 0.1}),
         ("plane, one body", "fig3-I", {**PLANE, "bodies": [{"mass": 1.0}], "excitation.scale": 3.0}),
-    )
-}
-SCENES["frame"] = frame(10.0)
-SCENES["frame on a plane"] = frame(10.0).with_values({"isolator": {"radius": math.inf, "friction": 0.05}})
-BRIEFLY = {name: scene.with_values({"duration": 5.0}) for name, scene in SCENES.items()} | {
-    name: load_scene(base).with_values(values)
-    for name, base, values in (
-        ("pair", "synthetic-pair", {"excitation.scale": 0.5}),
-        ("triple", "synthetic-triple", {}),
+        ("pair", "synthetic-pair", {"excitation.scale": 0.5, "duration": 20.0}),
+        ("triple", "synthetic-triple", {"duration": 16.0}),
         ("pair on a plane", "synthetic-pair", {**PLANE, "duration": 4.0}),
         ("pair, falling", "synthetic-pair", law(FALLING, duration=3.0)),
         ("pair, heated", "synthetic-pair", law(HEATED, duration=3.0)),
@@ -79,39 +68,17 @@ BRIEFLY = {name: scene.with_values({"duration": 5.0}) for name, scene in SCENES.
         ("moving plate, plane", "fig3-I", {"duration": 4.0, **PLANE}),
     )
 }
+SCENES["frame"] = frame(5.0)
+SCENES["frame on a plane"] = frame(5.0).with_values({"isolator": {"radius": math.inf, "friction": 0.05}})
 
 
-def compare(scene: Scene, phases: Any, **asked: Any) -> tuple[reference.Amplification, reference.Amplification]:
-    engine, equations = both_sides(scene, phases, V_REG, **asked)
-    assert (engine.error <= 1e-3 * engine.mu).all()
-    if scene.flat:
-        np.testing.assert_allclose(engine.displacement, equations.displacement, rtol=5e-3)
-    return engine, equations
-
-
-@pytest.mark.parametrize("name", BRIEFLY)
-def test_every_factor_lies_within_its_error(name: str) -> None:
-    loading = "plate" if "moving" in name else "inertial"
-    compare(BRIEFLY[name], PHASES if name in ("fig3-I", "plane") else PHASES[:1], loading=loading)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("scale", [0.2, 0.7, 1.0, 1.4, 2.0, 2.6])
-@pytest.mark.parametrize("name", ["synthetic-pair", "synthetic-triple"])
-def test_factors_lie_within_their_errors_at_any_scale(name: str, scale: float) -> None:
-    compare(load_scene(name).with_values({"excitation.scale": scale}), PHASES[:1])
-
-
-@pytest.mark.long
 @pytest.mark.parametrize("name", SCENES)
-def test_64_points_of_a_surface_lie_within_their_errors(name: str) -> None:
-    strict = 1e-5 if "heated" in name else 1e-6  # one of the 64 misses 1e-6
-    compare(SCENES[name], np.random.default_rng(7).uniform(0.0, 2.0 * np.pi, (64, 2)), strict=strict)
-
-
-def test_a_locked_platform_moves_with_the_ground() -> None:
-    scene = load_scene("fig4-viscous").with_values({"isolator.lubrication": 1e7, "duration": 5.0})
-    np.testing.assert_allclose(multibody.amplification(scene, PHASES).mu[:, 0], 1.0, rtol=1e-3)
+def test_every_factor_lies_within_its_error(name: str) -> None:
+    phases, loading = PHASES if name in ("fig3-I", "plane") else PHASES[:1], "plate" if "moving" in name else "inertial"
+    engine, equations = both_sides(SCENES[name], phases, V_REG, loading=loading)
+    assert (engine.error <= 1e-3 * engine.mu).all()
+    if SCENES[name].flat:
+        np.testing.assert_allclose(engine.displacement, equations.displacement, rtol=5e-3)
 
 
 LEVEL = {"bodies": [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}], "duration": 2.0}
@@ -134,9 +101,7 @@ def test_supports_have_the_friction_of_their_own_speed_and_load(values: dict[str
     spatial, moving = (
         multibody.amplification(scene, PHASES[:1], model, full=True) for model in ("spatial", "translational")
     )
-    assert spatial.status.tolist() == [Outcome.OK]
-    allowed = apart * moving.mu if apart else spatial.error + moving.error
-    assert (np.abs(spatial.mu - moving.mu) <= allowed).all()
+    assert_within(spatial, moving.mu, apart * moving.mu if apart else moving.error)
 
 
 def test_a_contact_made_stiff_by_a_small_v_reg_is_solved() -> None:

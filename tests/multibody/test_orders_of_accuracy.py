@@ -11,28 +11,20 @@ from turning_platform import turning
 import multibody
 from reference.problem import GRAVITY, State
 
-SPATIAL = {"isolator.supports": 3, "isolator.ring": 0.5, "isolator.sphere_radius": 0.02, "bodies.0.height": 0.0}
+SPATIAL = {"isolator.supports": 3, "isolator.ring": 0.5, "isolator.sphere_radius": 0.02}
+SPATIAL |= {"bodies.0.height": 0.0, "bodies.0.size": [1.0, 1.0, 0.2]}
 
 
 @pytest.mark.parametrize("integrator", ["generalized alpha", "trapezoidal"])
 @pytest.mark.parametrize(
-    ("model", "masses", "stiffness", "damping", "changes"),
-    [
-        ("translational", (2.0, 1.0, 0.5), (80.0, 40.0), 0.05, {}),
-        ("spatial", (1.0,), (), None, {**SPATIAL, "bodies.0.size": [1.0, 1.0, 0.2]}),
-    ],
+    ("model", "chain_of", "changes"),
+    [("translational", ((2.0, 1.0, 0.5), (80.0, 40.0), 0.05), {}), ("spatial", ((1.0,), (), None), SPATIAL)],
 )
 def test_a_motion_without_stops_is_of_second_order(
-    model: str,
-    masses: Any,
-    stiffness: Any,
-    damping: float | None,
-    changes: dict[str, Any],
-    integrator: str,
-    within: Callable[[float, float], None],
+    model: str, chain_of: Any, changes: dict[str, Any], integrator: str, within: Callable[[float, float], None]
 ) -> None:
     """Circles over friction, exact: the error falls by four where the step is halved, to 0.03 of the order."""
-    motion = turning(masses, stiffness, damping, 1.0)
+    motion = turning(*chain_of, 1.0)  # of these masses, stiffnesses and damping
     scene = motion.scene.with_values(changes)
     tight: dict[str, Any] = {"newton": 1e-8, "integrator": integrator, "initial": motion.initial}
     runs = [multibody.single_run(scene, motion.phase, model, step=step, **tight) for step in (4e-3, 2e-3, 1e-3)]

@@ -15,10 +15,7 @@ MAX_WORK = 6e4  # of a point: longer ones are refused
 BRIEF = load_scene("fig4-viscous").with_values({"duration": 0.01})
 THREE_SECONDS = load_scene("fig3-I").with_values({"duration": 3.0})
 DROWNED = [
-    *(
-        (BRIEF, size, None, tolerance)
-        for size, tolerance in ((1e-12, 1e-3), (1e-9, 1e-3), (3e-7, 1e-2), (1e-120, 1e-2))
-    ),
+    *((BRIEF, size, None, asked) for size, asked in ((1e-12, 1e-3), (1e-9, 1e-3), (3e-7, 1e-2), (1e-120, 1e-2))),
     *((THREE_SECONDS, size, 1e-3, 1e-2) for size in (1e-14, 1e-13)),
 ]
 
@@ -45,17 +42,10 @@ def test_a_loading_that_rounding_drowns_has_an_error_that_covers(
     assert assert_not_contradicted(Case(scene.with_amplitude(size), (0.3, 1.1), v_reg, tolerance)) == BEYOND
 
 
-@pytest.mark.parametrize("first", range(0, 20, 10))
-def test_no_random_value_is_contradicted_by_the_equations(first: int) -> None:
-    answered = [assert_not_contradicted(random_case(seed, WEAKEST, STRONGEST)) for seed in range(first, first + 10)]
-    assert sum(map(bool, answered)) >= 5
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("first", range(1000, 1300, 100))
-def test_no_value_of_300_scenes_is_contradicted(first: int) -> None:
-    answered = [assert_not_contradicted(random_case(seed, WEAKEST, STRONGEST)) for seed in range(first, first + 100)]
-    assert sum(map(bool, answered)) >= 60
+@pytest.mark.parametrize("seeds", [range(20), pytest.param(range(1000, 1300), marks=pytest.mark.long)], ids=len)
+def test_no_random_value_is_contradicted_by_the_equations(seeds: range) -> None:
+    answered = [assert_not_contradicted(random_case(seed, WEAKEST, STRONGEST)) for seed in seeds]
+    assert sum(map(bool, answered)) >= 0.5 * len(seeds)
 
 
 @pytest.mark.parametrize("mass", [3.0, 0.1])

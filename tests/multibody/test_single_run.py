@@ -1,4 +1,4 @@
-"""One run at a level or at a constant step is what `amplification` and `trajectory` are made of."""
+"""One run at a level or at a constant step, of which `amplification` and `trajectory` are made; adaptive steps."""
 
 from dataclasses import replace
 
@@ -54,6 +54,17 @@ def test_every_integrator_finds_the_motion_at_a_constant_step(integrator: str) -
     answer = multibody.amplification(SCENE, [PHASE])
     assert len(run.time) >= 5001, "the engine may halve steps, never lengthen them"
     np.testing.assert_allclose(run.peak / ground_peak(SCENE, [PHASE])[0], answer.mu[0], rtol=5e-3)
+
+
+def test_steps_are_small_at_stops_and_large_elsewhere() -> None:
+    v_reg = 1e-3
+    motion = multibody.trajectory(changed(SCENE, duration=6.0), (2.0, 0.7), regularization=v_reg)
+    step, slip = np.diff(motion.time), motion.extra["slip_speed"][:-1, 0]
+    change = np.linalg.norm(np.diff(motion.velocity[:, 0], axis=0), axis=-1)
+    # the bound at level 1 is 0.07 of the slip speed, met at the row before and exceeded at most by what one step adds
+    assert (change / np.maximum(slip, v_reg)).max() < 0.14
+    assert step.min() < step.max() / 10.0
+    assert np.median(step) > 0.9 * step.max()
 
 
 def test_an_unstable_run_is_no_answer() -> None:

@@ -10,7 +10,6 @@ import multibody
 from multibody.integration.adaptive import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
-from reference.measures import demands
 from reference.problem import GRAVITY, Scene, State, ground_acceleration, load_scene
 
 
@@ -23,15 +22,9 @@ OPENING = changed(load_scene("fig3-I"), duration=4.0, isolator={"ring": 0.3})  #
 
 
 @pytest.mark.long  # a minute of compiling the independent equations
-@pytest.mark.parametrize(
-    ("scene", "phase"),
-    [
-        *((towers(count), (2.0, 0.7)) for count in (3, 4)),
-        *((OPENING, at) for at in ((2.0, 0.7), (0.3, 1.1), (4.0, 5.5))),
-    ],
-)
-def test_factors_agree_with_constrained_newton_euler_equations(scene: Scene, phase: tuple[float, float]) -> None:
-    assert_agrees_with_newton_and_euler(scene, phase)
+@pytest.mark.parametrize("scene", [towers(3), towers(4), OPENING], ids=["3 supports", "4", "one that opens"])
+def test_factors_agree_with_constrained_newton_euler_equations(scene: Scene) -> None:
+    assert_agrees_with_newton_and_euler(scene, (2.0, 0.7))
 
 
 @pytest.mark.parametrize("supports", [3, 4, 6])
@@ -94,12 +87,3 @@ def test_a_start_without_weight_is_in_balance_at_every_level(supports: int) -> N
         pair = PhasePair(scene, model, np.zeros(2))
         run = pair.at_level(level, Budget(1e5), stop=1e-3 * math.sqrt(level.penetration), keep=True)
         assert np.abs(run.chunks[0].accelerations[0]).max() < 1e-2
-
-
-@pytest.mark.long
-def test_the_torsion_has_its_error_where_supports_open() -> None:
-    """That of rigid_chain.py. Which support is hit first depends on rounding: two levels agreed by chance."""
-    scene = changed(load_scene("fig3-I"), duration=2.7, isolator={"ring": 0.3})
-    torsion = demands(multibody.trajectory(scene, (2.0, 0.7), "spatial")).torsion
-    assert torsion is not None
-    assert abs(torsion[0].value - 4.424657e-3) <= torsion[0].error < 1e-2 * torsion[0].value

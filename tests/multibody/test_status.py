@@ -11,6 +11,7 @@ import multibody
 import reference
 from multibody import surface
 from multibody.integration import refine
+from multibody.integration.constant_step import Engine
 from multibody.integration.level import levels_of
 from multibody.models.assembly import assemble
 from reference.problem import GRAVITY, Outcome, Scene, load_scene
@@ -92,18 +93,6 @@ def test_a_travel_close_to_the_largest_displacement_is_settled() -> None:
             assert result.status.tolist() == [outcome]
     wide = multibody.amplification(strong(0.2, 8.0), [PHASE])
     np.testing.assert_array_equal([wide.mu, wide.error], [free.mu, free.error])
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("travel", [0.05, 0.1])
-def test_both_sides_end_the_same_motions_on_64_phases(travel: float) -> None:
-    scene, phases = strong(travel), np.random.default_rng(5).uniform(0.0, 2.0 * np.pi, (64, 2))
-    engine = multibody.amplification(scene, phases)
-    equations = reference.amplification(scene, phases, regularization=1e-3)
-    np.testing.assert_array_equal(engine.status, equations.status)
-    ok = engine.status == Outcome.OK
-    assert np.nanmax(np.abs(engine.instant - equations.instant), initial=0.0) < 1e-3
-    assert (np.abs(engine.mu - equations.mu) <= engine.error + equations.error)[ok].all()
 
 
 def test_one_lost_point_does_not_take_the_others_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -194,8 +183,9 @@ def test_a_refusal_says_what_is_needed_and_what_helps() -> None:
         assert (refused != "") == (duration > 1.563)
 
 
-def test_a_refusal_depends_on_the_model_alone() -> None:
+def test_a_refusal_depends_on_the_model_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """40 coordinates: six of each of six bodies, and one of each of four supports that share the load."""
+    monkeypatch.setattr(Engine, "run", lambda *given: pytest.fail("a step was spent"))
     for tolerance in (1e-5, 1e-3, 1e-1):
         options: dict[str, Any] = {"model": "spatial", "tolerance": tolerance, "max_work": 5e3}
         refused = multibody.refusal(frame(20.0), **options)
@@ -205,10 +195,6 @@ def test_a_refusal_depends_on_the_model_alone() -> None:
         assert np.isnan(point.mu).all()
 
 
-@pytest.mark.parametrize(
-    "scene",
-    [load_scene("fig3-I"), frame(30.0, 6, 0.17), frame(30.0, 20, 0.17), frame(60.0, 6, 0.02), frame(60.0, 20, 0.02)],
-    ids=["fig3-I", "6 floors", "20 floors", "6 stiff floors", "20 stiff floors"],
-)
+@pytest.mark.parametrize("scene", [load_scene("fig3-I"), frame(60.0, 20, 0.02)], ids=["fig3-I", "20 stiff floors"])
 def test_what_is_tried_is_not_refused(scene: Scene) -> None:
     assert [multibody.refusal(scene, model) for model in ("translational", "spatial")] == ["", ""]

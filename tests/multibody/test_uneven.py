@@ -175,7 +175,6 @@ def test_damping_of_supports_is_critical_unless_stated() -> None:
     np.testing.assert_array_equal(absent, critical)
     assert (absent != half).any()
     for values, rule in (
-        ({"support_stiffness": None, "support_damping": 0.5}, "support_stiffness"),
         ({"restitution": 0.5}, "remove one of the two keys"),
         ({"support_stiffness": 10.0}, r"isolator\.support_stiffness.*gives way"),
     ):
