@@ -4,8 +4,8 @@ from register import Mistake
 
 INTEGRATION, MODELS = "multibody/integration/", "multibody/models/"
 TESTS = "tests/multibody/"
-COVERAGE = TESTS + "test_coverage_of_errors.py"
 RANDOM = TESTS + "test_random_loadings.py::"
+COVERAGE = RANDOM + "test_errors_cover_the_truth_and_are_not_far_too_large"
 UNEVEN = TESTS + "test_uneven.py::"
 BARS = TESTS + "test_bars_in_space.py::"
 SPRINGS = TESTS + "test_springs_of_supports.py::"

@@ -60,13 +60,9 @@ def on_the_ground(scene: Scene, force: float = 0.0) -> tuple[Any, Any, int]:
     return container, mbs, node
 
 
-def static_settings() -> Any:
-    settings = exudyn.SimulationSettings()
-    settings.solution.file.write = False
-    settings.staticSolver.verboseMode = 0
-    settings.staticSolver.newton.relativeTolerance = 1e-9
-    settings.staticSolver.numberOfLoadSteps = 4
-    return settings
+STATIC = exudyn.SimulationSettings()
+STATIC.solution.file.write, STATIC.staticSolver.verboseMode = False, 0
+STATIC.staticSolver.newton.relativeTolerance, STATIC.staticSolver.numberOfLoadSteps = 1e-9, 4
 
 
 @pytest.mark.parametrize("load_effect", ["softening", "shortening"])
@@ -74,7 +70,7 @@ def static_settings() -> Any:
 def test_a_body_on_bars_has_the_frequencies_of_beams_under_load(name: str, load_effect: str) -> None:
     scene = scene_of(name, load_effect, torsional_stiffness=0.7)
     _, mbs, _ = on_the_ground(scene)
-    values, _ = mbs.ComputeODE2Eigenvalues(static_settings())
+    values, _ = mbs.ComputeODE2Eigenvalues(STATIC)
     frequencies = np.sqrt(values) / units_of(scene).time
     for expected in tower_of(scene).frequencies():
         assert np.abs(frequencies / expected - 1.0).min() < 1e-5
@@ -169,6 +165,6 @@ def test_a_body_on_shortening_bars_sinks_as_they_sway() -> None:
     """At a small load, of bars of 1 m so stiff in tension that nothing else lets it sink."""
     scene = scene_of("a hundredth of the buckling load", "shortening", spread=3.0, axial_stiffness=1e9)
     _, mbs, node = on_the_ground(scene, force=0.5)
-    mbs.SolveStatic(static_settings())
+    mbs.SolveStatic(STATIC)
     sway, _, sunk, *_ = units_of(scene).length * mbs.GetNodeOutput(node, exudyn.OutputVariableType.Displacement)
     assert sunk == pytest.approx(-0.6 * sway**2, rel=0.01)

@@ -1,4 +1,4 @@
-"""Runs that stop once nothing can come: no peak, displacement or outcome is lost by it, on random scenes."""
+"""Runs that stop once nothing can come lose no peak, displacement or outcome; what is read from their chunks."""
 
 import math
 from types import SimpleNamespace
@@ -11,6 +11,7 @@ from random_buildings import random_building, under_a_record
 import multibody
 from multibody.integration import look_ahead
 from multibody.integration.adaptive import Budget, EngineRun, Place, go_on
+from multibody.integration.chunk import first_ends, largest_distance, last_near
 from multibody.integration.level import Level
 from multibody.integration.level_runs import _settled
 from multibody.integration.one_run import PhasePair
@@ -18,6 +19,7 @@ from multibody.integration.peak import Peaks
 from multibody.integration.refine import refine
 from multibody.models.assembly import assemble
 from multibody.models.units import units_of
+from reference.measures.demands import largest_displacement
 from reference.problem import Outcome, Scene, load_scene
 
 TOLERANCE = 3e-3
@@ -59,6 +61,34 @@ def test_no_peak_is_lost_by_stopping_early(model: str, seeds: range, longest: fl
             assert early.finest.max_displacement == pytest.approx(whole.finest.max_displacement, rel=TOLERANCE)
         stopped += early.finest.work < whole.finest.work
     assert stopped > 0
+
+
+STEPS = 57
+DRAW = np.random.default_rng(5)
+ACCELERATIONS = DRAW.normal(size=(STEPS, 11))[:, 1:9]  # columns of a wider table, as the engine's are
+CONTACT = DRAW.normal(size=(STEPS, 12))  # of three
+
+
+@pytest.mark.parametrize(("rim", "share"), [(0.5, 0.5), (1.5, 0.99), (100.0, 1.01)])
+def test_the_first_and_last_rows_of_what_ends_a_run_are_found(rim: float, share: float) -> None:
+    at_rim, is_open = ACCELERATIONS[:, 2] >= rim, (CONTACT[:, 0::4] >= 0.0).all(axis=1)
+    expected = tuple(int(np.append(holds, True).argmax()) for holds in (at_rim, is_open))
+    assert first_ends(ACCELERATIONS, 2, rim, CONTACT) == expected
+    assert first_ends(ACCELERATIONS, 2, rim, -np.abs(CONTACT))[1] == STEPS
+    size, distance = np.abs(ACCELERATIONS[:, :2]), np.abs(ACCELERATIONS[:, 3])
+    sizes, far = share * size.max(axis=0), share * float(distance.max())
+    near = np.flatnonzero((size >= sizes).any(axis=1) | (distance >= far))
+    assert last_near(size, sizes, distance, far) == (near[-1] if len(near) else -1)
+
+
+def test_the_largest_distance_is_that_between_the_instants_too() -> None:
+    axes, between = np.array([0, 1]), 0
+    for _ in range(20):
+        time, (coordinates, velocities) = np.cumsum(DRAW.random(STEPS)), DRAW.normal(size=(2, STEPS, 8))
+        expected = largest_displacement(time, coordinates[:, axes], velocities[:, axes])
+        assert largest_distance(time, coordinates, velocities, axes) == expected
+        between += expected > 1.001 * np.linalg.norm(coordinates[:, axes], axis=1).max()
+    assert between > 2
 
 
 def test_full_runs_go_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -115,7 +145,6 @@ def test_a_look_ahead_ends_at_all_that_is_asked_for(changes: dict[str, Any]) -> 
 
 @pytest.mark.parametrize(("travel", "load", "stop"), [(1.0, 1.0, 2.02), (0.5, 1.0, math.inf), (1.0, 0.09, math.inf)])
 def test_a_run_close_to_its_travel_or_to_opening_goes_to_the_end(travel: float, load: float, stop: float) -> None:
-    """Others stop 20 of their largest steps after the last large value."""
     run = EngineRun(Peaks(1, math.inf), math.inf, max_displacement=0.499, min_load=load, settled=2.0)
     model: Any = SimpleNamespace(rim=1.0, travel=travel)
     assert _settled(run, model, 1e-3) == pytest.approx(stop)

@@ -167,7 +167,6 @@ def test_the_largest_value_behind_an_impact_converges() -> None:
 
 
 def tower(ring: float) -> Scene:
-    """A tower of two bodies on three supports, shaken by 4 m/s^2."""
     isolator = {"isolator.friction": 0.05, "isolator.supports": 3, "isolator.ring": ring}
     load = {"excitation.amplitudes": [[4.0, 0.0], [0.0, 4.0]], "excitation.decay": [0.33, 0.27]}
     return load_scene("fig3-I").with_values({"duration": 3.0, **isolator, **load})

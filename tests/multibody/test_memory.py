@@ -1,43 +1,29 @@
-"""What a call of the engine allocates is freed when it returns."""
+"""What a model of the engine allocates is freed with the model, and not before."""
 
 import gc
-import subprocess
-import sys
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
-from multibody.models.assembly import assemble
+import multibody
+from multibody.models import assembly
+from multibody.models.engine import reset_with
 from reference.problem import load_scene
 
-ALLOWED = 0.01  # MB per call: allocators keep 1 MB for a while; a system that is never reset keeps 0.05 and more
-SCRIPT = """
-import gc, os, multibody
-from reference.problem import load_scene
 
-scene, pair = (load_scene(name).with_values({"duration": 0.02}) for name in ("fig3-I", "synthetic-pair"))
-
-def resident_after(calls):
-    for _ in range(calls):
-        multibody.amplification(scene, [(0.3, 1.1)], loading="plate")
-        multibody.trajectory(scene, (0.3, 1.1), model="spatial")
-        multibody.amplification(pair, [(0.3, 1.1)])
+@pytest.mark.parametrize("model", ["translational", "spatial"])
+def test_the_engine_s_container_is_reset_with_the_last_copy_of_a_model(
+    model: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    freed: list[bool] = []
+    reset = SimpleNamespace(Reset=lambda: freed.append(True))
+    monkeypatch.setattr(assembly, "reset_with", lambda owner, container: reset_with(owner, reset))
+    scene = load_scene("fig3-I").with_values({"duration": 0.02})
+    copied = replace(assembly.assemble(scene, model, 1e-3), allows_liftoff=True)
     gc.collect()
-    return int(open("/proc/self/statm").read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
-
-before = resident_after(60)
-print((resident_after(240) - before) / 240)
-"""
-
-
-@pytest.mark.long
-@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-def test_calls_of_the_engine_do_not_grow_the_memory() -> None:
-    done = subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=True)
-    assert float(done.stdout) < ALLOWED
-
-
-def test_a_copy_of_a_model_outlives_the_model() -> None:
-    copied = replace(assemble(load_scene("fig3-I"), "translational", 1e-3), allows_liftoff=True)
+    assert (len(freed), copied.coordinates > 0) == (0, True)
+    del copied
+    multibody.trajectory(scene, (0.3, 1.1), model)
     gc.collect()
-    assert copied.coordinates == 8, "three displacements and rotations of the platform, two of the second body"
+    assert len(freed) == 2, "the copy, and the model of the call"

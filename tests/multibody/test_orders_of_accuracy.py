@@ -33,10 +33,7 @@ def test_a_motion_without_stops_is_of_second_order(
 
 
 def test_a_stop_keeps_the_second_order() -> None:
-    """
-    The law is continuous: linear below v_reg, where the slide ends exponentially. Where the step falls on the corner
-    scatters the error, so that the order is fitted to 13 steps from 10 to 1.25 ms.
-    """
+    """Below v_reg a slide ends exponentially. The order is fitted to 13 steps: the corner's place in one scatters."""
     friction, speed, creep, duration = 0.1, 0.5, 1e-2, 1.0
     scene = chain(np.inf, friction, amplitudes=((0.0, 0.0), (0.0, 0.0)), duration=duration)
     state = State(np.zeros((1, 2)), np.array([[speed, 0.0]]))
