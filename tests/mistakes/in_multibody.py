@@ -231,7 +231,7 @@ MISTAKES = (
             (TESTS + "test_bars_in_space.py::test_levels_on_other_springs_show_no_rate_of_convergence",)),
     Mistake("multibody/motion.py", "contact_force=support_force.sum(axis=1)", "contact_force=support_force.max(axis=1)",
             "The largest force of a support is called that of the contact.",
-            (TESTS + "test_spatial.py::test_the_overturning_moment_is_that_of_inertia",)),
+            (NUMBERS + "test_supports_that_press_are_not_lifted",)),
     Mistake("multibody/animate.py", "    built.ground.set_phase(phase)\n", "",
             "The viewer shows the motion at phases zero.",
             (TESTS + "test_animate.py::test_the_viewer_shows_the_whole_run_of_the_model_asked_for",)),

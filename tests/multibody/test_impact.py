@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 from scenes_at_hand import assert_agree, changed, one_body
-from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import multibody
@@ -101,27 +100,24 @@ def bouncing(restitution: float, push: float = 15.0, duration: float = 0.45, **i
     return changed(scene, isolator=supports, bodies=[{"mass": 1.0, "height": 0.3, "size": [1.0, 1.0, 0.2]}])
 
 
+def rise(t: Any, begin: float, speed: float, push: float = 15.0, phase: float = 0.0) -> Any:
+    """Height of a ball thrown at `begin` from a plate that moves by push cos(PACE t + phase), from it, and its rate."""
+    aloft, turned, start = t - begin, PACE * t + phase, PACE * begin + phase
+    plate = push / PACE**2 * (np.cos(turned) - math.cos(start) + math.sin(start) * PACE * aloft)
+    rate = speed - GRAVITY * aloft - push / PACE * (np.sin(turned) - math.sin(start))
+    return speed * aloft - 0.5 * GRAVITY * aloft**2 + plate, rate
+
+
 def flights(restitution: float, end: float, push: float = 15.0, phase: float = 0.0) -> list[tuple[float, float]]:
-    """Start and end of the flights, up to `end`, of a ball on a plate that moves by push cos(PACE t + phase)."""
-
-    def fall(t: float) -> float:  # acceleration of the ball against the plate
-        return -GRAVITY - push * math.cos(PACE * t + phase)
-
+    """Start and end of the flights of the ball that begin before `end`."""
     start, speed = (math.acos(-GRAVITY / push) - phase) / PACE, 0.0
     done: list[tuple[float, float]] = []
-    while start < end:
-        begin, initial = start, speed
-
-        def height(t: float, begin: float = begin, initial: float = initial) -> float:
-            return initial * (t - begin) + quad(lambda s: (t - s) * fall(s), begin, t, epsabs=1e-14)[0]
-
-        grid = begin + np.linspace(1e-3, 0.4, 400)
-        first = next(k for k, t in enumerate(grid) if height(t) < 0.0)
-        start = float(brentq(height, grid[first - 1], grid[first], xtol=1e-13))
-        done.append((begin, start))
-        speed = -restitution * (initial + quad(fall, begin, start, epsabs=1e-14)[0])
-        if not speed:
-            break
+    while start < end and (speed > 0.0 or not done):
+        flight, grid = (start, speed, push, phase), start + np.linspace(1e-3, 0.4, 400)
+        first = int((rise(grid, *flight)[0] < 0.0).argmax())
+        landing = float(brentq(lambda *given: rise(*given)[0], grid[first - 1], grid[first], flight, 1e-13))
+        done.append((start, landing))
+        start, speed = landing, -restitution * float(rise(landing, *flight)[1])
     return done
 
 
@@ -134,11 +130,7 @@ def test_flights_begin_and_end_when_free_fall_says() -> None:
         # the contact follows the force within the square root of its penetration, some 1e-4 s
         np.testing.assert_allclose(intervals[0, 0], expected[0][0], atol=2e-4)
         np.testing.assert_allclose(intervals[:, 1], [end for _, end in expected], atol=3e-5)
-    start, end = expected[0]
-    aloft = np.linspace(0.0, end - start, 10_001)  # s since its start: the plate falls away faster than the platform
-    sine, cosine = math.sin(PACE * start), math.cos(PACE * start)
-    plate = 15.0 / PACE**2 * (np.cos(PACE * (start + aloft)) - cosine) + 15.0 / PACE * sine * aloft
-    highest = (plate - 0.5 * GRAVITY * aloft**2).max()
+    highest = rise(np.linspace(*expected[0], 10_001), expected[0][0], 0.0)[0].max()
     np.testing.assert_allclose(motion.extra["uplift"].max(axis=0), highest, rtol=1e-3)
 
 

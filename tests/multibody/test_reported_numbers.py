@@ -110,6 +110,7 @@ def test_supports_that_press_are_not_lifted() -> None:
     motion = multibody.trajectory(BRIEF, PHASE, "spatial")
     assert motion.support_force.min() > 0.0
     assert not motion.extra["uplift"].any()
+    np.testing.assert_allclose(motion.contact_force, motion.support_force.sum(axis=1), rtol=1e-12)
     lubricated = load_scene("fig4-viscous").with_values({"duration": 0.5})
     assert multibody.trajectory(lubricated, PHASE).stick == [], "only dry friction sticks"
 
