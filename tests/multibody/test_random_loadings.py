@@ -10,6 +10,7 @@ from scenes_at_hand import changed
 
 import multibody
 import reference
+from multibody.integration.level import for_small_peaks
 from reference.problem import Outcome, load_scene
 
 WEAKEST, STRONGEST = 1e-15, 1e3  # m/s^2
@@ -51,6 +52,18 @@ def assert_not_contradicted(case: Case, max_work: float = MAX_WORK) -> Outcome |
 def test_a_loading_that_rounding_drowns_has_an_error_that_covers(weak: tuple[Any, ...]) -> None:
     scene, size, *law_and_tolerance = weak
     assert assert_not_contradicted(Case(scene.with_amplitude(size), (0.3, 1.1), *law_and_tolerance)) == BEYOND
+
+
+def test_only_a_small_peak_asks_for_a_softer_contact() -> None:
+    levels = multibody.levels(load_scene("fig3-I"), tolerance=1e-3)
+    assert [for_small_peaks(level, 0.2, 1e-3) for level in levels] == levels
+    softer = for_small_peaks(levels[3], 1e-6, 1e-3)
+    assert softer.rounding == pytest.approx(0.25 * 1e-3 * 1e-6)
+    assert softer.residual == pytest.approx(softer.rounding)
+    assert for_small_peaks(levels[3], 1e-20, 1e-3).penetration == pytest.approx(1e-4), "the softest that is tried"
+    narrow, wide = (load_scene("fig3-I").with_values({"isolator.ring": ring}) for ring in (2.0, 6.0))
+    rounding = [multibody.levels(scene, "spatial")[0].rounding_moment for scene in (narrow, wide)]
+    assert rounding[1] / rounding[0] == pytest.approx(9.0), "a force rounds by a place, its moment by that squared"
 
 
 @pytest.mark.parametrize("seeds", [range(20), pytest.param(range(1000, 1300), marks=pytest.mark.long)], ids=len)

@@ -1,4 +1,4 @@
-"""The spatial model: an independent calculation, conservation, statics of the supports, liftoff."""
+"""The spatial model: an independent calculation, rest, and the start in balance."""
 
 import math
 from typing import Any
@@ -8,6 +8,7 @@ import pytest
 from scenes_at_hand import assert_agrees_with_newton_and_euler, changed
 
 import multibody
+import reference
 from multibody.integration.adaptive import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
@@ -61,3 +62,12 @@ def test_a_start_without_weight_is_in_balance_at_every_level(supports: int) -> N
         pair = PhasePair(scene, model, np.zeros(2))
         run = pair.at_level(level, Budget(1e5), stop=1e-3 * math.sqrt(level.penetration), keep=True)
         assert np.abs(run.chunks[0].accelerations[0]).max() < 1e-2
+
+
+def test_a_loading_that_is_gone_sets_nothing_rocking() -> None:
+    """Contacts in balance with its first value would throw the upper body about: mu_2 was ten times too large."""
+    scene = load_scene("fig3-I").with_values({"duration": 1.0, "excitation.decay": [1e6, 1e6]})
+    result = multibody.amplification(scene, [(0.3, 1.1)], "spatial", tolerance=1e-2)
+    expected = reference.amplification(scene, [(0.3, 1.1)], regularization=1e-3)
+    assert result.status[0] == "ok"
+    assert result.mu[0] == pytest.approx(expected.mu[0], rel=2e-2)

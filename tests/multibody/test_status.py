@@ -110,6 +110,19 @@ def test_an_answer_without_another_level_says_nothing_of_its_error() -> None:
     assert np.isnan(one.peaks).all()
 
 
+def test_iterations_in_vain_are_work_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
+    ran = Engine.run
+
+    def vain(self: Engine, *given: Any) -> Any:
+        motion = ran(self, *given)
+        self.iterations = 10**6
+        return motion
+
+    monkeypatch.setattr(Engine, "run", vain)
+    result = multibody.amplification(load_scene("fig3-I").with_values({"duration": 0.5}), [PHASE])
+    assert result.status[0] == Outcome.STEP_LIMIT
+
+
 def test_a_tolerance_out_of_reach_gives_the_error_reached() -> None:
     scene = changed(load_scene("fig3-I"), duration=0.5, bodies=[{"mass": 1.0}])
     result = multibody.amplification(scene, [PHASE], tolerance=1e-9)
