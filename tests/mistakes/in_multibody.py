@@ -145,7 +145,7 @@ MISTAKES = (
             (NUMBERS + "test_a_tower_tips_where_its_center_is_above_its_edge",)),
     Mistake(MODELS + "spatial.py", "ratio = DAMPING_RATIO if stated is None else stated", "ratio = DAMPING_RATIO",
             "The stated damping of supports is not read.",
-            (UNEVEN + "test_damping_of_supports_is_critical_unless_stated", TESTS + "test_elastic_bearings.py")),
+            (UNEVEN + "test_damping_of_supports_is_critical_unless_stated",)),
     Mistake(MODELS + "spatial.py", "restitution = scene.isolator.restitution or 0.0", "restitution = 0.0",
             "The restitution of supports is not read.",
             (TESTS + "test_sliding_plate.py::test_a_platform_thrown_up_moves_as_flights_and_impacts_say", IMPACT)),

@@ -1,12 +1,16 @@
-"""One run at a level or at a constant step, of which `amplification` and `trajectory` are made; adaptive steps."""
+"""One run at a level or at a constant step, of which `amplification` and `trajectory` are made; what it leaves."""
 
+import gc
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scenes_at_hand import changed
 
 import multibody
+from multibody.models import assembly
+from multibody.models.engine import reset_with
 from reference.problem import GRAVITY, Outcome, State, ground_peak, load_scene
 
 PHASE = (0.3, 1.1)
@@ -67,3 +71,18 @@ def test_steps_are_small_at_stops_and_large_elsewhere() -> None:
 
 def test_an_unstable_run_is_no_answer() -> None:
     assert multibody.single_run(SCENE, PHASE, step=2e-3, integrator="velocity Verlet").status != Outcome.OK
+
+
+@pytest.mark.parametrize("model", ["translational", "spatial"])
+def test_the_engine_is_reset_with_the_last_copy_of_a_model(model: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It keeps its memory allocated until then."""
+    freed: list[bool] = []
+    container = SimpleNamespace(Reset=lambda: freed.append(True))
+    monkeypatch.setattr(assembly, "reset_with", lambda owner, _: reset_with(owner, container))
+    copied = replace(assembly.assemble(SCENE, model, 1e-3), allows_liftoff=True)
+    gc.collect()
+    assert (len(freed), copied.coordinates > 0) == (0, True)
+    del copied
+    multibody.single_run(SCENE, PHASE, model, step=0.1)
+    gc.collect()
+    assert len(freed) == 2, "the copy, and the model of the run"
