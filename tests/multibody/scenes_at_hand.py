@@ -18,20 +18,11 @@ from reference.problem import Amplification, Outcome, Scene
 CONSTANT = 1e9  # s, period of a harmonic that stays at its first value
 
 
-def one_body(
-    *,
-    radius: float = 0.25,
-    friction: float = 0.1,
-    duration: float = 1.0,
-    amplitudes: list[list[float]] | None = None,
-    periods: tuple[float, float] = (1.0, 1.0),
-    **isolator: Any,
-) -> Scene:
+def one_body(radius: float = 0.25, friction: float = 0.1, duration: float = 1.0, **load: Any) -> Scene:
     """One mass of 1 kg on the isolator; without amplitudes the plate is at rest."""
-    load = {"amplitudes": amplitudes or [[0.0, 0.0], [0.0, 0.0]], "periods": list(periods), "decay": [0.0, 0.0]}
-    on = {"radius": radius, **(isolator or {"friction": friction})}
-    table = {"title": "one body", "duration": duration, "isolator": on, "bodies": [{"mass": 1.0}], "excitation": load}
-    return Scene.model_validate(table)
+    loading = {"amplitudes": [[0.0, 0.0], [0.0, 0.0]], "periods": [1.0, 1.0], "decay": [0.0, 0.0], **load}
+    table = {"title": "one body", "duration": duration, "bodies": [{"mass": 1.0}], "excitation": loading}
+    return Scene.model_validate({**table, "isolator": {"radius": radius, "friction": friction}})
 
 
 def changed(scene: Scene, **tables: Any) -> Scene:

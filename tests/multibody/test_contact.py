@@ -51,7 +51,7 @@ def test_a_settled_restart_with_a_smaller_step_does_not_ring() -> None:
 
 def test_a_held_platform_creeps_as_v_reg_says(within: Callable[[float, float], None]) -> None:
     push, mu, v_reg = 0.5, 0.1, 1e-3
-    scene = one_body(friction=mu, duration=0.3, amplitudes=[[-push, 0.0], [0.0, 0.0]], periods=(CONSTANT, CONSTANT))
+    scene = one_body(friction=mu, duration=0.3, amplitudes=[[-push, 0.0], [0.0, 0.0]], periods=[CONSTANT, CONSTANT])
     motion = multibody.trajectory(scene, (0.0, 0.0), regularization=v_reg, tolerance=1e-4)
     x, v, a = motion.position[-1, 0, 0], motion.velocity[-1, 0, 0], motion.absolute_acceleration[-1, 0, 0] + push
     force = push - GRAVITY * x / scene.radius - a

@@ -95,7 +95,7 @@ PACE = 2.0 * math.pi / 0.4  # of a plate that moves up and down
 def bouncing(restitution: float, push: float = 15.0, duration: float = 0.45, **isolator: Any) -> Scene:
     """One body over its supports, thrown off by a plate that moves up and down only."""
     load = [[0.0, 0.0], [0.0, 0.0], [push, 0.0]]
-    scene = one_body(friction=0.0, duration=duration, amplitudes=load, periods=(0.4, 0.4))
+    scene = one_body(friction=0.0, duration=duration, amplitudes=load, periods=[0.4, 0.4])
     supports = {"supports": 3, "ring": 0.5, "sphere_radius": 0.05, "restitution": restitution, **isolator}
     return changed(scene, isolator=supports, bodies=[{"mass": 1.0, "height": 0.3, "size": [1.0, 1.0, 0.2]}])
 

@@ -94,7 +94,6 @@ def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
 def test_a_motion_comes_with_the_accuracy_of_all_its_numbers() -> None:
     """At the lowest rate a whole change counts, with the safety of two levels and more where the contact is slow."""
     accuracy = multibody.trajectory(BRIEF, PHASE).accuracy
-    assert accuracy is not None
     assert accuracy.share == pytest.approx([1.5 * (1.0 + lag(LEVELS[0], MODEL))])
     assert accuracy.floor == LEVELS[1].error_floor == 2e-4
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scenes_at_hand import changed, one_body
+from scenes_at_hand import one_body
 
 import multibody
 import reference
@@ -16,7 +16,7 @@ V_REG = 1e-3
 
 def test_a_motion_that_begins_moving_heats_from_its_start() -> None:
     heating = {"contact_radius": 0.06, "conductivity": 0.02, "diffusivity": 1e-3}
-    scene = changed(one_body(radius=np.inf, duration=0.05), isolator={"friction": {"slow": 0.1, "heating": heating}})
+    scene = one_body(np.inf, duration=0.05).with_values({"isolator.friction": {"slow": 0.1, "heating": heating}})
     start = State(np.zeros((1, 2)), np.array([[1.0, 0.0]]))
     motion = multibody.trajectory(scene, (0.0, 0.0), initial=start)
     other = reference.trajectory(scene, (0.0, 0.0), regularization=1e-3, initial=start, times=motion.time)
@@ -31,7 +31,6 @@ def test_a_change_of_the_coefficient_acts_back_on_the_slip() -> None:
     table = {"isolator.friction": {"slow": law.slow, "fast": law.fast, "rate": law.rate}}
     scene = load_scene("fig3-I").with_values({**table, "bodies.1.mass": 3.0})
     model = assemble(scene, "translational", V_REG)
-    assert model.friction is not None
     slip, unit = np.array([[0.02], [0.1]]), model.units.velocity
     slope = (law.at(slip[:, 0] + 1e-6) - law.at(slip[:, 0] - 1e-6)) / 2e-6 * unit
     np.testing.assert_allclose(model.friction.feedback(slip / unit), 4.0 * slope, rtol=1e-6)
@@ -43,8 +42,8 @@ def test_a_change_of_the_coefficient_acts_back_on_the_slip() -> None:
 def test_a_slide_has_its_closed_form_and_second_order(slow: float, fast: float, duration: float, halvings: int) -> None:
     """At constant step: the coefficient of a step is that of a speed extrapolated from the last two."""
     speed, rate, rise = 0.15, 20.0, fast - slow
-    table = {"friction": {"slow": slow, "fast": fast, "rate": rate}}
-    scene = changed(one_body(radius=1e6, duration=duration), isolator=table)
+    law = {"slow": slow, "fast": fast, "rate": rate}
+    scene = one_body(1e6, duration=duration).with_values({"isolator.friction": law})
     decayed = rise + (fast * np.exp(rate * speed) - rise) * np.exp(-rate * fast * GRAVITY * duration)
     exact = np.log(decayed / fast) / rate
     built = assemble(scene, "translational", V_REG, contact_force=True)
