@@ -25,14 +25,6 @@ def one_body(radius: float = 0.25, friction: float = 0.1, duration: float = 1.0,
     return Scene.model_validate({**table, "isolator": {"radius": radius, "friction": friction}})
 
 
-def changed(scene: Scene, **tables: Any) -> Scene:
-    """`scene` with some of its top-level entries replaced; tables are merged key by key."""
-    data = scene.model_dump(exclude_none=True)
-    for key, value in tables.items():
-        data[key] = {**data[key], **value} if isinstance(value, dict) else value
-    return Scene.model_validate(data)
-
-
 def frame(duration: float, count: int = 6, period: float = 0.17) -> Scene:
     """Stiffly linked floors on wide supports; period of each link, s."""
     bodies = [{"mass": 1e3, "height": 0.2 + 3.0 * floor, "size": [12.0, 12.0, 0.4]} for floor in range(count)]

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes_at_hand import assert_agree, changed, one_body
+from scenes_at_hand import assert_agree, one_body
 from scipy.optimize import brentq
 
 import multibody
@@ -92,12 +92,13 @@ def test_no_impact_adds_energy_or_breaks_the_laws_of_contact(seed: int) -> None:
 PACE = 2.0 * math.pi / 0.4  # of a plate that moves up and down
 
 
-def bouncing(restitution: float, push: float = 15.0, duration: float = 0.45, **isolator: Any) -> Scene:
+def bouncing(restitution: float, push: float = 15.0, duration: float = 0.45) -> Scene:
     """One body over its supports, thrown off by a plate that moves up and down only."""
     load = [[0.0, 0.0], [0.0, 0.0], [push, 0.0]]
     scene = one_body(friction=0.0, duration=duration, amplitudes=load, periods=[0.4, 0.4])
-    supports = {"supports": 3, "ring": 0.5, "sphere_radius": 0.05, "restitution": restitution, **isolator}
-    return changed(scene, isolator=supports, bodies=[{"mass": 1.0, "height": 0.3, "size": [1.0, 1.0, 0.2]}])
+    on = {"supports": 3, "ring": 0.5, "sphere_radius": 0.05, "restitution": restitution}
+    body = {"mass": 1.0, "height": 0.3, "size": [1.0, 1.0, 0.2]}
+    return scene.with_values({"bodies": [body], "isolator": {"radius": 0.25, "friction": 0.0, **on}})
 
 
 def rise(t: Any, begin: float, speed: float, push: float = 15.0, phase: float = 0.0) -> Any:
@@ -137,8 +138,8 @@ def test_flights_begin_and_end_when_free_fall_says() -> None:
 @pytest.mark.parametrize("number", [0, 1])
 def test_a_platform_tilted_by_its_contacts_lands_at_once(number: int) -> None:
     """Uneven loads press rigid spheres in by nothing: a platform that does not turn lands as often as a ball."""
-    load = {"amplitudes": [[3.0, 0.0], [0.0, 2.1], [15.0, 0.0]]}
-    scene = changed(bouncing(0.8, duration=0.6), isolator={"friction": 0.05}, excitation=load)
+    values = {"isolator.friction": 0.05, "excitation.amplitudes": [[3.0, 0.0], [0.0, 2.1], [15.0, 0.0]]}
+    scene = bouncing(0.8, duration=0.6).with_values(values)
     landings = [end for _, end in flights(0.8, 0.6) if end < 0.6]
     assert one_level(scene, (0.0, 0.0), number, 6e4).impacts == len(landings) == 2
 
@@ -172,8 +173,8 @@ def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float
 
 
 def test_a_contact_that_opens_again_does_not_end_the_run() -> None:
-    load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [15.0, 0.0]], "decay": [0.333, 0.273]}
-    scene = changed(tower(1.0), isolator={"friction": 0.1, "supports": 4}, excitation=load, duration=0.56)
+    values = {"duration": 0.56, "isolator.friction": 0.1, "isolator.supports": 4, "excitation.decay": [0.333, 0.273]}
+    scene = tower(1.0).with_values({**values, "excitation.amplitudes": [[2.0, 0.0], [0.0, 2.0], [15.0, 0.0]]})
     run = one_level(scene, (2.0, 0.7), 4, 6e4)
     assert run.impacts > 10
     assert run.outcome == Outcome.OK, "the engine shortened its step without end"
@@ -206,8 +207,8 @@ def test_a_tower_that_overturns_ends_under_that_name() -> None:
 
 def test_supports_that_open_leave_answers_that_agree() -> None:
     """The plate falls as fast as the bodies at a turning point of its acceleration, and nothing chatters."""
-    load = {"amplitudes": [[2.0, 0.0], [0.0, 2.0], [GRAVITY, 0.0]], "decay": [0.0, 0.0]}
-    scene = changed(load_scene("fig3-I"), excitation=load, duration=1.0)
+    load = {"excitation.amplitudes": [[2.0, 0.0], [0.0, 2.0], [GRAVITY, 0.0]], "excitation.decay": [0.0, 0.0]}
+    scene = load_scene("fig3-I").with_values({"duration": 1.0, **load})
     loose, strict = (
         multibody.amplification(scene, [(0.0, 1.1)], "spatial", tolerance=tolerance, max_work=5e4)
         for tolerance in (1e-2, 1e-3)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes_at_hand import assert_within, both_sides, changed, frame
+from scenes_at_hand import assert_within, both_sides, frame
 
 import multibody
 from reference.problem import Outcome, Scene, load_scene
@@ -165,5 +165,5 @@ def test_no_finer_run_contradicts_an_answer(scene: str, model: str, within: Call
 @pytest.mark.parametrize("v_reg", [1e-4, 1e-5])
 def test_a_sharp_corner_asks_for_a_quick_contact(v_reg: float) -> None:
     # the contact of 1e-6 rho is 3 or 30 times slower than the friction relaxes: off by 1.4e-4 and 7e-4, estimate less
-    engine, equations = both_sides(changed(load_scene("fig3-I"), duration=4.0), PHASES[:1], v_reg)
+    engine, equations = both_sides(load_scene("fig3-I").with_values({"duration": 4.0}), PHASES[:1], v_reg)
     np.testing.assert_allclose(engine.mu, equations.mu, rtol=8e-5)

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes_at_hand import assert_agree, changed
+from scenes_at_hand import assert_agree
 
 import multibody
 from multibody import demand_surface
@@ -14,8 +14,8 @@ PHASES = [(2.0, 0.7)]
 
 
 def shaken_in_all_directions(duration: float) -> Scene:
-    shaking = {"amplitudes": [[1.0, 0.5], [0.0, 1.0], [2.0, 1.0]]}
-    return changed(load_scene("fig3-I"), duration=duration, excitation=shaking)
+    shaking = {"excitation.amplitudes": [[1.0, 0.5], [0.0, 1.0], [2.0, 1.0]]}
+    return load_scene("fig3-I").with_values({"duration": duration, **shaking})
 
 
 def test_inertial_forces_and_a_moving_plate_agree() -> None:

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from random_loadings import Case, random_case
 from random_truths import LIKE_FOR_LIKE, beyond_and_ratios, case_of
-from scenes_at_hand import changed
 
 import multibody
 import reference
@@ -77,8 +76,8 @@ def test_a_flat_slider_without_iterations_has_its_error(mass: float) -> None:
     """Steps whose forces change by less than the residual are taken as they are: 0.6 % at 5e-9 m/s^2, in all runs."""
     for seed in range(30):
         case = random_case(seed, 1e-11, 1e-8, 0.01, 0.1)
-        flat = case.scene.with_values({"isolator.friction": 0.1, "isolator.lubrication": None})
-        flat = changed(flat, isolator={"radius": np.inf}).with_values({"bodies.0.mass": mass})
+        on_a_plane = {"isolator.friction": 0.1, "isolator.lubrication": None, "isolator.radius": np.inf}
+        flat = case.scene.with_values({**on_a_plane, "bodies.0.mass": mass})
         assert_not_contradicted(Case(flat, case.phase, 1e-3, case.tolerance))
 
 

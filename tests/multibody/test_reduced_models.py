@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scenes_at_hand import assert_agree, changed
+from scenes_at_hand import assert_agree
 
 import multibody
 from multibody import surface
@@ -16,7 +16,7 @@ DIAGONAL = [[1.0, 0.5], [-0.8, -0.4]]
 
 def planar_scene(name: str = "fig4-dry", amplitudes: Any = None, duration: float = 3.0, **values: Any) -> Scene:
     scene = load_scene(name).with_values({"duration": duration, **values})
-    return scene if amplitudes is None else changed(scene, excitation={"amplitudes": amplitudes})
+    return scene if amplitudes is None else scene.with_values({"excitation.amplitudes": amplitudes})
 
 
 PLANAR = {

@@ -6,7 +6,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scenes_at_hand import changed
 
 import multibody
 from multibody.models import assembly
@@ -30,7 +29,7 @@ def test_the_run_at_the_second_level_has_the_peaks_of_the_answer(model: str) -> 
 
 def test_a_contact_gives_way_by_the_penetration_asked_for() -> None:
     """Under a plate that is pushed up by 4 m/s^2 at the start, whether at a constant step or at a level."""
-    scene = changed(SCENE, duration=0.01, excitation={"amplitudes": [[0.0, 0.0], [0.0, 0.0], [4.0, 0.0]]})
+    scene = SCENE.with_values({"duration": 0.01, "excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0], [4.0, 0.0]]})
     level = replace(multibody.levels(scene)[0], penetration=1e-3)
     runs = [
         multibody.single_run(scene, (0.0, 0.0), **asked)
@@ -43,7 +42,8 @@ def test_a_contact_gives_way_by_the_penetration_asked_for() -> None:
 @pytest.mark.parametrize("model", ["translational", "spatial"])
 def test_all_bodies_start_as_fast_upwards_as_the_platform_slides(model: str) -> None:
     place, speed = np.array([[0.03, -0.04], [0.0, 0.0]]), np.array([[0.6, 0.2], [0.1, 0.3]])
-    run = multibody.single_run(changed(SCENE, duration=1e-3), PHASE, model, step=1e-4, initial=State(place, speed))
+    scene = SCENE.with_values({"duration": 1e-3})
+    run = multibody.single_run(scene, PHASE, model, step=1e-4, initial=State(place, speed))
     upward = (place[0] @ speed[0]) / np.sqrt(SCENE.radius**2 - 0.05**2)
     np.testing.assert_allclose(run.velocity[0], np.column_stack([speed, [upward, upward]]), rtol=1e-12)
     np.testing.assert_allclose(run.position[0, :, :2], place, rtol=1e-6)
@@ -60,7 +60,7 @@ def test_every_integrator_finds_the_motion_at_a_constant_step(integrator: str) -
 
 def test_steps_are_small_at_stops_and_large_elsewhere() -> None:
     v_reg = 1e-3
-    motion = multibody.trajectory(changed(SCENE, duration=6.0), (2.0, 0.7), regularization=v_reg)
+    motion = multibody.trajectory(SCENE.with_values({"duration": 6.0}), (2.0, 0.7), regularization=v_reg)
     step, slip = np.diff(motion.time), motion.extra["slip_speed"][:-1, 0]
     change = np.linalg.norm(np.diff(motion.velocity[:, 0], axis=0), axis=-1)
     # the bound at level 1 is 0.07 of the slip speed, met at the row before and exceeded at most by what one step adds
