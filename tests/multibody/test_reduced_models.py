@@ -11,38 +11,24 @@ from multibody import surface
 from reference.problem import Scene, load_scene, planar, untilted
 
 PHASES = [(2.0, 0.7), (0.3, 1.1)]
-DIAGONAL = [[1.0, 0.5], [-0.8, -0.4]]
-
-
-def planar_scene(name: str = "fig4-dry", amplitudes: Any = None, duration: float = 3.0, **values: Any) -> Scene:
-    scene = load_scene(name).with_values({"duration": duration, **values})
-    return scene if amplitudes is None else scene.with_values({"excitation.amplitudes": amplitudes})
-
-
-PLANAR = {
-    "diagonal": planar_scene(),
-    "lubricated": planar_scene("fig4-viscous"),
-    "oblique, vertical too": planar_scene(amplitudes=[*DIAGONAL, [0.5, 0.3]]),
-    "along y, links of two stiffnesses and dampers": planar_scene(
-        "fig3-I", [[0.0, 0.0], [1.0, 0.6]], **{"bodies.1.damping": [0.2, 0.7]}
-    ),
+LEVEL = {"bodies": [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}]}  # with the depressions
+ALONG_Y = {"excitation.amplitudes": [[0.0, 0.0], [1.0, 0.6]]}
+CASES: dict[str, tuple[Any, str, dict[str, Any]]] = {
+    "diagonal": (planar, "fig4-dry", {}),
+    "lubricated": (planar, "fig4-viscous", {}),
+    "oblique, vertical too": (planar, "fig4-dry", {"excitation.amplitudes": [[1.0, 0.5], [-0.8, -0.4], [0.5, 0.3]]}),
+    "links of two stiffnesses and dampers": (planar, "fig3-I", {**ALONG_Y, "bodies.1.damping": [0.2, 0.7]}),
+    "level": (untilted, "fig3-I", LEVEL),
+    "level, three supports": (untilted, "fig3-II", {**LEVEL, "isolator.supports": 3}),
 }
 
 
-def level(name: str, duration: float, **values: Any) -> Scene:
-    """The platform alone, with its center in the plane of the depressions."""
-    body = {**load_scene(name).bodies[0].model_dump(exclude_none=True), "height": 0.0}
-    return load_scene(name).with_values({"duration": duration, "bodies": [body], **values})
-
-
-LEVEL = {"level": level("fig3-I", 2.0), "level, three supports": level("fig3-II", 2.0, **{"isolator.supports": 3})}
-
-
-@pytest.mark.parametrize("name", [*PLANAR, *LEVEL])
-def test_the_answer_is_that_of_the_whole_model(name: str) -> None:
-    scene, model = (PLANAR[name], "translational") if name in PLANAR else (LEVEL[name], "spatial")
+@pytest.mark.parametrize(("reduction", "name", "values"), CASES.values(), ids=CASES)
+def test_the_answer_is_that_of_the_whole_model(reduction: Any, name: str, values: dict[str, Any]) -> None:
+    scene = load_scene(name).with_values({"duration": 3.0, **values})
+    model = "spatial" if reduction is untilted else "translational"
     reduced, full = (multibody.amplification(scene, PHASES[:1], model, full=full) for full in (False, True))
-    assert (planar if name in PLANAR else untilted)(scene)
+    assert reduction(scene)
     assert_agree(reduced, full)
 
 
@@ -57,17 +43,17 @@ def test_what_does_not_need_it_is_computed_by_the_smaller_model(monkeypatch: pyt
         return made
 
     monkeypatch.setattr(surface, "assemble", noted)
-    scene, unlike = planar_scene(duration=0.05), {"bodies.1.stiffness": [20.0, 20.000001], "bodies.1.period": None}
+    scene = load_scene("fig4-dry").with_values({"duration": 0.05})
+    unlike = {"bodies.1.stiffness": [20.0, 20.000001], "bodies.1.period": None}
     for each, full in ((scene, False), (scene.with_values(unlike), False), (scene, True)):
         multibody.amplification(each, PHASES[:1], tolerance=0.1, full=full)
     assert built == [("translational", count) for count in (7, 8, 8)]
     built.clear()
-    moving, spatial = (
-        multibody.amplification(level("fig3-I", 0.5), PHASES, model) for model in ("translational", "spatial")
-    )
+    scene = load_scene("fig3-I").with_values({"duration": 0.5, **LEVEL})
+    moving, spatial = (multibody.amplification(scene, PHASES, model) for model in ("translational", "spatial"))
     np.testing.assert_array_equal(spatial.mu, moving.mu)
-    multibody.amplification(level("fig3-I", 0.5), PHASES[:1], "spatial", full=True)
-    multibody.amplification(level("fig3-I", 0.5, **{"bodies.0.height": 1e-12}), PHASES[:1], "spatial")
+    multibody.amplification(scene, PHASES[:1], "spatial", full=True)
+    multibody.amplification(scene.with_values({"bodies.0.height": 1e-12}), PHASES[:1], "spatial")
     assert built == [*[("translational", 6)] * 2, *[("spatial", 10)] * 2]
 
 
@@ -81,7 +67,8 @@ def test_off_its_supports_the_model_that_is_asked_for_goes_on(monkeypatch: pytes
         return assemble(*given, loading=loading, **more)
 
     monkeypatch.setattr(surface, "assemble", noted)
-    scene = level("fig3-I", 0.6, **{"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0], [12.0, 0.0]]})
+    upward = {"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0], [12.0, 0.0]]}
+    scene = load_scene("fig3-I").with_values({"duration": 0.6, **LEVEL, **upward})
     moving, spatial = (
         multibody.amplification(scene, [(0.0, 0.0)], model, tolerance=1e-2, loading="plate")
         for model in ("translational", "spatial")
