@@ -76,29 +76,28 @@ def test_a_body_on_bars_has_the_frequencies_of_beams_under_load(name: str, load_
         assert np.abs(frequencies / expected - 1.0).min() < 1e-5
 
 
-@pytest.mark.parametrize("axial_stiffness", [None, 2e4], ids=["rigid in tension", "clamped beams"])
-@pytest.mark.parametrize(("count", "spread"), [(3, 0.5), (8, 0.5), (8, None)])
-def test_every_bar_adds_to_the_stiffness_against_twist(
-    count: int, spread: float | None, axial_stiffness: float | None
-) -> None:
+TENSION = pytest.mark.parametrize("axial", [{}, {"axial_stiffness": 2e4}], ids=["rigid in tension", "clamped beams"])
+
+
+@TENSION
+@pytest.mark.parametrize("own", [{"count": 3, "spread": 0.5}, {"count": 8, "spread": 0.5}, {"count": 8}], ids=str)
+def test_every_bar_adds_to_the_stiffness_against_twist(own: dict[str, Any], axial: dict[str, Any]) -> None:
     """n (G J_t / l + s^2 12 E J / l^3), with s of the ring of 1 m if none is stated, against the engine's moment."""
     length, beam, torsion, angle = 0.9, 40.0, 3.0, 1e-4
-    bars = {"count": count, "bending_stiffness": beam, "length": length, "torsional_stiffness": torsion}
-    bars |= {key: value for key, value in (("spread", spread), ("axial_stiffness", axial_stiffness)) if value}
+    bars = {"bending_stiffness": beam, "length": length, "torsional_stiffness": torsion, **own, **axial}
     scene = load_scene("fig3-I").with_values({"bodies.1.period": None, "bodies.1.bars": bars})
     twisted = np.zeros(12)
     twisted[11] = angle
     _, moments, model = forces_of_links(scene, twisted, np.zeros(12))
     unit = model.units.force * model.units.length
-    expected = count * (torsion / length + (spread or 1.0) ** 2 * 12.0 * beam / length**3) * angle
+    expected = own["count"] * (torsion / length + own.get("spread", 1.0) ** 2 * 12.0 * beam / length**3) * angle
     assert moments[:, 2] * unit == pytest.approx([expected, -expected], rel=1e-5)
 
 
-@pytest.mark.parametrize("axial_stiffness", [None, 2e4], ids=["rigid in tension", "clamped beams"])
-def test_a_link_under_an_eccentric_weight_is_straight_at_rest(axial_stiffness: float | None) -> None:
+@TENSION
+def test_a_link_under_an_eccentric_weight_is_straight_at_rest(axial: dict[str, Any]) -> None:
     """It is built to carry the moment of what stands on it: bodies on rigid supports do not lean against each other."""
-    offset, bars = [-0.05, 0.08], {"count": 4, "bending_stiffness": 40.0, "length": 0.9, "spread": 0.5}
-    bars |= {"axial_stiffness": axial_stiffness} if axial_stiffness else {}
+    offset, bars = [-0.05, 0.08], {"count": 4, "bending_stiffness": 40.0, "length": 0.9, "spread": 0.5, **axial}
     values = {"bodies.1.period": None, "bodies.1.bars": bars, "bodies.1.offset": offset, "isolator.supports": 3}
     scene = load_scene("fig3-I").with_values(values)
     model, level = assemble(scene, "spatial", 1e-3), multibody.levels(scene, "spatial")[0]

@@ -42,8 +42,6 @@ def two_bodies(link: str, damping: Any) -> Scene:
 
 
 CENTERS = np.array([[0.0, 0.0, 0.2], [0.2, -0.1, 1.2]]) / load_scene("fig3-I").radius  # at rest, in units of the model
-
-
 DRAW = np.random.default_rng(6)
 COORDINATES = DRAW.uniform(-0.3, 0.3, 12)  # of bodies that are displaced and rotated against each other
 COORDINATES[9:] = COORDINATES[3:6] + DRAW.uniform(-0.01, 0.01, 3)
@@ -89,8 +87,7 @@ def test_a_damper_takes_its_link_s_power_and_keeps_momentum(link: str) -> None:
         ]
         return np.append(middle.inv().apply(ends[1] - ends[0]), relative)
 
-    rate = (deformation(1e-5) - deformation(-1e-5)) / 2e-5
-    yaw = scene.yaws[1]
+    rate, yaw = (deformation(1e-5) - deformation(-1e-5)) / 2e-5, scene.yaws[1]
     along = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]]) @ rate[:2]
     values, units = scene.damping[0] * model.units.time / model.units.mass, model.units
     taken, bars = (values * along**2).sum(), scene.bar_links[0]
