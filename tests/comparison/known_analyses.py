@@ -1,6 +1,5 @@
 """Known answers in place of what a study finds beside its surfaces, and the answers of one analysis alone."""
 
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -19,7 +18,7 @@ from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
-from reference.problem import Amplification, Scene
+from reference.problem import Amplification
 
 SCALES = (1.0, 0.5, 0.25)
 ASKED = "effective", "assumptions", "measured", "completion", "pictures"  # of the hierarchy, or of its surfaces
