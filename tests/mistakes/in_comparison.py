@@ -264,7 +264,7 @@ MISTAKES = (
             "An exception names the line of the call that made it.", equivalent="The frame of a traceback that is "
             "unwound stands at the line that raised."),
     Mistake(STUDY + "analyses.py", "ANALYSES if name not in ON_REQUEST]", "ANALYSES]",
-            "Demands of every phase are computed unasked.", (TESTS + "study/test_selection.py::test_demands_of_every_phase_are_computed_on_request",)),
+            "Demands of every phase are computed unasked.", (LEVELS + "the_first_level_is_coarse_and_the_last_is_whole",)),
     Mistake("comparison/testing.py", "np.where(size <= step.uncertainty, 0.0, size)", "size",
             "The gate fails on a difference within its errors.", (GATE + "what_is_within_limits_or_errors_passes",)),
     Mistake("comparison/testing.py", "np.nanmax(beyond) if maximum else np.nanmedian(beyond)",
