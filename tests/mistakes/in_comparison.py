@@ -453,7 +453,7 @@ MISTAKES = (
     # found alive by hand
     Mistake(SURFACES + "headline.py", "numbers.like_for_like <= SMALL * abs(numbers.maximum)",
             "numbers.like_for_like <= SMALL * abs(numbers.mean)",
-            "Beside a mean of 0 the two codes never agree.", (HEADLINE + "the_sentence_says_what_is_planted",)),
+            "Beside a mean of 0 the two codes never agree.", (HEADLINE + "differences_of_both_signs_are_none_in_the_mean",)),
     Mistake(SURFACES + "headline.py", ">= MAIN_CAUSE * abs(along[0].size)", ">= MAIN_CAUSE * abs(real[0].size)",
             "A step against the total hides causes of it.", (HEADLINE + "a_cause_is_a_real_step_of_the_sign_and_half_the_size_of_the_largest",)),
     Mistake(SURFACES + "completion.py", "fractile(known_distance, 0.95)", "fractile(known_distance, 0.5)",
