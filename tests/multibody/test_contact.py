@@ -105,6 +105,15 @@ def test_a_conical_pendulum_keeps_its_circle_at_its_own_rate(within: Callable[[f
     np.testing.assert_allclose(motion.contact_force, GRAVITY / np.cos(cone), rtol=1e-4)
 
 
+def test_a_slide_on_a_plane_stops_after_v2_over_2_mu_g_wherever_it_is() -> None:
+    way, creep = 1.0 / (0.2 * GRAVITY), 1e-6 / (0.1 * GRAVITY)  # below v_reg the speed decays over v_reg^2 / (mu g)
+    run = started(one_body(radius=np.inf, duration=2.0), (1e4, 0.0), (0.6, 0.8))
+    moved = run.position[-1, 0, :2] - [1e4, 0.0]
+    np.testing.assert_allclose(moved, [0.6 * way, 0.8 * way], atol=creep + 2e-4 * way)
+    np.testing.assert_allclose(run.peak, 0.1 * GRAVITY, rtol=1e-4)
+    assert np.abs(run.position[:, 0, 2]).max() < 1e-6
+
+
 def test_overturning_shifts_the_load_as_statics_says() -> None:
     """A block that slides along x with its center h above the plane: the load's center is mu h before that of mass."""
     height, on = 0.3, {"isolator.supports": 4, "isolator.ring": 1.0, "isolator.sphere_radius": 0.05}
