@@ -4,15 +4,12 @@ import base64
 import gzip
 import json
 import re
-from html import unescape
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from jsonschema import Draft202012Validator
 from pypdf import PdfReader
-
-CELL = re.compile(r"<t[dh]\b[^>]*>(.*?)</t[dh]>", re.DOTALL)
 
 
 def summary_of(report: Path) -> dict[str, Any]:
@@ -63,18 +60,3 @@ def text_of(path: Path) -> tuple[int, str]:
 def flat(text: str) -> str:
     """The letters alone: where lines break, a reader of the file may add or lose a space or a hyphen."""
     return "".join(letter for letter in text if letter.isalnum())
-
-
-class Tables:
-    """Every table of a page: rows of cells, each a text."""
-
-    def __init__(self, page: str) -> None:
-        self.tables = [
-            [[unescape(re.sub("<[^>]*>", "", cell)) for cell in CELL.findall(row)] for row in table.split("<tr")[1:]]
-            for table in page.split("<table")[1:]
-        ]
-
-    def headed(self, *headings: str) -> list[dict[str, str]]:
-        """Rows of the one table with these headings, as cells by heading."""
-        [table] = [table for table in self.tables if set(headings) <= set(table[0])]
-        return [dict(zip(table[0], row, strict=True)) for row in table[1:]]

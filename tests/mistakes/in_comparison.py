@@ -21,7 +21,6 @@ LEVELS = TESTS + "study/test_levels.py::test_"
 DEATHS = TESTS + "runner/test_sweep.py::test_"
 CACHED = TESTS + "runner/test_cache.py::test_"
 FILES = TESTS + "runner/test_users_files.py::test_"
-BESIDE = TESTS + "report/test_results_beside.py::test_"
 OF = TESTS + "analyses/test_"
 
 # fmt: off
