@@ -65,14 +65,14 @@ def plant(copy: Path, mistake: Mistake, short: bool) -> str:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("packages", nargs="*", metavar="PACKAGE", choices=[*PACKAGES, []], default=list(PACKAGES))
+    parser.add_argument("packages", nargs="*", metavar="PACKAGE", choices=[*PACKAGES, []], default=[])
     parser.add_argument("--only", nargs="+", type=int, metavar="N")
     parser.add_argument("--short", action="store_true", help="leave out long tests")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     asked = parser.parse_args()
     chosen = [
         (f"{package} {number}", mistake)
-        for package in asked.packages
+        for package in asked.packages or PACKAGES
         for number, mistake in enumerate(mistakes_in(package), 1)
         if not asked.only or number in asked.only
     ]
