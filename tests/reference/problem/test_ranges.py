@@ -11,8 +11,10 @@ from chains import refusal
 
 import multibody
 import reference
-from reference.problem import SceneError, load_scene
-from reference.problem.ranges import SCENE
+from reference.problem import Outcome, SceneError, load_scene
+from reference.problem.ranges import REGULARIZATION, SCENE
+from reference.problem.scene import KEYS
+from reference.surface import checked_demand
 
 FIG3 = load_scene("fig3-I")
 PHASES = [(0.1, 0.2)]
@@ -38,6 +40,17 @@ def test_the_page_of_keys_is_what_the_schema_says() -> None:
     docs = Path(__file__).parents[3] / "docs"
     made = runpy.run_path(str(docs / "scene_keys.py"))["page"]()
     assert (docs / "scene.md").read_text(encoding="utf-8") == made, "run: python docs/scene_keys.py"
+
+
+def test_every_number_of_a_scene_has_a_range() -> None:
+    tables = {
+        name: name for name in ("isolator", "isolator.friction", "isolator.friction.heating", "bodies", "measured")
+    }
+    tables |= {"bodies.bars": "bodies.bars", "excitation": "excitation.two frequencies"}
+    numbers = {"duration", *(f"{name}.{key}" for name, table in tables.items() for key in KEYS[table])}
+    unbounded = {"bodies.bars", "bodies.bars.load_effect", "measured.quantity", "measured.source"}
+    unbounded |= {"isolator.friction.heating", "excitation.scale"}
+    assert numbers - unbounded == set(SCENE), "a scale is bounded by the accelerations that it makes"
 
 
 @pytest.mark.parametrize("key", SCENE)
@@ -111,3 +124,26 @@ def test_both_sides_answer_a_phase_of_many_turns_like_the_phase(function):
     scene = load_scene("fig3-I").with_values({"duration": 0.5})
     many, one = (function(scene, [(first, 1.1)]) for first in (0.3 + 2.0 * np.pi * 1e5, 0.3))
     np.testing.assert_allclose(many.mu, one.mu, rtol=1e-8)
+
+
+def test_the_ends_of_the_range_of_v_reg_are_answered_right() -> None:
+    """At the lower end like the set-valued law, at the upper end like no friction."""
+    scene = load_scene("fig4-dry")
+    for v_reg, limit in (
+        (REGULARIZATION.lowest, scene),
+        (REGULARIZATION.highest, scene.with_values({"isolator.friction": 0.0})),
+    ):
+        found = reference.amplification(scene, PHASES, regularization=v_reg)
+        assert found.status[0] == Outcome.OK
+        np.testing.assert_allclose(found.mu, reference.amplification(limit, PHASES).mu, rtol=2e-6)
+
+
+def test_a_ground_whose_squares_lose_digits_is_at_rest() -> None:
+    for amplitude, outcome in ((1e-145, Outcome.NO_GROUND_MOTION), (1e-138, Outcome.OK)):
+        assert reference.amplification(FIG3.with_amplitude(amplitude), PHASES, "small").status[0] == outcome, amplitude
+
+
+def test_a_loading_without_decay_is_refused_after_so_many_steps_and_not_hours_later() -> None:
+    scene = load_scene("fig3-I").with_values({"duration": 8e5, "excitation.decay": [0.0, 0.0]})
+    _, demand = checked_demand(scene, "exact", None, 1e-6, None, "consistent")
+    assert demand.step_limit < 0.01 * (1000.0 * scene.duration / 0.9)
