@@ -518,5 +518,8 @@ MISTAKES = (
     Mistake(ANALYSES + "extremes/analysis.py", "if not np.isnan(mu).all():", "if not np.isnan(mu).any():",
             "A refusal with a value for one body is right.",
             (OF + "extremes.py::test_every_kind_of_answer_has_its_verdict",)),
+    Mistake(ANALYSES + "effective_values/analysis.py",
+            "scene.duration if scene.recorded else min(scene.duration, DURATION)", "min(scene.duration, DURATION)",
+            "Values of a record are read from its first seconds.", (OF + "effective.py::test_a_record_is_read_to_its_end",)),
 )
 # fmt: on

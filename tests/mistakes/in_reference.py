@@ -276,5 +276,8 @@ MISTAKES = (
     Mistake("reference/surface.py", "    STEP_LIMIT: Outcome.STEP_LIMIT,\n    UNSOLVED: Outcome.SOLVER_FAILED,",
             "    STEP_LIMIT: Outcome.SOLVER_FAILED,\n    UNSOLVED: Outcome.STEP_LIMIT,",
             "A run of too many steps is called one that could not be solved.", (TESTS + "test_statuses.py",)),
+    Mistake(MEASURES + "demands.py", "abs(place - value) + abs(way - creep) for", "abs(place - value) for",
+            "The error of a residual lacks the creep that coarser samples miss.",
+            (DEMANDS + "test_creep_that_coarser_samples_miss_is_in_the_error_of_a_residual",)),
 )
 # fmt: on

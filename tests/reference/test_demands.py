@@ -194,6 +194,17 @@ def held(place: float, force: float, rests: int, accuracy: Accuracy | None = Non
     return made_up(scene, time, stick, **moving, **forces, ground=np.zeros((101, 3)), accuracy=accuracy)
 
 
+def test_creep_that_coarser_samples_miss_is_in_the_error_of_a_residual() -> None:
+    """One sample of the only rest is 0.03 m away: every fifth sample misses it in four of five ways."""
+    motion = held(1.0, 12.0, 1)
+    position = motion.position.copy()
+    position[75, 0, 0] += 0.03
+    motion = replace(motion, position=position)
+    alike = replace(motion, accuracy=Accuracy(np.zeros(2), (motion,), (1.0,), 0.0))
+    residual = demands(alike).residual
+    assert (residual.value, residual.error) == pytest.approx((1.0, 0.03 + 0.03))
+
+
 def test_the_error_of_every_demand_is_what_the_samples_and_the_other_runs_say() -> None:
     """
     A half of the difference to one run, a quarter of that to another, and a hundredth of the value.

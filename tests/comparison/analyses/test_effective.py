@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -67,6 +68,18 @@ def test_the_scene_states_what_the_motion_is_held_against() -> None:
     for values in (stated(scene), read_back((scene, EXACT))):
         told = [values.radius, values.friction, values.mass, values.contact, values.acceleration]
         assert told == pytest.approx(expected, rel=1e-6), values.model
+
+
+def test_a_record_is_read_to_its_end(tmp_path: Path) -> None:
+    """The ground shakes after 8 s only: a motion that ends before tells no friction."""
+    (tmp_path / "late.csv").write_text(
+        "time [s],ax [m/s^2],ay [m/s^2]\n0,0,0\n8,0,0\n8.3,6,4\n8.6,-6,4\n8.9,6,-4\n9.2,0,0\n"
+    )
+    table = load_scene("fig3-I").model_dump(exclude_none=True) | {"duration": 10.0}
+    table["excitation"] = {"record": str(tmp_path / "late.csv")}
+    scene = Scene.model_validate(table)
+    values = read_back((scene, EXACT))
+    assert (values.radius, values.friction) == pytest.approx((scene.radius, 0.1), rel=1e-6)
 
 
 @pytest.mark.parametrize(
