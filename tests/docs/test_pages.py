@@ -6,10 +6,12 @@ import re
 import tomllib
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import compare_engines
 import evidence_table
 import gallery_pictures as gallery
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from pages import PAGES, ROOT
@@ -120,6 +122,19 @@ def test_an_example_has_its_picture_in_the_gallery(example: Path) -> None:
     assert f"(gallery/{example.stem}.png)" in page
     assert f"../examples/{example.name}" in page
     assert (DOCS / "gallery" / f"{example.stem}.png").stat().st_size > 5000
+
+
+def test_every_cell_of_the_notebook_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plt, "show", lambda: None)
+    names: dict[str, Any] = {}
+    for cell in json.loads((DOCS / "tour.ipynb").read_text(encoding="utf-8"))["cells"]:
+        if cell["cell_type"] == "code":
+            exec("".join(cell["source"]), names)
+    plt.close("all")
+    result, worst = names["result"], names["worst"]
+    assert result.mu.shape == (12, 12, 2)
+    assert worst.value >= result.mu[..., 1].max() - worst.error
+    assert names["demands"].status == "ok"
 
 
 def test_the_page_of_engines_and_the_question_are_as_measured_and_as_asked(monkeypatch: pytest.MonkeyPatch) -> None:
