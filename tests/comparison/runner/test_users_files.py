@@ -114,6 +114,22 @@ def test_a_file_or_link_in_place_of_the_report_stays(tmp_path: Path) -> None:
     assert report.place == tmp_path / "other-2"
 
 
+def test_a_file_added_while_the_report_is_moved_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    put(tmp_path / "report", "index.html", "figures/old.png", content="old")
+    move = os.replace
+
+    def late(source: Path, target: Path) -> None:
+        move(source, target)
+        if target.name == "index.html":
+            mine(tmp_path / "report" / "figures" / "late.txt")
+
+    monkeypatch.setattr(os, "replace", late)
+    place, said = put(tmp_path / "report")
+    assert (place, said) == (tmp_path / "report", [])
+    assert page_of(place) == "new"
+    assert [entry.name for entry in (place / "figures").iterdir()] == ["late.txt"]
+
+
 @pytest.mark.parametrize("moves", range(4))
 def test_a_report_half_moved_is_still_the_studys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, moves: int) -> None:
     put(tmp_path / "report", "index.html", "figures/old.png", content="old")
