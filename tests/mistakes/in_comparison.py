@@ -412,7 +412,7 @@ MISTAKES = (
             "A fold is called smooth.", (OF + "peaks_and_valleys.py::test_the_exponent_is_that_of_the_shape",)),
     Mistake(ANALYSES + "worst_phases/analysis.py", "order = [*models[place:], *reversed(models[:place])]",
             "order = [*reversed(models[:place]), *models[place:]]", "A largest value is that of a model before it.",
-            (RECORDED,)),
+            (OF + "worst_phases_in_a_study.py::test_a_model_that_was_not_searched_has_the_largest_value_of_the_next_one",)),
     Mistake(ANALYSES + "assumptions/validity.py", "np.abs([row[body - 1] for row in self.change]).max()",
             "np.abs([row[body - 1] for row in self.change]).min()", "The smallest change is called the largest.",
             (OF + "assumptions.py::test_a_range_ends_at_the_first_value_that_fails",)),

@@ -88,6 +88,15 @@ def test_what_a_largest_value_is_stands_beside_it() -> None:
         assert _kind(analysis.Worst("fig3-I", "exact", "amplification", 1, **known)) == words  # type: ignore[arg-type]
 
 
+def test_a_model_that_was_not_searched_has_the_largest_value_of_the_next_one() -> None:
+    found = [
+        analysis.Worst("fig3-I", model, "amplification", 1, mu) for model, mu in (("exact", 1.0), ("regularised", 2.0))
+    ]
+    models = ["small", "exact", "resolved", "regularised", "spatial"]
+    largest = [analysis.nearest_search(found, models, "fig3-I", model, 1).value for model in models]
+    assert largest == [1.0, 1.0, 2.0, 2.0, 2.0]
+
+
 def test_searches_begin_at_the_hills_of_what_they_search() -> None:
     study = Study((SHORT,), GRID, 1e-3, MODEL_HIERARCHY)
     alpha = 2.0 * np.pi * np.arange(GRID) / GRID
