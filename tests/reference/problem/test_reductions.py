@@ -66,6 +66,7 @@ DECIDED: list[tuple[Callable[[Scene], Reduction], dict[str, Any], bool, str]] = 
     (mirror_symmetric, {"bodies.1.yaw": 0.1}, False, "a body or link at an angle"),
     (mirror_symmetric, places([1.0, 2.0], [1.0, -2.0], [-1.0, 2.0], [-1.0, -2.0]), True, "positions of supports that"),
     (mirror_symmetric, places([1.0, 1.0], [1.0, -1.0], [-1.0, 0.0]), False, "supports at positions that are no mirror"),
+    (mirror_symmetric, places([1.0, 1.0], [-1.0, 1.0], [0.0, -1.0]), False, "supports at positions that are no mirror"),
     (planar, {}, False, "the harmonics act in different directions"),
     (planar, ALONG_X, True, "loading along one axis"),
     (planar, ALIKE, True, "(4.7): one direction of loading"),
