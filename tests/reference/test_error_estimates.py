@@ -72,6 +72,19 @@ LACKING = {
         ),
         (3.4142843076791825, 0.32840127542146164), {"equations": "small", "regularization": 1e-3}, 1e-6,
     ),
+    # the defect of the acceleration is small there, that of the velocity is not
+    "vibration whose acceleration is zero where the step begins": (
+        asked(
+            {"radius": float("inf"), "friction": 0.2410461351714428},
+            [{"mass": 2.0334465501971253},
+             {"mass": 2.4041598998469538, "period": [1.7158223844817824, 1.1489567897578785]},
+             {"mass": 0.4065760535114943, "period": [0.03409016784258648, 0.159199130584121]}],
+            [[1.6587128332517427, -1.5793306980738033], [1.582995927447317, -1.2735503379100233],
+             [1.0607216669910304, -0.6447819313971683]],
+            [0.5191640817131488, 1.5204245061365294], [0.0, 0.0], 4.202171020401759,
+        ),
+        (2.6065706627301535, 0.9463193827363767), {"cutoff": 0.05}, 1e-5,
+    ),
     # friction that depends on the velocity answers to a wrong one, which is wrong most of all at the stages
     "velocity at a stage of a slow slide": (
         asked(
