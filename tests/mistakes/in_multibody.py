@@ -250,5 +250,12 @@ MISTAKES = (
     Mistake(INTEGRATION + "work_limit.py", "WHOLE_POINT = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)",
             "WHOLE_POINT = 1.0 + 2.0 * MAX_WORK_GROWTH", "A refusal recommends half of the work that is needed.",
             (TESTS + "test_status.py::test_a_refusal_says_what_is_needed_and_what_helps",)),
+    Mistake(INTEGRATION + "estimate.py",
+            "level_error + unsolved if levels[-1].flat else np.maximum(level_error, unsolved)", "level_error",
+            "What Newton's method leaves is no part of the error.",
+            ("tests/multibody/test_reported_numbers.py::test_what_newton_s_method_leaves_is_an_error",)),
+    Mistake("multibody/models/impact.py", "followed[vertical[hit]] += (leaving", "followed[vertical[hit]] -= (leaving",
+            "A sphere that is hit moves the other way.",
+            ("tests/multibody/test_impact.py::test_spheres_that_are_hit_move_with_the_corners_of_the_block",)),
 )
 # fmt: on

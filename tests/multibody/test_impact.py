@@ -52,6 +52,15 @@ def test_a_rocking_block_slows_down_as_housner_says(grips: bool) -> None:
     np.testing.assert_allclose(after[[0, 2]], [along, after[4] * HALF_WIDTH], atol=1e-9)
 
 
+def test_spheres_that_are_hit_move_with_the_corners_of_the_block() -> None:
+    """In the bottom of the depressions they meet the vertical velocity alone."""
+    law = replace(block(), depressions=Depressions(CORNERS, CENTER, RADIUS, np.arange(6, 10)))
+    before = np.array([0.1, 0.0, -0.7, 0.3, -0.2, 0.0, 0.01, 0.02, 0.03, 0.04])
+    after = law.with_spheres_along(np.zeros(10), before, RIGHT)
+    of_corners = -0.7 + 0.3 * CORNERS[:, 1] + 0.2 * CORNERS[:, 0]
+    np.testing.assert_allclose(after, [*before[:6], *np.where(RIGHT, of_corners, before[6:])], atol=1e-12)
+
+
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
 def test_a_level_block_rebounds_by_the_restitution(restitution: float) -> None:
     fall = np.array([0.0, 0.0, -0.7, 0.0, 0.0, 0.0])

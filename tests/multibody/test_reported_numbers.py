@@ -1,6 +1,7 @@
 """Single numbers that a run reports or rests on, each by its own closed form."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -78,6 +79,15 @@ def test_the_error_of_levels_is_what_richardson_says() -> None:
             peaks[-1].sampling[:] = reading
             error = from_levels(peaks, LEVELS[: len(values)], MODEL)[0]
             assert error == pytest.approx(expected + reading + 1e-6 * values[-1], rel=1e-9)
+
+
+def test_what_newton_s_method_leaves_is_an_error() -> None:
+    """On a plane it adds to what levels show, which all share it; elsewhere it is the least error."""
+    shown = 1.5 * 0.01 * (1.0 + lag(LEVELS[0], MODEL))
+    for flat, left, expected in ((True, 0.4, shown + 0.4), (False, 0.4, 0.4), (False, 1e-3, shown)):
+        last = replace(LEVELS[1], newton=0.5 * left, load=2.0, flat=flat)
+        error = from_levels(peaks_of(1.0, 1.01), [LEVELS[0], last], MODEL)[0]
+        assert error == pytest.approx(expected + 1e-6 * 1.01, rel=1e-9)
 
 
 def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
