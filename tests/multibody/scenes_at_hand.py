@@ -78,7 +78,7 @@ def both_sides(scene: Scene, phases: Any, v_reg: float = 1e-3, **asked: Any) -> 
 def assert_agrees_with_newton_and_euler(scene: Scene, phase: tuple[float, float]) -> None:
     """Factors, torsion of the platform and forces of supports are those of rigid_chain.py, compiled in a minute."""
     engine = multibody.amplification(scene, [phase], "spatial")
-    independent = spatial_motion(scene, phase, 1e-3, tolerance=1e-6)
+    independent = spatial_motion(scene, phase, 1e-3)
     assert_within(engine, independent.mu)
     force = independent.support_force
     assert_demands(scene, phase, np.abs(independent.yaw).max(), force.min(), force.max())

@@ -56,7 +56,7 @@ class SpatialMotion:
 
 
 def spatial_motion(
-    scene: Scene, phase: tuple[float, float], regularization: float, tolerance: float = 1e-8
+    scene: Scene, phase: tuple[float, float], regularization: float, tolerance: float = 1e-6
 ) -> SpatialMotion:
     """The motion from rest for one phase pair; the supports must stay loaded (RuntimeError otherwise)."""
     table = scene.model_dump(exclude_none=True)

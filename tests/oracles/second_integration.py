@@ -3,7 +3,7 @@ Equations (4.3)-(4.4) integrated a second time, by other methods and other code 
 
 `stepped`: the set-valued law by Moreau's time stepping (the impulse of friction is implicit in every step), or the
 literal (4.6) by explicit midpoint steps. `by_scipy`: laws without a corner at v = 0 by SciPy's DOP853, all phase pairs
-as one system. Vectors x, y are complex numbers x + i y.
+as one system. Vectors x, y are complex numbers x + i y. The denominators are those of the reference.
 """
 
 import math
