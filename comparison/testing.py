@@ -11,7 +11,7 @@ from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_softened_bars
 from comparison.study.study import Study
 from comparison.study.user_models import LAWS, user_model
-from comparison.surfaces.differences import pair_step
+from comparison.surfaces.model_difference import difference_of
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.unanswered import unanswered
 from reference.problem import Scene, load_scene
@@ -125,7 +125,7 @@ def _broken(
         yield f"{scene.name}: {name}: the study has no pair of models for it"
         return
     for body in range(1, len(scene.bodies) + 1):
-        step = pair_step(surfaces, scene.name, pair, body)
+        step = difference_of(surfaces, scene.name, pair, body)
         if not step.known.any():
             both = f"{pair.first.title} and {pair.second.title}"
             yield f"{scene.name}, body {body}: {name}: no phase pair has a value by {both}"

@@ -54,9 +54,7 @@ def difference(size: float, error: float) -> str:
 
 def more_or_less(size: float, error: float) -> str:
     """A share in the digits of `difference`, its sign in words."""
-    decimals = _decimals(size, error)
-    digits = percent(abs(size)) if decimals is None else f"{100.0 * abs(size):.{min(decimals, MAX_DECIMALS)}f} %"
-    return f"{digits} {'less' if size < 0.0 else 'more'}"
+    return f"{difference(abs(size), error).removeprefix('+')} {'less' if size < 0.0 else 'more'}"
 
 
 def _decimals(size: float, error: float) -> int | None:

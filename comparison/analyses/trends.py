@@ -13,7 +13,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from comparison.result_types import Array, Number, Text, result
-from comparison.surfaces.steps import RESOLVED
+from comparison.surfaces.model_difference import RESOLVED
 
 NONE: Array = np.empty((0, 1))  # sizes and errors where nothing has a value
 KNOWN = 1.0 / RESOLVED  # largest error of a value that enters the fit, as its fraction

@@ -62,7 +62,6 @@ def print_closing(console: Console, results: Results, options: Options, words: S
     if results.of("measured") is not None:
         console.print(f"{results.measurements}.", soft_wrap=True)
     console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
-    console.print(f"In print: {results.no_pdf or report / 'report.pdf'}", soft_wrap=True)
     if results.run.level < results.run.levels:
         console.print(f"This is level {results.run.level} of {results.run.levels}: the same command goes on with it.")
     for line in next_commands(results, words):

@@ -13,7 +13,6 @@ from comparison.cli.arguments import command_line, writing
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
 from comparison.registry import EARLIER, chosen_analyses, first_tasks, report_of
-from comparison.report.pdf import why_no_pdf
 from comparison.report.results import Results
 from comparison.report.section import Feature, Report
 from comparison.runner.environment import provenance
@@ -27,7 +26,6 @@ from comparison.surfaces.alerts import Alert
 from comparison.surfaces.surfaces import batch_results, labeled_surfaces, surface_tasks
 from comparison.surfaces.unanswered import compared_study
 
-WITH_THE_LAST = "it comes with the last level of a run"
 PATIENCE = 3.0  # s: a level that is done sooner after the report before has none of its own, unless it is the last
 
 
@@ -77,12 +75,12 @@ class Reports:
         return new and time.monotonic() - self._last >= PATIENCE
 
     def write(self, complete: Complete, runner: Runner, stopped: bool = False) -> Results:
-        """Write the report of a level; that of the last one, unless the run was ended, with drawings and a PDF."""
+        """Write the report of a level; that of the last one, unless the run was ended, with drawings."""
         from comparison.report.writing import drawing_tasks, write_report  # plotting: not needed to refuse or to plan
 
         begin = time.monotonic()
         final = complete.level.last and not stopped
-        report = self._report(complete, runner, why_no_pdf() if final else WITH_THE_LAST)
+        report = self._report(complete, runner)
         results = report.results
         if final:
             drawings = drawing_tasks(report)
@@ -112,7 +110,7 @@ class Reports:
             study = replace(complete.study, selection=whole.selection.without(unfinished))
             self.write(replace(complete, study=study), runner, stopped=True)
 
-    def _report(self, complete: Complete, runner: Runner, no_pdf: str) -> Report:
+    def _report(self, complete: Complete, runner: Runner) -> Report:
         study, surfaces, took = complete.study, complete.surfaces, Clock.now().since(self._began)
         of_surfaces = {task.stage for task in complete.tasks}
         run: dict[str, Any] = {
@@ -140,7 +138,7 @@ class Reports:
         found |= {feature.key: _loaded(feature, self._options.out) for feature in kept}
         families = [family for family in self._options.families if len(family.scenes) > 1]
         faults = _faults(complete.tasks, runner.results)
-        return report_of(study, surfaces, found, faults, run, no_pdf=no_pdf, families=families)
+        return report_of(study, surfaces, found, faults, run, families=families)
 
 
 def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:

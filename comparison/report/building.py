@@ -13,9 +13,9 @@ from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import checked_limits
 from comparison.surfaces.alerts import Alert, alerts
+from comparison.surfaces.body_comparison import BodyComparison, body_comparisons
 from comparison.surfaces.budget import budget
 from comparison.surfaces.completion import completions, with_completed
-from comparison.surfaces.differences import Difference, differences
 from comparison.surfaces.distribution import distributions, grid_maxima
 from comparison.surfaces.headline import headline
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share, outcome_counts, values_of
@@ -32,18 +32,19 @@ def build_report(
     run: Mapping[str, Any],
     features: Sequence[Feature],
     kind: type[Results],
-    no_pdf: str = "",
     families: Sequence[Family] = (),
 ) -> Report:
     """Everything that a report is made from. found: of the features, by key. kind: with a field for each of them."""
-    rows, lacking = differences(study, surfaces), unanswered(study, surfaces)
+    comparisons, lacking = body_comparisons(study, surfaces), unanswered(study, surfaces)
     completed = [
         each for scene in study.scenes for each in completions(study, surfaces, scene, found.get("completion"))
     ]
     surfaces = with_completed(surfaces, completed)
-    limits = checked_limits(study, surfaces, rows, lacking)
+    limits = checked_limits(comparisons, lacking)
     parts: dict[str, Sequence[Any]] = {
-        "differences": rows, "budget": budget(study, surfaces), "completions": completed, "limits": limits,
+        "differences": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.pairs],
+        "effects": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.effect_pairs],
+        "budget": budget(comparisons), "completions": completed, "limits": limits,
     }  # fmt: skip
     findings = Findings(study, surfaces, {**found, "families": families or None})
     fields = {name: each for feature in features for name, each in feature.scene_fields.items()}
@@ -52,7 +53,8 @@ def build_report(
     for scene in study.scenes:
         of_scene = {name: [row for row in every if row.scene == scene.name] for name, every in parts.items()}
         more = {name: each.of(findings, scene) for name, each in fields.items()}
-        scenes.append(scene_kind(**_scene(study, surfaces, scene, rows), **of_scene, **more))
+        bodies = [comparison for comparison in comparisons if comparison.scene is scene]
+        scenes.append(scene_kind(**_scene(study, surfaces, scene, bodies), **of_scene, **more))
     summaries: dict[str, Any] = {
         feature.key: feature.summary(findings, scenes) if feature.summary else findings.found.get(feature.key)
         for feature in features
@@ -68,16 +70,15 @@ def build_report(
         unanswered=lacking,
         alerts=alerts(study, surfaces, lacking, limits, faults),
         faults=[f"{fault.scene}, {fault.text}" for fault in faults],
-        no_pdf=no_pdf,
         **summaries,
     )
     sections = [feature.section for feature in features if feature.section]
     return Report(study, surfaces, completed, results, findings.found, sections)
 
 
-def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, rows: Sequence[Difference]) -> dict[str, Any]:
+def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequence[BodyComparison]) -> dict[str, Any]:
     """What the surfaces of a scene say."""
-    waterfalls = [waterfall(study, surfaces, scene, body) for body in range(1, len(scene.bodies) + 1)]
+    waterfalls = [waterfall(comparison) for comparison in comparisons]
     return {
         "name": scene.name,
         "title": scene.title,
@@ -88,7 +89,7 @@ def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, rows: Sequence[Diff
         "analyses": [name for name in ANALYSES if study.selection.has(name, scene.name)],
         "acceptance": scene.acceptance,
         "models": {model.key: _model(study, surfaces, scene, model) for model in models_of(scene, study.hierarchy)},
-        "headlines": [headline(study, surfaces, scene, bars, rows) for bars in waterfalls],
+        "headlines": [headline(*each) for each in zip(comparisons, waterfalls)],
         "waterfalls": waterfalls,
         "distributions": [] if scene.recorded else distributions(study, surfaces, scene),
         "grid_maxima": grid_maxima(study, surfaces, scene),

@@ -2,7 +2,7 @@
 
 import base64
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -12,42 +12,74 @@ import jinja2
 from markupsafe import Markup
 
 from comparison.analyses.motions.page_data import packed, packed_motions
-from comparison.report.glossary import emphasized, term
+from comparison.report.glossary import explained, term
 from comparison.report.page_data import page_data
 from comparison.report.results import VALIDATED, Results
 from comparison.report.section import Report
 from comparison.report.surface_sections import applied_models
 from comparison.surfaces.alerts import Alert
+from comparison.surfaces.statements import CELLS, word_verdict
+from comparison.surfaces.waterfall import PHASES, Waterfall
 from comparison.surfaces.waterfall_chart import bars_of, scale_of
 from comparison.wording import degrees, percent, scientific, signed, significant, symbols
 
+DRAWN = 0.01  # share of mu: shorter bars are left out
 SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
 def pages(figures: Path, report: Report) -> dict[str, str]:
     """index.html, which answers the question, and verification.html, which verifies the tool, each whole by itself."""
     study, results = report.study, report.results
-    waterfalls = [waterfall for scene in results.scenes for waterfall in scene.waterfalls]
+    waterfalls = [each for scene in results.scenes for each in zip(scene.waterfalls, scene.headlines)]
+    drawn = [(bars, line) for bars, line in waterfalls if is_drawn(bars)]
     answers = {
         "alerts": _alert_groups(results),
         "has_engine": any(model.side == "engine" for model in applied_models(study)),
-        "validated": VALIDATED,
+        "verdict": word_verdict(
+            [line for scene in results.scenes for line in scene.headlines], measured_sentence(results)
+        ),
+        "lead_lines": lead_lines(report),
+        "second_title": "Exudyn"
+        if any(model.side == "engine" for model in applied_models(study))
+        else "the last model",
+        "cells": CELLS,
+        "drawn": drawn,
+        "hidden_bodies": len(waterfalls) - len(drawn),
         "bars_of": bars_of,
         "scales": {
-            "mean": scale_of((each.bars, each.total) for each in waterfalls),
-            "largest": scale_of((each.largest.bars, each.largest.total) for each in waterfalls),
+            "mean": scale_of((each.bars, each.total) for each, _ in drawn),
+            "largest": scale_of((each.largest.bars, each.largest.total) for each, _ in drawn),
         },
-        "effects": {model.key: model.effect or model.title for model in study.hierarchy},
+        "effects": {PHASES: "other phases", **{model.key: model.effect or model.title for model in study.hierarchy}},
         "data": packed(page_data(report).encode()),
         "motions": packed_motions(report),
     }
-    missing = [("Report as PDF", results.no_pdf)] if results.no_pdf else []
     return {
-        "index.html": _page("report.html.j2", figures, report, False, answers, missing),
+        "index.html": _page("report.html.j2", figures, report, False, answers),
         "verification.html": _page(
             "verification.html.j2", figures, report, True, {"data": packed(b"null"), "motions": ""}
         ),
     }
+
+
+def is_drawn(bars: Waterfall) -> bool:
+    """Whether a bar, of the means or at the largest difference, is as long as a reader can see."""
+    every = (*bars.bars, bars.total, *bars.largest.bars, bars.largest.total)
+    return any(abs(bar.size) >= DRAWN for bar in every)
+
+
+def measured_sentence(results: Results) -> str:
+    """Return what measurements say, without the full stop."""
+    measured = "" if results.of("measured") is None else f"; {results.measurements}"
+    return f"{VALIDATED}{measured}"
+
+
+def lead_lines(report: Report) -> list[tuple[str, str]]:
+    """Return the sentences of sections that belong on the first screen, each with the link that shows more."""
+    sections = [section for section in report.sections if section.lead and section.present(report.results)]
+    lines = [(section.lead(report.results), section) for section in sections if section.lead]
+    page = "verification.html"
+    return [(line, f"{page if section.verifies else ''}#{section.name}") for line, section in lines if line]
 
 
 def _page(
@@ -56,9 +88,8 @@ def _page(
     report: Report,
     verifies: bool,
     context: Mapping[str, Any],
-    missing: Sequence[tuple[str, str]] = (),
 ) -> str:
-    """One page with its sections; missing: title and reason of what it lacks besides sections."""
+    """Return one page with its sections."""
     study, results = report.study, report.results
     templates = resources.files("comparison.report") / "templates"
     style = (templates / "report.css").read_text(encoding="utf-8")
@@ -84,7 +115,7 @@ def _page(
         style=style,
         script=script,
         sections=[(section, Markup(body)) for section, body in zip(shown, bodies)],
-        absent=[*absent, *missing],
+        absent=absent,
     )
 
 
@@ -105,7 +136,7 @@ def _environment() -> jinja2.Environment:
         [jinja2.PackageLoader("comparison.report", "templates"), jinja2.PackageLoader("comparison", "analyses")]
     )
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    filters = (percent, signed, scientific, degrees, significant, symbols, emphasized)
+    filters = (percent, signed, scientific, degrees, significant, symbols, explained)
     environment.filters.update({function.__name__: function for function in filters})
     environment.globals["term"] = term  # in macros, too
     return environment

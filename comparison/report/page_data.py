@@ -12,7 +12,7 @@ from comparison.report.section import Report
 from comparison.result_types import Array
 from comparison.study.models import Model, Pair, models_of
 from comparison.surfaces.completion import Completion
-from comparison.surfaces.differences import pair_step
+from comparison.surfaces.model_difference import difference_of
 from comparison.surfaces.surfaces import values_of
 from reference.problem import Scene
 
@@ -68,7 +68,7 @@ def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[f
 
 def _pair(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
     surfaces = not scene.recorded and _surface(report, scene, pair.first) and _surface(report, scene, pair.second)
-    steps = [pair_step(report.surfaces, scene.name, pair, body) for body in range(1, len(scene.bodies) + 1)]
+    steps = [difference_of(report.surfaces, scene.name, pair, body) for body in range(1, len(scene.bodies) + 1)]
     return {
         "key": pair.key,
         "title": pair.title,

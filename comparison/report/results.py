@@ -18,7 +18,7 @@ from comparison.surfaces.alerts import Alert
 from comparison.surfaces.unanswered import Unanswered
 
 SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
-VERSION: Literal[5] = 5  # grows when a key changes its meaning or goes
+VERSION: Literal[6] = 6  # grows when a key changes its meaning or goes
 
 
 # what measured motions (comparison.analyses.validation) say of the models, for every report
@@ -78,7 +78,7 @@ class Results(Part):
         default=SCHEMA, validation_alias="schema", serialization_alias="schema"
     )
     """what this file is"""
-    version: Literal[5] = VERSION
+    version: Literal[6] = VERSION
     """grows when a key changes its meaning or goes; new keys may come without"""
     run: Run = Field(description="how the report was made")
     grid: int = Field(description="phases per axis")
@@ -89,7 +89,6 @@ class Results(Part):
     unanswered: list[Unanswered] = Field(description="models without a value at some or all phase pairs of a scene")
     alerts: list[Alert] = Field(description="what a reader must know before trusting a number, the most serious first")
     faults: list[Text] = Field(description="error messages of the solvers")
-    no_pdf: Text = Field(description="why there is no report.pdf and what helps; empty where there is one")
 
     def of(self, key: str) -> Any:
         """What a feature found; None where it found nothing."""
@@ -112,6 +111,12 @@ class Results(Part):
             f"{sum(verdict is True for verdict in verdicts)} of {len(verdicts)} differences exceed the uncertainties"
         )
         return f"{count} beside the models, and {beyond}"
+
+    @property
+    def engine_lines(self) -> list[str]:
+        """A sentence for each engine of the user and body."""
+        lines = [line for scene in self.scenes for line in scene.headlines]
+        return [f"{line.scene}, {line.name}: {sentence}" for line in lines for sentence in line.engines]
 
     @property
     def phased(self) -> list[SceneResult]:

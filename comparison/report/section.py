@@ -48,7 +48,8 @@ class Section:
     they are given. context: what the template reads, from the report and the folder of its figures. tasks: drawings for
     the workers. draw: writes its pictures into the folder of the figures. title_recorded: title where no scene has
     phases, "" for the same. folded: whether the reader opens it. verifies: whether it verifies the tool rather than
-    answers the question, and so stands in verification.html.
+    answers the question, and so stands in verification.html. verdict: one line beside the title. lead: one sentence
+    for the first screen, "" for none.
     """
 
     title: str
@@ -59,6 +60,8 @@ class Section:
     title_recorded: str = ""
     folded: bool = True
     verifies: bool = False
+    verdict: Callable[[Results], str] | None = None
+    lead: Callable[[Results], str] | None = None
     name: str = ""
     template: str = ""
     shows: tuple[str, ...] = ()

@@ -21,6 +21,11 @@ def _differences(report: Report, figures: Path) -> Mapping[str, Any]:
     return {"rows": rows, "dots": log_scale([size for row in rows for size in (abs(row.mean), row.maximum)])}
 
 
+def _grids(report: Report, figures: Path) -> Mapping[str, Any]:
+    rows = [row for scene in report.results.scenes for row in (*scene.differences, *scene.effects)]
+    return {"grids": sorted({grid.phases_per_axis for row in rows for grid in row.grids})}
+
+
 def _costs(report: Report, figures: Path) -> Mapping[str, Any]:
     outcomes = [model for scene in report.results.scenes for model in scene.models.values()]
     return {
@@ -47,7 +52,7 @@ SURFACES = _feature(
     folded=False,
 )
 DIFFERENCES = _feature("differences", "Differences", context=_differences)
-BUDGET = _feature("budget", "Causes of the difference")
+BUDGET = _feature("budget", "Causes of the difference", context=_grids)
 OUTCOMES = _feature("outcomes", "Outcomes and cost", context=_costs)
 MODELS = _feature("models", "Models compared", context=_models)
 VERIFICATION = _feature(

@@ -1,5 +1,5 @@
 """
-Writes the report: index.html and verification.html, which need none of the others; report.pdf; surfaces.nc;
+Writes the report: index.html and verification.html, which need none of the others; surfaces.nc;
 summary.json with its schema and summary.md; junit.xml; figures/.
 """
 
@@ -8,18 +8,16 @@ from pathlib import Path
 from comparison.analyses.demands.analysis import with_demands
 from comparison.report.junit import junit
 from comparison.report.page import pages
-from comparison.report.pdf import map_tasks, write_pdf
 from comparison.report.results import schema_json
 from comparison.report.section import Report
 from comparison.report.summary_text import summary_text
-from comparison.runner.output import netcdf, on_stderr
+from comparison.runner.output import netcdf
 from comparison.runner.task import Task
 
 
 def drawing_tasks(report: Report) -> list[Task]:
     """What workers draw before the report is written."""
-    maps = [] if report.results.no_pdf else [task for _, task in map_tasks(report)]
-    return [*maps, *(task for section in report.sections if section.tasks for task in section.tasks(report))]
+    return [task for section in report.sections if section.tasks for task in section.tasks(report)]
 
 
 def write_report(folder: Path, report: Report) -> None:
@@ -43,10 +41,5 @@ def write_report(folder: Path, report: Report) -> None:
     for section in report.sections:
         if section.draw and section.present(results):
             section.draw(figures, report)
-    if not results.no_pdf:
-        try:
-            write_pdf(folder / "report.pdf", report)
-        except RuntimeError as error:  # what typst raises: the rest of the report does not depend on it
-            on_stderr(f"report.pdf: not written: {error}")
     for name, text in pages(figures, report).items():
         (folder / name).write_text(text, encoding="utf-8")

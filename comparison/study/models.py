@@ -7,11 +7,15 @@ A model names the function that answers for it ("package:function", the contract
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from typing import Any, Literal
 
 from reference.problem import Scene, mirror_symmetric, no_friction
 
-V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity, on both sides alike
+DEFAULT_V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity, on both sides alike
+DEFAULT_V_C = 1e-3  # m/s: slip speed above which an integration with steps of about 1 ms sees the motion
+AS_INTEGRATED = "as integrated"  # reading of (5.1): the largest value that an integration meets
+LITERAL_SUPREMUM = "literal supremum"  # reading of (5.1): the limit v -> 0+ at a stop counts, too
 REFERENCE_TOLERANCE = 1e-6  # asked at least of the equations, which are cheap: their error blurs no difference
 SOFTENED = "softened-"  # begins the key of a model whose bars are softened
 
@@ -26,8 +30,13 @@ def any_scene(scene: Scene) -> bool:
     return True
 
 
+def smooth(scene: Scene) -> bool:
+    """Whether no friction is dry, so that both readings of (5.1) are the same."""
+    return not dry(scene)
+
+
 def never(scene: Scene) -> bool:
-    """Whether mirrored phases give mirrored motions, for a model of which that is not known."""
+    """Return False: for a property of a model that no scene gives it."""
     return False
 
 
@@ -80,7 +89,8 @@ class Model:
     why all phase pairs would be refused, or "" ("package:function", the contract of `multibody.refusal`). `side`:
     "user" for a user-supplied engine (user_models.py), which has no place in the steps from model to model and no
     trajectory. `like`: key of the reference's model that such an engine is compared with. `timeout`: most processor
-    time of one call, s.
+    time of one call, s. `reading`: of (5.1), where friction is dry. `in_chain`: whether the scene's chain of models has
+    it, in which each adds one effect to the one before and all read (5.1) as integrated.
     """
 
     key: str
@@ -99,6 +109,8 @@ class Model:
     effect: str = ""
     like: str | None = None
     timeout: float | None = None
+    reading: str = AS_INTEGRATED
+    in_chain: Callable[[Scene], bool] = field(default=any_scene)
 
     @property
     def is_spatial(self) -> bool:
@@ -117,17 +129,23 @@ class Model:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two models whose difference is reported, `second` minus `first`, relative to `first`."""
+    """
+    Two models whose difference is reported: `second` minus `first`, as a share of mu of `base`.
+
+    effect: what the second adds to the first, "" for a pair that several effects or the reading of (5.1) tell apart.
+    """
 
     key: str
     title: str
     sentence: str
     first: Model
     second: Model
+    base: Model
+    effect: str = ""
 
 
 def with_max_work(hierarchy: Sequence[Model], max_work: float) -> tuple[Model, ...]:
-    """The hierarchy with this many steps of the engine allowed for a phase pair."""
+    """Return the hierarchy with this many steps of the engine allowed for a phase pair."""
     return tuple(
         replace(model, settings={**model.settings, "max_work": max_work}) if model.side == "engine" else model
         for model in hierarchy
@@ -135,51 +153,87 @@ def with_max_work(hierarchy: Sequence[Model], max_work: float) -> tuple[Model, .
 
 
 def models_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
-    """The models that apply to this scene, in order."""
+    """Return the models that apply to this scene, in order."""
     return [model for model in hierarchy if model.applies(scene)]
 
 
-def steps_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
-    """The models of the scene that lead from one to the next: all but those that a user supplies."""
-    return [model for model in models_of(scene, hierarchy) if model.side != "user"]
+def chain_of(scene: Scene, hierarchy: Sequence[Model]) -> list[Model]:
+    """Return the models that lead from one to the next, each adding one effect, in one reading of (5.1)."""
+    return [model for model in models_of(scene, hierarchy) if model.side != "user" and model.in_chain(scene)]
 
 
 def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
-    A like-for-like difference of every user-supplied engine, then the total one, that within the paper's assumptions,
-    and the like-for-like one: what the scene allows.
+    Return the pairs that answer the study's question: a like-for-like difference of every user-supplied engine, then
+    the total one, that within the paper's assumptions, and the like-for-like one, as far as the scene allows.
 
-    left_out: keys of models without results. The total then leads from the first to the last model that has values. The
-    other two compare fixed models: without one of these they are left out.
+    left_out: keys of models without results. The total then leads from the first to the last model of the chain that
+    has values. The other two compare fixed models: without one of these they are left out.
     """
-    asked = steps_of(scene, hierarchy)
+    asked = chain_of(scene, hierarchy)
     models = [model for model in asked if model.key not in left_out]
     first, last = models[0], models[-1]
     printed = "the paper's printed equations" if first is asked[0] else f"the {first.title}"
-    equations = [model for model in asked if model.side == "reference"]
-    reference = equations[-1]
+    equations = [model for model in models_of(scene, hierarchy) if model.side == "reference"]
+    reference = [model for model in asked if model.side == "reference"][-1]
     engine = next((model for model in asked if model.side == "engine"), None)
     complete = last is asked[-1] and engine is not None
     other = "the most complete engine model" if complete else f"the {last.title}"
-    pairs = [Pair("total", "total", f"{printed} against {other}", first, last)]
+    pairs = [Pair("total", "total", f"{printed} against {other}", first, last, first)]
     if engine is not None and engine in models:  # else it does not meet the tolerance, fit the budget, or answer
         if engine is not last and first is asked[0]:
             sentence = f"{printed} against the engine under the paper's own assumption that no body turns"
-            pairs.append(Pair("translational", "translational", sentence, first, engine))
+            pairs.append(Pair("translational", "translational", sentence, first, engine, first))
         if reference in models:
             sentence = "same geometry and same friction law on both sides: this gap must close"
-            pairs.append(Pair("like-for-like", "like for like", sentence, reference, engine))
+            title = "same equations and friction law"
+            pairs.append(Pair("like-for-like", title, sentence, reference, engine, reference))
     of_users = []
     for supplied in models_of(scene, hierarchy):
         if supplied.side == "user" and supplied.key not in left_out:
             like = next((model for model in equations if model.key == supplied.like), reference)
-            if like in models:
+            if like.key not in left_out:
                 sentence = f"the {like.title} against a user-supplied engine: what it solves is not known here"
-                of_users.append(Pair(supplied.key, f"{supplied.title}, like for like", sentence, like, supplied))
+                title = f"{supplied.title}, against the {like.title}"
+                of_users.append(Pair(supplied.key, title, sentence, like, supplied, like))
     return of_users + pairs
 
 
+def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
+    """
+    Return a pair for each effect of the chain, then the same effects where other models stand beside the chain, then
+    the two readings of (5.1).
+
+    An effect as integrated is a share of mu of the first model of the chain, so that the effects of the chain add up to
+    the total. Between literal suprema it is a share of the literal supremum of the small equations.
+    """
+    known = {model.key: model for model in models_of(scene, hierarchy) if model.key not in left_out}
+    chain = [model for model in chain_of(scene, hierarchy) if model.key in known]
+    pairs = [_effect_pair("", first, second, chain[0]) for first, second in pairwise(chain)]
+    for where, first, second in BESIDE_THE_CHAIN:
+        if first.key in known and second.key in known and not (first.in_chain(scene) and second.in_chain(scene)):
+            base = first if first.reading == LITERAL_SUPREMUM else chain[0]
+            pairs.append(_effect_pair(where, known[first.key], known[second.key], known[base.key]))
+    if SMALL.key in known and chain[0].key == SMALL_RESOLVED.key:
+        small, printed = known[SMALL.key], chain[0]
+        above = "what the limits at stops add to the small equations as integrated"
+        below = "what an integration of the small equations misses of the literal supremum"
+        pairs.append(Pair("supremum", "literal supremum above as integrated", above, printed, small, printed))
+        pairs.append(Pair("reading", "as integrated against literal supremum", below, small, printed, small))
+        last = chain[-1]
+        sentence = f"the literal supremum of the printed equations against the {last.title}"
+        pairs.append(Pair("supremum-total", "total from the literal supremum", sentence, small, last, small))
+    return pairs
+
+
+def _effect_pair(where: str, first: Model, second: Model, base: Model) -> Pair:
+    title = second.effect or f"the step to the {second.title}"
+    key = "-".join([*(title if second.effect else second.key).split(), *where.split()])
+    return Pair(key, title, f"what {title} adds to the {first.title}", first, second, base, title)
+
+
 _PEAK = "largest value the computed motion reaches"
+_RESOLVED_PEAK = "largest value at rest or sliding faster than v_c = 1 mm/s"
 
 
 def _next(before: Model, departs: Mapping[str, str], **changes: Any) -> Model:
@@ -189,8 +243,9 @@ def _next(before: Model, departs: Mapping[str, str], **changes: Any) -> Model:
 
 SMALL = Model(
     key="small",
-    title="small equations",
-    adds="The paper's small-vibration equations (4.3)-(4.4) as printed, with dry friction that really sticks.",
+    title="small equations, literal supremum",
+    adds="The paper's small-vibration equations (4.3)-(4.4) as printed, with dry friction that really sticks; (5.1) "
+    "counts the one-sided limits at stops, which no integration meets.",
     side="reference",
     amplification="reference:amplification",
     trajectory="reference:trajectory",
@@ -202,10 +257,12 @@ SMALL = Model(
         "normal contact": "rigid, m_sum (g + zeta'') to the kept order",
         "unknowns": "2 N horizontal displacements; the vertical one follows from the sphere (2.1)",
         "links": "springs of the stiffness that the scene states; bars as they are without load",
-        "mu_i": "supremum of (5.1) with one-sided limits at stops, in closed form",
+        "mu_i": "literal supremum of (5.1) with one-sided limits at stops, in closed form",
     },
     batch=64,
     symmetric=any_scene,
+    reading=LITERAL_SUPREMUM,
+    in_chain=smooth,
 )
 EXACT = _next(
     SMALL,
@@ -215,30 +272,54 @@ EXACT = _next(
         "normal contact": "rigid, from the constraint with its centripetal part",
     },
     key="exact",
-    title="exact equations",
+    title="exact equations, literal supremum",
     effect="geometry",
     adds="The whole sphere: equations (3.9)-(3.13) with the errata of the print corrected, same friction law.",
     settings={"equations": "exact", "regularization": None},
 )
+SMALL_RESOLVED = _next(
+    SMALL,
+    {"mu_i": _RESOLVED_PEAK},
+    key="small-resolved",
+    title="small equations, as integrated",
+    adds="The same motion, read at rest and while sliding faster than v_c = 1 mm/s: what an integration of the printed "
+    "equations with steps of about 1 ms sees, as the paper's own.",
+    settings={**SMALL.settings, "cutoff": DEFAULT_V_C},
+    applies=dry,
+    reading=AS_INTEGRATED,
+    in_chain=any_scene,
+)
 RESOLVED = _next(
     EXACT,
-    {"mu_i": "largest value at rest or sliding faster than v_c = 1e-3 m/s"},
+    {"mu_i": _RESOLVED_PEAK},
     key="resolved",
-    title="exact equations, resolved peak",
-    effect="the peak at the stop",
-    adds="The same motion, read only at rest and while sliding faster than v_c = 1e-3 m/s: what the one-sided "
-    "limits at stops, which no sampling reaches, are worth.",
-    settings={**EXACT.settings, "cutoff": V_REG},
+    title="exact equations, as integrated",
+    adds="The whole sphere, read like the small equations as integrated.",
+    settings={**EXACT.settings, "cutoff": DEFAULT_V_C},
     applies=dry,
+    reading=AS_INTEGRATED,
+    in_chain=any_scene,
+)
+_LINEAR = {"friction": "the same Coulomb law, times |v| / v_reg below v_reg = 1 mm/s", "mu_i": _PEAK}
+SMALL_REGULARIZED = _next(
+    SMALL_RESOLVED,
+    _LINEAR,
+    key="small-regularised",
+    title="small equations, v_reg",
+    effect="regularized friction",
+    adds="The printed equations with friction that is linear below v_reg = 1 mm/s, as most codes have it: what "
+    "geometry adds under that law is seen from here.",
+    settings={"equations": "small", "regularization": DEFAULT_V_REG},
+    in_chain=never,
 )
 REGULARIZED = _next(
-    EXACT,
-    {"friction": "the same Coulomb law, times |v| / v_reg below v_reg = 1e-3 m/s", "mu_i": _PEAK},
+    RESOLVED,
+    _LINEAR,
     key="regularised",
     title="exact equations, v_reg",
     effect="regularized friction",
-    adds="Friction linear below v_reg = 1e-3 m/s, as an engine has it: no true rest, no jump at a stop.",
-    settings={"equations": "exact", "regularization": V_REG},
+    adds="Friction linear below v_reg = 1 mm/s, as an engine has it: no true rest, no jump at a stop.",
+    settings={"equations": "exact", "regularization": DEFAULT_V_REG},
     applies=dry,
 )
 TRANSLATIONAL = _next(
@@ -246,7 +327,7 @@ TRANSLATIONAL = _next(
     {
         "equations": "Newton-Euler of the bodies, assembled by Exudyn",
         "geometry": "exact spheres: support of radius r in a depression of radius R; a plane for a flat slider",
-        "friction": "the same Coulomb law, times |v| / v_reg below v_reg = 1e-3 m/s, or mu = f_c |v| if lubricated",
+        "friction": "the same Coulomb law, times |v| / v_reg below v_reg = 1 mm/s, or mu = f_c |v| if lubricated",
         "normal contact": "elastic: spring and damper, so the platform sinks by N/k_c",
         "unknowns": "translations of every body, the platform's vertical one free",
     },
@@ -258,7 +339,7 @@ TRANSLATIONAL = _next(
     amplification="multibody:amplification",
     trajectory="multibody:trajectory",
     refusal="multibody:refusal",
-    settings={"model": "translational", "regularization": V_REG},
+    settings={"model": "translational", "regularization": DEFAULT_V_REG},
     batch=2,
     applies=any_scene,
     most=16,
@@ -275,14 +356,22 @@ SPATIAL = _next(
     effect="turning of the bodies",
     adds="Every body free to turn, at its height, on its supports: overturning shares the load unequally, "
     "friction twists the platform, supports may lift off.",
-    settings={"model": "spatial", "regularization": V_REG},
+    settings={"model": "spatial", "regularization": DEFAULT_V_REG},
     batch=1,
     applies=has_spatial_data,
     most=16,
     symmetric=mirror_symmetric,
 )
 
-MODEL_HIERARCHY: tuple[Model, ...] = (SMALL, EXACT, RESOLVED, REGULARIZED, TRANSLATIONAL, SPATIAL)
+MODEL_HIERARCHY: tuple[Model, ...] = (
+    SMALL, EXACT, SMALL_RESOLVED, RESOLVED, SMALL_REGULARIZED, REGULARIZED, TRANSLATIONAL, SPATIAL,
+)  # fmt: skip
+# effects between models of which one is not in the chain: where, first, second
+BESIDE_THE_CHAIN = (
+    ("supremum", SMALL, EXACT),
+    ("regularized", SMALL_REGULARIZED, REGULARIZED),
+    ("small", SMALL_RESOLVED, SMALL_REGULARIZED),
+)
 
 
 def _softened(model: Model, applies: Callable[[Scene], bool]) -> Model:

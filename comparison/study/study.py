@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from comparison.study.analyses import ANALYSES, EVERYTHING, Selection
 from comparison.study.batches import Batch
-from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, steps_of
+from comparison.study.models import MODEL_HIERARCHY, Model, Pair, chain_of, pairs_of
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.symmetry import sources
 
@@ -107,7 +107,7 @@ class Study:
     def compared(self, scene: Scene) -> list[Model]:
         """The models that are compared on a scene, in order, without engines of the user."""
         left_out = self.left_out(scene)
-        return [model for model in steps_of(scene, self.hierarchy) if model.key not in left_out]
+        return [model for model in chain_of(scene, self.hierarchy) if model.key not in left_out]
 
     def left_out(self, scene: Scene) -> Collection[str]:
         """The models without results on a scene, by their keys: none while nothing is computed."""

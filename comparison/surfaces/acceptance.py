@@ -1,17 +1,17 @@
 """The limits that a scene states before the run, compared with what was found."""
 
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 from math import isnan
 from typing import Annotated
 
-import xarray as xr
 from pydantic import computed_field
 
 from comparison.result_types import Number, Text, result
 from comparison.study.models import pairs_of
 from comparison.study.study import Study
-from comparison.surfaces.budget import closure, steps
-from comparison.surfaces.differences import Difference
+from comparison.surfaces.body_comparison import BodyComparison
+from comparison.surfaces.budget import closure
 from comparison.surfaces.unanswered import Unanswered
 from reference.problem import Scene
 
@@ -50,24 +50,22 @@ class Limit:
         return [f"{self.scene}: {text}" for text in self.broken_texts]
 
 
-def checked_limits(
-    study: Study, surfaces: xr.Dataset, rows: Sequence[Difference], lacking: Sequence[Unanswered]
-) -> list[Limit]:
+def checked_limits(comparisons: Sequence[BodyComparison], lacking: Sequence[Unanswered]) -> list[Limit]:
     """Every limit that the scenes of a study state, compared with what was found, in the order of scenes and keys."""
     limits = []
-    for scene in study.scenes:
+    for scene, bodies in groupby(comparisons, lambda comparison: comparison.scene):
         gaps = [gap for gap in lacking if gap.scene == scene.name]
-        differences = [row for row in rows if row.scene == scene.name]
-        checked = _breaches(study, surfaces, scene, differences, gaps)
+        checked = _breaches(list(bodies), gaps)
         limits += [Limit(scene.name, key, allowed, tuple(breaches)) for key, allowed, breaches in checked]
     return limits
 
 
 def _breaches(
-    study: Study, surfaces: xr.Dataset, scene: Scene, rows: Sequence[Difference], gaps: Sequence[Unanswered]
+    bodies: Sequence[BodyComparison], gaps: Sequence[Unanswered]
 ) -> Iterator[tuple[str, float, list[Breach]]]:
     """Key, limit and what breaks it, of every limit that the scene states."""
-    stated = scene.acceptance
+    study, scene = bodies[0].study, bodies[0].scene
+    stated, rows = scene.acceptance, [row for body in bodies for row in body.rows.values()]
     for key, pair, measure, allowed in stated.differences():
         compared = [row for row in rows if row.pair == _same(study, scene, pair)]
         if any(row.asked > row.unanswered for row in compared):
@@ -77,8 +75,7 @@ def _breaches(
             reason = f"nothing to compare ({_why_not(study, scene, pair, gaps)})"
             yield key, allowed, [Breach(0, float("nan"), reason)]
     if stated.closure is not None:
-        bodies = range(1, len(scene.bodies) + 1)
-        remainders = [(body, closure(steps(study, surfaces, scene.name, body))) for body in bodies]
+        remainders = [(body.body, closure(body)) for body in bodies]
         yield "closure", stated.closure, _beyond(remainders, stated.closure)
     if (allowed_points := stated.failures) is not None:
         lacks = {gap: gap.points + gap.unusable for gap in gaps}

@@ -26,7 +26,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model
 from comparison.study.study import Study
-from comparison.surfaces.steps import RESOLVED, known, known_mu
+from comparison.surfaces.model_difference import RESOLVED, drop_worthless, usable_mu
 from reference.measures.distribution import fractile
 from reference.problem import Scene, phase_axis, phase_grid
 from reference.problem.symmetry import sources
@@ -238,7 +238,7 @@ def _completion(
         return Completion(*about, computed, 0, nan, nan, 1.0, CONFIDENCE, asked, nan, reason, nothing)
 
     def mu(of: Model, on: Model) -> Array:
-        values: Array = known_mu(surfaces, scene.name, of, on)[body - 1]
+        values: Array = usable_mu(surfaces, scene.name, of, on)[body - 1]
         return values
 
     values = mu(model, model)
@@ -257,7 +257,7 @@ def _completion(
         return refused("no phase pairs were held out to check an interpolation", computed)
     surface = fine + interpolated(gap, phase_axis(study.grid)[study.axis(model)], phase_axis(study.grid))
     truth_error = unused.error[:, body - 1]
-    truth = known(unused.mu[:, body - 1], truth_error)
+    truth = drop_worthless(unused.mu[:, body - 1], truth_error)
     missed = np.abs(surface.ravel()[held_out_places(study, scene, model)] - truth) / truth
     checked = np.isfinite(missed)
     held_out = int(checked.sum())

@@ -1,64 +1,130 @@
 """How far two models' surfaces lie apart, in numbers: one row per scene, pair of models and body."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
-import xarray as xr
 
-from comparison.result_types import Number, result
-from comparison.study.models import Pair
-from comparison.study.study import Study
-from comparison.surfaces.budget import Sizes, known_to_all, sizes, steps
-from comparison.surfaces.steps import Step, step
-from comparison.surfaces.surfaces import values_of
-from reference.problem import Outcome
+from comparison.result_types import Number, Phases, Text, result
+from comparison.study.study import nested_grids
+from comparison.surfaces.model_difference import RESOLVED, ModelDifference
+from comparison.surfaces.sampling import known_mean, sampling_error
+from reference.measures.distribution import fractile
 
 
 @result
-class Difference(Sizes):
-    """The difference of two models in one body: second minus first, relative to the first."""
+class DifferenceStatistics:
+    """How large the difference of two models is in one body, over the phase pairs where both have a value."""
 
-    pair: Annotated[str, "key of the pair: total, translational, like-for-like"]
-    mean: Annotated[Number, "mean of the signed size over the phase pairs where every compared model has a value"]
+    scene: Annotated[Text, "name of the scene"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    first: Annotated[str, "key of the first model"]
+    second: Annotated[str, "key of the second model"]
+    base: Annotated[str, "key of the model whose mu all sizes are relative to"]
+    median: Annotated[Number, "median of the absolute size"]
+    percentile95: Annotated[Number, "95 % of the absolute sizes are below this"]
+    maximum: Annotated[Number, "largest absolute size"]
+    phases: Annotated[Phases, "(alpha1, alpha2) of the largest, rad"]
+    asked: Annotated[int, "phase pairs that both models were asked for"]
+
+
+@result
+class GridMean:
+    """The mean difference on one of the nested grids of phases."""
+
+    phases_per_axis: Annotated[int, "phases per axis"]
+    mean: Annotated[Number, "mean of the signed size"]
+    maximum: Annotated[Number, "largest absolute size"]
+
+
+@result
+class Difference(DifferenceStatistics):
+    """
+    The difference of two models in one body: second minus first, relative to the base, on the finest grid of phases
+    that both models have.
+    """
+
+    pair: Annotated[str, "key of the pair: total, translational, like-for-like, supremum, reading, or of an effect"]
+    effect: Annotated[str, "what the second model adds to the first; empty where that is no single effect"]
+    reading: Annotated[str, "reading of (5.1) on both sides; the two readings joined by ' to ' where they differ"]
+    mean: Annotated[Number, "mean of the signed size over the phase pairs where both models have a value"]
+    numerical_error: Annotated[Number, "error of the mean that the error estimates of both models leave"]
+    sampling_error: Annotated[Number, "error of the mean that the grid of phases leaves; null where it does not tell"]
     spread: Annotated[Number, "standard deviation of the signed size over the same phase pairs"]
+    low: Annotated[Number, "smallest signed size"]
+    low_phases: Annotated[Phases, "(alpha1, alpha2) of it, rad"]
+    high: Annotated[Number, "largest signed size"]
+    high_phases: Annotated[Phases, "(alpha1, alpha2) of it, rad"]
+    phases_per_axis: Annotated[int, "of the grid of phase pairs that both models were asked for; 1 under a record"]
+    independent: Annotated[int, "phase pairs where both have a value that no symmetry of the scene relates"]
+    grids: Annotated[tuple[GridMean, ...], "the same on the nested grids, from coarse to fine"]
     beyond_error: Number
     """fraction of the phase pairs where it exceeds u_D = sqrt(u_A^2 + u_B^2), the two error estimates together"""
+    resolved: Annotated[Number, "fraction of the phase pairs where it exceeds 5 u_D"]
     ratio: Annotated[Number, "largest absolute size in units of u_D"]
     not_ok: Annotated[int, "phase pairs where either outcome is not ok"]
     unanswered: Annotated[int, "phase pairs where either has no value"]
 
+    @property
+    def error(self) -> float:
+        """Error of the mean, numerical and of sampling; NaN where one is not known."""
+        return float(np.hypot(self.numerical_error, self.sampling_error))
 
-def pair_step(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Step:
-    """The pair's difference, signed and relative to its first model, at the phases both were asked for."""
-    return step(surfaces, scene, pair.key, pair.first, pair.second, body, per=pair.first)
-
-
-def differences(study: Study, surfaces: xr.Dataset) -> list[Difference]:
-    """Every row of the closing table, in the order scene, body, pair."""
-    return [
-        _difference(study, surfaces, scene.name, pair, body)
-        for scene in study.scenes
-        for body in range(1, len(scene.bodies) + 1)
-        for pair in study.pairs(scene)
-    ]
+    @property
+    def mean_is_resolved(self) -> bool:
+        """Whether the mean exceeds its sampling error, and five times the numerical one."""
+        return abs(self.mean) > self.sampling_error and abs(self.mean) > RESOLVED * self.numerical_error
 
 
-def _difference(study: Study, surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> Difference:
-    signed = pair_step(surfaces, scene, pair, body)
-    hierarchy = [] if pair.second.side == "user" else steps(study, surfaces, scene, body)
-    stride, common = known_to_all([*hierarchy, signed])
-    mean, spread = signed.mean(common, stride)
-    both = (pair.first, pair.second), (pair.second, pair.first)
-    not_ok = np.any([values_of(surfaces, "status", scene, *each) != Outcome.OK.value for each in both], axis=0)
-    valid = signed.known
-    stated = valid & np.isfinite(signed.uncertainty)
+def statistics(scene: str, difference: ModelDifference) -> dict[str, Any]:
+    """Return the fields of `DifferenceStatistics`."""
+    size = np.abs(difference.size[difference.known])
+    median, percentile95, maximum = (fractile(size, p) if size.size else np.nan for p in (0.5, 0.95, 1.0))
+    return {
+        "scene": scene,
+        "body": difference.body,
+        "first": difference.pair.first.key,
+        "second": difference.pair.second.key,
+        "base": difference.pair.base.key,
+        "median": float(median),
+        "percentile95": float(percentile95),
+        "maximum": float(maximum),
+        "phases": difference.phases,
+        "asked": difference.size.size,
+    }
+
+
+def difference_row(scene: str, difference: ModelDifference, independent: int, not_ok: int) -> Difference:
+    """Return the row of a difference; independent, not_ok: see the fields of `Difference`."""
+    pair, size, known = difference.pair, difference.size, difference.known
+    grid = len(size)
+    stated = known & np.isfinite(difference.uncertainty)
+    nan = float("nan")
+    ends = difference.place_of(-size), difference.place_of(size)
+    readings = dict.fromkeys((pair.first.reading, pair.second.reading))
     return Difference(
-        **sizes(scene, signed),
+        **statistics(scene, difference),
         pair=pair.key,
-        mean=mean,
-        spread=spread,
-        beyond_error=float((np.abs(signed.size) > signed.uncertainty)[stated].mean()) if stated.any() else float("nan"),
-        ratio=float(signed.ratio[valid].max()) if valid.any() and (stated == valid).all() else float("nan"),
-        not_ok=int(not_ok.sum()),
-        unanswered=int((~valid).sum()),
+        effect=pair.effect,
+        reading=" to ".join(readings),
+        mean=known_mean(size),
+        numerical_error=float(difference.uncertainty[known].mean()) if known.any() else nan,
+        sampling_error=0.0 if difference.recorded else sampling_error(size, independent),
+        spread=float(size[known].std()) if known.any() else nan,
+        low=difference.at(size, ends[0]),
+        low_phases=difference.phases_at(ends[0]),
+        high=difference.at(size, ends[1]),
+        high_phases=difference.phases_at(ends[1]),
+        phases_per_axis=grid,
+        independent=independent,
+        grids=tuple(_grid_mean(size[:: grid // coarse, :: grid // coarse]) for coarse in nested_grids(grid)),
+        beyond_error=float((np.abs(size) > difference.uncertainty)[stated].mean()) if stated.any() else nan,
+        resolved=float(difference.resolved[known].mean()) if known.any() else nan,
+        ratio=float(difference.ratio[known].max()) if known.any() and (stated == known).all() else nan,
+        not_ok=not_ok,
+        unanswered=int((~known).sum()),
     )
+
+
+def _grid_mean(sizes: np.ndarray) -> GridMean:
+    known = np.abs(sizes[np.isfinite(sizes)])
+    return GridMean(len(sizes), known_mean(sizes), float(known.max()) if known.size else float("nan"))

@@ -9,7 +9,7 @@ import xarray as xr
 from comparison.result_types import Array, Number, Phases, UncertainNumber, result
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from comparison.surfaces.steps import known_mu
+from comparison.surfaces.model_difference import usable_mu
 from comparison.surfaces.surfaces import values_of
 from reference.measures import phase_distribution
 from reference.measures.distribution import FRACTILES, fractile
@@ -82,6 +82,6 @@ def grid_maxima(study: Study, surfaces: xr.Dataset, scene: Scene) -> list[GridMa
 def _each(study: Study, surfaces: xr.Dataset, scene: Scene) -> Iterator[tuple[Model, int, Array, Array]]:
     """Every model and body with its usable values and their errors, on the phases that the model was asked for."""
     for model in models_of(scene, study.hierarchy):
-        of_bodies = zip(known_mu(surfaces, scene.name, model), values_of(surfaces, "error", scene.name, model))
+        of_bodies = zip(usable_mu(surfaces, scene.name, model), values_of(surfaces, "error", scene.name, model))
         for body, (mu, error) in zip(range(1, len(scene.bodies) + 1), of_bodies):
             yield model, body, mu, error

@@ -11,9 +11,9 @@ from pydantic import computed_field
 
 from comparison.result_types import Text, result
 from comparison.study.batches import refusal_of
-from comparison.study.models import Model, models_of, steps_of
+from comparison.study.models import Model, chain_of, models_of
 from comparison.study.study import Study
-from comparison.surfaces.steps import known_mu
+from comparison.surfaces.model_difference import usable_mu
 from comparison.surfaces.surfaces import outcome_counts, values_of
 from reference.problem import ADVICE, Outcome, Scene
 
@@ -86,7 +86,7 @@ def compared_study(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
     """The study whose comparisons leave out models without any usable value, unless fewer than two would be left."""
     without_results = {}
     for scene in study.scenes:
-        steps = steps_of(scene, study.hierarchy)
+        steps = chain_of(scene, study.hierarchy)
         empty = {model.key for model in models_of(scene, study.hierarchy) if not _usable(surfaces, scene, model).any()}
         of_users = empty - {model.key for model in steps}
         if len(empty - of_users) >= len(steps) - 1:
@@ -132,4 +132,4 @@ def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bo
 
 def _usable(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
     """At which of them every value is known to better than half of its size."""
-    return np.asarray(np.isfinite(known_mu(surfaces, scene.name, model)[: len(scene.bodies)]).all(axis=0))
+    return np.asarray(np.isfinite(usable_mu(surfaces, scene.name, model)[: len(scene.bodies)]).all(axis=0))

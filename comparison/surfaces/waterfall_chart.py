@@ -30,7 +30,7 @@ class Bar:
     """One bar: places in percent of the width."""
 
     model: str  # key of the model that the step leads to, or "total"
-    kind: str  # "up", "down", "total", "unreal" (not known to a fifth of itself) or "none" (no value)
+    kind: str  # "up", "down", "total", "unresolved" (not beyond its error) or "none" (no value)
     left: float
     width: float
     error: tuple[float, float]  # ends of the error bar
@@ -101,7 +101,7 @@ def _bar(bar: WaterfallBar, model: str, start: float, scale: Scale) -> Bar:
         return Bar(model, "none", begin, 0.0, (begin, begin), begin, "no value")
     end = scale.at(start + bar.size)
     ends = scale.at(start + bar.size - _error(bar)), scale.at(start + bar.size + _error(bar))
-    kind = "unreal" if not bar.real else "total" if model == "total" else "up" if bar.size >= 0.0 else "down"
+    kind = "unresolved" if not bar.resolved else "total" if model == "total" else "up" if bar.size >= 0.0 else "down"
     return Bar(model, kind, min(begin, end), round(abs(end - begin), 3), ends, end, difference(bar.size, _error(bar)))
 
 

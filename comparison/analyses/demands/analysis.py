@@ -16,7 +16,7 @@ from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Phases, UncertainNumber, result
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.models import Model, steps_of
+from comparison.study.models import SMALL_REGULARIZED, Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.distribution import CURVE, Fractile
 from comparison.surfaces.surfaces import NOT_ASKED
@@ -127,8 +127,9 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
 
 
 def _moving(study: Study, scene: Scene) -> list[Model]:
-    """The models whose motions differ: a resolved peak is another reading of the same motion."""
-    return [model for model in steps_of(scene, study.hierarchy) if "cutoff" not in model.settings]
+    """Return the models whose motions differ: as integrated is another reading of the same motion."""
+    models = (model for model in models_of(scene, study.hierarchy) if model.side != "user")
+    return [model for model in models if "cutoff" not in model.settings and model.key != SMALL_REGULARIZED.key]
 
 
 def _batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:

@@ -10,7 +10,7 @@ from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Radius, Text, result
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.models import Model, steps_of
+from comparison.study.models import Model, chain_of
 from comparison.study.study import Study
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, exponents, ground_acceleration
 from reference.problem.friction import LEAST_LOAD
@@ -79,7 +79,7 @@ class EffectiveValues(MappedAnalysis[list[Effective]]):
 
     def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[tuple[Scene, Model]]:
         """Every model of every scene."""
-        return [(scene, model) for scene in study.scenes for model in steps_of(scene, study.hierarchy)]
+        return [(scene, model) for scene in study.scenes for model in chain_of(scene, study.hierarchy)]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effective]:
         """In the order scene, model; what the scene states comes first."""

@@ -18,7 +18,7 @@ from comparison.analyses.errata.printed_matrices import WRONG_DAMPING, WRONG_SPR
 from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Text, result
 from comparison.runner.task_results import TaskResults
-from comparison.study.models import V_REG, any_scene
+from comparison.study.models import DEFAULT_V_REG, any_scene
 from comparison.study.study import Study
 from reference.problem import Scene
 
@@ -72,7 +72,7 @@ def _cut(scene: Scene, **settings: Any) -> Array:
 
 def _small(scene: Scene) -> dict[str, Any]:
     """Small equations with regularized friction, which keeps the one-sided limits at stops out."""
-    return {"equations": "small", "regularization": None if scene.lubricated else V_REG}
+    return {"equations": "small", "regularization": None if scene.lubricated else DEFAULT_V_REG}
 
 
 @result

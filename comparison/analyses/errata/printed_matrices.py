@@ -2,8 +2,8 @@
 The matrix form (3.9)-(3.13), (3.15) as the paper prints it, erratum by erratum, to measure what each erratum costs.
 
 Written from the print and not from the reference, whose equations it must give once every erratum is corrected.
-Friction grows linearly with the speed below V_REG (a lubricated contact needs no such limit), so that an ordinary
-integrator can follow it; this is for the size of an effect, not for surfaces.
+Friction grows linearly with the speed below DEFAULT_V_REG (a lubricated contact needs no such limit), so that an
+ordinary integrator can follow it; this is for the size of an effect, not for surfaces.
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from comparison.result_types import Array
-from comparison.study.models import V_REG
+from comparison.study.models import DEFAULT_V_REG
 from reference.problem import GRAVITY, Scene, ground_peak
 from reference.problem.excitation import acceleration_of_ground
 
@@ -126,7 +126,7 @@ def _accelerations(fixed: _Fixed, q: Array, v: Array, ground: Array) -> Array:
     speed = math.sqrt(vx**2 + vy**2 + (vx * p + vy * r) ** 2)  # (3.8)
     w = _w(x, y, vx, vy, delta)
     friction = float(fixed.scene.dry_friction.at(speed)) if fixed.varies else fixed.friction
-    over_speed = friction if fixed.lubricated else friction / max(speed, V_REG)
+    over_speed = friction if fixed.lubricated else friction / max(speed, DEFAULT_V_REG)
     s = over_speed * rho  # mu rho / v, (3.14) included
 
     own = m * (delta - s * (vx * p + vy * r))  # the first two rows of M, which is diagonal but for them

@@ -14,7 +14,7 @@ from comparison.result_types import Number, result
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.budget import TOTAL
-from comparison.surfaces.steps import known_mu
+from comparison.surfaces.model_difference import usable_mu
 from comparison.surfaces.surfaces import values_of
 from comparison.surfaces.waterfall import NAN, Waterfall, WaterfallBar
 from reference.measures import Demands, Estimate
@@ -42,7 +42,7 @@ class FamilyStep:
     body: Annotated[int, "number of the body; 1 is the platform"]
     size: Annotated[tuple[Number, ...], "signed size, one for each scene"]
     error: Annotated[tuple[Number, ...], "error estimate of it"]
-    real: Annotated[tuple[bool, ...], "whether the size exceeds five times its error estimate"]
+    resolved: Annotated[tuple[bool, ...], "whether it exceeds the sampling error, and five times the numerical one"]
 
 
 def family_curves(study: Study, surfaces: xr.Dataset, family: Family) -> list[FamilyCurve]:
@@ -63,8 +63,8 @@ def family_steps(family: Family, waterfalls: Mapping[str, Sequence[Waterfall]]) 
         bars = [_bars(waterfalls[scene.name][body - 1]) for scene in family.scenes]
         keys = list(dict.fromkeys(key for scene in bars for key in scene if key != TOTAL))
         for key in (*keys, TOTAL):
-            column = [scene.get(key, WaterfallBar(key, NAN, NAN)) for scene in bars]
-            columns = zip(*((bar.size, bar.error, bar.real) for bar in column))
+            column = [scene.get(key, WaterfallBar(key, NAN, NAN, resolved=False)) for scene in bars]
+            columns = zip(*((bar.size, bar.error, bar.resolved) for bar in column))
             steps.append(FamilyStep(key, body, *map(tuple, columns)))
     return steps
 
@@ -139,7 +139,7 @@ def _bars(waterfall: Waterfall) -> dict[str, WaterfallBar]:
 
 
 def _numbers(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[float, float, float, float]:
-    mu = known_mu(surfaces, scene.name, model)[body - 1]
+    mu = usable_mu(surfaces, scene.name, model)[body - 1]
     known = np.isfinite(mu)
     if not known.any():
         return NAN, NAN, NAN, NAN

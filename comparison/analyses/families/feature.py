@@ -21,6 +21,7 @@ from comparison.report.section import Feature, Findings, Report, Section
 from comparison.result_types import Part, Text
 from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.figures.file_names import figure_file
+from comparison.surfaces.waterfall import PHASES
 from comparison.wording import MAX_NAMES
 
 MOTION = "excitation.record.motion"  # a number that no axis has: motions are named
@@ -114,7 +115,8 @@ def _family_mu(results: Results, family: FamilyResult, body: int) -> Panel:
 
 
 def _family_steps(results: Results, family: FamilyResult, body: int) -> Panel:
-    effects = {model.key: model.effect or model.title for model in results.models} | {TOTAL: "total"}
+    effects = {model.key: model.effect or model.title for model in results.models}
+    effects |= {TOTAL: "total", PHASES: "other phases"}
     lines = [
         (effects[step.model], "ink" if step.model == TOTAL else number, [100.0 * size for size in step.size])
         for number, step in enumerate((step for step in family.steps if step.body == body), start=1)

@@ -15,7 +15,7 @@ from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Number, Phases, Text, result
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.models import Model, steps_of
+from comparison.study.models import Model, chain_of
 from comparison.study.study import Study
 from reference.measures import Estimate, demands
 from reference.problem import Outcome, Scene
@@ -97,7 +97,7 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
         """One for each scene, phase pair of a test, and model."""
         for scene in study.scenes:
             for phases in dict.fromkeys(map(phases_of, scene.measured or ())):
-                for model in steps_of(scene, study.hierarchy):
+                for model in chain_of(scene, study.hierarchy):
                     yield scene, model, model.tolerance(study.tolerance), phases, _asked(scene, phases, model)
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredPeak] | None:

@@ -12,7 +12,7 @@ from comparison.runner.task import TaskResult
 from comparison.study.batches import imported
 from comparison.study.models import Model
 from comparison.study.study import Study
-from comparison.surfaces.differences import pair_step
+from comparison.surfaces.model_difference import difference_of
 from reference.build_cache import cached_on_disk
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
 from reference.measures.demands import ANSWERED
@@ -137,7 +137,7 @@ def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Plac
     largest = {"total": "largest difference of body {}", "translational": "largest difference in translation, body {}"}
     for pair in study.pairs(scene):
         for body in range(1, len(scene.bodies) + 1):
-            if pair.key in largest and (place := pair_step(surfaces, scene.name, pair, body).place):
+            if pair.key in largest and (place := difference_of(surfaces, scene.name, pair, body).place):
                 places.setdefault(place, (largest[pair.key].format(body), set()))[1].add(pair.second.key)
     for k in range(SPREAD):
         row, column = (round(study.grid * (factor * k % SPREAD) / SPREAD) % study.grid for factor in (1, 2))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from comparison.analyses.tradeoff.trade import Stated
-from comparison.study.models import V_REG, Model, dry, has_spatial_data
+from comparison.study.models import DEFAULT_V_REG, Model, dry, has_spatial_data
 from comparison.study.user_models import engine_of
 from reference.problem import Scene
 
@@ -64,9 +64,9 @@ class Setting(Stated):
 _LAWS: Mapping[str, Settings] = {
     "exact": {},
     "small": {"equations": "small"},
-    "regularised": {"regularization": V_REG},
+    "regularised": {"regularization": DEFAULT_V_REG},
 }  # of the equations, by question
-_SPATIAL = {"model": "spatial", "regularization": V_REG, "tolerance": SPATIAL_TIGHT}
+_SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "tolerance": SPATIAL_TIGHT}
 _TIGHT = {question: (REFERENCE, {**law, "tolerance": TIGHT}) for question, law in _LAWS.items()}
 QUESTIONS = (
     Question("exact", "exact equations, supremum", _TIGHT["exact"], 48, 12, 0.006),
@@ -121,7 +121,7 @@ def _scipy(quick: bool) -> Iterator[Setting]:
     lsoda, others = ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
     # LSODA checks the reference solution, too
     for method, powers, seconds in (("LSODA", lsoda, 0.15), ("Radau", others, 1.0), ("DOP853", others, 1.0)):
-        call = SCIPY, "tolerance", {"method": method, "v_reg": V_REG}
+        call = SCIPY, "tolerance", {"method": method, "v_reg": DEFAULT_V_REG}
         values = [10.0**-power for power in powers]
         yield from _curve("regularised", f"SciPy {method}", "relative tolerance of a step", call, values, seconds)
 
@@ -137,7 +137,7 @@ def _levels(quick: bool) -> Iterator[Setting]:
         ("regularised", "translational", {1e-2: 0.35, 1e-3: 0.35, 1e-4: 1.0, 1e-5: 1.8}, 1.0),
         ("spatial", "spatial", {1e-2: 0.35, 1e-3: 0.35}, 1.7),
     ):
-        law, method = {"model": model, "regularization": V_REG}, f"{model} engine, two levels and an estimate"
+        law, method = {"model": model, "regularization": DEFAULT_V_REG}, f"{model} engine, two levels and an estimate"
         seconds, held = [dearer * each for each in tolerances.values()], (ENGINE, "tolerance", law)
         yield from _curve(question, method, "tolerance of mu", held, list(tolerances), seconds, controlled=True)
         for name, parameter, key, values in parameters:
@@ -147,7 +147,7 @@ def _levels(quick: bool) -> Iterator[Setting]:
 
 def _constant(quick: bool) -> Iterator[Setting]:
     for solver, steps in STEPS.items():
-        call, few = (CONSTANT, "step", {"solver": solver, "v_reg": V_REG}), steps[:: 2 if quick else 1]
+        call, few = (CONSTANT, "step", {"solver": solver, "v_reg": DEFAULT_V_REG}), steps[:: 2 if quick else 1]
         seconds = [0.25e-3 / step for step in few]
         yield from _curve("regularised", f"Exudyn, {solver}", "constant step", call, few, seconds, "s")
 

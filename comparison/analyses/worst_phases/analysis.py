@@ -22,7 +22,7 @@ from comparison.runner.task import TaskResult
 from comparison.study.batches import imported
 from comparison.study.models import Model, models_of, pairs_of
 from comparison.study.study import Study
-from comparison.surfaces.steps import known_mu
+from comparison.surfaces.model_difference import usable_mu
 from comparison.surfaces.surfaces import values_of
 from reference.measures.local_maxima import GRID, local_maxima
 from reference.measures.local_search import LocalSearch, Points, Surface, predicted, square_of
@@ -97,7 +97,7 @@ def _starts(
     if surfaces is None or len(study.axis(model, scene)) < GRID:
         return None
     of_platform = quantity == "displacement"
-    values = values_of(surfaces, quantity, scene.name, model) if of_platform else known_mu(surfaces, scene.name, model)
+    values = values_of(surfaces, quantity, scene.name, model) if of_platform else usable_mu(surfaces, scene.name, model)
     starts = local_maxima(values if of_platform else values[body - 1], scene)
     return starts if len(starts) else None
 

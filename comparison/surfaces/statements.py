@@ -1,0 +1,215 @@
+"""The sentences that a reader may quote about the surfaces, each worded by one function from a result."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from types import SimpleNamespace
+from typing import TYPE_CHECKING
+
+from comparison.wording import degrees, difference, more_or_less, percent, signed
+
+if TYPE_CHECKING:
+    from comparison.surfaces.differences import Difference
+    from comparison.surfaces.headline import Effect, Headline
+
+
+def word_headline(numbers: Headline) -> str:
+    """Return the headline of one body: how much, why, how closely the codes agree, and the literal supremum."""
+    parts = [word_total(numbers), word_causes(numbers), word_agreement(numbers), word_supremum(numbers)]
+    rest = " ".join(part for part in parts if part)
+    where = f"{numbers.scene}, {numbers.name}, {numbers.reading}"
+    return f"{where}: {' '.join([*numbers.engines, _capitalize(rest) if numbers.engines else rest])}"
+
+
+def word_total(numbers: Headline) -> str:
+    """Return by how much the last model differs from the first, in the mean and at its ends."""
+    first, second = numbers.first_name, numbers.second_name
+    if numbers.first == numbers.second:
+        return f"only {first} were computed, there is nothing to compare."
+    if not numbers.points:
+        where = "" if numbers.phases_per_axis == 1 else " at any phase pair"
+        return f"the models from {first} to {second} have no value in common{where}."
+    size = difference(numbers.mean, numbers.error)
+    if numbers.phases_per_axis == 1:
+        if numbers.resolved:
+            return f"{second} gives {more_or_less(numbers.mean, numbers.error)} than {first} under the record."
+        return f"{second} and {first} agree within the numerical error under the record (difference {size})."
+    grid = f"{numbers.phases_per_axis} × {numbers.phases_per_axis} initial phases"
+    over = grid if numbers.points == numbers.phases_per_axis**2 else f"{numbers.points} of {grid}"
+    ends = word_range(numbers)
+    if numbers.resolved:
+        than = f"{more_or_less(numbers.mean, numbers.error)} than {first}"
+        return f"{second} gives {than} in the mean over {over} ({ends})."
+    if math.isnan(numbers.error):
+        few = f"{numbers.independent} independent of {numbers.points} phase pairs do not tell the mean over all phases"
+        return f"{second} against {first}: {few} (mean of these {signed(numbers.mean)}, {ends})."
+    if numbers.resolved_share > 0.0:
+        return f"{second} and {first} do not differ in the mean over {over} ({size}; {ends})."
+    return f"{second} and {first} agree within the numerical error over {over} (mean {size}; {ends})."
+
+
+def word_range(numbers: Headline) -> str:
+    """Return the smallest and the largest signed difference with their phases."""
+    ends = (numbers.low, numbers.low_phases), (numbers.high, numbers.high_phases)
+    (low, high) = (f"{signed(size)} at ({', '.join(map(degrees, phases))})" for size, phases in ends)
+    return low if numbers.low == numbers.high else f"from {low} to {high}"
+
+
+def word_causes(numbers: Headline) -> str:
+    """Return the effects above a fifth of the total with sign and share, and whether one of them is the largest."""
+    if not numbers.resolved:
+        return ""
+    if not numbers.causes:
+        return "No single effect exceeds its error and a fifth of the mean."
+    causes = [numbers.effect_named(name) for name in numbers.causes]
+    listed = ", ".join(map(word_effect, causes))
+    if len(causes) == 1:
+        return f"Cause: {listed}."
+    if numbers.main_cause:
+        return f"Causes: {listed}."
+    if numbers.phases_per_axis == 1:
+        return f"Causes: {listed}; which of them is larger the errors do not tell."
+    grid = f"{numbers.phases_per_axis} × {numbers.phases_per_axis} phases"
+    return f"Causes: {listed}; which of them is larger {grid} do not tell."
+
+
+def word_effect(effect: Effect) -> str:
+    """Return one cause with its mean, its share of the total, and its mean in another order where that differs."""
+    share = percent(effect.share).replace("-", "−")
+    other = f", {signed(effect.elsewhere)} {effect.order}" if effect.depends_on_order else ""
+    return f"{effect.effect} {difference(effect.mean, effect.error)} ({share} of it{other})"
+
+
+def word_agreement(numbers: Headline) -> str:
+    """Return how far the two codes lie apart where they solve the same equations with the same friction law."""
+    if math.isnan(numbers.like_for_like) or numbers.engines:
+        return ""
+    verdict = {
+        True: "agree within their errors, to",
+        False: "differ beyond their errors, by up to",
+        None: "differ, with an unknown error, by up to",
+    }[numbers.like_for_like_met]
+    return f"Given the same equations and friction law the two codes {verdict} {percent(numbers.like_for_like)}."
+
+
+def word_supremum(numbers: Headline) -> str:
+    """Return how much higher the literal supremum of the first model's equations is than the same as integrated."""
+    if math.isnan(numbers.supremum_mean):
+        return ""
+    if percent(numbers.supremum_maximum) in ("0 %", "< 0.0001 %"):
+        return "The literal supremum is the same."
+    if numbers.phases_per_axis == 1:
+        return f"The literal supremum is {percent(numbers.supremum_mean)} higher."
+    mean = percent(numbers.supremum_mean)
+    return f"The literal supremum is {mean} higher in the mean, up to {percent(numbers.supremum_maximum)}."
+
+
+def word_engine(row: Difference, title: str, like: str) -> str:
+    """Return how far an engine of the user is from the equations with its friction law."""
+    known, axis = row.asked - row.unanswered, math.isqrt(row.asked)
+    if not known:
+        return f"{title} and the {like} have no value in common."
+    places = f"{f'{known} of ' if row.unanswered else ''}{axis} × {axis} initial phases"
+    where = ", ".join(degrees(phase) for phase in row.phases)
+    mean = difference(row.mean, row.error)
+    grid = f" (mean {mean} over {places}; largest at ({where}))" if axis > 1 else ""
+    # an unknown error explains no difference
+    how = "agrees within the errors, to {}, with" if row.ratio <= 1.0 else "differs by up to {} from"
+    return f"{title} {how.format(percent(row.maximum))} the {like}{grid}."
+
+
+def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
+    """
+    Return the answer of the whole study in at most three sentences.
+
+    How far the paper's surfaces can be trusted, in which reading; how closely the codes agree where they solve the
+    same, and what the other reading is worth; what was measured.
+    """
+    known = [each for each in headlines if math.isfinite(each.mean) and each.first != each.second]
+    if not known:
+        return f"No two models have a value in common. {measured}."
+    largest = max(known, key=lambda each: abs(each.mean))
+    bare = [f"{each.scene}, {each.name}" for each in (largest,)]
+    reading = largest.reading if any(each.reading == largest.reading for each in known) else ""
+    size = more_or_less(largest.mean, largest.error)
+    mean = "" if largest.phases_per_axis == 1 else " in the mean"
+    first = f"Read {reading}, the paper's equations are off by at most {percent(abs(largest.mean))}{mean}"
+    first += f" ({bare[0]}: {largest.second_name} gives {size})"
+    extreme = max(known, key=lambda each: max(abs(each.low), abs(each.high)))
+    if extreme.phases_per_axis > 1:
+        end = extreme.low if abs(extreme.low) >= abs(extreme.high) else extreme.high
+        first += f" and by {signed(end)} at the worst phase pair ({extreme.scene}, {extreme.name})"
+    parts = [f"{first}."]
+    second = []
+    alike = [each for each in known if math.isfinite(each.like_for_like)]
+    if alike:
+        worst = max(each.like_for_like for each in alike)
+        beyond = [f"{each.scene}, {each.name}" for each in alike if each.like_for_like_met is not True]
+        errors = f"beyond the errors for {', '.join(beyond)}" if beyond else "within their errors"
+        second.append(f"where both codes solve the same they agree to {percent(worst)}, {errors}")
+    higher = [each for each in known if math.isfinite(each.supremum_mean)]
+    if higher:
+        most = max(higher, key=lambda each: each.supremum_mean)
+        up_to = "" if most.phases_per_axis == 1 else f" in the mean and up to {percent(most.supremum_maximum)}"
+        height = f"{percent(most.supremum_mean)} higher{up_to}"
+        second.append(f"the literal supremum is {height} ({most.scene}, {most.name})")
+    if second:
+        parts.append(f"{_capitalize('; '.join(second))}.")
+    parts.append(f"{_capitalize(measured)}.")
+    return " ".join(parts)
+
+
+def _capitalize(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}" if text else text
+
+
+def word_difference_cell(numbers: Headline) -> str:
+    """Return the mean difference of the first screen's table."""
+    if numbers.first == numbers.second or not numbers.points:
+        return "no value in common"
+    if math.isnan(numbers.error) and numbers.phases_per_axis > 1:
+        return f"{signed(numbers.mean)}, too few phases for an error"
+    return difference(numbers.mean, numbers.error)
+
+
+def word_range_cell(numbers: Headline) -> str:
+    """Return the range over the phases of the first screen's table; "" under a record."""
+    return word_range(numbers) if numbers.points and numbers.phases_per_axis > 1 else ""
+
+
+def word_causes_cell(numbers: Headline) -> str:
+    """Return the causes of the first screen's table."""
+    if not numbers.resolved:
+        return "the mean is not beyond its error"
+    if not numbers.causes:
+        return "no single effect beyond its error"
+    listed = ", ".join(word_effect(numbers.effect_named(name)) for name in numbers.causes)
+    untold = "" if numbers.main_cause or len(numbers.causes) == 1 else "; which is larger these phases do not tell"
+    return f"{listed}{untold}"
+
+
+def word_agreement_cell(numbers: Headline) -> str:
+    """Return how far the codes lie apart given the same equations and friction law, in the first screen's table."""
+    if math.isnan(numbers.like_for_like):
+        return "not compared"
+    verdict = {True: "met", False: "not met", None: "error unknown"}[numbers.like_for_like_met]
+    return f"{percent(numbers.like_for_like)} ({verdict})"
+
+
+def word_supremum_cell(numbers: Headline) -> str:
+    """Return by how much the literal supremum is higher, in the first screen's table."""
+    if math.isnan(numbers.supremum_mean):
+        return "the same" if numbers.reading == "in both readings" else "not compared"
+    if numbers.phases_per_axis == 1:
+        return signed(numbers.supremum_mean)
+    return f"{signed(numbers.supremum_mean)}, up to {signed(numbers.supremum_maximum)}"
+
+
+CELLS = SimpleNamespace(
+    difference=word_difference_cell,
+    range=word_range_cell,
+    causes=word_causes_cell,
+    agreement=word_agreement_cell,
+    supremum=word_supremum_cell,
+)
