@@ -28,9 +28,11 @@ def percent(value: float) -> str:
     """A share in percent with two digits."""
     if not math.isfinite(value):
         return "none"
-    if 0.0 < abs(value) < 1e-6:
+    if value < 0.0:
+        return f"−{percent(-value)}"
+    if 0.0 < value < 1e-6:
         return "< 0.0001 %"
-    return f"{100.0 * value:.0f} %" if abs(value) >= 0.1 else f"{100.0 * value:.2g} %"
+    return f"{100.0 * value:.0f} %" if value >= 0.1 else f"{100.0 * value:.2g} %"
 
 
 def signed(value: float) -> str:

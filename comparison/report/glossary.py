@@ -57,7 +57,8 @@ def explained(sentence: str, seen: set[str] | None = None) -> Markup:
         seen.add(word)
         return symbols(word) if known else term(word)
 
-    return _by_parts(WORDS.finditer(sentence), sentence, first, symbols)
+    unbroken = sentence.replace(" %", "\u00a0%")  # no line ends between a number and its sign
+    return _by_parts(WORDS.finditer(unbroken), unbroken, first, symbols)
 
 
 def _by_parts(

@@ -209,11 +209,11 @@ def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collecti
     """
     known = {model.key: model for model in models_of(scene, hierarchy) if model.key not in left_out}
     chain = [model for model in chain_of(scene, hierarchy) if model.key in known]
-    pairs = [_effect_pair("", first, second, chain[0]) for first, second in pairwise(chain)]
-    for where, first, second in BESIDE_THE_CHAIN:
+    pairs = [_effect_pair(second.effect, "", first, second, chain[0]) for first, second in pairwise(chain)]
+    for effect, where, first, second in BESIDE_THE_CHAIN:
         if first.key in known and second.key in known and not (first.in_chain(scene) and second.in_chain(scene)):
             base = first if first.reading == LITERAL_SUPREMUM else chain[0]
-            pairs.append(_effect_pair(where, known[first.key], known[second.key], known[base.key]))
+            pairs.append(_effect_pair(effect, where, known[first.key], known[second.key], known[base.key]))
     if SMALL.key in known and chain[0].key == SMALL_RESOLVED.key:
         small, printed = known[SMALL.key], chain[0]
         above = "what the limits at stops add to the small equations as integrated"
@@ -226,9 +226,9 @@ def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collecti
     return pairs
 
 
-def _effect_pair(where: str, first: Model, second: Model, base: Model) -> Pair:
-    title = second.effect or f"the step to the {second.title}"
-    key = "-".join([*(title if second.effect else second.key).split(), *where.split()])
+def _effect_pair(effect: str, where: str, first: Model, second: Model, base: Model) -> Pair:
+    title = effect or f"the step to the {second.title}"
+    key = "-".join([*(effect or second.key).split(), *where.split()])
     return Pair(key, title, f"what {title} adds to the {first.title}", first, second, base, title)
 
 
@@ -366,11 +366,11 @@ SPATIAL = _next(
 MODEL_HIERARCHY: tuple[Model, ...] = (
     SMALL, EXACT, SMALL_RESOLVED, RESOLVED, SMALL_REGULARIZED, REGULARIZED, TRANSLATIONAL, SPATIAL,
 )  # fmt: skip
-# effects between models of which one is not in the chain: where, first, second
+# effects between models of which one is not in the chain: effect, where, first, second
 BESIDE_THE_CHAIN = (
-    ("supremum", SMALL, EXACT),
-    ("regularized", SMALL_REGULARIZED, REGULARIZED),
-    ("small", SMALL_RESOLVED, SMALL_REGULARIZED),
+    (EXACT.effect, "supremum", SMALL, EXACT),
+    (RESOLVED.effect, "regularized", SMALL_REGULARIZED, REGULARIZED),
+    (REGULARIZED.effect, "small", SMALL_RESOLVED, SMALL_REGULARIZED),
 )
 
 

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from comparison.surfaces.headline import Effect, Headline
 
 
+SAME = 1e-6  # share of mu: the error asked of the equations
+
+
 def word_headline(numbers: Headline) -> str:
     """Return the headline of one body: how much, why, how closely the codes agree, and the literal supremum."""
     parts = [word_total(numbers), word_causes(numbers), word_agreement(numbers), word_supremum(numbers)]
@@ -76,9 +79,8 @@ def word_causes(numbers: Headline) -> str:
 
 def word_effect(effect: Effect) -> str:
     """Return one cause with its mean, its share of the total, and its mean in another order where that differs."""
-    share = percent(effect.share).replace("-", "−")
     other = f", {signed(effect.elsewhere)} {effect.order}" if effect.depends_on_order else ""
-    return f"{effect.effect} {difference(effect.mean, effect.error)} ({share} of it{other})"
+    return f"{effect.effect} {difference(effect.mean, effect.error)} ({percent(effect.share)} of it{other})"
 
 
 def word_agreement(numbers: Headline) -> str:
@@ -97,7 +99,7 @@ def word_supremum(numbers: Headline) -> str:
     """Return how much higher the literal supremum of the first model's equations is than the same as integrated."""
     if math.isnan(numbers.supremum_mean):
         return ""
-    if percent(numbers.supremum_maximum) in ("0 %", "< 0.0001 %"):
+    if numbers.supremum_maximum < SAME:
         return "The literal supremum is the same."
     if numbers.phases_per_axis == 1:
         return f"The literal supremum is {percent(numbers.supremum_mean)} higher."
@@ -130,17 +132,16 @@ def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
     if not known:
         return f"No two models have a value in common. {measured}."
     largest = max(known, key=lambda each: abs(each.mean))
-    bare = [f"{each.scene}, {each.name}" for each in (largest,)]
-    reading = largest.reading if any(each.reading == largest.reading for each in known) else ""
-    size = more_or_less(largest.mean, largest.error)
-    mean = "" if largest.phases_per_axis == 1 else " in the mean"
-    first = f"Read {reading}, the paper's equations are off by at most {percent(abs(largest.mean))}{mean}"
-    first += f" ({bare[0]}: {largest.second_name} gives {size})"
     extreme = max(known, key=lambda each: max(abs(each.low), abs(each.high)))
-    if extreme.phases_per_axis > 1:
-        end = extreme.low if abs(extreme.low) >= abs(extreme.high) else extreme.high
-        first += f" and by {signed(end)} at the worst phase pair ({extreme.scene}, {extreme.name})"
-    parts = [f"{first}."]
+    end, phases = max(((extreme.low, extreme.low_phases), (extreme.high, extreme.high_phases)), key=lambda x: abs(x[0]))
+    at = ", ".join(map(degrees, phases))
+    single = extreme.phases_per_axis > 1
+    parts = [
+        f"Read {largest.reading}, the paper's equations can be trusted to {percent(abs(largest.mean))}"
+        f"{f' in the mean and {percent(abs(end))} at single phase pairs' if single else ''}: so far at most is "
+        f"{largest.second_name} from them ({largest.scene}, {largest.name}: {difference(largest.mean, largest.error)}"
+        f"{f'; {extreme.scene}, {extreme.name}: {signed(end)} at ({at})' if single else ''})."
+    ]
     second = []
     alike = [each for each in known if math.isfinite(each.like_for_like)]
     if alike:
@@ -201,6 +202,8 @@ def word_supremum_cell(numbers: Headline) -> str:
     """Return by how much the literal supremum is higher, in the first screen's table."""
     if math.isnan(numbers.supremum_mean):
         return "the same" if numbers.reading == "in both readings" else "not compared"
+    if numbers.supremum_maximum < SAME:
+        return "the same"
     if numbers.phases_per_axis == 1:
         return signed(numbers.supremum_mean)
     return f"{signed(numbers.supremum_mean)}, up to {signed(numbers.supremum_maximum)}"

@@ -1,10 +1,12 @@
 """
 The worst phases of every scene: the largest mu_i and displacement over all phases, and what the engine has there.
 
-The search of `reference.worst_phases` is made for the exact equations, and for those that the engine answers for.
-Beside these the engine is searched in a square around the worst phases, so that its own maximum nearby is known, too:
-its ratio to the equations, which hardly changes there, says where that is. The searches begin at the local maxima of
-the surfaces, if these are as fine as the search's own grid.
+The search of `reference.worst_phases` is made for the small equations in both readings of (5.1), and for the equations
+that the engine answers for. Beside these the engine is searched in a square around the worst phases, so that its own
+maximum nearby is known, too: its ratio to the equations, which hardly changes there, says where that is. The most
+complete engine model, whose surface is not smooth, is computed at the worst phases, and its largest value there or on
+its grid is listed. The searches begin at the local maxima of the surfaces, if these are as fine as the search's own
+grid.
 """
 
 import math
@@ -20,7 +22,7 @@ from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.task import TaskResult
 from comparison.study.batches import imported
-from comparison.study.models import Model, models_of, pairs_of
+from comparison.study.models import EXACT, SMALL, SMALL_RESOLVED, Model, models_of, pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import usable_mu
 from comparison.surfaces.surfaces import values_of
@@ -49,8 +51,9 @@ class Worst:
     value: Annotated[Number, "largest value; null without an answer"] = math.nan
     error: Annotated[Number, "estimated absolute error of it"] = math.nan
     phases: Annotated[Phases, "(alpha1, alpha2), rad"] = NOWHERE
-    kind: Literal["smooth", "kink", "jump", "nearby", ""] = ""
-    """what the surface has there; "nearby": the largest of an engine beside the worst phases of the equations"""
+    kind: Literal["smooth", "kink", "jump", "nearby", "grid", ""] = ""
+    """what the surface has there; "nearby": the largest of an engine beside the worst phases of the equations; "grid":
+    of its grid"""
     side: Annotated[Phases, "direction from a jump to the large values beside it; null otherwise"] = NOWHERE
     runner_up: Annotated[Number, "the highest other value at which a local search ended"] = math.nan
     climbs: Annotated[int, "local maxima from which a search started"] = 0
@@ -61,8 +64,10 @@ class Worst:
     reason: Annotated[Text, "why there is no value, or empty"] = ""
 
 
-# scene, model, engine, quantity, body, tolerance of the engine, starts of the searches (K, 2) or None
-Arguments = tuple[Scene, Model, Model | None, Quantity, int, float, Array | None]
+# an engine model that is not searched, its largest value on its grid with error, and phases of that
+OnGrid = tuple[Model, float, float, tuple[float, float]]
+# scene, model, engine beside it, engine that is not searched, quantity, body, tolerance of the engines, starts (K, 2)
+Arguments = tuple[Scene, Model, Model | None, OnGrid | None, Quantity, int, float, Array | None]
 
 
 def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, model: str, body: int) -> Any | None:
@@ -80,13 +85,12 @@ def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, mode
 def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
     """Model, engine beside it, quantity and body."""
     equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SOLVED_BY]
-    exact = [model for model in equations if model.settings == {"equations": "exact", "regularization": None}]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
-    searched = [model for model in equations if model in exact or model.key in engines]
+    searched = [model for model in equations if model.key in (SMALL.key, SMALL_RESOLVED.key, *engines)]
     return [
         *((model, engines.get(model.key), "amplification", body) for model in searched for body in bodies),
-        *((model, None, "displacement", 1) for model in exact),
+        *((model, None, "displacement", 1) for model in equations if model.key == EXACT.key),
     ]
 
 
@@ -102,18 +106,23 @@ def _starts(
     return starts if len(starts) else None
 
 
-def worst_of(task: Arguments) -> list[Worst]:
-    """The largest value of the equations, and of the engine beside it. Runs inside a worker process."""
-    scene, model, engine, quantity, body, tolerance, starts = task
+def search_worst(task: Arguments) -> list[Worst]:
+    """Return the largest value of the equations, and of the engine models beside it. Runs inside a worker process."""
+    scene, model, engine, on_grid, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
     maximum = reference.worst_phases(scene, body, quantity, tolerance=TOLERANCE, starts=starts, **settings)
     worst = Worst(scene.name, model.key, quantity, body, **vars(maximum))
-    return [worst] if engine is None else [worst, _engine_beside(worst, scene, model, engine, tolerance)]
+    found = [worst]
+    if engine is not None:
+        found.append(_engine_beside(worst, scene, model, engine, tolerance))
+    if on_grid is not None:
+        found.append(_larger_of_grid_and_worst(worst, scene, on_grid, tolerance))
+    return found
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[Worst]:
-    scene, model, engine, quantity, body, *_ = task
-    models = [model] if engine is None else [model, engine]
+    scene, model, engine, on_grid, quantity, body, *_ = task
+    models = [model, *([engine] if engine else []), *([on_grid[0]] if on_grid else [])]
     return [Worst(scene.name, each.key, quantity, body, reason=failed.reason) for each in models]
 
 
@@ -121,14 +130,15 @@ class WorstPhases(MappedAnalysis[list[Worst]]):
     """Searches of every scene and body; one more for the displacement."""
 
     key, stage, needs_surfaces = "worst_phases", "worst phases", True
-    function, without_value = staticmethod(worst_of), staticmethod(_without_value)
+    function, without_value = staticmethod(search_worst), staticmethod(_without_value)
 
     def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """One for each search, of the engine with that of its counterpart."""
         for scene in study.phased:
             for model, engine, quantity, body in _searches(study, scene):
                 starts = _starts(study, surfaces, scene, model, quantity, body)
-                yield scene, model, engine, quantity, body, study.tolerance, starts
+                on_grid = _on_grid(study, surfaces, scene, body) if engine is not None else None
+                yield scene, model, engine, on_grid, quantity, body, study.tolerance, starts
 
 
 def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolerance: float) -> Worst:
@@ -151,6 +161,33 @@ def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolera
         at_start=float(start.numerator[0] / start.denominator[0]),
         start_error=float(start.error[0]),
     )  # fmt: skip
+
+
+def _on_grid(study: Study, surfaces: xr.Dataset | None, scene: Scene, body: int) -> OnGrid | None:
+    """The spatial engine model with its largest value on its grid; None without one."""
+    model = study.compared(scene)[-1]
+    if surfaces is None or not model.is_spatial:
+        return None
+    mu = usable_mu(surfaces, scene.name, model)[body - 1]
+    if not np.isfinite(mu).any():
+        return None
+    row, column = np.unravel_index(np.nanargmax(mu), mu.shape)
+    phase = surfaces["alpha1"].values[:: study.stride(model, scene)]
+    error = values_of(surfaces, "error", scene.name, model)[body - 1][row, column]
+    return model, float(mu[row, column]), float(error), (float(phase[row]), float(phase[column]))
+
+
+def _larger_of_grid_and_worst(worst: Worst, scene: Scene, on_grid: OnGrid, tolerance: float) -> Worst:
+    """The larger of an engine's values at the worst phases of the equations and on its own grid."""
+    model, value, error, phases = on_grid
+    engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
+    there = engine.at(np.array([worst.phases]))
+    start, start_error = float(there.value[0]), float(there.error[0])
+    about = {"at_start": start, "start_error": start_error, "evaluations": engine.evaluations}
+    name = worst.scene, model.key, worst.quantity, worst.body
+    if start > value:
+        return Worst(*name, start, start_error, worst.phases, "nearby", **about)  # type: ignore[arg-type]
+    return Worst(*name, value, error, phases, "grid", **about)  # type: ignore[arg-type]
 
 
 def _surface(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:
