@@ -15,7 +15,7 @@ from comparison.analyses.errata.analysis import Effect, with_effects
 from comparison.cli import user_models
 from comparison.run import main
 from comparison.study.models import Model
-from comparison.surfaces.figures import budget, pairs
+from comparison.surfaces.figures import pairs
 
 try:
     import fcntl
@@ -67,7 +67,6 @@ def _write_finished(place: Path) -> None:
     words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(place)]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(pairs, "draw_pair", quick_figure)  # what they show is tested elsewhere
-        patch.setattr(budget, "draw_budget", quick_figure)
         analyses_are(patch, errata=with_effects(effects), motions=known_motions, **known_others())
         assert main(words, _spatial_named(fake_hierarchy()), ThreadPoolExecutor) == 0
 

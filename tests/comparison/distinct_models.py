@@ -27,12 +27,15 @@ MOST = {"translational": 4, "spatial": 4}  # phases per axis
 STEPS = {
     "small": (0.0, 0.0, 0.0, 0.0, 1.1e-5),
     "exact": (0.033, 0.010, -0.0077, 0.0027, 1.7e-5),
-    "resolved": (-0.039, 0.11, 0.011, -0.017, 2.3e-5),
+    "small-resolved": (-0.011, 0.0077, 0.0069, -0.0039, 1.3e-5),
+    "resolved": (-0.039, 0.16, 0.0093, -0.0089, 2.3e-5),
+    "small-regularised": (0.0096, 0.0024, -0.0017, 0.0055, 2.7e-5),
     "regularised": (-0.0075, 0.0085, -0.0036, 0.0066, 3.1e-5),
     "translational": (0.0022, -0.0019, 0.0011, 0.0047, 7.3e-4),
-    "spatial": (-0.057, -0.088, 0.021, 0.026, 1.9e-4),
+    "spatial": (-0.076, -0.077, 0.014, 0.024, 1.9e-4),
 }
 KEYS = tuple(STEPS)
+CHAIN = ("small-resolved", "resolved", "regularised", "translational", "spatial")
 GRID, COARSE = 8, 4  # phases per axis of the equations, and of the engine
 
 

@@ -12,24 +12,17 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 from PIL import Image
-from runs import QUICK_MAPS
 
 
 def figures_are_told(patch: pytest.MonkeyPatch) -> dict[str, list[str]]:
-    """Figures are saved as one dot; returns the lines of each by its name, or "maps", filled as they are saved."""
+    """Figures are saved as one dot; returns the lines of each by its name, filled as they are saved."""
     told: dict[str, list[str]] = {}
     surface = Axes3D.plot_surface
 
     def saved(figure: Figure, place: Any, **options: Any) -> None:
         lines = list(_told(figure))
-        if not isinstance(place, str | Path):
-            told.setdefault("maps", []).extend(lines)
-            place.write(QUICK_MAPS)
-        elif Path(place).suffix == ".svg":
-            Path(place).write_bytes(QUICK_MAPS)
-        else:
-            told[Path(place).stem] = lines
-            Image.new("RGB", (1, 1)).save(place, "PDF" if str(place).endswith(".pdf") else "PNG")
+        told[Path(place).stem] = lines
+        Image.new("RGB", (1, 1)).save(place, "PDF" if str(place).endswith(".pdf") else "PNG")
 
     def drawn(axes: Axes3D, *heights: Any, **look: Any) -> Any:
         axes.heights = heights

@@ -30,7 +30,7 @@ from known_analyses import analyses_are, known_others
 from known_results import FILES, MEASURED, SEARCHED, known_assumptions, known_ensemble, leave_beside
 from places import HELPERS, scene_text
 from recorded_figures import figures_are_told
-from report_texts import data_of, motions_of, page_of, schema_errors, summary_of, text_of
+from report_texts import data_of, motions_of, page_of, schema_errors, summary_of
 from runs import Here, quick_figures
 
 import comparison.run
@@ -147,9 +147,6 @@ def lines_of(place: Path) -> list[str]:
     lines.append(f"motions: {compact(motions_of(place)[::29])}")
     for name in ("summary.md", "junit.xml", "terminal"):
         lines += [f"{name}: {line}" for line in (place / name).read_text(encoding="utf-8").splitlines() if line.strip()]
-    printed = re.sub(r"Computed \S+|Provenance.*", "", text_of(place / "report.pdf")[1])
-    printed = re.sub(r"[\s-]", "", printed)  # a reader of the file adds them where lines break
-    lines += [f"report.pdf: {part}" for part in re.split(r"(?<=[;:%])", printed)]
     for changing, masked in CHANGING.items():
         lines = [re.sub(changing, masked, line.replace(str(place.parent), "")) for line in lines]
     return [*filter(None, lines)]
@@ -213,7 +210,6 @@ def recorded_lines(folder: Path) -> list[str]:
         scenes = ["synthetic-pair", "fig3-I", str(full.parent / "family.toml")]
         words = [*scenes, "--grid", str(GRID), "--also", "demands", "--tolerance", "5e-3"]
         first = reported(full, words, distinct_hierarchy())
-        figures["maps"].sort()  # whoever drew them first
         first += [f"figure {name}: {line}" for name, lines in sorted(figures.items()) for line in lines]
 
         quick_figures(patch)

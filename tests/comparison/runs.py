@@ -10,14 +10,13 @@ import pytest
 from PIL import Image
 
 from comparison.analyses.assumptions import figure as assumptions
-from comparison.surfaces.figures import budget, pairs, paper, print_maps
+from comparison.surfaces.figures import pairs, paper
 
 SMALL = ["fig3-I", "--grid", "2"]
 RUN: dict[str, Any] = {
     "began": "2026", "command": "run `a`", "wall_seconds": 1.0, "processor_seconds": 2.0, "tiles": 1,
     "tiles_stored_before": 0, "parts": {}, "jobs": 1, "provenance": {}, "level": 1, "levels": 1,
 }  # fmt: skip
-QUICK_MAPS = b'<svg xmlns="http://www.w3.org/2000/svg" width="8" height="2"/>'
 
 
 @dataclass(frozen=True)
@@ -58,9 +57,7 @@ def quick_figures(patch: pytest.MonkeyPatch) -> None:
     """Every picture of the surfaces and of the assumptions is one dot."""
     patch.setattr(assumptions, "draw_assumptions", quick_figure)
     patch.setattr(pairs, "draw_pair", quick_figure)
-    patch.setattr(budget, "draw_budget", quick_figure)
     patch.setattr(paper, "draw_paper_figure", quick_figure)
-    patch.setattr(print_maps, "draw_maps", lambda *arguments: QUICK_MAPS)
 
 
 def no_executor(jobs: int) -> Executor:

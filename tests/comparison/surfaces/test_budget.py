@@ -16,15 +16,16 @@ from comparison.study.batches import imported
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import checked_limits
-from comparison.surfaces.budget import TOTAL, BudgetEntry, budget, closure, steps
-from comparison.surfaces.differences import Difference, differences
-from comparison.surfaces.model_difference import RESOLVED
+from comparison.surfaces.body_comparison import BodyComparison, body_comparisons
+from comparison.surfaces.budget import TOTAL, BudgetEntry, budget, closure
+from comparison.surfaces.differences import Difference
+from comparison.surfaces.model_difference import RESOLVED, ModelDifference
 from comparison.surfaces.unanswered import unanswered
 from reference.problem import builtin_scenes, load_scene
 
 
 def _table(study: Study, surfaces: xr.Dataset) -> dict[str, BudgetEntry]:
-    return {entry.step: entry for entry in budget(study, surfaces) if entry.body == 1}
+    return {entry.step: entry for entry in budget(body_comparisons(study, surfaces)) if entry.body == 1}
 
 
 def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
@@ -35,7 +36,7 @@ def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
         surfaces[name].loc[first], surfaces[name].loc[second] = one, other
 
     def alike() -> Difference:
-        return next(row for row in differences(study, surfaces) if (row.pair, row.body) == ("like-for-like", 1))
+        return BodyComparison(study, surfaces, study.scenes[0], 1).rows["like-for-like"]
 
     row = alike()
     assert [row.ratio, row.beyond_error, row.median] == pytest.approx([2.0, 1.0, 0.1])
@@ -44,12 +45,15 @@ def test_the_ratio_is_in_units_of_both_errors_in_quadrature() -> None:
 
 
 def test_a_budget_without_a_step_does_not_close() -> None:
-    study, surfaces = planted_study({"exact": 0.02, "resolved": 0.02})
-    first, *rest = steps(study, surfaces, "fig3-I", 1)
-    assert closure(rest) == pytest.approx(0.02)
-    one = np.zeros_like(first.size)
-    one[0, 4] = 0.3
-    assert closure([replace(first, size=first.size + one), *rest]) == pytest.approx(0.3)
+    study, surfaces = planted_study({"resolved": 0.02})
+    comparison = BodyComparison(study, surfaces, study.scenes[0], 1)
+    assert closure(comparison) < 1e-14
+    comparison.__dict__["chain_pairs"] = comparison.chain_pairs[1:]
+    assert closure(comparison) == pytest.approx(0.02)
+    surfaces["mu"].loc[{"model": "resolved", "alpha1": 0.0, "alpha2": np.pi}] *= 1.32 / 1.02
+    broken = BodyComparison(study, surfaces, study.scenes[0], 1)
+    broken.__dict__["chain_pairs"] = broken.chain_pairs[1:]
+    assert closure(broken) == pytest.approx(0.32), "the largest of all phase pairs"
 
 
 @pytest.mark.parametrize("name", ["fig3-I", "fig3-II"])
@@ -62,11 +66,11 @@ def test_mirrored_phases_are_pi_away_from_computed_ones(name: str) -> None:
         assert (2 * apart % grid == 0).all(), model.key
 
 
-def test_a_step_known_to_less_than_a_fifth_is_not_real() -> None:
+def test_a_step_known_to_less_than_a_fifth_is_not_resolved() -> None:
     for gap, expected in ((0.9, (0.0, 0.0)), (1.1, (0.0, 1.0)), (4.9, (0.0, 1.0)), (5.1, (1.0, 0.0))):
-        study, surfaces = planted_study({"exact": gap * 1e-3}, errors={"small": 6e-4, "exact": 8e-4})
-        entry = _table(study, surfaces)["exact"]
-        assert (entry.real, entry.unresolved) == expected, "u_D is 1e-3, up to the 0.5 % that the step itself adds"
+        study, surfaces = planted_study({"resolved": gap * 1e-3}, errors={"small-resolved": 6e-4, "resolved": 8e-4})
+        entry = _table(study, surfaces)["resolved"]
+        assert (entry.resolved, entry.unresolved) == expected, "u_D is 1e-3, up to the 0.5 % that the step itself adds"
 
 
 def test_a_value_not_known_to_half_of_itself_counts_as_missing() -> None:
@@ -93,13 +97,13 @@ def test_the_peak_moves_the_short_way_round_the_torus_to_the_nearest_of_equals()
     surfaces["mu"].loc[{"model": "translational"}] = 1.0
     for model, row, column, peak in (
         ("translational", -1, 1, 2.0),
-        ("exact", 5, 5, 2.0 * (1.0 + 1e-7)),  # higher by less than the errors of both
+        ("resolved", 5, 5, 2.0 * (1.0 + 1e-7)),  # higher by less than the errors of both
     ):
         place = {"alpha1": surfaces["alpha1"][row], "alpha2": surfaces["alpha2"][column]}
         surfaces["mu"].loc[{"model": model, **place}] = peak
     table = _table(study, surfaces)
     assert table["translational"].peak_moves == pytest.approx(np.sqrt(2.0) * 2.0 * np.pi / GRID, rel=1e-12)
-    assert table["exact"].peak_moves == 0.0
+    assert table["resolved"].peak_moves == 0.0
 
 
 SCENE = "fig3-II"  # of the paper's dry scenes the one whose four phase pairs are not all mirror images
@@ -140,24 +144,29 @@ def _with(sound: Solved, mistake: Mistake) -> Solved:
 
 
 def _broken(found: Solved) -> list[str]:
-    return [line for limit in checked_limits(*found, differences(*found), unanswered(*found)) for line in limit.broken]
+    return [line for limit in checked_limits(body_comparisons(*found), unanswered(*found)) for line in limit.broken]
+
+
+def _steps(found: Solved, body: int) -> list[tuple[str, ModelDifference]]:
+    """The differences of neighbors in the chain by the key of the second, and the total."""
+    comparison = BodyComparison(*found, found[0].scenes[0], body)
+    pairs = [(pair.second.key, pair) for pair in comparison.chain_pairs]
+    return [(key, comparison.difference(pair)) for key, pair in [*pairs, (TOTAL, comparison.total_pair)]]
 
 
 def _moved(sound: Solved, wrong: Solved, body: int) -> dict[str, float]:
     """Mean change of every step that changed by more than its uncertainties allow at any phase, by the step's key."""
-    pairs = zip(*(steps(*found, SCENE, body) for found in (sound, wrong)))
     moved = {}
-    for before, after in pairs:
+    for (key, before), (_, after) in zip(_steps(sound, body), _steps(wrong, body), strict=True):
         change = after.size - before.size
         if (np.abs(change) > RESOLVED * np.hypot(before.uncertainty, after.uncertainty)).any():
-            moved[before.key] = float(change[np.unravel_index(np.argmax(np.abs(change)), change.shape)])
+            moved[key] = float(change[np.unravel_index(np.argmax(np.abs(change)), change.shape)])
     return moved
 
 
 ALONE = {
     # wrong from the start: it shows where it leaves, and in the total
-    "first model": (Mistake("small", {"friction": 1.05}, body=1), ["exact", TOTAL]),
-    "exact": (Mistake("exact", {"mass": 1.05}), ["exact", "resolved"]),
+    "first model": (Mistake("small-resolved", {"friction": 1.05}, body=1), ["resolved", TOTAL]),
     "resolved": (Mistake("resolved", {"friction": 0.95}), ["resolved", "regularised"]),
     "regularised": (Mistake("regularised", {"stiffness": 0.9}), ["regularised", "translational"]),
     "engine": (Mistake("translational", {"mass": 1.05}), ["translational", "spatial"]),  # of body 2
@@ -173,10 +182,10 @@ def test_a_mistake_moves_the_steps_of_its_model_and_no_other(
 ) -> None:
     wrong = _with(sound, mistake)
     moved = _moved(sound, wrong, mistake.body)
-    if mistake.model == "small":  # the scale of every step moves with it, by less than a hundredth of each
+    if mistake.model == "small-resolved":  # the scale of every step moves with it, by less than a hundredth of each
         moved = {key: change for key, change in moved.items() if abs(change) > 1e-3}
     assert list(moved) == blamed, moved
-    assert closure(steps(*wrong, SCENE, mistake.body)) < 1e-14
+    assert closure(BodyComparison(*wrong, wrong[0].scenes[0], mistake.body)) < 1e-14
     if TOTAL not in blamed:
         supplied, left = moved.values()
         assert left == pytest.approx(-supplied, rel=1e-9), "it cancels in the total"
@@ -188,7 +197,7 @@ def test_a_mistake_moves_the_steps_of_its_model_and_no_other(
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", builtin_scenes())
-def test_a_real_step_is_known_to_a_fifth_of_itself(name: str) -> None:
+def test_a_resolved_step_is_known_to_a_fifth_of_itself(name: str) -> None:
     """Held against the same step from runs a hundred times tighter."""
     scene = load_scene(name)
     study = Study((scene,), 4, 1e-3, full=True)
@@ -203,9 +212,10 @@ def test_a_real_step_is_known_to_a_fifth_of_itself(name: str) -> None:
     truth = {model.key: tight(model) for model in study.hierarchy if model.applies(scene)}
     real = 0
     for body in range(1, len(scene.bodies) + 1):
-        for step in steps(study, surfaces, name, body):
-            first, second = truth[step.first.key][body - 1], truth[step.second.key][body - 1]
-            size = (second - first) / truth["small"][body - 1]
-            assert (np.abs(step.size - size)[step.real] <= 0.2 * np.abs(size[step.real])).all(), (step.key, body)
-            real += int(step.real.sum())
+        comparison = BodyComparison(study, surfaces, scene, body)
+        for pair in (*comparison.chain_pairs, *comparison.effect_pairs):
+            first, second, base = (truth[model.key][body - 1] for model in (pair.first, pair.second, pair.base))
+            size, found = (second - first) / base, comparison.difference(pair)
+            assert (np.abs(found.size - size)[found.resolved] <= 0.2 * np.abs(size[found.resolved])).all(), pair.key
+            real += int(found.resolved.sum())
     assert real > 16, "many are called so"

@@ -14,11 +14,11 @@ from studies import solved
 
 from comparison.analyses.motions import analysis as motions
 from comparison.analyses.motions.analysis import moved
-from comparison.study.models import MODEL_HIERARCHY
+from comparison.study.models import MODEL_HIERARCHY, chain_of
 from comparison.study.study import Study
-from comparison.surfaces.budget import TOTAL, closure, steps
+from comparison.surfaces.body_comparison import body_comparisons
+from comparison.surfaces.budget import closure
 from comparison.surfaces.unanswered import compared_study, unanswered
-from comparison.surfaces.waterfall import waterfall
 from reference.problem import load_scene
 
 GRID = ["--grid", "4", "--only", "differences"]
@@ -45,7 +45,7 @@ def test_without_an_engine_the_equations_take_its_place(command: Callable[..., R
     assert "nan" not in run.err
     rows = summary_of(run.report)["scenes"][0]["differences"]
     assert {tuple(row[name] for name in ("pair", "first", "second", "unanswered")) for row in rows} == {
-        ("total", "small", "regularised", 0)
+        ("total", "small-resolved", "regularised", 0)
     }
 
 
@@ -58,26 +58,24 @@ def test_a_scene_without_any_answer_still_gets_its_report(command: Callable[...,
     assert {row["median"] for row in summary_of(run.report)["scenes"][0]["differences"]} == {None}
 
 
-@pytest.mark.parametrize("silent", ["spatial", "translational", "resolved", "small"])
+@pytest.mark.parametrize("silent", ["spatial", "translational", "resolved", "small-resolved"])
 def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3, silenced(silent))
     surfaces = solved(study)
     study = compared_study(study, surfaces)
     scene = study.scenes[0]
-    left = [model.key for model in study.hierarchy if model.key != silent]
-    for body in (1, 2):
-        found = steps(study, surfaces, scene.name, body)
-        assert [step.second.key for step in found] == [*left[1:], left[-1]]
-        assert (found[-1].key, found[-1].first.key) == (TOTAL, left[0])
-        assert found[-1].known.all()
-        assert closure(found) < 1e-14
-        assert waterfall(study, surfaces, scene, body).points > 0
+    left = [model.key for model in chain_of(scene, study.hierarchy) if model.key != silent]
+    for comparison in body_comparisons(study, surfaces):
+        assert [pair.second.key for pair in comparison.chain_pairs] == left[1:]
+        assert (comparison.total.first, comparison.total.second) == (left[0], left[-1])
+        assert comparison.total.unanswered == 0
+        assert closure(comparison) < 1e-14
     (lacking,) = unanswered(study, surfaces)
     assert (lacking.model, lacking.used, lacking.points == lacking.asked) == (silent, False, True)
     assert lacking.why == f"step limit: {why_refused(scene, 1e-3)}"
     alike = "like-for-like" in {pair.key for pair in study.pairs(scene)}
-    assert alike == (silent in ("spatial", "resolved", "small")), "never said of other models"
-    surfaces["mu"].loc[{"model": left[1:]}] = np.nan
+    assert alike == (silent in ("spatial", "resolved", "small-resolved")), "never said of other models"
+    surfaces["mu"].loc[{"model": [*left[1:]]}] = np.nan
     alone = compared_study(study, surfaces)
     assert alone.left_out(scene) == (), "nothing would be left to compare"
     assert not any(lacking.used for lacking in unanswered(alone, surfaces))
@@ -118,9 +116,9 @@ def test_a_motion_is_asked_for_with_the_equations_and_friction_of_its_model(monk
     asked: list[dict[str, object]] = []
     monkeypatch.setattr(motions, "imported", lambda path: lambda *motion, **settings: asked.append(settings))
     place = motions.Place("fig3-I", 0, 0, "")
-    for model in MODEL_HIERARCHY[:4]:
+    for model in MODEL_HIERARCHY[:6]:
         moved((load_scene("fig3-I"), model, 1e-3, place, (0.0, 0.0)))
     assert [(settings["equations"], settings["regularization"]) for settings in asked] == [
-        ("small", None), ("exact", None), ("exact", None), ("exact", 1e-3),
+        ("small", None), ("exact", None), ("small", None), ("exact", None), ("small", 1e-3), ("exact", 1e-3),
     ]  # fmt: skip
     assert not any("cutoff" in settings for settings in asked), "a way to read a motion, not to move"

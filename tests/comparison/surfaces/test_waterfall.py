@@ -5,34 +5,59 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 from studies import GRID, KEYS, planted_study
 
 from comparison.report.page_data import crossings
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
-from comparison.surfaces.waterfall import WaterfallBar, independent_phases, waterfall
+from comparison.surfaces.body_comparison import BodyComparison, independent_phases
+from comparison.surfaces.waterfall import Waterfall, WaterfallBar, waterfall
 from comparison.surfaces.waterfall_chart import bars_of, scale_of
 from reference.problem import load_scene
+
+
+def bars_of_body(study: Study, surfaces: xr.Dataset, body: int) -> Waterfall:
+    return waterfall(BodyComparison(study, surfaces, study.scenes[0], body))
 
 
 def test_the_bars_of_the_largest_difference_add_up_to_it() -> None:
     study, surfaces = planted_study({})
     factor = 1.0 + 0.3 * np.random.default_rng(0).uniform(-1.0, 1.0, surfaces["mu"].shape)
-    bars = waterfall(study, surfaces.assign(mu=surfaces["mu"] * factor), study.scenes[0], 2)
+    bars = bars_of_body(study, surfaces.assign(mu=surfaces["mu"] * factor), 2)
     assert abs(sum(bar.size for bar in bars.largest.bars) - bars.largest.total.size) < 1e-15
     assert abs(bars.largest.total.size) > abs(bars.total.size)
 
 
 def test_every_bar_is_the_planted_step_with_its_sign() -> None:
-    levels = dict(zip(KEYS, (0.03, 0.03, -0.02, -0.01, -0.01)))
-    study, surfaces = planted_study(levels)
-    bars = waterfall(study, surfaces, study.scenes[0], 1)
+    levels = dict(zip(KEYS, (0.03, -0.02, -0.01, -0.01)))
+    bars = bars_of_body(*planted_study(levels), 1)
     assert [bar.model for bar in bars.bars] == list(KEYS)
-    assert [bar.size for bar in bars.bars] == pytest.approx([0.03, 0.0, -0.05, 0.01, 0.0], abs=1e-12)
+    assert [bar.size for bar in bars.bars] == pytest.approx([0.03, -0.05, 0.01, 0.0], abs=1e-12)
     assert (bars.total.model, bars.total.size) == ("spatial", pytest.approx(-0.01, rel=1e-9))
-    assert [bar.real for bar in bars.bars] == [True, False, True, True, False]
-    real = [WaterfallBar("exact", size, 0.01).real for size in (-0.051, -0.049, 0.049, 0.051)]
-    assert real == [True, False, False, True]
+    assert [bar.resolved for bar in bars.bars] == [True, True, True, False]
+
+
+def test_what_finer_grids_leave_of_the_total_is_a_bar_of_its_own() -> None:
+    """Geometry of one phase pair that the spatial model lacks: its mean is over 64 pairs, that of the total over 16."""
+    study, surfaces = planted_study({"spatial": 0.05})
+    place = {"alpha1": surfaces["alpha1"][3], "alpha2": surfaces["alpha2"][4]}
+    for model in ("resolved", "regularised", "translational", "spatial"):
+        surfaces["mu"].loc[{"model": model, **place}] *= 1.64
+    bars = bars_of_body(study, surfaces, 1)
+    assert bars.bars[0].size == pytest.approx(0.01)
+    assert (bars.bars[-1].model, bars.bars[-1].size, bars.bars[-1].resolved) == ("phases", pytest.approx(-0.01), False)
+    assert bars.total.size == pytest.approx(0.05)
+    assert sum(bar.size for bar in bars.bars) == pytest.approx(bars.total.size, rel=1e-12)
+
+
+def test_a_bar_is_resolved_beyond_its_sampling_error_and_five_numerical_ones() -> None:
+    for error, resolved in ((0.0039, True), (0.0041, False)):  # with that of the first model, 1e-5
+        bar = bars_of_body(*planted_study({"spatial": 0.02}, {"spatial": error}), 1).bars[-1]
+        assert (bar.size, bar.resolved) == (pytest.approx(0.02), resolved)
+    study, surfaces = planted_study({"spatial": 0.02})
+    surfaces["mu"].loc[{"model": "spatial"}] *= 1.0 + 0.2 * np.cos(surfaces["alpha1"] + 0.3)
+    assert not bars_of_body(study, surfaces, 1).bars[-1].resolved
 
 
 def test_the_largest_difference_may_be_of_the_finer_engine() -> None:
@@ -41,27 +66,30 @@ def test_the_largest_difference_may_be_of_the_finer_engine() -> None:
     place = {"body": 2, "alpha1": surfaces["alpha1"][3], "alpha2": surfaces["alpha2"][4]}
     for model in ("resolved", "regularised", "translational"):
         surfaces["mu"].loc[{"model": model, **place}] *= 0.6
-    surfaces["error"].loc[{"model": "translational", **place}] = 0.01 * surfaces["mu"].sel(model="small", **place)
-    largest = waterfall(study, surfaces, study.scenes[0], 2).largest
+    surfaces["error"].loc[{"model": "translational", **place}] = 0.01 * surfaces["mu"].sel(
+        model="small-resolved", **place
+    )
+    largest = bars_of_body(study, surfaces, 2).largest
     assert largest.total.error == pytest.approx(0.01, rel=1e-3), "of this phase pair, not of others"
     assert (largest.total.model, largest.total.size) == ("translational", pytest.approx(-0.4, rel=1e-9))
     assert largest.phases == pytest.approx((2.0 * np.pi * 3 / 8, 2.0 * np.pi * 4 / 8))
     assert {bar.model: bar.size for bar in largest.bars} == pytest.approx(
-        {"exact": 0.0, "resolved": -0.4, "regularised": 0.0, "translational": 0.0}, abs=1e-12
+        {"resolved": -0.4, "regularised": 0.0, "translational": 0.0}, abs=1e-12
     )
     surfaces["stride"].loc[{"model": "resolved"}] = 2
-    bars = waterfall(study, surfaces, study.scenes[0], 2).largest.bars
-    assert [math.isnan(bar.size) for bar in bars] == [False, True, True, False], "nothing is computed there"
+    bars = bars_of_body(study, surfaces, 2).largest.bars
+    assert [math.isnan(bar.size) for bar in bars] == [True, True, False], "nothing is computed there"
 
 
 def test_without_a_common_phase_there_is_no_bar_and_no_crash() -> None:
     study, surfaces = planted_study({})
-    surfaces["mu"].loc[{"model": "exact"}] = np.nan
-    bars = waterfall(study, surfaces, study.scenes[0], 1)
-    assert bars.points == bars.independent == 0
-    assert not any(bar.real for bar in (*bars.bars, bars.total))
+    surfaces["mu"].loc[{"model": "resolved"}] = np.nan
+    bars = bars_of_body(study, surfaces, 1)
+    assert [math.isnan(bar.size) for bar in bars.bars] == [True, True, False, False]
     surfaces["mu"][:] = np.nan
-    assert waterfall(study, surfaces, study.scenes[0], 1).largest.bars == ()
+    bars = bars_of_body(study, surfaces, 1)
+    assert not any(bar.resolved for bar in (*bars.bars, bars.total))
+    assert bars.largest.bars == ()
 
 
 def test_independent_phases_are_counted_by_symmetries() -> None:
@@ -79,12 +107,12 @@ def test_independent_phases_are_counted_by_symmetries() -> None:
     assert independent_phases(study, study.scenes[0], [study.hierarchy[0], MODEL_HIERARCHY[0]], every, stride=1) == 64
 
 
-STEPS = [WaterfallBar(*bar, 1e-4) for bar in (("exact", 0.02), ("resolved", -0.10), ("spatial", 0.03))]
-TOTAL = WaterfallBar("spatial", -0.05, 1e-4)
+STEPS = [WaterfallBar(*bar, 1e-4, True) for bar in (("resolved", 0.02), ("regularised", -0.10), ("spatial", 0.03))]
+TOTAL = WaterfallBar("spatial", -0.05, 1e-4, True)
 
 
 def test_a_step_without_a_value_has_no_bar_and_moves_nothing() -> None:
-    steps = [STEPS[0], WaterfallBar("resolved", math.nan, math.nan), STEPS[2]]
+    steps = [STEPS[0], WaterfallBar("regularised", math.nan, math.nan, False), STEPS[2]]
     scale = scale_of([(steps, TOTAL)])
     first, missing, last, _ = bars_of(steps, TOTAL, scale)
     assert (missing.kind, missing.width, missing.text) == ("none", 0.0, "no value")
@@ -96,15 +124,15 @@ def test_a_step_without_a_value_has_no_bar_and_moves_nothing() -> None:
     [
         (-0.0871, 1e-6, "down", "−8.7 %"),
         (-0.0363, 6e-4, "down", "−3.63 ± 0.06 %"),
-        (0.0001, 0.0003, "unreal", "+0.01 ± 0.03 %"),
-        (1e-9, 2e-4, "unreal", "0 ± 0.02 %"),
-        (0.0, 1e-9, "unreal", "0 %"),
+        (0.0001, 0.0003, "unresolved", "+0.01 ± 0.03 %"),
+        (1e-9, 2e-4, "unresolved", "0 ± 0.02 %"),
+        (0.0, 1e-9, "unresolved", "0 %"),
     ],
 )
 def test_a_size_has_the_digits_that_its_error_leaves(size: float, error: float, kind: str, text: str) -> None:
-    bar = bars_of([WaterfallBar("exact", size, error)], TOTAL, scale_of([(STEPS, TOTAL)]))[0]
+    bar = bars_of([WaterfallBar("exact", size, error, kind == "down")], TOTAL, scale_of([(STEPS, TOTAL)]))[0]
     assert (bar.kind, bar.text) == (kind, text)
-    scale = scale_of([([], WaterfallBar("exact", math.nan, math.nan))])
+    scale = scale_of([([], WaterfallBar("exact", math.nan, math.nan, False))])
     assert scale.low < 0.0 < scale.high, "without any value there is a scale, too"
 
 
