@@ -1,0 +1,216 @@
+"""Each sentence about the surfaces is read back whole: every number, sign, name, reading, grid and verdict in it."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from comparison.surfaces.differences import Difference, GridMean
+from comparison.surfaces.headline import Effect, Headline
+from comparison.surfaces.statements import (
+    CELLS,
+    word_agreement,
+    word_causes,
+    word_effect,
+    word_engine,
+    word_headline,
+    word_range,
+    word_supremum,
+    word_total,
+    word_verdict,
+)
+
+NAN = math.nan
+
+
+def turn(part: float) -> float:
+    return 2.0 * math.pi * part
+
+
+GEOMETRY = Effect(
+    "geometry", "resolved", -0.021, 0.0005, 0.28, True, -0.019, "under regularized friction", 0.002, 0.004
+)
+FRICTION = Effect(
+    "regularized friction", "regularised", 0.0039, 0.0002, -0.052, True, 0.0052, "without geometry", 0.0013, NAN
+)
+CONTACT = Effect("elastic contact", "translational", 1e-5, 4e-4, -1e-4, False, NAN, "", NAN, NAN)
+TURNING = Effect("turning of the bodies", "spatial", -0.0578, 0.003, 0.772, True, NAN, "", NAN, NAN)
+KNOWN = Headline(
+    scene="tower", body=1, name="platform", reading="as integrated",
+    first="small-resolved", first_name="the paper's equations", second="spatial", second_name="Exudyn (spatial)",
+    mean=-0.0749, error=0.002, resolved=True, spread=0.031,
+    low=-0.171, low_phases=(turn(1 / 8), turn(1 / 4)), high=0.053, high_phases=(turn(3 / 8), turn(1 / 2)),
+    phases_per_axis=16, points=256, independent=64, resolved_share=0.9,
+    maximum=-0.18, maximum_error=1e-3, maximum_phases=(turn(1 / 16), 0.0), maximum_model="translational",
+    effects=(GEOMETRY, FRICTION, CONTACT, TURNING), causes=("turning of the bodies", "geometry"),
+    main_cause="turning of the bodies", like_for_like=2.3e-4, like_for_like_met=True,
+    supremum_mean=0.091, supremum_error=0.01, supremum_maximum=0.283, supremum_phases=(0.0, turn(1 / 8)),
+    engines=(), sentence="",
+)  # fmt: skip
+TOTAL = (
+    "Exudyn (spatial) gives 7.5 ± 0.2 % less than the paper's equations in the mean over 16 × 16 initial phases "
+    "(from −17 % at (45°, 90°) to +5.3 % at (135°, 180°))."
+)
+CAUSES = "Causes: turning of the bodies −5.8 ± 0.3 % (77 % of it), geometry −2.10 ± 0.05 % (28 % of it)."
+AGREE = "Given the same equations and friction law the two codes agree within their errors, to 0.023 %."
+SUPREMUM = "The literal supremum is 9.1 % higher in the mean, up to 28 %."
+
+
+def test_the_headline_is_size_causes_agreement_and_literal_supremum() -> None:
+    assert word_headline(KNOWN) == f"tower, platform, as integrated: {TOTAL} {CAUSES} {AGREE} {SUPREMUM}"
+    supplied = replace(KNOWN, engines=("mine agrees.",))
+    assert word_headline(supplied) == f"tower, platform, as integrated: mine agrees. {TOTAL} {CAUSES} {SUPREMUM}"
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, TOTAL),
+        ({"mean": 0.0749}, TOTAL.replace("less", "more")),
+        ({"points": 250}, TOTAL.replace("over 16", "over 250 of 16")),
+        ({"error": 1e-6}, TOTAL.replace("7.5 ± 0.2 %", "7.5 %")),
+        ({"phases_per_axis": 1, "points": 1}, "Exudyn (spatial) gives 7.5 ± 0.2 % less than the paper's equations under the "
+         "record."),
+        ({"phases_per_axis": 1, "points": 1, "resolved": False}, "Exudyn (spatial) and the paper's equations agree within the "
+         "numerical error under the record (difference −7.5 ± 0.2 %)."),
+        ({"resolved": False}, "Exudyn (spatial) and the paper's equations do not differ in the mean over 16 × 16 initial phases "
+         "(−7.5 ± 0.2 %; from −17 % at (45°, 90°) to +5.3 % at (135°, 180°))."),
+        ({"resolved": False, "resolved_share": 0.0}, "Exudyn (spatial) and the paper's equations agree within the numerical "
+         "error over 16 × 16 initial phases (mean −7.5 ± 0.2 %; from −17 % at (45°, 90°) to +5.3 % at (135°, 180°))."),
+        ({"resolved": False, "error": NAN, "points": 4, "independent": 2, "phases_per_axis": 2}, "Exudyn (spatial) against "
+         "the paper's equations: 2 independent of 4 phase pairs do not tell the mean over all phases (mean of these −7.5 %, "
+         "from −17 % at (45°, 90°) to +5.3 % at (135°, 180°))."),
+        ({"points": 0}, "the models from the paper's equations to Exudyn (spatial) have no value in common at any phase pair."),
+        ({"points": 0, "phases_per_axis": 1}, "the models from the paper's equations to Exudyn (spatial) have no value in "
+         "common."),
+        ({"second": "small-resolved"}, "only the paper's equations were computed, there is nothing to compare."),
+    ],
+)  # fmt: skip
+def test_how_much_is_said_with_sign_error_grid_and_ends(changes: dict[str, object], said: str) -> None:
+    assert word_total(replace(KNOWN, **changes)) == said
+
+
+def test_a_range_of_one_value_is_said_once() -> None:
+    assert word_range(replace(KNOWN, high=-0.171)) == "−17 % at (45°, 90°)"
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, CAUSES),
+        ({"main_cause": ""}, CAUSES.removesuffix(".") + "; which of them is larger 16 × 16 phases do not tell."),
+        ({"main_cause": "", "phases_per_axis": 1}, CAUSES.removesuffix(".") + "; which of them is larger the errors do not tell."),
+        ({"causes": ("turning of the bodies",)}, "Cause: turning of the bodies −5.8 ± 0.3 % (77 % of it)."),
+        ({"causes": ("regularized friction",)}, "Cause: regularized friction +0.39 ± 0.02 % (−5.2 % of it, +0.52 % without "
+         "geometry)."),
+        ({"causes": ()}, "No single effect exceeds its error and a fifth of the mean."),
+        ({"resolved": False}, ""),
+    ],
+)  # fmt: skip
+def test_causes_have_size_sign_share_and_another_order(changes: dict[str, object], said: str) -> None:
+    assert word_causes(replace(KNOWN, **changes)) == said
+
+
+def test_another_order_is_told_where_it_changes_more_than_a_fifth() -> None:
+    assert "under" not in word_effect(GEOMETRY)
+    assert "under" not in word_effect(replace(GEOMETRY, interaction=-0.0041))
+    assert "(28 % of it, −1.9 % under regularized friction)" in word_effect(replace(GEOMETRY, interaction=-0.0043))
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence", "cell"),
+    [
+        ({}, AGREE, "0.023 % (met)"),
+        ({"like_for_like_met": False}, AGREE.replace("agree within their errors, to", "differ beyond their errors, by up to"),
+         "0.023 % (not met)"),
+        ({"like_for_like_met": None}, AGREE.replace("agree within their errors, to", "differ, with an unknown error, by up to"),
+         "0.023 % (error unknown)"),
+        ({"like_for_like": NAN}, "", "not compared"),
+    ],
+)  # fmt: skip
+def test_agreement_has_its_verdict(changes: dict[str, object], sentence: str, cell: str) -> None:
+    assert word_agreement(replace(KNOWN, **changes)) == sentence
+    assert CELLS.agreement(replace(KNOWN, **changes)) == cell
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence", "cell"),
+    [
+        ({}, SUPREMUM, "+9.1 %, up to +28 %"),
+        ({"phases_per_axis": 1}, "The literal supremum is 9.1 % higher.", "+9.1 %"),
+        ({"supremum_mean": 0.0, "supremum_maximum": 9e-7}, "The literal supremum is the same.", "the same"),
+        ({"supremum_mean": 0.0, "supremum_maximum": 2e-6}, "The literal supremum is 0 % higher in the mean, up to 0.0002 %.",
+         "0 %, up to +0.0002 %"),
+        ({"supremum_mean": NAN}, "", "not compared"),
+        ({"supremum_mean": NAN, "reading": "in both readings"}, "", "the same"),
+    ],
+)  # fmt: skip
+def test_the_literal_supremum_is_above_as_integrated(changes: dict[str, object], sentence: str, cell: str) -> None:
+    assert word_supremum(replace(KNOWN, **changes)) == sentence
+    assert CELLS.supremum(replace(KNOWN, **changes)) == cell
+
+
+def test_the_cells_of_the_first_screen_say_what_the_sentence_says() -> None:
+    assert CELLS.difference(KNOWN) == "−7.5 ± 0.2 %"
+    assert CELLS.difference(replace(KNOWN, error=NAN)) == "−7.5 %, too few phases for an error"
+    assert CELLS.difference(replace(KNOWN, points=0)) == CELLS.difference(replace(KNOWN, second=KNOWN.first))
+    assert CELLS.difference(replace(KNOWN, points=0)) == "no value in common"
+    assert CELLS.range(KNOWN) == "from −17 % at (45°, 90°) to +5.3 % at (135°, 180°)"
+    assert CELLS.range(replace(KNOWN, phases_per_axis=1)) == CELLS.range(replace(KNOWN, points=0)) == ""
+    assert f"Causes: {CELLS.causes(KNOWN)}." == CAUSES
+    assert CELLS.causes(replace(KNOWN, main_cause="")).endswith("; which is larger these phases do not tell")
+    assert CELLS.causes(replace(KNOWN, resolved=False)) == "the mean is not beyond its error"
+    assert CELLS.causes(replace(KNOWN, causes=())) == "no single effect beyond its error"
+
+
+OTHER = replace(
+    KNOWN, name="body 2", body=2, mean=0.012, error=0.001, low=-0.01, high=0.19, high_phases=(turn(1 / 2), turn(3 / 4)),
+    like_for_like=4.4e-4, supremum_mean=0.13, supremum_maximum=0.22,
+)  # fmt: skip
+
+
+def test_the_verdict_answers_how_far_in_which_reading_and_what_was_measured() -> None:
+    assert word_verdict([OTHER, KNOWN], "only dry friction is validated") == (
+        "Read as integrated, the paper's equations can be trusted to 7.5 % in the mean and 19 % at single phase pairs: so far "
+        "at most is Exudyn (spatial) from them (tower, platform: −7.5 ± 0.2 %; tower, body 2: +19 % at (180°, 270°)). "
+        "Where both codes solve the same they agree to 0.044 %, within their errors; the literal supremum is 13 % higher in "
+        "the mean and up to 22 % (tower, body 2). Only dry friction is validated."
+    )
+
+
+def test_the_verdict_names_where_the_codes_do_not_agree() -> None:
+    beyond = replace(OTHER, like_for_like_met=False)
+    assert "they agree to 0.044 %, beyond the errors for tower, body 2; " in word_verdict([KNOWN, beyond], "m")
+    alone = replace(KNOWN, like_for_like=NAN, supremum_mean=NAN, phases_per_axis=1)
+    assert word_verdict([alone], "nothing was measured") == (
+        "Read as integrated, the paper's equations can be trusted to 7.5 %: so far at most is Exudyn (spatial) from them "
+        "(tower, platform: −7.5 ± 0.2 %). Nothing was measured."
+    )
+    assert word_verdict([replace(KNOWN, mean=NAN)], "m") == "No two models have a value in common. m."
+    assert word_verdict([replace(KNOWN, second=KNOWN.first)], "m") == "No two models have a value in common. m."
+
+
+ROW = Difference(
+    scene="tower", body=1, first="regularised", second="mine", base="regularised", median=0.02, percentile95=0.03,
+    maximum=0.041, phases=(turn(1 / 4), turn(1 / 8)), asked=64, pair="mine", effect="", reading="as integrated",
+    mean=-0.021, numerical_error=3e-4, sampling_error=4e-4, spread=0.01, low=-0.041, low_phases=(0.0, 0.0), high=0.01,
+    high_phases=(0.0, 0.0), phases_per_axis=8, independent=64, grids=(GridMean(8, -0.021, 0.041),), beyond_error=0.9,
+    resolved=0.8, ratio=3.0, not_ok=0, unanswered=0,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, "mine differs by up to 4.1 % from the partner (mean −2.10 ± 0.05 % over 8 × 8 initial phases; largest at (90°, "
+         "45°))."),
+        ({"ratio": 1.0}, "mine agrees within the errors, to 4.1 %, with the partner (mean −2.10 ± 0.05 % over 8 × 8 initial "
+         "phases; largest at (90°, 45°))."),
+        ({"ratio": NAN, "unanswered": 3}, "mine differs by up to 4.1 % from the partner (mean −2.10 ± 0.05 % over 61 of 8 × 8 "
+         "initial phases; largest at (90°, 45°))."),
+        ({"asked": 1, "phases_per_axis": 1}, "mine differs by up to 4.1 % from the partner."),
+        ({"unanswered": 64}, "mine and the partner have no value in common."),
+    ],
+)  # fmt: skip
+def test_an_engine_of_the_user_is_named_beside_its_partner(changes: dict[str, object], said: str) -> None:
+    assert word_engine(replace(ROW, **changes), "mine", "partner") == said
