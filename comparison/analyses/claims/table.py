@@ -92,8 +92,8 @@ def claims_line(table: ClaimTable) -> str:
     rest = "".join(f", {count} {NOT_COMPARED} ({name})" for name, count in lacking.items())
     return (
         f"Of the paper's {len(table.statements)} statements about its figures, with the parameters as printed, "
-        f"{integrated[MET]} are met {AS_INTEGRATED.name} and {supremum[MET]} as {LITERAL_SUPREMUM.name}{rest}; its plots"
-        " were not available, and the text at hand names no authors and no year."
+        f"{integrated[MET]} are met {AS_INTEGRATED.name} and {supremum[MET]} as {LITERAL_SUPREMUM.name}{rest}; "
+        "its plots were not available, and the text at hand names no authors and no year."
     )
 
 
@@ -120,7 +120,9 @@ class Claims(Analysis[ClaimTable]):
             }
             for reading in READINGS
         }
-        return table_of({name: [claim.verdict(cases) for claim in CLAIMS] for name, cases in evidence.items()}, self.grid)
+        return table_of(
+            {name: [claim.verdict(cases) for claim in CLAIMS] for name, cases in evidence.items()}, self.grid
+        )
 
     def _tasks(self, study: Study, surfaces: xr.Dataset | None) -> dict[tuple[str, PeakReading], Task]:
         """Return the tasks by case and effective reading: where friction cannot hold the platform both have one."""
