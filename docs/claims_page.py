@@ -24,7 +24,7 @@ from pydantic import TypeAdapter
 
 from comparison.analyses.claims.evidence import CaseInReading, gather_evidence
 from comparison.analyses.claims.readings import CASES, READINGS, PeakReading, effective_reading
-from comparison.analyses.claims.table import Claims, ClaimTable, claims_line
+from comparison.analyses.claims.table import GRID, Claims, ClaimTable, claims_line
 from comparison.analyses.effective_values.analysis import forced_ratios
 from comparison.json_file import json_text
 from comparison.runner.environment import provenance
@@ -36,15 +36,16 @@ from reference.problem import builtin_scenes, load_scene
 
 FOLDER = Path(__file__).parent
 RECORD = FOLDER / "claims.json"
+GRIDS = 16, GRID, 32, 48, 64  # phases per axis on which the statements are counted
 DRAWN = 32  # phases per axis of the pictures
 RESOLUTION, COLORS = 110, 32  # dots per inch, and shades of a picture of lines on white
 PANELS = (("fig3-I", "3", "ab"), ("fig3-II", "3", "cd"), ("fig4-dry", "4", "ab"), ("fig4-viscous", "4", "cd"))
 TABLE = TypeAdapter(ClaimTable)
 
 
-def compute_table() -> ClaimTable:
-    """Return the table that `python -m comparison.claims` prints, in this process."""
-    study, claims, results = Study(tuple(map(load_scene, builtin_scenes())), 1, 1e-3), Claims(), TaskResults()
+def compute_table(grid: int = GRID) -> ClaimTable:
+    """Return the table that `python -m comparison.claims --grid GRID` prints, in this process."""
+    study, claims, results = Study(tuple(map(load_scene, builtin_scenes())), 1, 1e-3), Claims(grid), TaskResults()
     for task in claims.tasks(study):
         results.put(task, execute(task))
     table = claims.collect(study, None, results)
@@ -89,7 +90,11 @@ def main() -> None:
     """Compute and draw where asked for, and write the page."""
     record = json.loads(RECORD.read_text(encoding="utf-8"))
     if "--measure" in sys.argv[1:]:
-        record |= {"commit": provenance()["commit"][:8], "table": TABLE.dump_python(compute_table(), mode="json")}
+        record |= {
+            "commit": provenance()["commit"][:8],
+            "table": TABLE.dump_python(compute_table(), mode="json"),
+            "counts_by_grid": {str(grid): compute_table(grid).counts for grid in GRIDS},
+        }
         RECORD.write_text(json_text(record), encoding="utf-8")
         for reading in READINGS:
             draw_reading(FOLDER / f"claims-{reading.name.replace(' ', '-')}.png", reading)

@@ -135,7 +135,7 @@ CLAIMS: tuple[Claim, ...] = (
         "Fig. 4c, d",
         "viscous friction makes the surfaces smooth",
         f"smooth is read as differentiable: {_ZOOM} h^2",
-        (_WET, _DRY),
+        (_WET,),
         checks.find_no_folds,
         cannot='Read as "differentiable", it cannot hold by the definition (5.1): its denominator, the largest ground'
         " acceleration, has a fold where two of its peaks are equal, which no friction law removes. The paper may mean"
