@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 from pydantic import TypeAdapter
 
+from comparison.analyses.claims.checks import MET
 from comparison.analyses.claims.evidence import CaseInReading, gather_evidence
 from comparison.analyses.claims.readings import CASES, READINGS, PeakReading, effective_reading
 from comparison.analyses.claims.table import GRID, Claims, ClaimTable, claims_line
@@ -53,12 +55,26 @@ def compute_table(grid: int = GRID) -> ClaimTable:
     return table
 
 
+def numbers_met(table: ClaimTable) -> dict[str, int]:
+    """Return how many statements are met, by name of the reading."""
+    return {name: counts[MET] for name, counts in table.counts.items()}
+
+
+def grids_line(met: Mapping[str, Mapping[str, int]]) -> str:
+    """Return whether the numbers of statements met depend on the grid; met: by phases per axis and reading."""
+    *grids, last = met
+    if all(met[grid] == met[last] for grid in grids):
+        return f"As many statements are met on {', '.join(grids)} and {last} phases per axis."
+    words = (f"{' and '.join(f'{number} {name}' for name, number in each.items())} on {n}" for n, each in met.items())
+    return f"The numbers of statements met depend on the phases per axis: {', '.join(words)}."
+
+
 def draw_reading(path: Path, reading: PeakReading) -> None:
     """Write the eight surfaces of Figures 3 and 4 in one reading, PNG."""
     with mpl.rc_context(PRINT):
         figure = Figure(figsize=(11.0, 6.2))
         FigureCanvasAgg(figure)
-        figure.suptitle(f"Figures 3 and 4 as printed, {reading.name}", fontsize=10.0, y=0.985)
+        figure.suptitle(f"Figures 3 and 4, parameters as printed, {reading.name}", fontsize=10.0, y=0.985)
         for column, (case, number, letters) in enumerate(PANELS):
             surfaces = gather_evidence(CaseInReading(case, effective_reading(reading, CASES[case]()), DRAWN)).mu
             phase = 2.0 * np.pi * np.arange(DRAWN + 1) / DRAWN
@@ -82,7 +98,12 @@ def render_page(record: dict[str, Any]) -> str:
     table = TABLE.validate_python(record["table"])
     ratios = {each.axis: each for each in forced_ratios(load_scene("fig3-I"))}
     return templates.get_template("claims.md.j2").render(
-        record=record, table=table, line=claims_line(table), readings=READINGS, ratios=ratios
+        record=record,
+        table=table,
+        line=claims_line(table),
+        grids_line=grids_line(record["met_by_grid"]),
+        readings=READINGS,
+        ratios=ratios,
     )
 
 
@@ -93,7 +114,7 @@ def main() -> None:
         record |= {
             "commit": provenance()["commit"][:8],
             "table": TABLE.dump_python(compute_table(), mode="json"),
-            "counts_by_grid": {str(grid): compute_table(grid).counts for grid in GRIDS},
+            "met_by_grid": {str(grid): numbers_met(compute_table(grid)) for grid in GRIDS},
         }
         RECORD.write_text(json_text(record), encoding="utf-8")
         for reading in READINGS:

@@ -9,7 +9,7 @@ import numpy as np
 from comparison.analyses.claims import checks
 from comparison.analyses.claims.checks import NOT_COMPARED, Check, StatementVerdict
 from comparison.analyses.claims.evidence import Evidence
-from comparison.analyses.claims.peaks_and_valleys import LEAST_SHARE, SHARE, Counts
+from comparison.analyses.claims.peaks_and_valleys import SHARE, Counts
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ CLAIMS: tuple[Claim, ...] = (
     Claim(
         "Fig. 3b",
         "mu_2 has several peaks and valleys, more complex than those of mu_1",
-        f"at least two of each and together more, at a prominence of {100 * LEAST_SHARE:.0f} % of the range",
+        f"at least two of each and together more, at a prominence of {100 * checks.COMPLEX_SHARE:.0f} % of the range",
         (_I,),
         checks.compare_complexity,
     ),

@@ -147,6 +147,15 @@ def test_a_peak_in_a_corner_is_enough_and_its_twin_is_no_objection() -> None:
     assert "which the paper does not say" in claim.cannot
 
 
+@pytest.mark.parametrize(
+    ("double", "word", "words", "other"), [(1.0, NOT_MET, "1 and 1", "15 %"), (1.5, MET, "4 and 2", "35 %")]
+)
+def test_a_count_that_depends_on_the_prominence_says_so(double: float, word: Word, words: str, other: str) -> None:
+    mu_2 = np.cos(A1) + np.cos(A2) + double * (np.cos(2.0 * A1) + np.cos(2.0 * A2))
+    verdict = _claim("Fig. 3b", "more complex").verdict({"fig3-I": _seen(TWO, mu_2)})
+    assert verdict == StatementVerdict(word, f"mu_2 {words}, mu_1 1 and 1; otherwise at a prominence of {other}")
+
+
 def test_a_case_without_an_answer_leaves_its_claims_not_compared() -> None:
     mu = ONE_AXIS.mu.copy()
     mu[3, 3] = np.nan

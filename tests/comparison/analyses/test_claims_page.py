@@ -21,7 +21,8 @@ def test_the_record_is_what_the_command_finds() -> None:
     """Verdicts and words are the same, numbers to what other processors round."""
     kept, found = claims_page.TABLE.validate_python(RECORD["table"]), claims_page.compute_table()
     assert (found.grid, found.counts) == (kept.grid, kept.counts)
-    assert found.counts == RECORD["table"]["counts"] == RECORD["counts_by_grid"][str(found.grid)]
+    assert found.counts == RECORD["table"]["counts"]
+    assert claims_page.numbers_met(found) == RECORD["met_by_grid"][str(found.grid)]
     assert len(found.statements) == 16
     for new, old in zip(found.statements, kept.statements, strict=True):
         assert (new.figure, new.says, new.rule, new.cannot) == (old.figure, old.says, old.rule, old.cannot)
@@ -30,6 +31,17 @@ def test_the_record_is_what_the_command_finds() -> None:
             assert (mine.verdict, NUMBER.sub("0", mine.reason)) == (recorded.verdict, NUMBER.sub("0", recorded.reason))
             numbers = [list(map(float, NUMBER.findall(verdict.reason))) for verdict in (mine, recorded)]
             assert numbers[0] == pytest.approx(numbers[1], rel=0.01, abs=0.11), new.says
+
+
+def test_numbers_that_depend_on_the_grid_are_said_to() -> None:
+    same = {"as integrated": 7, "literal supremum": 8}
+    line = claims_page.grids_line({"16": same, "24": same, "32": same})
+    assert line == "As many statements are met on 16, 24 and 32 phases per axis."
+    line = claims_page.grids_line({"16": {"as integrated": 6, "literal supremum": 8}, "24": same})
+    assert line.endswith(
+        "depend on the phases per axis: 6 as integrated and 8 literal supremum on 16, "
+        "7 as integrated and 8 literal supremum on 24."
+    )
 
 
 def test_the_search_is_said_to_be_a_selection_with_one_number_of_readings() -> None:
