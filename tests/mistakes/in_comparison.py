@@ -442,7 +442,7 @@ MISTAKES = (
     Mistake(ANALYSES + "claims/table.py", "scene.digest() != CASES[case]().digest() or ", "",
             "A changed scene stands for the paper's.",
             (OF + "claims.py::test_the_surfaces_of_the_study_are_used_where_it_has_the_grid",)),
-    Mistake(ANALYSES + "claims/readings.py", '"small-resolved", SMALLEST_SPEED)', '"small-resolved", None)',
+    Mistake(ANALYSES + "claims/readings.py", 'models.SMALL_RESOLVED.key, models.DEFAULT_V_C)', 'models.SMALL_RESOLVED.key, None)',
             "The supremum is called as integrated.", (OF + "claims.py::test_evidence_of_the_paper_is_what_the_equations_give",)),
     Mistake(ANALYSES + "claims/command.py", "options.out = options.out.absolute()", "pass",
             "--out . ends in an unexpected error.", (OF + "claims.py::test_the_command_prints_the_table",)),

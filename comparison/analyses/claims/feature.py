@@ -1,7 +1,7 @@
 """The statements of the paper: in the report."""
 
 from comparison.analyses.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
-from comparison.analyses.claims.table import Claims, ClaimTable
+from comparison.analyses.claims.table import Claims, ClaimTable, claims_line, count_met
 from comparison.report.section import Feature, Section
 
 FEATURE = Feature(
@@ -14,5 +14,9 @@ FEATURE = Feature(
         "python -m comparison.run with every scene of the paper makes it, and python -m comparison.claims alone",
         lambda report, figures: {"peak_share": SHARE, "peak_shares": (LEAST_SHARE, MOST_SHARE)},
         verifies=True,
+        verdict=lambda results: (
+            f"of {len(results.of('claims').statements)} statements, {count_met(results.of('claims'))}"
+        ),
+        lead=lambda results: claims_line(results.of("claims")),
     ),
 )

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any
 
+from comparison.study import models
 from reference.problem import Scene, load_scene
-
-SMALLEST_SPEED = 1e-3  # m/s, v_c of the resolved peak: what an integration with steps of about 1 ms sees
 
 
 @dataclass(frozen=True)
@@ -19,15 +18,14 @@ class PeakReading:
     cutoff: float | None
 
 
-AS_INTEGRATED = PeakReading("as integrated", "small-resolved", SMALLEST_SPEED)
-LITERAL_SUPREMUM = PeakReading("literal supremum", "small", None)
+AS_INTEGRATED = PeakReading(models.AS_INTEGRATED, models.SMALL_RESOLVED.key, models.DEFAULT_V_C)
+LITERAL_SUPREMUM = PeakReading(models.LITERAL_SUPREMUM, models.SMALL.key, None)
 READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)
 
 
 def effective_reading(reading: PeakReading, scene: Scene) -> PeakReading:
     """Return the supremum where friction cannot hold the platform: both readings are the same there."""
-    has_stops = not scene.lubricated and scene.friction_coefficient > 0.0
-    return reading if has_stops else LITERAL_SUPREMUM
+    return reading if models.dry(scene) else LITERAL_SUPREMUM
 
 
 @cache

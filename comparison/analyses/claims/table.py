@@ -87,14 +87,18 @@ def claims_line(table: ClaimTable) -> str:
     >>> claims_line(ClaimTable(16, ())).partition(", with")[0]
     "Of the paper's 0 statements about its figures"
     """
+    return (
+        f"Of the paper's {len(table.statements)} statements about its figures, with the parameters as printed, "
+        f"{count_met(table)}; its plots were not available, and the text at hand names no authors and no year."
+    )
+
+
+def count_met(table: ClaimTable) -> str:
+    """Return how many statements are met in each reading, and how many are not compared, in a clause."""
     integrated, supremum = (table.counts[reading.name] for reading in (AS_INTEGRATED, LITERAL_SUPREMUM))
     lacking = {name: counts[NOT_COMPARED] for name, counts in table.counts.items() if counts[NOT_COMPARED]}
     rest = "".join(f", {count} {NOT_COMPARED} ({name})" for name, count in lacking.items())
-    return (
-        f"Of the paper's {len(table.statements)} statements about its figures, with the parameters as printed, "
-        f"{integrated[MET]} are met {AS_INTEGRATED.name} and {supremum[MET]} as {LITERAL_SUPREMUM.name}{rest}; "
-        "its plots were not available, and the text at hand names no authors and no year."
-    )
+    return f"{integrated[MET]} are met {AS_INTEGRATED.name} and {supremum[MET]} as {LITERAL_SUPREMUM.name}{rest}"
 
 
 @dataclass(frozen=True)

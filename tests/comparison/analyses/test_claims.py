@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from comparison.analyses.claims.checks import MET, NOT_COMPARED, NOT_MET, Statem
 from comparison.analyses.claims.claims import CLAIMS, Claim
 from comparison.analyses.claims.command import main
 from comparison.analyses.claims.evidence import MOTIONS, CaseInReading, Evidence, gather_evidence
+from comparison.analyses.claims.feature import FEATURE
 from comparison.analyses.claims.peaks_and_valleys import Counts
 from comparison.analyses.claims.readings import AS_INTEGRATED, CASES, LITERAL_SUPREMUM, READINGS, effective_reading
 from comparison.analyses.claims.smoothness import Bend
@@ -190,6 +192,13 @@ def test_the_line_counts_each_reading_by_its_name() -> None:
     assert "9 are met as integrated and 7 as literal supremum;" in claims_line(
         _table(*("+" * k + "-" * (16 - k) for k in (9, 7)))
     )
+
+
+def test_the_page_says_the_same_in_both_places() -> None:
+    results = SimpleNamespace(of={"claims": KNOWN}.__getitem__)
+    assert FEATURE.section is not None
+    assert FEATURE.section.lead(results) == claims_line(KNOWN)
+    assert FEATURE.section.verdict(results) == "of 16 statements, 7 are met as integrated and 9 as literal supremum"
 
 
 def test_what_is_not_compared_is_neither_met_nor_not_met() -> None:
