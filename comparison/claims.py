@@ -1,4 +1,4 @@
-"""The paper's claims against readings of it: `python -m comparison.claims`."""
+"""The paper's statements in both readings of (5.1): `python -m comparison.claims`."""
 
 from comparison.cli.start import start
 

@@ -1,144 +1,125 @@
 """
-Write docs/claims.md and its pictures: what the paper's figures are and are not consistent with.
+Write docs/claims.md from docs/claims.json: what the paper says about its figures, in the two readings of (5.1).
 
-    python docs/claims_page.py [--search N] [--jobs N] [--out DIR]
+    python docs/claims_page.py [--measure]
 
-computes the tables of `python -m comparison.claims`, counts on finer grids and a search of N other readings. Results in
-DIR.tiles are not computed again.
+--measure computes the table of `python -m comparison.claims` again, keeps it in claims.json with its commit, and draws
+the surfaces. The search and the literal (4.6) in claims.json were recorded by an earlier version and stay as they are.
 """
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Callable, Sequence
-from dataclasses import replace
-from importlib import resources
+import json
+import sys
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-from claims_literal import PHASES, STEPS, LiteralClaims, Spike, spike_over_the_step
-from claims_pictures import draw_reading, draw_spike
-from claims_search import RANGES, SEARCH_GRID, Selection, best_readings, searched_readings
-from claims_settled import GRIDS, Settled, Settling
+import matplotlib as mpl
+import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from PIL import Image
+from pydantic import TypeAdapter
 
-from comparison.analyses.claims.evidence import without_value
-from comparison.analyses.claims.readings import CASES, LIGHT_BODY, LITERAL, OWN_PERIOD, READINGS, Reading
-from comparison.analyses.claims.table import GRID, RECORD, SIGNS, ClaimTable
+from comparison.analyses.claims.checks import MET
+from comparison.analyses.claims.evidence import CaseInReading, gather_evidence
+from comparison.analyses.claims.readings import CASES, READINGS, PeakReading, effective_reading
+from comparison.analyses.claims.table import GRID, Claims, ClaimTable, claims_line
 from comparison.analyses.effective_values.analysis import forced_ratios
 from comparison.json_file import json_text
-from comparison.runner.cache import Cache, store_beside
-from comparison.runner.processes import cores, process_pool
-from comparison.runner.runner import Runner, compiling_task
-from comparison.runner.task import Task
+from comparison.runner.environment import provenance
+from comparison.runner.task import execute
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
+from comparison.surfaces.figures.paper import PRINT, draw_surface
 from reference.problem import builtin_scenes, load_scene
 
 FOLDER = Path(__file__).parent
+RECORD = FOLDER / "claims.json"
+GRIDS = 16, GRID, 32, 48, 64  # phases per axis on which the statements are counted
 DRAWN = 32  # phases per axis of the pictures
-PRINTED = next(reading for reading in READINGS if replace(reading, reason="") == Reading(1.0))
-AMPLITUDES = (0.6, 1.0, 1.5)  # m/s^2, of the literal reading
-SEARCHED = 96
-COLORS = 32  # of a picture: lines on white
-PICTURES = (
-    ("print", PRINTED, "The parameters as printed"),
-    ("light-body", LIGHT_BODY, "The reading that reproduces most"),
-    ("own-period", OWN_PERIOD, "The reading close to resonance"),
-    ("literal", LITERAL, "The spike counted"),
-)
-
-Compute = Callable[[Sequence[Task]], TaskResults]
+RESOLUTION, COLORS = 110, 32  # dots per inch, and shades of a picture of lines on white
+PANELS = (("fig3-I", "3", "ab"), ("fig3-II", "3", "cd"), ("fig4-dry", "4", "ab"), ("fig4-viscous", "4", "cd"))
+TABLE = TypeAdapter(ClaimTable)
 
 
-def main() -> None:
-    """Compute, draw and write."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--search", type=int, default=SEARCHED, metavar="N")
-    parser.add_argument("--jobs", type=int, default=cores(), metavar="N")
-    parser.add_argument("--out", type=Path, default=Path("report"), metavar="DIR")
-    options = parser.parse_args()
-    study = Study(tuple(map(load_scene, builtin_scenes())), GRID, 1e-3)
-    results = TaskResults(Cache(store_beside(options.out)))
-
-    def compute(tasks: Sequence[Task]) -> TaskResults:
-        Runner(results, options.jobs, process_pool).run(tasks, compiling_task)
-        return results
-
-    def tabled(grid: int, readings: Sequence[Reading]) -> ClaimTable:
-        claims = LiteralClaims(grid, readings)
-        table = claims.collect(study, None, compute(claims.tasks(study)))
-        assert table is not None
-        return table
-
-    settling = Settling()
-    settled = settling.collect(study, None, compute(settling.tasks(study))) or []
-    readings = searched_readings(options.search)
-    searched = tabled(SEARCH_GRID, readings)
-    selection = Selection(searched, tabled(GRID, best_readings(searched, readings)))
-    spike = draw(compute)
-    record(tabled(GRID, [replace(LITERAL, amplitude=amplitude) for amplitude in AMPLITUDES]))
-    (FOLDER / "claims.md").write_text(page(study, tabled(GRID, READINGS), spike, settled, selection), encoding="utf-8")
+def compute_table(grid: int = GRID) -> ClaimTable:
+    """Return the table that `python -m comparison.claims --grid GRID` prints, in this process."""
+    study, claims, results = Study(tuple(map(load_scene, builtin_scenes())), 1, 1e-3), Claims(grid), TaskResults()
+    for task in claims.tasks(study):
+        results.put(task, execute(task))
+    table = claims.collect(study, None, results)
+    assert table is not None, "the study has every scene of the paper"
+    return table
 
 
-def record(table: ClaimTable) -> None:
-    """Write the verdicts of the literal readings for `python -m comparison.claims` and the report."""
-    verdicts = {
-        f"{amplitude:g}": {f"{c.figure}: {c.says}": (c.verdicts[k].finding, c.verdicts[k].found) for c in table.claims}
-        for k, amplitude in enumerate(AMPLITUDES)
-    }
-    place = resources.files("comparison.analyses.claims") / RECORD
-    Path(str(place)).write_text(json_text(verdicts), encoding="utf-8")
+def numbers_met(table: ClaimTable) -> dict[str, int]:
+    """Return how many statements are met, by name of the reading."""
+    return {name: counts[MET] for name, counts in table.counts.items()}
 
 
-def draw(compute: Compute) -> Spike:
-    """The pictures of the readings and of the spike; the spike at 1 m/s^2."""
-    claims = LiteralClaims(DRAWN)
-    cases = [case for case in CASES if " " not in case]  # with both bodies
-    tasks = {(name, case): claims.task(case, reading) for name, reading, _ in PICTURES for case in cases}
-    spikes = {
-        amplitude: Task(spike_over_the_step, replace(LITERAL, amplitude=amplitude), "claims", 0.5)
-        for amplitude in AMPLITUDES
-    }
-    results = compute([*tasks.values(), *spikes.values()])
-    for name, reading, _ in PICTURES:
-        evidence = {case: results.value(tasks[name, case], without_value) for case in cases}
-        draw_reading(FOLDER / f"claims-{name}.png", reading.name, evidence)
-    drawn = {amplitude: results[task].value for amplitude, task in spikes.items()}
-    draw_spike(FOLDER / "claims-spike.png", drawn)
-    for path in FOLDER.glob("claims-*.png"):
-        with Image.open(path) as picture:
-            smaller = picture.convert("RGB").quantize(COLORS, dither=Image.Dither.NONE)
-        smaller.save(path, optimize=True)
-    return drawn[LITERAL.amplitude]
+def grids_line(met: Mapping[str, Mapping[str, int]]) -> str:
+    """Return whether the numbers of statements met depend on the grid; met: by phases per axis and reading."""
+    *grids, last = met
+    if all(met[grid] == met[last] for grid in grids):
+        return f"As many statements are met on {', '.join(grids)} and {last} phases per axis."
+    words = (f"{' and '.join(f'{number} {name}' for name, number in each.items())} on {n}" for n, each in met.items())
+    return f"The numbers of statements met depend on the phases per axis: {', '.join(words)}."
 
 
-def page(study: Study, table: ClaimTable, spike: Spike, settled: Sequence[Settled], selection: Selection) -> str:
-    """The text of docs/claims.md."""
+def draw_reading(path: Path, reading: PeakReading) -> None:
+    """Write the eight surfaces of Figures 3 and 4 in one reading, PNG."""
+    with mpl.rc_context(PRINT):
+        figure = Figure(figsize=(11.0, 6.2))
+        FigureCanvasAgg(figure)
+        figure.suptitle(f"Figures 3 and 4, parameters as printed, {reading.name}", fontsize=10.0, y=0.985)
+        for column, (case, number, letters) in enumerate(PANELS):
+            surfaces = gather_evidence(CaseInReading(case, effective_reading(reading, CASES[case]()), DRAWN)).mu
+            phase = 2.0 * np.pi * np.arange(DRAWN + 1) / DRAWN
+            for row, name in enumerate((r"$\mu_1$", r"$\mu_2$")):
+                mu = np.pad(surfaces[..., row], ((0, 1), (0, 1)), mode="wrap")
+                place = (0.018 + 0.247 * column, 0.01 + 0.475 * (1 - row), 0.225, 0.45)
+                axes = figure.add_axes(place, projection="3d")
+                draw_surface(axes, phase, mu, (float(mu.min()), float(mu.max())), name)
+                axes.set_title(f"Fig. {number}{letters[row]}: {name}", y=1.0, fontsize=9.0)
+        figure.savefig(path, dpi=RESOLUTION)
+    with Image.open(path) as picture:
+        smaller = picture.convert("RGB").quantize(COLORS, dither=Image.Dither.NONE)
+    smaller.save(path, optimize=True)
+
+
+def render_page(record: dict[str, Any]) -> str:
+    """Return the text of docs/claims.md from the content of claims.json."""
     templates = Environment(
         loader=FileSystemLoader(FOLDER), trim_blocks=True, undefined=StrictUndefined, keep_trailing_newline=True
     )
-    places = {name: table.readings.index(reading.name) for name, reading, _ in PICTURES}
+    table = TABLE.validate_python(record["table"])
+    ratios = {each.axis: each for each in forced_ratios(load_scene("fig3-I"))}
     return templates.get_template("claims.md.j2").render(
+        record=record,
         table=table,
-        held=table.reproduced,
-        spike=spike,
-        last_step=STEPS[-1],
-        printed=places["print"],
-        light=places["light-body"],
-        own=places["own-period"],
-        literal=places["literal"],
-        searched=OWN_PERIOD.searched,
-        proven=[claim for claim in table.claims if claim.proof],
-        signs=SIGNS,
-        ratios=[(scene.name, each) for scene in study.scenes for each in forced_ratios(scene)],
-        phases=PHASES,
-        grids=GRIDS,
-        settled=settled,
-        selection=selection,
-        ranges=RANGES,
-        pictures=PICTURES,
+        line=claims_line(table),
+        grids_line=grids_line(record["met_by_grid"]),
+        readings=READINGS,
+        ratios=ratios,
     )
+
+
+def main() -> None:
+    """Compute and draw where asked for, and write the page."""
+    record = json.loads(RECORD.read_text(encoding="utf-8"))
+    if "--measure" in sys.argv[1:]:
+        record |= {
+            "commit": provenance()["commit"][:8],
+            "table": TABLE.dump_python(compute_table(), mode="json"),
+            "met_by_grid": {str(grid): numbers_met(compute_table(grid)) for grid in GRIDS},
+        }
+        RECORD.write_text(json_text(record), encoding="utf-8")
+        for reading in READINGS:
+            draw_reading(FOLDER / f"claims-{reading.name.replace(' ', '-')}.png", reading)
+    (FOLDER / "claims.md").write_text(render_page(record), encoding="utf-8")
 
 
 if __name__ == "__main__":

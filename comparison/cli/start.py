@@ -26,7 +26,10 @@ COLLECTIONS = 50_000, 20, 100
 
 COMMANDS = {  # module whose `main` is the command, and what it does
     "run": ("comparison.run", "compare the equations with the engine and write the report"),
-    "claims": ("comparison.analyses.claims.command", "the paper's claims against readings of what it leaves open"),
+    "claims": (
+        "comparison.analyses.claims.command",
+        "the paper's statements about its figures in both readings of (5.1)",
+    ),
     "assumptions": ("comparison.analyses.assumptions.command", "how far the paper's assumptions hold"),
     "benchmarks": (
         "comparison.analyses.benchmarks.command",

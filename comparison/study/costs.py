@@ -22,7 +22,7 @@ SECONDS: Mapping[str, float] = {
     "errata": 1.2,
     "scaling": 0.1,
     "convergence": 2.0,
-    "claims": 1.5,
+    "claims": 0.3,
     "assumptions": 5.0,
     "motions": 4.0,
     "worst phases": 2.0,

@@ -8,10 +8,8 @@ import pytest
 import xarray as xr
 
 import comparison.registry
-from comparison.analyses.claims.checks import Finding, Verdict
-from comparison.analyses.claims.claims import CLAIMS
-from comparison.analyses.claims.readings import READINGS
-from comparison.analyses.claims.table import table_of
+from comparison.analyses.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict
+from comparison.analyses.claims.table import ClaimTable, table_of
 from comparison.analyses.trends import trend
 from comparison.runner.analysis import Analysis
 from comparison.runner.runner import Runner
@@ -53,14 +51,18 @@ def collected(analysis: Any, study: Any, surfaces: xr.Dataset | None = None, exe
     return analysis.collect(study, surfaces, results)
 
 
+def known_claims() -> ClaimTable:
+    """As integrated six statements are met and one is not compared; as literal supremum seven are met."""
+    met, no = StatementVerdict(MET, "periodic 4 and 3"), StatementVerdict(NOT_MET, "|x_2 - y_2| up to 0")
+    lacking = StatementVerdict(NOT_COMPARED, "fig3-I: rim reached")
+    return table_of({"as integrated": [met] * 6 + [no] * 9 + [lacking], "literal supremum": [met] * 7 + [no] * 9})
+
+
 def known_others() -> dict[str, Any]:
-    """Three claims under two readings; one trend that falls like s^2 and one that is nothing but noise."""
-    held, drawn = Verdict(Finding.REPRODUCED, "periodic 4 and 3"), Verdict(Finding.AS_DRAWN, "drawn 4 and 3")
-    no, unanswered = Verdict(Finding.NOT, "|x_2 - y_2| up to 0"), Verdict(Finding.OPEN, "fig3-I: rim reached")
-    table = table_of(CLAIMS[3:6], READINGS[2:4], 16, [(held, drawn), (no, held), (no, unanswered)])
+    """Known statements of the paper; one trend that falls like s^2 and one that is nothing but noise."""
     sizes = np.array([[4e-3, 1e-3, 2.5e-4]])
     return {
-        "claims": table,
+        "claims": known_claims(),
         "scaling": [trend("fig3-I", 1, "exact minus small, supremum", SCALES, sizes, 1e-3 * sizes, 2.0)],
         "convergence": [trend("fig3-I", 2, "engine against resolved", SCALES, sizes, 2.0 * sizes, 1.0)],
     }

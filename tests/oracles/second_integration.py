@@ -1,8 +1,8 @@
 """
 Equations (4.3)-(4.4) integrated a second time, by other methods and other code than the reference's.
 
-`stepped`: the set-valued law by Moreau's time stepping (the impulse of friction is implicit in every step), or the
-literal (4.6) by explicit midpoint steps. `by_scipy`: laws without a corner at v = 0 by SciPy's DOP853, all phase pairs
+`stepped`: the set-valued law by Moreau's time stepping (the impulse of friction is implicit in every step). `by_scipy`:
+laws without a corner at v = 0 by SciPy's DOP853, all phase pairs
 as one system. Vectors x, y are complex numbers x + i y. The denominators are those of the reference.
 """
 
@@ -18,8 +18,6 @@ from reference.problem import GRAVITY, Scene, ground_peak
 
 Array = NDArray[np.float64]
 compiled = njit(cache=True)
-
-SET_VALUED, LITERAL = 0, 1
 
 
 def system(scene: Scene) -> tuple[Any, ...]:
@@ -61,7 +59,7 @@ def facts_of(x):
 
 
 @compiled
-def _run(phase, loading, chain, contact, h, steps, literal, cutoff):
+def _run(phase, loading, chain, contact, h, steps, cutoff):
     """Largest |absolute acceleration|^2 of each body, and largest facts."""
     support, mu, curvature = contact
     x, top = np.zeros(len(chain[1]), np.complex128), np.zeros(len(chain[1]))
@@ -72,12 +70,7 @@ def _run(phase, loading, chain, contact, h, steps, literal, cutoff):
         drive = a[0] - support * curvature * x[0]  # F_3 as it should be
         speed, w, counts, sticks = abs(v[0]), 0.0j, True, False
         if speed > 0.0:
-            w, counts = v[0] / speed, literal or speed > cutoff
-        elif literal:
-            pull = -(2.0 * u + drive)  # minus k (x1 - x2) / m1 is a + u
-            sticks = abs(pull) <= mu * abs(support * (1.0 + 1.0j) - curvature * (x[0].real + x[0].imag) * u)
-            if not sticks:
-                w = pull / abs(pull)
+            w, counts = v[0] / speed, speed > cutoff
         else:  # where slip begins there is neither rest nor a speed beyond the cutoff
             sticks = abs(drive) <= mu * support
             counts = sticks
@@ -86,24 +79,17 @@ def _run(phase, loading, chain, contact, h, steps, literal, cutoff):
             if i > 0 or counts:
                 top[i] = max(top[i], abs(a[i] + u) ** 2)
         facts = np.maximum(facts, facts_of(x))
-        middle, half = x + 0.5 * h * v, v[0] + 0.5 * h * a[0]  # explicit to the middle of the step
+        middle = x + 0.5 * h * v  # explicit to the middle of the step
         u = ground((number + 0.5) * h, phase, loading[0], loading[1])
         a = forces(middle, u, chain[0], chain[1])
         new = v[0] + h * (a[0] - support * curvature * middle[0])
-        if literal:
-            if speed > 0.0:
-                w = half / abs(half)
-            new = 0.0j if sticks else new - h * friction(middle[0], u, w, support, mu, curvature)
-            if speed > 0.0 and (new * np.conj(v[0])).real <= 0.0:
-                new = 0.0j
-        else:  # friction takes what of the impulse it can
-            limit, impulse = h * mu * support, new
-            for _ in range(8):
-                if abs(impulse) == 0.0:
-                    break
-                w = impulse / max(abs(impulse), limit)
-                impulse = new + h * mu * u * curvature * (middle[0] * np.conj(w)).real
-            new = impulse * (1.0 - limit / abs(impulse)) if abs(impulse) > limit else 0.0j
+        limit, impulse = h * mu * support, new  # friction takes what of the impulse it can
+        for _ in range(8):
+            if abs(impulse) == 0.0:
+                break
+            w = impulse / max(abs(impulse), limit)
+            impulse = new + h * mu * u * curvature * (middle[0] * np.conj(w)).real
+        new = impulse * (1.0 - limit / abs(impulse)) if abs(impulse) > limit else 0.0j
         change = h * a
         change[0] = new - v[0]
         x += h * (v + 0.5 * change)
@@ -111,10 +97,10 @@ def _run(phase, loading, chain, contact, h, steps, literal, cutoff):
     return top, facts
 
 
-def stepped(scene: Scene, phases: Array, law: int, step: float, cutoff: float = 1e-3) -> tuple[Array, Array]:
+def stepped(scene: Scene, phases: Array, step: float, cutoff: float) -> tuple[Array, Array]:
     """mu (M, N) and facts (M, 1 + 2 N) of motions from rest by fixed steps, s; cutoff: v_c, m/s."""
     steps, parts = round(scene.duration / step), system(scene)
-    runs = [_run(phase, *parts, step, steps, law == LITERAL, cutoff) for phase in np.asarray(phases)]
+    runs = [_run(phase, *parts, step, steps, cutoff) for phase in np.asarray(phases)]
     tops, facts = (np.array(part) for part in zip(*runs))
     return np.sqrt(tops) / ground_peak(scene, phases)[:, None], facts
 

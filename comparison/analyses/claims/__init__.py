@@ -1,1 +1,1 @@
-"""The paper's claims, checked on surfaces under readings of what the paper leaves open."""
+"""The paper's statements about its figures, checked on surfaces in the two readings of (5.1)."""

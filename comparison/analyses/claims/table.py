@@ -1,151 +1,180 @@
-"""The claims of section 5 against readings of what the paper leaves open: units, duration and f_c."""
+"""The statements of section 5 in the two readings of (5.1), with the parameters as printed."""
 
-import json
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
-from importlib import resources
-from typing import Annotated, ClassVar
+from typing import Annotated
 
+import numpy as np
 import xarray as xr
+from pydantic import computed_field
 
-from comparison.analyses.claims.checks import Finding, Verdict
-from comparison.analyses.claims.claims import CLAIMS, Claim
-from comparison.analyses.claims.evidence import Question, gathered, without_value
-from comparison.analyses.claims.readings import CASES, LITERAL, READINGS, Reading, without_effect
+from comparison.analyses.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict, Word
+from comparison.analyses.claims.claims import CLAIMS
+from comparison.analyses.claims.evidence import CaseInReading, Evidence, evidence_of_failure, gather_evidence
+from comparison.analyses.claims.readings import (
+    AS_INTEGRATED,
+    CASES,
+    LITERAL_SUPREMUM,
+    READINGS,
+    PeakReading,
+    effective_reading,
+)
 from comparison.result_types import result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
+from comparison.surfaces.surfaces import values_of
 from reference.problem import builtin_scenes
+
+GRID = 24  # phases per axis: on 16, 32, 48 and 64 the same statements are met
+COARSE = 2  # every which phase of surfaces that are only correlated with another
+VERDICTS: tuple[Word, ...] = (MET, NOT_MET, NOT_COMPARED)
 
 
 @result
-class CheckedClaim:
+class Statement:
     """One statement of the paper about its figures."""
 
     figure: Annotated[str, "figure of the paper"]
     says: Annotated[str, "what the paper says"]
-    rule: Annotated[str, "how it is decided"]
-    weaker: Annotated[bool, "whether it is a weaker form of a claim, which is not counted"]
-    proof: Annotated[str, "why it cannot hold; empty where it can"]
-    verdicts: Annotated[tuple[Verdict, ...], "one per reading"]
+    rule: Annotated[str, "when it is met"]
+    cannot: Annotated[str, "in which sense it holds under no parameters, and why; empty where it can"]
+    verdicts: Annotated[dict[str, StatementVerdict], "by name of the reading of (5.1)"]
 
     @property
-    def found(self) -> dict[Verdict, list[int]]:
-        """What its checks found, each different answer once, with the numbers of its readings from 1 on."""
-        groups: dict[Verdict, list[int]] = {}
-        for number, verdict in enumerate(self.verdicts, start=1):
-            groups.setdefault(verdict, []).append(number)
-        return groups
+    def reasons(self) -> list[str]:
+        """What decides: one text where both readings say the same, else one for each that begins with its name."""
+        texts = {name: verdict.reason for name, verdict in self.verdicts.items()}
+        same = len({*texts.values()}) == 1
+        return [*{*texts.values()}] if same else [f"{name}: {text}" for name, text in texts.items()]
 
 
 @result
 class ClaimTable:
-    """The paper's statements about its figures, compared with readings of the scenes."""
+    """The paper's statements about its figures, in the two readings of (5.1), with the parameters as printed."""
 
     grid: Annotated[int, "phases per axis"]
-    readings: Annotated[tuple[str, ...], "names of the readings"]
-    origins: Annotated[tuple[str, ...], "why anyone would read the paper so, and by what selection each was found"]
-    reproduced: Annotated[tuple[int, ...], "how many claims each reading reproduces"]
-    best: Annotated[tuple[str, ...], "readings that reproduce most"]
-    never: Annotated[tuple[str, ...], "claims that no reading reproduces"]
-    claims: Annotated[tuple[CheckedClaim, ...], "one per statement"]
+    statements: Annotated[tuple[Statement, ...], "in the order of the figures"]
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
-    def stated(self) -> int:
-        """How many claims the paper makes."""
-        return sum(not claim.weaker for claim in self.claims)
+    def counts(self) -> dict[str, dict[str, int]]:
+        """How many statements are met, not met and not compared, by name of the reading."""
+        return {
+            reading.name: {
+                word: sum(each.verdicts[reading.name].verdict == word for each in self.statements) for word in VERDICTS
+            }
+            for reading in READINGS
+        }
 
 
-GRID = 16  # phases per axis: 24 change a count here and there, and none of the claims that no reading reproduces
-RECORD = "literal.json"  # verdicts by amplitude, m/s^2, and claim
-SIGNS = dict(zip(Finding, ("yes", "drawn", "no", "cannot", "?")))
-COARSE = 2  # every second phase for surfaces that are only correlated with another
+def claims_line(table: ClaimTable) -> str:
+    """
+    Return how many of the paper's statements are met in each reading of (5.1), in one sentence.
+
+    Parameters
+    ----------
+    table : ClaimTable
+        Of the command, or `claims` of the results of a study.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> claims_line(ClaimTable(16, ())).partition(", with")[0]
+    "Of the paper's 0 statements about its figures"
+    """
+    return (
+        f"Of the paper's {len(table.statements)} statements about its figures, with the parameters as printed, "
+        f"{count_met(table)}; its plots were not available, and the text at hand names no authors and no year."
+    )
+
+
+def count_met(table: ClaimTable) -> str:
+    """Return how many statements are met in each reading, and how many are not compared, in a clause."""
+    integrated, supremum = (table.counts[reading.name] for reading in (AS_INTEGRATED, LITERAL_SUPREMUM))
+    lacking = {name: counts[NOT_COMPARED] for name, counts in table.counts.items() if counts[NOT_COMPARED]}
+    rest = "".join(f", {count} {NOT_COMPARED} ({name})" for name, count in lacking.items())
+    return f"{integrated[MET]} are met {AS_INTEGRATED.name} and {supremum[MET]} as {LITERAL_SUPREMUM.name}{rest}"
 
 
 @dataclass(frozen=True)
 class Claims(Analysis[ClaimTable]):
-    """Every claim under every reading, on `grid` phases per axis."""
+    """Every statement in both readings, on `grid` phases per axis, from the study's surfaces where it has these."""
 
-    key, stage = "claims", "claims"
+    key, stage, needs_surfaces = "claims", "claims", True
     grid: int = GRID
-    readings: Sequence[Reading] = READINGS
-    claims: Sequence[Claim] = CLAIMS
-
-    recorded: ClassVar[bool] = True  # whether the verdicts of the literal readings are those of RECORD
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """Each case under each reading once, the longest first; none unless the study has every scene of the paper."""
-        if not paper_complete(study):
-            return []
-        computed = [reading for reading in self.readings if not self._is_recorded(reading)]
-        every = [self.task(case, reading) for case in _cases(self.claims) for reading in computed]
-        unique = {task.argument: task for task in every}.values()
-        return sorted(unique, key=lambda task: -task.argument.reading.amplitude)
+        """Return one task for each case and reading; none unless the study has every scene of the paper."""
+        return list(self._tasks(study, surfaces).values())
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ClaimTable | None:
-        """The table; None unless the study has every scene of the paper."""
-        if not paper_complete(study):
+        """Return the table; None unless the study has every scene of the paper."""
+        tasks = self._tasks(study, surfaces)
+        if not tasks:
             return None
+        evidence: Mapping[str, Mapping[str, Evidence]] = {
+            reading.name: {
+                case: results.value(tasks[case, effective_reading(reading, make())], evidence_of_failure)
+                for case, make in CASES.items()
+            }
+            for reading in READINGS
+        }
+        return table_of(
+            {name: [claim.verdict(cases) for claim in CLAIMS] for name, cases in evidence.items()}, self.grid
+        )
 
-        def verdicts(reading: Reading) -> list[Verdict]:
-            if self._is_recorded(reading):
-                return [recorded_verdict(reading, claim) for claim in self.claims]
-            evidence = {case: results.value(self.task(case, reading), without_value) for case in _cases(self.claims)}
-            return [claim.verdict(evidence) for claim in self.claims]
+    def _tasks(self, study: Study, surfaces: xr.Dataset | None) -> dict[tuple[str, PeakReading], Task]:
+        """Return the tasks by case and effective reading: where friction cannot hold the platform both have one."""
+        if not paper_complete(study):
+            return {}
+        tasks = {}
+        for case, make in CASES.items():
+            nested = len(make().bodies) == 1 and self.grid % COARSE == 0
+            grid = self.grid // COARSE if nested else self.grid
+            for reading in dict.fromkeys(effective_reading(each, make()) for each in READINGS):
+                question = CaseInReading(case, reading, grid, known_surfaces(study, surfaces, case, reading, grid))
+                tasks[case, reading] = Task(gather_evidence, question, self.stage)
+        return tasks
 
-        return table_of(self.claims, self.readings, self.grid, list(zip(*map(verdicts, self.readings))))
 
-    def task(self, case: str, reading: Reading) -> Task:
-        """What gathers the evidence of a case under a reading."""
-        scene = CASES[case](reading)
-        compared = len(scene.bodies) == 1 and self.grid % COARSE == 0
-        grid = self.grid // COARSE if compared else self.grid
-        return self.asking(Question(case, without_effect(reading, scene), grid))
+def known_surfaces(
+    study: Study, surfaces: xr.Dataset | None, case: str, reading: PeakReading, grid: int
+) -> Evidence | None:
+    """
+    Return the surfaces of a case in a reading that the study has on a grid that holds `grid` phases per axis.
 
-    def asking(self, question: Question) -> Task:
-        """What gathers the evidence of a question."""
-        return Task(gathered, question, self.stage)
-
-    def _is_recorded(self, reading: Reading) -> bool:
-        return self.recorded and reading.peak == LITERAL.peak
+    None where it has not: without that model, on another grid, or for a scene that is not as printed.
+    """
+    scene = next((scene for scene in study.scenes if scene.name == case), None)
+    model = next((model for model in study.hierarchy if model.key == reading.model), None)
+    if surfaces is None or scene is None or model is None or not model.applies(scene):
+        return None
+    stride = study.stride(model, scene)
+    if scene.digest() != CASES[case]().digest() or study.grid % (stride * grid):
+        return None
+    every = slice(None, None, study.grid // (stride * grid))
+    mu, error = (
+        np.moveaxis(values_of(surfaces, name, case, model)[: len(scene.bodies), every, every], 0, -1)
+        for name in ("mu", "error")
+    )
+    statuses = np.unique(values_of(surfaces, "status", case, model)[every, every].astype(str)).tolist()
+    return Evidence(mu.copy(), float(np.nanmax(error, initial=0.0)), tuple(statuses), case=case)
 
 
 def paper_complete(study: Study) -> bool:
-    """Whether a study has every scene of the paper: the claims speak about all of them."""
+    """Return whether a study has every scene of the paper: the statements are about all of them."""
     return {scene.name for scene in study.scenes} >= set(builtin_scenes())
 
 
-def table_of(
-    claims: Sequence[Claim], readings: Sequence[Reading], grid: int, rows: Sequence[tuple[Verdict, ...]]
-) -> ClaimTable:
-    """The table of verdicts, a row for each claim with a verdict for each reading."""
-    held = tuple(
-        sum(verdict.finding.holds for claim, verdict in zip(claims, column) if not claim.weaker)
-        for column in zip(*rows)
-    )
-    names = tuple(reading.name for reading in readings)
+def table_of(verdicts: Mapping[str, list[StatementVerdict]], grid: int = GRID) -> ClaimTable:
+    """Return the table from the verdicts of CLAIMS by name of the reading."""
+    rows = [dict(zip(verdicts, row)) for row in zip(*verdicts.values(), strict=True)]
     return ClaimTable(
         grid,
-        names,
-        tuple(reading.origin for reading in readings),
-        held,
-        tuple(name for name, count in zip(names, held) if count == max(held)),
-        tuple(f"{c.figure}: {c.says}" for c, row in zip(claims, rows) if not any(v.finding.holds for v in row)),
-        tuple(CheckedClaim(c.figure, c.says, c.rule, c.weaker, c.proof, row) for c, row in zip(claims, rows)),
+        tuple(Statement(c.figure, c.says, c.rule, c.cannot, row) for c, row in zip(CLAIMS, rows)),
     )
-
-
-@cache
-def recorded_verdict(reading: Reading, claim: Claim) -> Verdict:
-    """What a literal reading says of a claim on 16 x 16 phases, as docs/claims_page.py computed it."""
-    record = json.loads((resources.files("comparison.analyses.claims") / RECORD).read_bytes())
-    finding, found = record[f"{reading.amplitude:g}"][f"{claim.figure}: {claim.says}"]
-    return Verdict(Finding(finding), found)
-
-
-def _cases(claims: Sequence[Claim]) -> list[str]:
-    used = {case for claim in claims for case in claim.cases}
-    return [case for case in CASES if case in used]
