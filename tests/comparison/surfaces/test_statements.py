@@ -1,3 +1,4 @@
+# ruff: noqa: E501 (a sentence stands on one line where it can)
 """Each sentence about the surfaces is read back whole: every number, sign, name, reading, grid and verdict in it."""
 
 import math
