@@ -215,3 +215,11 @@ ROW = Difference(
 )  # fmt: skip
 def test_an_engine_of_the_user_is_named_beside_its_partner(changes: dict[str, object], said: str) -> None:
     assert word_engine(replace(ROW, **changes), "mine", "partner") == said
+
+
+def test_the_verdict_finds_the_worst_phase_pair_below_zero() -> None:
+    far = replace(OTHER, low=-0.4, low_phases=(turn(1 / 4), 0.0), supremum_mean=0.01)
+    said = word_verdict([far, replace(KNOWN, supremum_mean=0.5, supremum_maximum=0.6)], "m")
+    assert "and 40 % at single phase pairs" in said
+    assert "tower, body 2: −40 % at (90°, 0°))" in said
+    assert "the literal supremum is 50 % higher in the mean and up to 60 % (tower, platform)" in said

@@ -145,3 +145,9 @@ def test_the_line_of_the_uncertainty_is_where_it_is_crossed() -> None:
     assert where == pytest.approx([np.pi / 3 * k for k in (1, 2, 4, 5)], abs=3e-3)
     assert all(np.ptp([point[1] for point in line]) == pytest.approx(2.0 * np.pi, abs=1e-3) for line in lines)
     assert crossings(size, np.zeros_like(size) - 1.0, phase) == [], "beyond everywhere: no line"
+
+
+def test_a_bar_at_the_largest_difference_is_resolved_beyond_five_errors() -> None:
+    for error, resolved in ((0.0039, True), (0.0041, False)):
+        bars = bars_of_body(*planted_study({"spatial": 0.02}, {"spatial": error}), 1).largest.bars
+        assert bars[-1].resolved == resolved
