@@ -48,7 +48,7 @@ def word_total(numbers: Headline) -> str:
         few = f"{numbers.independent} independent of {numbers.points} phase pairs do not tell the mean over all phases"
         return f"{second} against {first}: {few} (mean of these {signed(numbers.mean)}, {ends})."
     if numbers.resolved_share > 0.0:
-        return f"{second} and {first} do not differ in the mean over {over} ({size}; {ends})."
+        return f"{second} and {first} have no mean difference beyond its error over {over} ({size}; {ends})."
     return f"{second} and {first} agree within the numerical error over {over} (mean {size}; {ends})."
 
 
@@ -63,18 +63,16 @@ def word_causes(numbers: Headline) -> str:
     """Return the effects above a fifth of the total with sign and share, and whether one of them is the largest."""
     if not numbers.resolved:
         return ""
+    grid = f"{numbers.phases_per_axis} × {numbers.phases_per_axis} phases"
+    untold = "the errors do not tell" if numbers.phases_per_axis == 1 else f"{grid} do not tell"
     if not numbers.causes:
-        return "No single effect exceeds its error and a fifth of the mean."
+        return f"Which effect causes it {untold}."
     causes = [numbers.effect_named(name) for name in numbers.causes]
     listed = ", ".join(map(word_effect, causes))
-    if len(causes) == 1:
-        return f"Cause: {listed}."
+    several = f"Cause{'s' if len(causes) > 1 else ''}: {listed}"
     if numbers.main_cause:
-        return f"Causes: {listed}."
-    if numbers.phases_per_axis == 1:
-        return f"Causes: {listed}; which of them is larger the errors do not tell."
-    grid = f"{numbers.phases_per_axis} × {numbers.phases_per_axis} phases"
-    return f"Causes: {listed}; which of them is larger {grid} do not tell."
+        return f"{several}."
+    return f"{several}; which effect is the largest {untold}."
 
 
 def word_effect(effect: Effect) -> str:
@@ -183,11 +181,7 @@ def word_causes_cell(numbers: Headline) -> str:
     """Return the causes of the first screen's table."""
     if not numbers.resolved:
         return "the mean is not beyond its error"
-    if not numbers.causes:
-        return "no single effect beyond its error"
-    listed = ", ".join(word_effect(numbers.effect_named(name)) for name in numbers.causes)
-    untold = "" if numbers.main_cause or len(numbers.causes) == 1 else "; which is larger these phases do not tell"
-    return f"{listed}{untold}"
+    return word_causes(numbers).removeprefix("Cause").removeprefix("s").removeprefix(": ").removesuffix(".")
 
 
 def word_agreement_cell(numbers: Headline) -> str:

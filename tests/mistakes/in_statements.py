@@ -58,7 +58,8 @@ MISTAKES = (
     Mistake(WORDS, "    if not numbers.resolved:\n        return \"\"\n", "    if False:\n        return \"\"\n",
             "A difference that is not resolved has causes.", SAID),
     Mistake(WORDS, "    if numbers.main_cause:\n", "    if True:\n", "The order of causes is told where the grid does not.", SAID),
-    Mistake(WORDS, "    if len(causes) == 1:\n", "    if len(causes) == 2:\n", "Two causes are called one.", SAID),
+    Mistake(WORDS, "which effect is the largest {untold}", "which effect is the largest the errors do not tell",
+            "A grid of phases is not named.", SAID),
     # word_effect
     Mistake(WORDS, "{difference(effect.mean, effect.error)} ({percent(effect.share)} of it",
             "{difference(-effect.mean, effect.error)} ({percent(effect.share)} of it", "A cause has the other sign.", SAID),

@@ -40,7 +40,7 @@ CASES: dict[str, tuple[Any, ...]] = {  # levels and errors of the models, what i
     "a cause of the other sign": (gaps(0.03, 0.03, 0.03, -0.02), {},
         [MEAN.format("2 % less"), f"Causes: {TURNING} −5 % (250 % of it), {GEOMETRY} +3 % (−150 % of it)."]),
     "causes that are alike": (gaps(0.05, 0.05, 0.05, 0.1001), {"spatial": 1e-3},
-        [f"Causes: {TURNING} +5.0 ± 0.1 % (50 % of it), {GEOMETRY} +5 % (50 % of it); which of them is larger 4 × 4 "]),
+        [f"Causes: {TURNING} +5.0 ± 0.1 % (50 % of it), {GEOMETRY} +5 % (50 % of it); which effect is the largest"]),
     "within the errors": ({"spatial": 0.01}, {"spatial": 0.004},
         ["Exudyn (spatial) and the paper's equations agree within the numerical error over 4 × 4 initial phases"]),
     "codes that differ": ({"translational": 0.2, "spatial": 0.2}, {},
@@ -155,7 +155,7 @@ def test_differences_of_both_signs_are_none_in_the_mean() -> None:
     sign = np.where((np.arange(GRID)[:, None] + np.arange(GRID)) // 2 % 2, -1.0, 1.0)
     surfaces["mu"].loc[{"model": "spatial"}] *= 1.0 + 0.04 * sign
     numbers = told(study, surfaces)
-    assert "do not differ in the mean over 4 × 4 initial phases (0 ± " in numbers.sentence
+    assert "have no mean difference beyond its error over 4 × 4 initial phases (0 ± " in numbers.sentence
     assert (numbers.resolved, numbers.causes) == (False, ())
 
 
