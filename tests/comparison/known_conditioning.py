@@ -19,7 +19,8 @@ def known_curve(model: str = "small", speed: str = "v_c", **changes: Any) -> Con
     """A curve of fig3-I: over the grid of the small equations, else at few pairs."""
     speeds = SPEEDS if speed == "v_c" else REGULARIZATIONS
     number, on_grid = ["small", "exact", "translational", "spatial"].index(model), model == "small"
-    below = [0.7**number * (size if speed == "v_c" else 1.3 * size) for size in BELOW[: len(speeds)]]
+    factor = (1.0, 1.4, 0.49, 0.343)[number] * (1.0 if speed == "v_c" else 1.3)
+    below = [factor * size for size in BELOW[: len(speeds)]]
     supremum = 2.0 + 0.3 * number
     curve = ConditioningCurve(
         scene="fig3-I",

@@ -265,6 +265,8 @@ def test_the_supremum_is_well_conditioned_below_a_thousandth(size: float, word: 
     line = conditioning_line([replace(resolved, relative_mean=scaled, relative_error=(1e-6,) * len(SPEEDS)), *rest])
     assert line.startswith(f"The literal supremum is {word}-conditioned: relative to it, mu_1 of fig3-I is −0.")
     assert ("Exudyn" in line) == (word == "ill")
+    wide = replace(resolved, relative_mean=scaled, relative_error=(0.5 * size,) * len(SPEEDS))
+    assert conditioning_line([wide, *rest]).startswith("The literal" if word == "ill" else "Whether")
 
 
 def test_the_sentence_leaves_out_an_engine_without_the_pairs() -> None:
