@@ -353,8 +353,10 @@ MISTAKES = (
     # conditioning of mu over the smallest resolved speed
     Mistake(ANALYSES + "conditioning/analysis.py", "relative = mu / supremum - 1.0", "relative = 1.0 - supremum / mu",
             "The distance from the supremum has the wrong base.", (OF + "conditioning.py::test_every_number_is_that_of_a_loop_over_the_pairs",)),
-    Mistake(ANALYSES + "conditioning/analysis.py", "mu[:, ~complete] = np.nan", "mu[:, ~complete] = mu[:, ~complete]",
+    Mistake(ANALYSES + "conditioning/analysis.py", "mu[:, ~complete], supremum.mu[~complete] = np.nan, np.nan", "supremum.mu[~complete] = np.nan",
             "Means at different speeds are of different phase pairs.", (OF + "conditioning.py::test_a_pair_that_lacks_a_speed_counts_at_none",)),
+    Mistake(ANALYSES + "conditioning/analysis.py", "mu[:, ~complete], supremum.mu[~complete] = np.nan, np.nan", "mu[:, ~complete] = np.nan",
+            "The literal supremum is of more phase pairs than the values below it.", (OF + "conditioning.py::test_a_pair_that_lacks_a_speed_counts_at_none",)),
     Mistake(ANALYSES + "conditioning/analysis.py", "complete = known[known.any(axis=1)].all(axis=0)", "complete = known.all(axis=0)",
             "One speed without an answer takes all from the others.", (OF + "conditioning.py::test_a_pair_that_lacks_a_speed_counts_at_none",)),
     Mistake(ANALYSES + "conditioning/analysis.py", "float(error[known].mean())", "float(error[known].max())",

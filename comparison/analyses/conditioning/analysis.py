@@ -134,7 +134,7 @@ def _answers(moving: Scene, question: Question, grid: int) -> _Answers:
     mu, error = (np.stack([getattr(each, part) for each in listed]) for part in ("mu", "error"))
     known = np.isfinite(mu).all(axis=-1)  # (S, P); a speed at which no pair has an answer takes none from the others
     complete = known[known.any(axis=1)].all(axis=0) & np.isfinite(supremum.mu).all(axis=-1)
-    mu[:, ~complete] = np.nan
+    mu[:, ~complete], supremum.mu[~complete] = np.nan, np.nan
     statuses = [str(status) for each in (supremum, *listed) for status in each.status]
     places = taken.ravel()
     return _Answers(

@@ -163,6 +163,9 @@ def test_a_pair_that_lacks_a_speed_counts_at_none(monkeypatch: pytest.MonkeyPatc
     curve, _ = conditioning_curves((load_scene("fig3-I"), SPATIAL, 0))
     assert curve.mean[:4] == (2.0,) * 4
     assert (curve.pairs, curve.reason, math.isnan(curve.mean[4]), math.isnan(curve.largest[4])) == (2, "", True, True)
+    monkeypatch.setattr(reference, "amplification", _answering(lambda v: [2.0, nan if v == 1e-9 else 4.0, 5.0]))
+    resolved, _, supremum, _ = conditioning_curves((load_scene("fig3-I"), EXACT, 0))
+    assert (resolved.pairs, resolved.mean[0], supremum.pairs, supremum.mean) == (2, 3.5, 2, (3.5,))
     monkeypatch.setattr(reference, "amplification", _answering(lambda speed: [nan] * 3))
     curve, _ = conditioning_curves((load_scene("fig3-I"), SPATIAL, 0))
     assert (curve.pairs, curve.reason) == (0, "step limit")
