@@ -23,9 +23,9 @@ from comparison.analyses.mapped import MappedAnalysis
 from comparison.analyses.shortened import shorten
 from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.task import TaskResult
-from comparison.study.models import any_scene, dry, has_spatial_data
+from comparison.study.models import AS_INTEGRATED, LITERAL_SUPREMUM, any_scene, dry, has_spatial_data
 from comparison.study.study import Study, nested_grids
-from reference.measures import phase_distribution
+from comparison.surfaces.sampling import sampling_error
 from reference.problem import Outcome, Scene, phase_grid
 from reference.problem.symmetry import distinct
 
@@ -36,9 +36,6 @@ FEW = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])  # rad, for the engine: no 
 FEW_PERIODS = 3.0  # of the slower harmonic: the loading is strongest in them
 REFERENCE_TOLERANCE, ENGINE_TOLERANCE = 1e-6, 1e-3
 
-Reading = Literal["as integrated", "literal supremum"]
-AS_INTEGRATED: Reading = "as integrated"
-LITERAL_SUPREMUM: Reading = "literal supremum"
 NOTHING = (*[np.nan] * 4, (np.nan, np.nan), np.nan, np.nan)  # statistics at a speed without an answer
 
 
@@ -49,7 +46,7 @@ class ConditioningCurve:
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
     model: Annotated[str, "small or exact equations; translational or spatial engine"]
-    reading: Annotated[Reading, "of (5.1)"]
+    reading: Annotated[str, "of (5.1): as integrated, or literal supremum"]
     speed: Literal["v_c", "v_reg"]
     """v_c: only rest and faster slides count, set-valued friction; v_reg: friction is linear below this speed"""
     grid: Annotated[int, "phases per axis of a grid over a full turn; 0 for listed phase pairs"]
@@ -65,8 +62,8 @@ class ConditioningCurve:
     """mean over the phase pairs of (mu - supremum) / supremum at each speed; the literal supremum is that of `base` at
     the same phase pair over the same duration"""
     relative_error: tuple[Number, ...]
-    """error estimate of relative_mean: numerical, on a grid also of sampling (twice the largest difference to the four
-    grids of twice the spacing)"""
+    """error estimate of relative_mean: numerical and, on a grid, that of the mean over all phases; null where the grid
+    is too coarse to tell"""
     base: Annotated[Literal["small", "exact"], "equations whose literal supremum relative_mean refers to"]
     reason: Annotated[Text, "why there is no value, or empty"] = ""
 
@@ -101,13 +98,18 @@ Arguments = tuple[Scene, int, int]  # number of the question, phases per axis; 0
 
 
 class _Answers(NamedTuple):
-    """mu and error of a model (S, P, N) at S speeds, the literal supremum (P, N), phases (P, 2), first status lost."""
+    """
+    mu and error of a model (S, P, N) at S speeds, the literal supremum (P, N) at P phase pairs.
+
+    independent: pairs with a value that no symmetry relates. lost: the first status without a value.
+    """
 
     mu: Array
     error: Array
     supremum: Array
     supremum_error: Array
     phases: Array
+    independent: int
     lost: str
 
 
@@ -139,7 +141,7 @@ def _answers(moving: Scene, question: Question, grid: int) -> _Answers:
     places = taken.ravel()
     return _Answers(
         mu[:, places], error[:, places], supremum.mu[places], supremum.error[places],
-        phase_grid(grid) if grid else FEW,
+        phase_grid(grid) if grid else FEW, int(complete.sum()),
         next((status for status in statuses if not status.startswith(Outcome.OK)), ""),
     )  # fmt: skip
 
@@ -149,25 +151,23 @@ def _curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answ
     supremum, supremum_error = answers.supremum[:, body - 1], answers.supremum_error[:, body - 1]
     relative = mu / supremum - 1.0
     relative_error = np.hypot(error, mu / supremum * supremum_error) / supremum
-    rows = [_statistics(*each, answers.phases, task[2]) for each in zip(mu, error, relative, relative_error)]
+    rows = [_statistics(*each, answers, task[2]) for each in zip(mu, error, relative, relative_error)]
     pairs = int(np.isfinite(mu).any(axis=0).sum())
     return _described(task, body, speeds, list(zip(*rows)), pairs, "" if pairs else answers.lost)
 
 
-def _statistics(mu: Array, error: Array, relative: Array, relative_error: Array, phases: Array, grid: int) -> Any:
+def _statistics(mu: Array, error: Array, relative: Array, relative_error: Array, answers: _Answers, grid: int) -> Any:
     """Return mean and largest mu of P phase pairs and the mean of its relative distance, each with its error."""
     known = np.isfinite(mu)
     if not known.any():
         return NOTHING
     place = int(np.nanargmax(mu))
-    distance = relative[known].mean(), relative_error[known].mean()
-    if grid:
-        estimate = phase_distribution(relative.reshape(grid, grid), relative_error.reshape(grid, grid)).mean
-        distance = estimate.value, estimate.error
-    return (
-        float(mu[known].mean()), float(error[known].mean()), float(mu[place]), float(error[place]),
-        tuple(phases[place].tolist()), *map(float, distance),
+    sampling = sampling_error(relative.reshape(grid, grid), answers.independent) if grid else 0.0
+    statistics = (
+        mu[known].mean(), error[known].mean(), mu[place], error[place], answers.phases[place],
+        relative[known].mean(), np.hypot(relative_error[known].mean(), sampling),
     )  # fmt: skip
+    return tuple(tuple(each.tolist()) if np.ndim(each) else float(each) for each in statistics)
 
 
 def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurve]:

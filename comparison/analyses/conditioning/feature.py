@@ -4,11 +4,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.conditioning.analysis import LITERAL_SUPREMUM, SPEEDS, Conditioning, ConditioningCurve
+from comparison.analyses.conditioning.analysis import SPEEDS, Conditioning, ConditioningCurve
 from comparison.analyses.conditioning.statement import conditioning_line, speed_text
 from comparison.analyses.panels import panel
 from comparison.report.plots import Panel, plain
 from comparison.report.section import Feature, Report, Section
+from comparison.study.models import LITERAL_SUPREMUM
 from comparison.wording import scientific, signed, significant
 
 NAMES = {

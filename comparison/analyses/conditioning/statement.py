@@ -3,8 +3,8 @@
 import math
 from collections.abc import Sequence
 
-from comparison.analyses.conditioning.analysis import AS_INTEGRATED, ConditioningCurve
-from comparison.study.models import V_REG
+from comparison.analyses.conditioning.analysis import ConditioningCurve
+from comparison.study.models import AS_INTEGRATED, DEFAULT_V_C
 from comparison.wording import difference
 
 DEEP, DEEPEST = 1e-6, 1e-12  # m/s: below what any instrument, and below what any computation, sees of a slide
@@ -25,9 +25,9 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     curve = max(found, key=lambda each: abs(_at(each, DEEP)[0]))
     size, error = _at(curve, DEEP)
     pairs = f"{curve.grid} × {curve.grid} phases"
-    integrated, deep, deepest = (_written(*_at(curve, v)) for v in (V_REG, DEEP, DEEPEST))
+    integrated, deep, deepest = (_written(*_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
     values = (
-        f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} as integrated ({1e3 * V_REG:g} mm/s), "
+        f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} as integrated ({1e3 * DEFAULT_V_C:g} mm/s), "
         f"{deep} down to {speed_text(DEEP)} m/s, {deepest} down to {speed_text(DEEPEST)} m/s (mean of {pairs})"
     )
     if abs(size) >= ILL and abs(size) > error:
@@ -48,7 +48,7 @@ def speed_text(speed: float) -> str:
 
 
 def _asked(curve: ConditioningCurve) -> bool:
-    return curve.reading == AS_INTEGRATED and all(math.isfinite(_at(curve, v)[0]) for v in (V_REG, DEEP, DEEPEST))
+    return curve.reading == AS_INTEGRATED and all(math.isfinite(_at(curve, v)[0]) for v in (DEFAULT_V_C, DEEP, DEEPEST))
 
 
 def _at(curve: ConditioningCurve, speed: float) -> tuple[float, float]:

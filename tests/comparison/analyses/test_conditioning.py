@@ -15,10 +15,8 @@ import multibody
 import reference
 from comparison.analyses.conditioning import analysis
 from comparison.analyses.conditioning.analysis import (
-    AS_INTEGRATED,
     FEW,
     FEW_PERIODS,
-    LITERAL_SUPREMUM,
     QUESTIONS,
     REGULARIZATIONS,
     SPEEDS,
@@ -28,6 +26,7 @@ from comparison.analyses.conditioning.analysis import (
 )
 from comparison.analyses.conditioning.feature import conditioning_panels, conditioning_tables
 from comparison.analyses.conditioning.statement import ILL, conditioning_line
+from comparison.study.models import AS_INTEGRATED, LITERAL_SUPREMUM
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
 
@@ -74,8 +73,9 @@ def test_every_number_is_that_of_a_loop_over_the_pairs(number: int, argument: st
             below = [(one - other) / other for one, other in zip(mu, supremum)]
             assert curve.relative_mean[place] == pytest.approx(sum(below) / 16.0, abs=1e-5)
             parts = [[below[GRID * i + j] for i in (a, a + 2) for j in (b, b + 2)] for a in (0, 1) for b in (0, 1)]
-            sampling = 2.0 * max(abs(sum(part) / 4.0 - sum(below) / 16.0) for part in parts)
-            assert curve.relative_error[place] == pytest.approx(sampling, abs=1e-5)
+            scatter = math.sqrt(sum((sum(part) / 4.0 - sum(below) / 16.0) ** 2 for part in parts) / 4.0)
+            spread = math.sqrt(sum((each - sum(below) / 16.0) ** 2 for each in below) / 16.0)
+            assert curve.relative_error[place] == pytest.approx(1.5 * max(scatter, spread / GRID), abs=1e-5)
         assert (curve.grid, curve.pairs, curve.duration, curve.base) == (GRID, 16, 20.0, "small")
 
 
