@@ -9,6 +9,7 @@ from pydantic import Field, create_model
 from comparison.analyses.assumptions import feature as assumptions
 from comparison.analyses.benchmarks import feature as benchmarks
 from comparison.analyses.claims import feature as claims
+from comparison.analyses.conditioning import feature as conditioning
 from comparison.analyses.convergence import feature as convergence
 from comparison.analyses.demands import feature as demands
 from comparison.analyses.effective_values import feature as effective_values
@@ -51,6 +52,7 @@ FEATURES: tuple[Feature, ...] = (
     ensemble.FEATURE,
     DIFFERENCES,
     BUDGET,
+    conditioning.FEATURE,
     scaling.FEATURE,
     convergence.FEATURE,
     OUTCOMES,

@@ -33,6 +33,8 @@ GLOSSARY = {
     "validated": "Compared with a measurement and met within the uncertainties. Two codes that agree are only "
     "verified.",
     "not resolved": "Not beyond its error: nothing is claimed of it.",
+    "ill-conditioned": "More than 0.1 % of it depends on speeds below 1e-6 m/s.",
+    "well-conditioned": "Less than 0.1 % of it depends on speeds below 1e-6 m/s.",
     "limits": "Largest values that a scene file states as acceptable.",
 }  # fmt: skip
 WORDS = re.compile("|".join(rf"\b{re.escape(word)}\b" for word in sorted(GLOSSARY, key=len, reverse=True)))

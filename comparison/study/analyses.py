@@ -11,6 +11,7 @@ from reference.problem import Scene, SceneError, builtin_scenes
 ANALYSES = (
     "differences",
     "budget",
+    "conditioning",
     "scaling",
     "convergence",
     "families",

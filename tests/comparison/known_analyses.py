@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from known_conditioning import known_curves
 
 import comparison.registry
 from comparison.analyses.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict
@@ -59,11 +60,12 @@ def known_claims() -> ClaimTable:
 
 
 def known_others() -> dict[str, Any]:
-    """Known statements of the paper; one trend that falls like s^2 and one that is nothing but noise."""
+    """Known statements of the paper; curves over speeds; one trend that falls like s^2, one that is only noise."""
     sizes = np.array([[4e-3, 1e-3, 2.5e-4]])
     return {
         "claims": known_claims(),
         "scaling": [trend("fig3-I", 1, "exact minus small, supremum", SCALES, sizes, 1e-3 * sizes, 2.0)],
+        "conditioning": known_curves(),
         "convergence": [trend("fig3-I", 2, "engine against resolved", SCALES, sizes, 2.0 * sizes, 1.0)],
     }
 

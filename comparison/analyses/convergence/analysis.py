@@ -6,10 +6,6 @@ happens below that speed, so that the difference must vanish with it. The suprem
 v_reg and is approached, if at all, like a power so low that no v_reg in use is small enough. The engine's contact,
 pressed in by the weight by a share p of rho, that is of stiffness 1/p, against the rigid one under the same law; at a
 constant step, and another of half its length for the error bar, so that nothing but the stiffness changes.
-
-With bodies that turn there is no set-valued answer to compare with. The spatial model is compared with itself at a
-v_reg ten times smaller than the smallest one: unequal support forces keep the supports from stopping together, so that
-its peaks converge where those of the translational model grow towards the supremum.
 """
 
 import math
@@ -23,12 +19,13 @@ import numpy as np
 import multibody
 import reference
 from comparison.analyses.mapped import MappedAnalysis
+from comparison.analyses.shortened import shorten
 from comparison.analyses.trends import NONE, Trend, trend
 from comparison.result_types import Array
 from comparison.runner.task import TaskResult
-from comparison.study.models import dry, has_spatial_data
+from comparison.study.models import dry
 from comparison.study.study import Study
-from reference.problem import Amplification, Outcome, Scene, exponents, ground_peak, loading_period
+from reference.problem import Amplification, Outcome, Scene, ground_peak, loading_period
 
 Values = tuple[Array, Array]  # relative sizes and their errors, (P, S, N)
 
@@ -40,7 +37,6 @@ FEWEST_PERIODS = 2.5  # for the engine at constant step
 REGULARIZATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s
 ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s
 PENETRATIONS = (3e-3, 1e-3, 3e-4)  # of rho, under the weight
-SMALLEST = 1e-4  # m/s, for bodies that turn: stands for their limit
 V_REG = 1e-2  # m/s, for the stiffness: a constant step resolves it
 STEPS_PER_PERIOD = 2250  # of the faster harmonic, and twice as many
 MOST_STEPS = 20_000
@@ -54,7 +50,7 @@ def _against(
     scene: Scene,
 ) -> Values:  # fmt: skip
     """The motion at each v_reg against the set-valued one, resolved at the same speed or the supremum."""
-    short = _short(scene, periods)
+    short = shorten(scene, periods)
     return _relative(
         (
             side.amplification(short, phases, regularization=v, tolerance=tolerance),
@@ -64,30 +60,15 @@ def _against(
     )
 
 
-def _with_turning(scene: Scene) -> Values:
-    """The spatial model at v_reg against itself at the smallest one."""
-    short = _short(scene, FEW_PERIODS)
-    limit, *answers = (
-        multibody.amplification(short, FEW, model="spatial", regularization=v, tolerance=ENGINE_TOLERANCE)
-        for v in (SMALLEST, *ENGINE_REGULARIZATIONS)
-    )
-    return _relative((answer, limit) for answer in answers)
-
-
 def _relative(pairs: Iterable[tuple[Amplification, Amplification]]) -> Values:
     parts = [(a.mu / limit.mu - 1.0, np.hypot(a.error, limit.error) / limit.mu) for a, limit in pairs]
     sizes, errors = (np.stack(each, axis=1) for each in zip(*parts))
     return sizes, errors
 
 
-def _short(scene: Scene, periods: float) -> Scene:
-    longest = float(2.0 * np.pi / exponents(scene).imag.min())
-    return scene.with_values({"duration": min(scene.duration, periods * longest)})
-
-
 def _stiffened(scene: Scene) -> Values:
     """The engine with ever stiffer contacts against the rigid contact of the exact equations."""
-    short = _short(scene, FEWEST_PERIODS)
+    short = shorten(scene, FEWEST_PERIODS)
     v_reg = None if scene.lubricated else V_REG
     exact = reference.amplification(short, FEW, tolerance=REFERENCE_TOLERANCE, regularization=v_reg)
     coarse, fine = (
@@ -130,12 +111,8 @@ LIMITS = (
     Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, partial(_by_equations, True), dry),
     Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, partial(_by_equations, False), dry),
     Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, dry),
-    Limit(
-        "bodies that turn: against v_reg = 1e-4 m/s", ENGINE_REGULARIZATIONS, 1.0, _with_turning,
-        lambda scene: dry(scene) and has_spatial_data(scene),
-    ),
     Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, lambda scene: True),
-)  # fmt: skip
+)
 
 Arguments = tuple[Scene, int]  # and the number of the limit
 

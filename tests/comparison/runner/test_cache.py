@@ -242,7 +242,7 @@ def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
     assert paper_complete(study)
     assert len({task.key for task in tasks}) == len(tasks)
     assert {task.stage for task in tasks} == {
-        "effective values", "errata", "scaling test", "convergence", "assumptions",
+        "effective values", "errata", "conditioning", "scaling test", "convergence", "assumptions",
     }  # fmt: skip
     assert not paper_complete(Study(study.scenes[:1], 6, 1e-3))
 

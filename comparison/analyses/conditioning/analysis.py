@@ -1,0 +1,223 @@
+"""
+Conditioning of mu_i: how it depends on the smallest speed that is resolved.
+
+The literal supremum of (5.1) holds one-sided limits at stops, which a sliding platform approaches like a low power of
+its speed. The resolved peak therefore climbs towards it while v_c falls over ten decades, as does the peak of an engine
+without rotations while its v_reg falls. Bodies that turn load their supports unequally and turn about the vertical: the
+supports no longer stop together, and the peak converges. A motion in one plane turns nothing about the vertical, and
+there both engines climb alike.
+
+The small equations are cheap and answer on a whole grid. The engine answers at few phase pairs over the first periods;
+beside it stand the exact equations, with the same geometry, at the same pairs over the same periods.
+"""
+
+from collections.abc import Callable, Mapping
+from types import ModuleType
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+
+import multibody
+import reference
+from comparison.analyses.mapped import MappedAnalysis
+from comparison.analyses.shortened import shorten
+from comparison.result_types import Array, Number, Phases, Text, result
+from comparison.runner.task import TaskResult
+from comparison.study.models import AS_INTEGRATED, LITERAL_SUPREMUM, any_scene, dry, has_spatial_data
+from comparison.study.study import Study, nested_grids
+from comparison.surfaces.sampling import sampling_error
+from reference.problem import Outcome, Scene, phase_grid
+from reference.problem.symmetry import distinct
+
+MAX_GRID = 16  # phases per axis of the small equations
+SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # v_c, m/s
+REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # v_reg, m/s
+FEW = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])  # rad, for the engine: no two related by a symmetry
+FEW_PERIODS = 3.0  # of the slower harmonic: the loading is strongest in them
+REFERENCE_TOLERANCE, ENGINE_TOLERANCE = 1e-6, 1e-3
+
+NOTHING = (*[np.nan] * 4, (np.nan, np.nan), np.nan, np.nan)  # statistics at a speed without an answer
+
+
+@result
+class ConditioningCurve:
+    """mu of one body by one model over falling speeds, or its literal supremum, which is the limit at speed 0."""
+
+    scene: Annotated[Text, "name of the scene"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    model: Annotated[str, "small or exact equations; translational or spatial engine"]
+    reading: Annotated[str, "of (5.1): as integrated, or literal supremum"]
+    speed: Literal["v_c", "v_reg"]
+    """v_c: only rest and faster slides count, set-valued friction; v_reg: friction is linear below this speed"""
+    grid: Annotated[int, "phases per axis of a grid over a full turn; 0 for listed phase pairs"]
+    pairs: Annotated[int, "phase pairs that mean and largest are of: those that answered at every speed"]
+    duration: Annotated[float, "of the motion, s"]
+    v: Annotated[tuple[float, ...], "speeds, m/s, falling; 0 for the literal supremum"]
+    mean: Annotated[tuple[Number, ...], "mean of mu over the phase pairs at each speed; null without an answer"]
+    mean_error: Annotated[tuple[Number, ...], "numerical error estimate of the mean"]
+    largest: Annotated[tuple[Number, ...], "largest mu of the phase pairs at each speed"]
+    largest_error: Annotated[tuple[Number, ...], "numerical error estimate of mu there"]
+    largest_phases: Annotated[tuple[Phases, ...], "(alpha1, alpha2) of the largest, rad"]
+    relative_mean: tuple[Number, ...]
+    """mean over the phase pairs of (mu - supremum) / supremum at each speed; the literal supremum is that of `base` at
+    the same phase pair over the same duration"""
+    relative_error: tuple[Number, ...]
+    """error estimate of relative_mean: numerical and, on a grid, that of the mean over all phases; null where the grid
+    is too coarse to tell"""
+    base: Annotated[Literal["small", "exact"], "equations whose literal supremum relative_mean refers to"]
+    reason: Annotated[Text, "why there is no value, or empty"] = ""
+
+
+class Question(NamedTuple):
+    """What is asked for several speeds: which model, the argument that the speed is, and on a grid or at FEW."""
+
+    model: str
+    base: Mapping[str, Any]  # settings of the equations whose literal supremum the curve is relative to
+    side: ModuleType
+    settings: Mapping[str, Any]
+    argument: Literal["cutoff", "regularization"]
+    speeds: tuple[float, ...]
+    on_grid: bool
+    applies: Callable[[Scene], bool] = any_scene
+
+
+SMALL = {"equations": "small", "tolerance": REFERENCE_TOLERANCE}
+EXACT = {"equations": "exact", "tolerance": REFERENCE_TOLERANCE}
+IN_TRANSLATION = {"model": "translational", "tolerance": ENGINE_TOLERANCE}
+IN_SPACE = {"model": "spatial", "tolerance": ENGINE_TOLERANCE}
+QUESTIONS = (
+    Question("small", SMALL, reference, SMALL, "cutoff", SPEEDS, True),
+    Question("small", SMALL, reference, SMALL, "regularization", REGULARIZATIONS, True),
+    Question("exact", EXACT, reference, EXACT, "cutoff", SPEEDS, False),
+    Question("translational", EXACT, multibody, IN_TRANSLATION, "regularization", REGULARIZATIONS, False),
+    Question("spatial", EXACT, multibody, IN_SPACE, "regularization", REGULARIZATIONS, False, has_spatial_data),
+)
+SYMBOLS: Mapping[str, Literal["v_c", "v_reg"]] = {"cutoff": "v_c", "regularization": "v_reg"}
+
+Arguments = tuple[Scene, int, int]  # number of the question, phases per axis; 0 for FEW
+
+
+class _Answers(NamedTuple):
+    """
+    mu and error of a model (S, P, N) at S speeds, the literal supremum (P, N) at P phase pairs.
+
+    independent: pairs with a value that no symmetry relates. lost: the first status without a value.
+    """
+
+    mu: Array
+    error: Array
+    supremum: Array
+    supremum_error: Array
+    phases: Array
+    independent: int
+    lost: str
+
+
+def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
+    """Return the curves of every body for one question; with set-valued friction the literal supremum, too."""
+    scene, number, grid = task
+    question = QUESTIONS[number]
+    answers = _answers(scene if grid else shorten(scene, FEW_PERIODS), question, grid)
+    curves = [_curve(task, body, question.speeds, answers) for body in range(1, len(scene.bodies) + 1)]
+    if question.argument == "cutoff":
+        limit = answers._replace(mu=answers.supremum[None], error=answers.supremum_error[None])
+        curves += [_curve(task, body, (0.0,), limit) for body in range(1, len(scene.bodies) + 1)]
+    return curves
+
+
+def _answers(moving: Scene, question: Question, grid: int) -> _Answers:
+    """Ask the model at every speed, and the equations for the literal supremum; NaN at pairs that lack any of it."""
+    phases, taken = distinct(moving, grid) if grid else (FEW, np.arange(len(FEW)))
+    supremum = reference.amplification(moving, phases, **question.base)
+    listed = [
+        question.side.amplification(moving, phases, **question.settings, **{question.argument: speed})
+        for speed in question.speeds
+    ]
+    mu, error = (np.stack([getattr(each, part) for each in listed]) for part in ("mu", "error"))
+    known = np.isfinite(mu).all(axis=-1)  # (S, P); a speed at which no pair has an answer takes none from the others
+    complete = known[known.any(axis=1)].all(axis=0) & np.isfinite(supremum.mu).all(axis=-1)
+    mu[:, ~complete], supremum.mu[~complete] = np.nan, np.nan
+    statuses = [str(status) for each in (supremum, *listed) for status in each.status]
+    places = taken.ravel()
+    return _Answers(
+        mu[:, places], error[:, places], supremum.mu[places], supremum.error[places],
+        phase_grid(grid) if grid else FEW, int(complete.sum()),
+        next((status for status in statuses if not status.startswith(Outcome.OK)), ""),
+    )  # fmt: skip
+
+
+def _curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answers) -> ConditioningCurve:
+    mu, error = answers.mu[..., body - 1], answers.error[..., body - 1]
+    supremum, supremum_error = answers.supremum[:, body - 1], answers.supremum_error[:, body - 1]
+    relative = mu / supremum - 1.0
+    relative_error = np.hypot(error, mu / supremum * supremum_error) / supremum
+    rows = [_statistics(*each, answers, task[2]) for each in zip(mu, error, relative, relative_error)]
+    pairs = int(np.isfinite(mu).any(axis=0).sum())
+    return _described(task, body, speeds, list(zip(*rows)), pairs, "" if pairs else answers.lost)
+
+
+def _statistics(mu: Array, error: Array, relative: Array, relative_error: Array, answers: _Answers, grid: int) -> Any:
+    """Return mean and largest mu of P phase pairs and the mean of its relative distance, each with its error."""
+    known = np.isfinite(mu)
+    if not known.any():
+        return NOTHING
+    place = int(np.nanargmax(mu))
+    sampling = sampling_error(relative.reshape(grid, grid), answers.independent) if grid else 0.0
+    statistics = (
+        mu[known].mean(), error[known].mean(), mu[place], error[place], answers.phases[place],
+        relative[known].mean(), np.hypot(relative_error[known].mean(), sampling),
+    )  # fmt: skip
+    return tuple(tuple(each.tolist()) if np.ndim(each) else float(each) for each in statistics)
+
+
+def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurve]:
+    scene, number, _ = task
+    speeds = QUESTIONS[number].speeds
+    columns = list(zip(*[NOTHING] * len(speeds)))
+    return [_described(task, body, speeds, columns, 0, failed.reason) for body in range(1, len(scene.bodies) + 1)]
+
+
+def _described(
+    task: Arguments, body: int, speeds: tuple[float, ...], columns: Any, pairs: int, reason: str
+) -> ConditioningCurve:
+    scene, number, grid = task
+    question = QUESTIONS[number]
+    mean, mean_error, largest, largest_error, largest_phases, relative_mean, relative_error = columns
+    return ConditioningCurve(
+        scene=scene.name,
+        body=body,
+        model=question.model,
+        reading=AS_INTEGRATED if any(speeds) else LITERAL_SUPREMUM,
+        speed=SYMBOLS[question.argument],
+        grid=grid,
+        pairs=pairs,
+        duration=(scene if grid else shorten(scene, FEW_PERIODS)).duration,
+        v=speeds,
+        mean=mean,
+        mean_error=mean_error,
+        largest=largest,
+        largest_error=largest_error,
+        largest_phases=largest_phases,
+        relative_mean=relative_mean,
+        relative_error=relative_error,
+        base=question.base["equations"],
+        reason=reason,
+    )
+
+
+class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
+    """Every question of every scene with phases and dry friction."""
+
+    key, stage = "conditioning", "conditioning"
+    function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
+
+    def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
+        """Return the scenes with the numbers of their questions; the grid is the largest nested one up to MAX_GRID."""
+        grid = max((each for each in nested_grids(study.grid) if each <= MAX_GRID), default=MAX_GRID)
+        return [
+            (scene, number, grid if question.on_grid else 0)
+            for scene in study.phased
+            if dry(scene)
+            for number, question in enumerate(QUESTIONS)
+            if question.applies(scene)
+        ]

@@ -1,0 +1,85 @@
+"""The conditioning of mu_i in one sentence."""
+
+import math
+from collections.abc import Sequence
+
+from comparison.analyses.conditioning.analysis import ConditioningCurve
+from comparison.study.models import AS_INTEGRATED, DEFAULT_V_C
+from comparison.wording import difference
+
+DEEP, DEEPEST = 1e-6, 1e-12  # m/s: below what any instrument, and below what any computation, sees of a slide
+ILL = 1e-3  # of mu below DEEP: more than the engine's tolerance
+IN_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}
+
+
+def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
+    """
+    Return the sentence of the first screen, about the scene and body with the largest part of mu below DEEP.
+
+    Empty without a scene with phases and dry friction. Sizes are relative to the literal supremum and have its base in
+    front; their errors contain that of sampling.
+    """
+    found = [curve for curve in result or () if curve.grid and curve.speed == "v_c" and _asked(curve)]
+    if not found:
+        return ""
+    curve = max(found, key=lambda each: abs(_at(each, DEEP)[0]))
+    size, error = _at(curve, DEEP)
+    pairs = f"{curve.grid} × {curve.grid} phases"
+    integrated, deep, deepest = (_written(*_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
+    values = (
+        f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} as integrated ({1e3 * DEFAULT_V_C:g} mm/s), "
+        f"{deep} down to {speed_text(DEEP)} m/s, {deepest} down to {speed_text(DEEPEST)} m/s (mean of {pairs})"
+    )
+    if abs(size) >= ILL and abs(size) > error:
+        return f"The literal supremum is ill-conditioned: {values}{_of_engine(curve, result or ())}."
+    if abs(size) + error < ILL:
+        return f"The literal supremum is well-conditioned: {values}."
+    return f"Whether the literal supremum is ill-conditioned, {pairs} do not tell: {values}."
+
+
+def speed_text(speed: float) -> str:
+    """
+    Write a speed without a leading zero in its exponent.
+
+    >>> speed_text(1e-6), speed_text(0.0003)
+    ('1e-6', '0.0003')
+    """
+    return f"{speed:g}".replace("e-0", "e-")
+
+
+def _asked(curve: ConditioningCurve) -> bool:
+    return curve.reading == AS_INTEGRATED and all(math.isfinite(_at(curve, v)[0]) for v in (DEFAULT_V_C, DEEP, DEEPEST))
+
+
+def _at(curve: ConditioningCurve, speed: float) -> tuple[float, float]:
+    """Return relative mean and its error at a speed."""
+    place = curve.v.index(speed)
+    return curve.relative_mean[place], curve.relative_error[place]
+
+
+def _of_engine(curve: ConditioningCurve, result: Sequence[ConditioningCurve]) -> str:
+    """Say how much the engine's mean changes over the last step of v_reg, without and with bodies that turn."""
+    engines = [
+        each
+        for each in result
+        if (each.scene, each.body) == (curve.scene, curve.body)
+        and each.model in IN_WORDS
+        and all(map(math.isfinite, each.mean[-2:]))
+    ]
+    pairs = max((each.pairs for each in engines), default=0)
+    changes = [f"{_written(*_last_change(each))} {IN_WORDS[each.model]}" for each in engines if each.pairs == pairs]
+    if not changes:
+        return ""
+    before, after = engines[0].v[-2:]
+    steps = f"from v_reg = {speed_text(before)} to {speed_text(after)} m/s"
+    return f"; {steps} Exudyn's mean of {pairs} phase pairs changes by {', by '.join(changes)}"
+
+
+def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
+    """Return the relative change of the mean over the last two speeds and its numerical error."""
+    (before, after), errors = curve.mean[-2:], curve.mean_error[-2:]
+    return after / before - 1.0, sum(errors) / before
+
+
+def _written(size: float, error: float) -> str:
+    return difference(size, error) if math.isfinite(error) else f"{difference(size, error)} (error unknown)"
