@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.film import Look, film
+from multibody.film import Look, draw_film
 from multibody.integration.constant_step import set_initial_state
 from multibody.integration.refine import MAX_WORK
 from multibody.integration.work_limit import refusal
@@ -79,7 +79,7 @@ def refuse_film(scene: Scene, out: Path, look: Look) -> None:
         raise ValueError(f"--out: {out}: cannot be written")
 
 
-def view(scene: Scene, phase: Array, model: str, regularization: float | None) -> None:
+def open_viewer(scene: Scene, phase: Array, model: str, regularization: float | None) -> None:
     """Run the model in the engine's own viewer. Raises ValueError without a screen."""
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         raise ValueError("--view: no screen: DISPLAY is not set; leave --view out to write a film instead")
@@ -102,7 +102,7 @@ def view(scene: Scene, phase: Array, model: str, regularization: float | None) -
     container.renderer.Stop()
 
 
-def _arguments(words: list[str] | None) -> argparse.Namespace:
+def _parse_arguments(words: list[str] | None) -> argparse.Namespace:
     parser = OneLineParser("python -m multibody.animate", __doc__.splitlines()[1])
     parser.add_argument("scene", help="name of a built-in scene, or a TOML file")
     parser.add_argument("--phases", nargs=2, type=float, required=True, metavar=("A1", "A2"), help="rad")
@@ -125,11 +125,11 @@ def _arguments(words: list[str] | None) -> argparse.Namespace:
 def main(words: list[str] | None = None) -> int:
     """Exit code 0, or 2 and one line for a wrong scene or option."""
     try:
-        options = _arguments(words)
+        options = _parse_arguments(words)
         phase = np.array(options.phases)
         scene = load_scene(options.scene, options.amplitude)
         if options.view:
-            view(scene, phase, options.model, options.regularization)
+            open_viewer(scene, phase, options.model, options.regularization)
             return 0
         look = Look(options.stretch, options.speed, options.rate, tuple(options.size))
         refuse_film(scene, options.out, look)
@@ -142,7 +142,7 @@ def main(words: list[str] | None = None) -> int:
         print(error, file=sys.stderr)
         return 2
     count = frame_count(float(motion.time[-1]), look)
-    written = write_new(options.out, film(scene, motion, options.model, look, count))
+    written = write_new(options.out, draw_film(scene, motion, options.model, look, count))
     if written != options.out:
         print(f"{options.out} exists and stays: the film is in {written}", file=sys.stderr)
     print(f"{written}: {motion.time[-1]:.2f} s of motion, status {motion.status}")

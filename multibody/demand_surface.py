@@ -56,7 +56,7 @@ def peak_demands(
     (1,)
     """
 
-    def move(phase: ArrayLike) -> Trajectory:
+    def compute_motion(phase: ArrayLike) -> Trajectory:
         return trajectory(scene, phase, model, regularization, tolerance, loading=loading, max_work=max_work)
 
-    return demands_of_motions(scene, phases, move)
+    return demands_of_motions(scene, phases, compute_motion)

@@ -68,21 +68,21 @@ class Drawing:
         return 1.08 * float(max(np.abs(self.corners[..., :2]).max(), np.abs(self.supports).max()))
 
 
-def frames(time: Array, values: Array, count: int) -> Array:
+def sample_frames(time: Array, values: Array, count: int) -> Array:
     """`values` (T, ...) given at `time` (T,), s, at `count` equally spaced instants, (F, ...)."""
     instants = np.linspace(time[0], time[-1], count)
     columns = [np.interp(instants, time, column) for column in values.reshape(len(time), -1).T]
     return np.stack(columns, axis=-1).reshape(count, *values.shape[1:])
 
 
-def box_corners(center: Array, size: Array, turns: Array) -> Array:
+def locate_box_corners(center: Array, size: Array, turns: Array) -> Array:
     """Corners (..., 8, 3), m, of boxes at `center` (..., 3), m, turned by Rx(a) Ry(b) Rz(c), `turns` (..., 3), rad."""
     matrices = Rotation.from_euler("XYZ", turns.reshape(-1, 3)).as_matrix().reshape(*turns.shape, 3)
     turned: Array = (CORNERS * np.asarray(size)[..., None, :]) @ np.swapaxes(matrices, -1, -2)
     return center[..., None, :] + turned
 
 
-def magnified(values: Array, seen: float) -> float:
+def choose_magnification(values: Array, seen: float) -> float:
     """Factor 1, 2 or 5 times a power of ten, at most MAX_MAGNIFICATION, that makes the largest value at most `seen`."""
     largest = float(np.abs(values).max())
     wanted = min(max(seen / largest, 1.0), MAX_MAGNIFICATION) if largest > 0.0 else MAX_MAGNIFICATION
@@ -90,9 +90,9 @@ def magnified(values: Array, seen: float) -> float:
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted))
 
 
-def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
+def trace_contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
     """From each support to its contact point in plan, (F, K, 2), m, for the platform's `shift` and `turns` (F, 3)."""
-    supports = _supports(scene)
+    supports = _support_places(scene)
     arms = np.column_stack([supports - scene.offsets[0], np.full(len(supports), -(scene.bodies[0].height or 0.0))])
     matrices = Rotation.from_euler("XYZ", turns).as_matrix()
     depressions = shift[:, None, :] + arms @ np.swapaxes(matrices, 1, 2) - arms
@@ -101,7 +101,7 @@ def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
     return paths
 
 
-def drawn_boxes(scene: Scene) -> tuple[Array, Array, float]:
+def arrange_boxes(scene: Scene) -> tuple[Array, Array, float]:
     """Heights (N,), from zero, and sizes (N, 3), m, of the boxes as they are drawn, and the factor on the heights."""
     width = 2.0 * (scene.support_radius or scene.isolator.ring or RING)
     sizes: Array = np.array([body.size or [width, width, THICKNESS * width] for body in scene.bodies])
@@ -118,16 +118,16 @@ def drawn_boxes(scene: Scene) -> tuple[Array, Array, float]:
     return factor * heights, sizes, factor
 
 
-def drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -> Drawing:
+def make_drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -> Drawing:
     """`count` frames of a motion."""
-    shifts = frames(motion.time, motion.position, count)
-    turns = frames(motion.time, motion.extra.get("turns", np.zeros_like(motion.position)), count)
-    heights, sizes, factor = drawn_boxes(scene)
+    shifts = sample_frames(motion.time, motion.position, count)
+    turns = sample_frames(motion.time, motion.extra.get("turns", np.zeros_like(motion.position)), count)
+    heights, sizes, factor = arrange_boxes(scene)
     gap = float(np.diff(heights).min(initial=np.inf))
     dip = min(MAX_DRAWN, MAX_DIP * gap / (0.5 * float(np.hypot(*sizes[:, :2].max(axis=0)))))
-    tilt, yaw = magnified(turns[..., :2], dip), magnified(turns[..., 2], MAX_DRAWN)
-    paths = contact_paths(scene, shifts[:, 0], turns[:, 0])
-    closer = magnified(paths, MAX_DRAWN * float(np.hypot(*_supports(scene).T).max()))
+    tilt, yaw = choose_magnification(turns[..., :2], dip), choose_magnification(turns[..., 2], MAX_DRAWN)
+    paths = trace_contact_paths(scene, shifts[:, 0], turns[:, 0])
+    closer = choose_magnification(paths, MAX_DRAWN * float(np.hypot(*_support_places(scene).T).max()))
     scales = f"displacements x {stretch:g}, contact paths x {closer:g}"
     scales += f", tilt x {tilt:g}, yaw x {yaw:g}" if "turns" in motion.extra else ""
     scales += f", heights x {factor:.2g}" if factor != 1.0 else ""
@@ -136,19 +136,19 @@ def drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -> Dra
     rise = np.zeros(101) if scene.flat else scene.radius - np.sqrt(scene.radius**2 - across**2)
     centers = np.column_stack([scene.offsets, heights]) + shifts * stretch
     return Drawing(
-        corners=box_corners(centers, sizes, turns * [tilt, tilt, yaw] + scene.yaws[:, None] * [0.0, 0.0, 1.0]),
+        corners=locate_box_corners(centers, sizes, turns * [tilt, tilt, yaw] + scene.yaws[:, None] * [0.0, 0.0, 1.0]),
         centers=centers,
-        supports=_supports(scene),
-        paths=_supports(scene) + paths * closer,
+        supports=_support_places(scene),
+        paths=_support_places(scene) + paths * closer,
         swing=stretch * np.column_stack([across, rise]),
         rest=scene.offsets[0],
         scales=scales,
     )
 
 
-def film(scene: Scene, motion: Trajectory, model: str, look: Look, count: int) -> bytes:
+def draw_film(scene: Scene, motion: Trajectory, model: str, look: Look, count: int) -> bytes:
     """The GIF of a motion that `model` computed, in `count` frames."""
-    drawn = drawing(scene, motion, look.stretch, count)
+    drawn = make_drawing(scene, motion, look.stretch, count)
     width, height = look.size
     figure = Figure((LAYOUT_WIDTH, LAYOUT_WIDTH * height / width), dpi=width / LAYOUT_WIDTH)
     canvas: Any = FigureCanvasAgg(figure)
@@ -165,7 +165,7 @@ def film(scene: Scene, motion: Trajectory, model: str, look: Look, count: int) -
     canvas.draw()
     background = canvas.copy_from_bbox(figure.bbox)
 
-    def picture(frame: int) -> Image.Image:
+    def draw_frame(frame: int) -> Image.Image:
         canvas.restore_region(background)
         clock.set_text(f"t = {frame * look.speed / look.rate:.2f} s")
         for view in views:
@@ -174,10 +174,10 @@ def film(scene: Scene, motion: Trajectory, model: str, look: Look, count: int) -
             figure.draw_artist(artist)
         return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])
 
-    return _gif((picture(frame) for frame in range(count)), picture(count // 2), look.rate)
+    return _encode_gif((draw_frame(frame) for frame in range(count)), draw_frame(count // 2), look.rate)
 
 
-def _gif(pictures: Iterator[Image.Image], typical: Image.Image, rate: int) -> bytes:
+def _encode_gif(pictures: Iterator[Image.Image], typical: Image.Image, rate: int) -> bytes:
     """The pictures in the colors of a typical one, one after the other: none is kept."""
     palette = typical.quantize(COLORS, Image.Quantize.MAXCOVERAGE)  # white stays white
     reduced = (picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures)
@@ -193,7 +193,7 @@ class _View:
         self.drawn, self.axes = drawn, list(axes)
         self.outlines = [
             panel.fill([0.0], [0.0], facecolor=(*color, alpha), edgecolor=color, label=label, animated=True)[0]
-            for color, label in _bodies(drawn.corners.shape[1])
+            for color, label in _colors_and_names(drawn.corners.shape[1])
         ]
         self.moving: list[Any] = [*self.outlines]
         names = ["xyz"[axis] for axis in axes]
@@ -254,13 +254,13 @@ class _FromSide(_View):
         self.mast.set_data(self.drawn.centers[frame, :, self.axis], self.drawn.centers[frame, :, 2])
 
 
-def _bodies(count: int) -> list[tuple[tuple[float, float, float], str]]:
+def _colors_and_names(count: int) -> list[tuple[tuple[float, float, float], str]]:
     """Color and name of every body; names of as many as a legend holds."""
     colors = [colormaps["tab10"](body % 10)[:3] for body in range(count)]
     names = ["platform", *(f"body {body}" for body in range(2, count + 1))]
     return list(zip(colors, [name if body < 6 else "_" for body, name in enumerate(names)]))
 
 
-def _supports(scene: Scene) -> Array:
+def _support_places(scene: Scene) -> Array:
     """Places of the supports in the plane, (K, 2), m."""
     return BARE_SUPPORTS if scene.support_places is None else scene.support_places

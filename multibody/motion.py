@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from multibody.integration.adaptive import Budget, EngineRun
-from multibody.integration.constant_step import INTEGRATORS, Motion, silence
+from multibody.integration.constant_step import INTEGRATORS, EngineMotion, silence
 from multibody.integration.level import Level
 from multibody.integration.one_run import PhasePair
 from multibody.integration.refine import MAX_WORK, WORK, refine
@@ -82,15 +82,15 @@ def trajectory(
     pair = checked_phase(phase)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     max_work = checked_number("max_work", max_work, WORK)
-    initial = _checked_initial(scene, initial)
+    initial = _check_initial(scene, initial)
     with silence():
         built = assemble(scene, model, regularization, loading=loading, contact_force=True)
         point = refine(scene, built, pair, tolerance, initial=initial, keep=True, max_work=max_work)
     run_of = PhasePair(scene, built, pair, initial)
-    motion = _trajectory(run_of, point.finest, point.outcome, point.instant)
+    motion = _make_trajectory(run_of, point.finest, point.outcome, point.instant)
     if not point.coarser:
         return motion
-    coarser = tuple(_trajectory(run_of, run, run.outcome, np.nan) for run, _ in point.coarser)
+    coarser = tuple(_make_trajectory(run_of, run, run.outcome, np.nan) for run, _ in point.coarser)
     shares = tuple(share for _, share in point.coarser)
     return replace(motion, accuracy=Accuracy(point.errors, coarser, shares, point.floor))
 
@@ -169,26 +169,26 @@ def single_run(
     newton = checked_number("newton", newton, NEWTON)
     with silence():
         built = assemble(scene, model, regularization, contact_force=True)
-        point = PhasePair(scene, built, pair, _checked_initial(scene, initial))
+        point = PhasePair(scene, built, pair, _check_initial(scene, initial))
         if level is not None:
-            run = point.at_level(level, Budget(MAX_STEPS), keep=True)
+            run = point.run_level(level, Budget(MAX_STEPS), keep=True)
         else:
             allowed = Range(scene.duration / MAX_STEPS, scene.duration, "s")
             count = round(scene.duration / checked_number("step", step, allowed))
             residual = 1e-3 * newton if residual is None else residual
-            run = point.at_constant_step(count, penetration, newton, residual, integrator, discontinuous)
-    return _trajectory(point, run, run.outcome, run.instant * built.units.time)
+            run = point.run_constant_step(count, penetration, newton, residual, integrator, discontinuous)
+    return _make_trajectory(point, run, run.outcome, run.instant * built.units.time)
 
 
-def _checked_initial(scene: Scene, initial: State | None) -> State | None:
+def _check_initial(scene: Scene, initial: State | None) -> State | None:
     if initial is None:
         return None
     return State(*checked_state(initial, len(scene.bodies), scene.radius, scene.isolator.travel))
 
 
-def _trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) -> Trajectory:
+def _make_trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) -> Trajectory:
     """The motion of a run in SI units, with the accelerations of the plate."""
-    model, motion = pair.model, Motion.concatenated(run.chunks) if run.chunks else Motion.empty(pair.model)
+    model, motion = pair.model, EngineMotion.concatenate(run.chunks) if run.chunks else EngineMotion.empty(pair.model)
     units, bodies = model.units, model.bodies
     time = motion.time * units.time
     if model.moving_plate:
@@ -201,14 +201,14 @@ def _trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) ->
     support_force = np.abs(normal_force) * units.force
     extra = {"slip_speed": motion.slip * units.velocity, "support_force": support_force}
     if model.allows_liftoff:
-        extra |= _attitude(model, motion, time) | {"uplift": np.maximum(motion.gap, 0.0) * units.length}
+        extra |= _measure_attitude(model, motion, time) | {"uplift": np.maximum(motion.gap, 0.0) * units.length}
     return Trajectory(
         time=time,
         position=motion.coordinates[:, bodies] * units.length,
         velocity=motion.velocities[:, bodies] * units.velocity,
         absolute_acceleration=motion.accelerations[:, bodies] * units.acceleration + ground[:, None, :],
         contact_force=support_force.sum(axis=1),
-        stick=_intervals(time, (motion.slip < model.corner).all(axis=1) & np.isfinite(model.corner)),
+        stick=_find_intervals(time, (motion.slip < model.corner).all(axis=1) & np.isfinite(model.corner)),
         status=status,
         instant=instant,
         scene=pair.scene,
@@ -219,20 +219,22 @@ def _trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) ->
     )
 
 
-def _attitude(model: EngineModel, motion: Motion, time: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+def _measure_attitude(
+    model: EngineModel, motion: EngineMotion, time: NDArray[np.float64]
+) -> dict[str, NDArray[np.float64]]:
     """How the bodies turn, and when the platform leaves a support."""
     turns = motion.coordinates[:, model.bodies + 3]  # of a body, behind its three displacements
     roll, pitch, yaw = turns[:, 0].T
     open_at = [
         (float(support), *interval)
         for support, gap in enumerate(motion.gap.T)
-        for interval in _intervals(time, gap >= 0.0, around=1)
+        for interval in _find_intervals(time, gap >= 0.0, around=1)
     ]
     tilt = np.arcsin(np.hypot(np.sin(pitch), np.sin(roll) * np.cos(pitch)))
     return {"yaw": yaw, "tilt": tilt, "turns": turns, "liftoff": np.array(open_at).reshape(-1, 3)}
 
 
-def _intervals(time: NDArray[np.float64], holds: NDArray[np.bool_], around: int = 0) -> list[tuple[float, float]]:
+def _find_intervals(time: NDArray[np.float64], holds: NDArray[np.bool_], around: int = 0) -> list[tuple[float, float]]:
     """First and last instant of every unbroken run of rows in which something holds, `around` rows beyond."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], holds.astype(int), [0]])))
     last = len(time) - 1

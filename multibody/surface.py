@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from multibody.integration.constant_step import silence
 from multibody.integration.level import Level
 from multibody.integration.refine import MAX_WORK, WORK, Refinement, refine
-from multibody.models.assembly import assemble, required_model
+from multibody.models.assembly import assemble, choose_model
 from multibody.models.system import EngineModel
 from reference.problem import (
     Amplification,
@@ -110,14 +110,14 @@ def amplification(
     displacement = np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
     with silence():
-        reduced = _reduced(scene, model, regularization, loading, full)
+        reduced = _reduce_model(scene, model, regularization, loading, full)
         for m, phase in enumerate(pairs):
             if ground[m] < LEAST_ACCELERATION:
                 status[m], instant[m] = Outcome.NO_GROUND_MOTION, 0.0
             elif not np.isfinite(ground[m]):
                 status[m], instant[m] = Outcome.NON_FINITE_LOAD, 0.0
             else:
-                point = reduced.refined(phase, tolerance, levels, max_work)
+                point = reduced.refine_point(phase, tolerance, levels, max_work)
                 status[m], instant[m] = point.outcome, point.instant
                 mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
                 if np.isfinite(point.peaks).all():
@@ -127,7 +127,7 @@ def amplification(
 
 
 @dataclass(frozen=True)
-class _Reduced:
+class _ReducedModel:
     """The smallest model that answers for the one that is asked for."""
 
     scene: Scene
@@ -135,7 +135,9 @@ class _Reduced:
     asked: tuple[Scene, str, float | None, str] | None  # what to assemble where the reduced model has no answer
     whole: bool  # whether every run goes to the end of the motion
 
-    def refined(self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float) -> Refinement:
+    def refine_point(
+        self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
+    ) -> Refinement:
         asked: dict[str, Any] = {"whole": self.whole, "levels": levels, "max_work": max_work}
         point = refine(self.scene, self.built, phase, tolerance, **asked)
         if self.asked and np.isnan(point.peaks).any():  # off its supports the model that is asked for goes on
@@ -145,11 +147,11 @@ class _Reduced:
         return point
 
 
-def _reduced(scene: Scene, model: str, regularization: float | None, loading: str, full: bool) -> _Reduced:
+def _reduce_model(scene: Scene, model: str, regularization: float | None, loading: str, full: bool) -> _ReducedModel:
     """The model that is required, and in a plane no coordinates across it."""
-    chosen = required_model(scene, model, full)
+    chosen = choose_model(scene, model, full)
     planar = chosen == "translational" and not full and planar_chain(scene).allowed
     moving = in_plane(scene) if planar else scene
     axes: dict[str, Any] = {"axes": 1} if planar else {}
     built = assemble(moving, chosen, regularization, loading=loading, **axes)
-    return _Reduced(moving, built, (scene, model, regularization, loading) if chosen != model else None, full)
+    return _ReducedModel(moving, built, (scene, model, regularization, loading) if chosen != model else None, full)

@@ -19,19 +19,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.integration.chunk import (
-    absolute_sizes,
+    absolute_acceleration_sizes,
     distances,
-    first_ends,
+    find_first_ends,
     largest_distance,
-    last_near,
-    loaded_slip,
+    find_last_near,
+    slowest_loaded_slip,
     slip_changes,
 )
-from multibody.integration.constant_step import Engine, Motion
+from multibody.integration.constant_step import EngineSolver, EngineMotion
 from multibody.integration.level import STEP_RATIO, Level
 from multibody.integration.openings import FIRST_STEP, Event, Openings
-from multibody.integration.peak import CANDIDATE_FRACTION, Peaks, kinks
-from multibody.integration.travel import travel_reached
+from multibody.integration.peak import CANDIDATE_FRACTION, PeakReader, find_kinks
+from multibody.integration.travel import find_travel_end
 from multibody.models.recorded import align_steps
 from multibody.models.state import EngineState
 from multibody.models.system import EngineModel
@@ -70,7 +70,7 @@ class Budget:
 
 
 @dataclass
-class Place:
+class Checkpoint:
     """Where a run is, and how it goes on from there."""
 
     state: EngineState
@@ -83,7 +83,7 @@ class Place:
 class EngineRun:
     """The result of one run from the start of the loading to its end, or to where the run terminates."""
 
-    peaks: Peaks  # of each body
+    peaks: PeakReader  # of each body
     stop: float  # when it was to stop, in units of time
     outcome: Outcome = Outcome.OK
     instant: float = math.nan  # of a termination, in units of time
@@ -95,26 +95,28 @@ class EngineRun:
     # the last instant at which an acceleration or the displacement of the platform came within SETTLED_FRACTION of its
     # largest value, in units of time
     settled: float = 0.0
-    undisturbed: float = -math.inf  # contact forces have settled after the last impact: peaks are read from here on
+    peaks_count_from: float = (
+        -math.inf
+    )  # contact forces have settled after the last impact: peaks are read from here on
     impacts: int = 0  # of supports that closed again
     min_load: float = math.inf  # smallest contact force, in weights, of a model that ends where the contact opens
     opened: bool = False  # whether any contact carried no load
-    looked_over: float = math.inf  # from here on the motion was only looked over in larger steps, in units of time
-    chunks: list[Motion] = field(default_factory=list)  # the motion, if it is kept
+    scanned_from: float = math.inf  # from here on the motion was only looked over in larger steps, in units of time
+    chunks: list[EngineMotion] = field(default_factory=list)  # the motion, if it is kept
 
     @property
     def lifts_off(self) -> bool:
         """Whether a support of those that share the load opened."""
         return self.last_open > -math.inf
 
-    def terminated(self, outcome: Outcome, instant: float) -> EngineRun:
+    def terminate(self, outcome: Outcome, instant: float) -> EngineRun:
         """This run, which ends with `outcome` at `instant`."""
         self.outcome, self.instant = outcome, instant
         return self
 
 
 def run_adaptively(
-    engine: Engine,
+    engine: EngineSolver,
     start: EngineState,
     end: float,
     ground: Callable[[Array], Array],
@@ -127,21 +129,21 @@ def run_adaptively(
     """Run from `start` at 0 to `end`, not beyond `stop`; ground: plate's acceleration (T, 3) at times (T,)."""
     result = begin_run(engine.model, stop)
     if not budget.allows(min(end, stop), level):
-        return result.terminated(Outcome.STEP_LIMIT, 0.0)
-    go_on(result, Place(start), engine, end, ground, level, budget, keep=keep)
+        return result.terminate(Outcome.STEP_LIMIT, 0.0)
+    continue_run(result, Checkpoint(start), engine, end, ground, level, budget, keep=keep)
     return result
 
 
 def begin_run(model: EngineModel, stop: float = math.inf) -> EngineRun:
     """The result of a run that has taken no step yet."""
-    peaks = Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near)
+    peaks = PeakReader(len(model.bodies), model.corner, model.ground.knots, model.ground.near)
     return EngineRun(peaks, stop)
 
 
-def go_on(
+def continue_run(
     result: EngineRun,
-    place: Place,
-    engine: Engine,
+    place: Checkpoint,
+    engine: EngineSolver,
     end: float,
     ground: Callable[[Array], Array],
     level: Level,
@@ -149,7 +151,7 @@ def go_on(
     *,
     keep: bool = False,
     pause: Callable[[float], bool] = lambda time: False,
-) -> Place:
+) -> Checkpoint:
     """Go on with a run from `place`; where it ends. Before every chunk `pause` says whether to end at its instant."""
     model = engine.model
     openings = None if model.impact is None else Openings(engine, model.impact, level.penetration)
@@ -157,7 +159,7 @@ def go_on(
     while time < min(end, result.stop) * (1.0 - 1e-12) and not pause(time):
         divisions = max(divisions, level.min_divisions(time))
         step = level.step / STEP_RATIO**divisions
-        asked = next_count if divisions == 0 else _divided_steps(level)
+        asked = next_count if divisions == 0 else _count_small_steps(level)
         asked = min(asked, math.ceil((end - time) / step * (1.0 - 1e-12)))
         step, count = align_steps(model.ground.knots, model.ground.near, time, min(step, (end - time) / asked), asked)
         motion = engine.run(state, time, step, count)
@@ -165,35 +167,35 @@ def go_on(
         result.work += work
         budget.left -= work
         if budget.left < 0.0:
-            result.terminated(Outcome.STEP_LIMIT, time)
+            result.terminate(Outcome.STEP_LIMIT, time)
             break
         if motion is None or not np.isfinite(motion.accelerations).all():
             if divisions == level.max_divisions:
-                result.terminated(Outcome.SOLVER_FAILED, time)
+                result.terminate(Outcome.SOLVER_FAILED, time)
                 break
             divisions += 1
             continue
         if openings is not None:
-            motion = openings.with_gaps(motion)
+            motion = openings.fill_gaps_of_open_contacts(motion)
         size = absolute_accelerations(model, motion, ground)
         step_ratio = _step_ratio(motion, engine, size, result.peaks.value, step, level)
         last = len(motion.time) - 1
-        failing = _first(step_ratio > 1.0)
+        failing = _first_row(step_ratio > 1.0)
         rejected = divisions < level.max_divisions and failing <= last
         if rejected:
             last = max(failing - 1, 0)
-        event = None if openings is None else openings.first_event(motion.until(last))
+        event = None if openings is None else openings.find_first_event(motion.cut_at(last))
         if openings is not None and event is not None:
             last, rejected = event.row, False
         if last > 0:
-            accepted = motion.until(last)
-            if not _record(result, accepted, size[: last + 1], model, level, keep):
+            accepted = motion.cut_at(last)
+            if not _record_chunk(result, accepted, size[: last + 1], model, level, keep):
                 break
-            state, time = accepted.state(last), float(accepted.time[last])
+            state, time = accepted.state_at(last), float(accepted.time[last])
             if rejected:
                 state = model.settle(state, _gap_rate(accepted), level.penetration)
         if openings is not None and event is not None:
-            passed = _pass(event, openings, state, time, step, result, ground, level, keep)
+            passed = _pass_event(event, openings, state, time, step, result, ground, level, keep)
             budget.left -= 1.0
             if passed is None:
                 break
@@ -211,11 +213,11 @@ def go_on(
             if divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
                 divisions -= 1
             if divisions == 0:
-                next_count = min(_steps_ahead(motion, engine, level), CHUNK_GROWTH * before)
-    return Place(state, time, divisions, next_count)
+                next_count = min(_count_largest_steps(motion, engine, level), CHUNK_GROWTH * before)
+    return Checkpoint(state, time, divisions, next_count)
 
 
-def _pass(
+def _pass_event(
     event: Event,
     openings: Openings,
     state: EngineState,
@@ -228,21 +230,25 @@ def _pass(
 ) -> tuple[EngineState, float] | None:
     """State and instant behind an opening or closing of supports; None if the run ends before."""
     model = openings.engine.model
-    motion = openings.located(state, time, step, event)
+    motion = openings.locate_event(state, time, step, event)
     if motion is not None:
         size = absolute_accelerations(model, motion, ground)
-        motion = openings.touching(motion, event.which) if event.closes else openings.with_gaps(motion)
+        motion = (
+            openings.close_contacts(motion, event.which)
+            if event.closes
+            else openings.fill_gaps_of_open_contacts(motion)
+        )
         # so short a step tells nothing about a peak that may lie in it: forces have not settled at its end
-        if not _record(result, motion, size, model, level, keep, read=False):
+        if not _record_chunk(result, motion, size, model, level, keep, read=False):
             return None
-        state, time = motion.state(-1), float(motion.time[-1])
+        state, time = motion.state_at(-1), float(motion.time[-1])
     if not event.closes:
-        openings.opened(event)
+        openings.open_contacts(event)
         return state, time
-    if time > result.undisturbed:
+    if time > result.peaks_count_from:
         result.peaks.read_until(time)
-    state = openings.after_impact(state, time, event.which)
-    result.undisturbed, result.impacts = openings.settled, openings.impacts
+    state = openings.apply_impact(state, time, event.which)
+    result.peaks_count_from, result.impacts = openings.settled, openings.impacts
     result.peaks.restart()
     return state, time
 
@@ -253,22 +259,28 @@ def _divisions_behind_impact(level: Level) -> int:
     return min(max(wanted, 0), level.max_divisions)
 
 
-def absolute_accelerations(model: EngineModel, motion: Motion, ground: Callable[[Array], Array]) -> Array:
+def absolute_accelerations(model: EngineModel, motion: EngineMotion, ground: Callable[[Array], Array]) -> Array:
     """Sizes of the bodies' accelerations with that of the plate, (T, N), in units of the model."""
     plate = motion.plate[:, 2] if model.moving_plate else ground(motion.time)
-    sizes: Array = absolute_sizes(motion.accelerations, model.bodies, plate)
+    sizes: Array = absolute_acceleration_sizes(motion.accelerations, model.bodies, plate)
     return sizes
 
 
-def _record(
-    result: EngineRun, motion: Motion, size: Array, model: EngineModel, level: Level, keep: bool, read: bool = True
+def _record_chunk(
+    result: EngineRun,
+    motion: EngineMotion,
+    size: Array,
+    model: EngineModel,
+    level: Level,
+    keep: bool,
+    read: bool = True,
 ) -> bool:
     """Add an accepted chunk, read for peaks or not, up to where the model's validity ends; whether the run goes on."""
-    outcome, row, instant = termination(motion, model)
+    outcome, row, instant = find_termination(motion, model)
     if keep:
-        result.chunks.append(motion.until(row))
+        result.chunks.append(motion.cut_at(row))
     if outcome != Outcome.OK:
-        result.terminated(outcome, instant)
+        result.terminate(outcome, instant)
         return False
     _record_warping(result, motion, model, level)
     axes = model.bodies[0, :2]
@@ -277,13 +289,13 @@ def _record(
         displacement = largest_distance(motion.time, motion.coordinates, motion.velocities, axes)
         result.max_displacement = max(result.max_displacement, displacement)
     time, slip = motion.time, motion.slip
-    if result.undisturbed > time[0]:
-        time, slip, size, distance = _from(result.undisturbed, time, slip, size, distance)
+    if result.peaks_count_from > time[0]:
+        time, slip, size, distance = _rows_from(result.peaks_count_from, time, slip, size, distance)
     vertical = float(np.abs(motion.accelerations[:, model.bodies[:, 2]]).max())
     result.max_vertical = max(result.max_vertical, vertical)
     if read and len(time):
         result.peaks.add(time, size, slip)
-        _record_settling(result, time, size, distance)
+        _record_last_large(result, time, size, distance)
     gap = float(motion.gap.max())
     result.opened |= gap >= 0.0
     if not model.allows_liftoff:
@@ -291,7 +303,7 @@ def _record(
     return True
 
 
-def _from(instant: float, time: Array, *columns: Array) -> list[Array]:
+def _rows_from(instant: float, time: Array, *columns: Array) -> list[Array]:
     """Times (T,) and columns from `instant` on, interpolated there: it is behind the first row."""
     first = int(np.searchsorted(time, instant, side="right"))
     if first == len(time):
@@ -302,27 +314,31 @@ def _from(instant: float, time: Array, *columns: Array) -> list[Array]:
     return [np.append(instant, time[first:]), *rows]
 
 
-def _record_settling(result: EngineRun, time: Array, size: Array, displacement: Array) -> None:
+def _record_last_large(result: EngineRun, time: Array, size: Array, displacement: Array) -> None:
     """Record when something that is asked for last came near its largest value so far."""
     large, far = SETTLED_FRACTION * result.peaks.value, SETTLED_FRACTION * result.max_displacement
-    row = last_near(size, large, displacement, far)
+    row = find_last_near(size, large, displacement, far)
     if row >= 0:
         result.settled = float(time[row])
 
 
-def _step_ratio(motion: Motion, engine: Engine, size: Array, peaks: Array, step: float, level: Level) -> Array:
+def _step_ratio(
+    motion: EngineMotion, engine: EngineSolver, size: Array, peaks: Array, step: float, level: Level
+) -> Array:
     """Each step over what is allowed there, (T,), from accelerations (T, N) and the peaks so far, (N,)."""
     per_change = step / level.slip_change
-    step_ratio = _slip_change(motion, engine, per_change)
+    step_ratio = _slip_step_ratio(motion, engine, per_change)
     if engine.model.friction is not None:
         allowed = min(FEEDBACK_PER_SLIP_CHANGE * level.slip_change, MAX_FEEDBACK)
         step_ratio = np.maximum(step_ratio, step / allowed * engine.model.friction.feedback(motion.slip))
     if len(engine.model.ground.knots):
-        step_ratio = np.maximum(step_ratio, _behind_kinks(motion, size, engine, peaks, per_change, level.error_floor))
+        step_ratio = np.maximum(
+            step_ratio, _kink_step_ratio(motion, size, engine, peaks, per_change, level.error_floor)
+        )
     return step_ratio
 
 
-def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
+def _slip_step_ratio(motion: EngineMotion, engine: EngineSolver, per_change: float) -> Array:
     """Change of the slip velocity in one step over what is allowed, (T,)."""
     corner = engine.model.corner
     if not math.isfinite(corner):
@@ -331,7 +347,9 @@ def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
     return changes
 
 
-def _behind_kinks(motion: Motion, size: Array, engine: Engine, peaks: Array, per_change: float, floor: float) -> Array:
+def _kink_step_ratio(
+    motion: EngineMotion, size: Array, engine: EngineSolver, peaks: Array, per_change: float, floor: float
+) -> Array:
     """
     First step behind a kink of the loading over what is allowed, (T,), where a body's peak may be: zero elsewhere.
 
@@ -340,7 +358,7 @@ def _behind_kinks(motion: Motion, size: Array, engine: Engine, peaks: Array, per
     Samples on one parabola, within `floor` of the peak, follow no kink.
     """
     step_ratio, model, last = np.zeros(len(motion.time)), engine.model, len(motion.time) - 1
-    rows = kinks(motion.time, model.ground.knots, model.ground.near)
+    rows = find_kinks(motion.time, model.ground.knots, model.ground.near)
     rows = rows[rows < last]
     if len(rows) and np.isfinite(model.corner):
         largest = np.maximum(peaks, size.max(axis=0))
@@ -353,7 +371,7 @@ def _behind_kinks(motion: Motion, size: Array, engine: Engine, peaks: Array, per
     return step_ratio
 
 
-def _record_warping(result: EngineRun, motion: Motion, model: EngineModel, level: Level) -> None:
+def _record_warping(result: EngineRun, motion: EngineMotion, model: EngineModel, level: Level) -> None:
     """Record the largest load that warping takes while all contacts are closed: elastic supports would take none."""
     if model.warping_displacement is None:
         return
@@ -366,7 +384,7 @@ def _record_warping(result: EngineRun, motion: Motion, model: EngineModel, level
     result.warping_load = max(result.warping_load, float(displacement.max(initial=0.0)) / level.warping_compliance)
 
 
-def _gap_rate(motion: Motion) -> Array:
+def _gap_rate(motion: EngineMotion) -> Array:
     """Rate of each gap at the end of a chunk, (K,), over an even number of steps: the contact may alternate."""
     rows = min(GAP_RATE_STEPS, (len(motion.time) - 1) // 2 * 2)
     if rows == 0:
@@ -375,18 +393,18 @@ def _gap_rate(motion: Motion) -> Array:
     return rate
 
 
-def _divided_steps(level: Level) -> int:
+def _count_small_steps(level: Level) -> int:
     """Steps in a chunk of smaller steps than the largest."""
     steps = DIVIDED_CHUNK_CHANGE / level.slip_change
     return round(min(max(steps, MIN_DIVIDED_CHUNK_STEPS), MAX_DIVIDED_CHUNK_STEPS))
 
 
-def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
+def _count_largest_steps(motion: EngineMotion, engine: EngineSolver, level: Level) -> int:
     """How many of the largest steps to try: up to where the slip speed, going on as now, asks for smaller ones."""
     corner = engine.model.corner
     if len(motion.time) < 2 or not math.isfinite(corner):
         return MAX_CHUNK_STEPS
-    before, slip = loaded_slip(motion.contact, -2), loaded_slip(motion.contact, -1)
+    before, slip = slowest_loaded_slip(motion.contact, -2), slowest_loaded_slip(motion.contact, -1)
     if not math.isfinite(before + slip):
         return MAX_CHUNK_STEPS
     rate = (slip - before) / float(motion.time[-1] - motion.time[-2])
@@ -399,42 +417,42 @@ def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
     return int(min(max((target - slip) / rate / level.step, MIN_CHUNK_STEPS), MAX_CHUNK_STEPS))
 
 
-def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int, float]:
+def find_termination(motion: EngineMotion, model: EngineModel) -> tuple[Outcome, int, float]:
     """The first event that ends the motion, its row and its instant; OK and the last row if there is none."""
-    outcome, row = _end_of_validity(motion, model)
-    instant, before = travel_reached(motion, model)
+    outcome, row = _find_end_of_validity(motion, model)
+    instant, before = find_travel_end(motion, model)
     if instant <= motion.time[row]:
         return Outcome.TRAVEL_REACHED, before, instant
     return outcome, row, float(motion.time[row])
 
 
-def _end_of_validity(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
+def _find_end_of_validity(motion: EngineMotion, model: EngineModel) -> tuple[Outcome, int]:
     """The first event that ends the model's validity and its row; OK and the last row if there is none."""
     count = len(motion.time)
     if model.depressions is not None:
-        if model.depressions.near_rest(motion.coordinates):
+        if model.depressions.is_near_rest(motion.coordinates):
             return Outcome.OK, count - 1
         tilt = _tilt(motion, model)
-        row = _first(model.depressions.beyond_rim(motion.coordinates) | (tilt >= 0.5 * math.pi))
+        row = _first_row(model.depressions.rows_beyond_rim(motion.coordinates) | (tilt >= 0.5 * math.pi))
         if row == count:
             return Outcome.OK, count - 1
         return Outcome.OVERTURNED if tilt[row] > model.critical_tilt else Outcome.RIM_REACHED, row
     # by height: the horizontal offset only touches rho at the rim and falls again beyond
-    rim, contact_lost = first_ends(motion.coordinates, model.bodies[0, 2], RIM, motion.contact)
+    rim, contact_lost = find_first_ends(motion.coordinates, model.bodies[0, 2], RIM, motion.contact)
     contact_lost = count if model.allows_liftoff else contact_lost
     if min(rim, contact_lost) == count:
         return Outcome.OK, count - 1
     return (Outcome.RIM_REACHED, rim) if rim <= contact_lost else (Outcome.CONTACT_LOST, contact_lost)
 
 
-def _tilt(motion: Motion, model: EngineModel) -> Array:
+def _tilt(motion: EngineMotion, model: EngineModel) -> Array:
     """Angle of the platform's axis to the vertical, (T,), rad."""
     about_x, about_y = (motion.coordinates[:, axis] for axis in model.bodies[0, :2] + 3)
     tilt: Array = np.arccos(np.cos(about_x) * np.cos(about_y))
     return tilt
 
 
-def _first(holds: Any) -> int:
+def _first_row(holds: Any) -> int:
     """The first row of (T,) in which something holds; T if there is none."""
     row = int(holds.argmax())
     return row if holds[row] else len(holds)

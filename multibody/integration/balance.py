@@ -37,7 +37,7 @@ SAFETY_OF_ROUNDING = 100.0  # of that rounding: many contacts, and stiff links
 CURRENT = exudyn.ConfigurationType.Current
 
 
-def balanced_start(
+def find_balanced_start(
     model: EngineModel, start: EngineState, acceleration: Array, penetration: float
 ) -> EngineState | None:
     """The equilibrium near `start` under the plate's acceleration (3,), or `start` if none is needed; else None."""
@@ -45,10 +45,10 @@ def balanced_start(
         return start
     pressed = model.bearing_penetration or penetration
     balance = _Balance(model, model.kinematics, start, acceleration, pressed, penetration)
-    coordinates, closed = balance.under_weight(), np.ones(len(model.kinematics.depressions.ring), dtype=bool)
+    coordinates, closed = balance.solve_under_weight(), np.ones(len(model.kinematics.depressions.ring), dtype=bool)
     lasts = model.ground.decay_rate * math.sqrt(pressed) <= 1.0
     while coordinates is not None and lasts and acceleration.any():
-        loaded = balance.under_loading(coordinates, closed)
+        loaded = balance.solve_under_loading(coordinates, closed)
         opens = False if loaded is None else closed & (balance.gaps(loaded) > OPENING_GAP * pressed)
         if not np.any(opens):
             coordinates = loaded
@@ -92,36 +92,36 @@ class _Balance:
         clear: Array = self.kinematics.depressions.clearance(coordinates[None])[0] - self.pressed
         return clear
 
-    def under_weight(self) -> Array | None:
+    def solve_under_weight(self) -> Array | None:
         """Coordinates (n,) of the static equilibrium."""
-        held = np.eye(self._size)[:, self._neutral()]
+        held = np.eye(self._size)[:, self._neutral_coordinates()]
         closed = np.ones(len(self.kinematics.depressions.ring), dtype=bool)
-        return self._solved(self.start.coordinates, null_space(held.T), held, closed, 0.0)
+        return self._solve_balance(self.start.coordinates, null_space(held.T), held, closed, 0.0)
 
-    def under_loading(self, equilibrium: Array, closed: Mask) -> Array | None:
+    def solve_under_loading(self, equilibrium: Array, closed: Mask) -> Array | None:
         """
         Coordinates (n,) at which the loading deforms what is stiff, from the equilibrium, by closed contacts (K,).
         """
-        mass = self._mass(equilibrium)
+        mass = self._compute_mass_matrix(equilibrium)
         stiff = self.kinematics.stiff_rates(equilibrium, np.ones_like(closed))
         spheres = self._size - stiff.shape[1]
         deformed = np.asarray(np.linalg.solve(mass, block_diag(stiff, np.eye(spheres)).T), dtype=float)
         slow_of_bodies = null_space(self.kinematics.stiff_rates(equilibrium, closed))
         slow = np.vstack([slow_of_bodies, np.zeros((spheres, slow_of_bodies.shape[1]))])
-        return self._solved(equilibrium, deformed, mass @ slow, closed, 1.0)
+        return self._solve_balance(equilibrium, deformed, mass @ slow, closed, 1.0)
 
-    def _neutral(self) -> list[int]:
+    def _neutral_coordinates(self) -> list[int]:
         """Coordinates that nothing but friction holds: place and yaw of a platform on a plane."""
         first = int(self.model.bodies[0, 0])
         return [first, first + 1, first + 5] if self.model.rim == math.inf else []
 
-    def _solved(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
+    def _solve_balance(self, begin: Array, moved: Array, held: Array, closed: Mask, loading: float) -> Array | None:
         """Coordinates at which forces `held` (n, t) alone are missing, from `begin` along `moved` (n, s)."""
         moved, _ = np.linalg.qr(moved)
         coordinates, missing = begin, np.zeros(held.shape[1])
         before = math.inf
         for _ in range(MAX_ITERATIONS):
-            forces, stiffness = self._forces(coordinates, closed, loading)
+            forces, stiffness = self._compute_forces(coordinates, closed, loading)
             touching = self.gaps(coordinates)[~closed] / self.pressed
             residual = np.append(forces - held @ missing, touching)
             worst = float(np.abs(residual).max())
@@ -137,19 +137,19 @@ class _Balance:
             missing = missing + change[moved.shape[1] :]
         return None
 
-    def _mass(self, coordinates: Array) -> Array:
+    def _compute_mass_matrix(self, coordinates: Array) -> Array:
         """The engine's mass matrix (n, n)."""
-        self._set(coordinates)
+        self._set_coordinates(coordinates)
         self._solver.ComputeMassMatrix(self.model.mbs, 1.0)
         mass: Array = np.array(self._solver.GetSystemMassMatrix())[: self._size, : self._size]
         return mass
 
-    def _forces(self, coordinates: Array, closed: Mask, loading: float) -> tuple[Array, Array]:
+    def _compute_forces(self, coordinates: Array, closed: Mask, loading: float) -> tuple[Array, Array]:
         """Forces (n,) under the weight and a share of the loading's first value, and their derivative (n, n)."""
-        shaken = self._mass(coordinates) @ self._carried
+        shaken = self._compute_mass_matrix(coordinates) @ self._carried
         contact = np.zeros_like(self.start.contact)
         contact[0::4] = np.where(closed, -1.0, 0.0)  # the engine then takes it for closed, whatever its gap
-        self._set(coordinates)
+        self._set_coordinates(coordinates)
         mbs, part = self.model.mbs, slice(self._size)
         mbs.systemData.SetDataCoordinates(contact, configuration=CURRENT)
         self._solver.ComputeODE2RHS(mbs)
@@ -159,6 +159,6 @@ class _Balance:
         in_engine = 0.0 if self.model.moving_plate else 1.0  # whose inertial forces are loads
         return forces - (loading - in_engine) * shaken, stiffness
 
-    def _set(self, coordinates: Array) -> None:
+    def _set_coordinates(self, coordinates: Array) -> None:
         self._with_plate[: self._size] = coordinates
         self.model.mbs.systemData.SetODE2Coordinates(self._with_plate, configuration=CURRENT)

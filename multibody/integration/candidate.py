@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from multibody.integration.adaptive import Budget, EngineRun
 from multibody.integration.estimate import (
     SAFETY_OF_ROUNDING,
-    from_compliance,
-    from_rounding,
-    share_of_change,
-    widened_without_convergence,
+    compliance_error,
+    rounding_error,
+    error_share_of_change,
+    widen_without_convergence,
 )
 from multibody.integration.level import COMPLIANCE_RATIO, Level
 from multibody.integration.one_run import PhasePair
@@ -40,18 +40,18 @@ class Candidate:
     @property
     def errors(self) -> Array:
         """Errors (N,), in units of the model."""
-        shown = widened_without_convergence(self.level_errors + self.rounding, self.run)
+        shown = widen_without_convergence(self.level_errors + self.rounding, self.run)
         return np.maximum(shown if self.compliance is None else shown + self.compliance, self.least)
 
     @property
-    def lacks_compliance(self) -> bool:
+    def misses_compliance_error(self) -> bool:
         """Whether the error that the contact's compliance leaves is still missing."""
         return self.shares_contact and self.compliance is None
 
     @property
     def is_complete(self) -> bool:
         """Whether the error lacks nothing."""
-        return not self.lacks_compliance and bool(np.isfinite(self.errors).all())
+        return not self.misses_compliance_error and bool(np.isfinite(self.errors).all())
 
     @property
     def relative_error(self) -> float:
@@ -71,18 +71,18 @@ class Candidate:
         larger = not self.relative_error < best.relative_error
         return larger and bool((self.level.rounding > best.errors).any())
 
-    def completed(self, pair: PhasePair, budget: Budget, keep: bool) -> Candidate:
+    def add_compliance_error(self, pair: PhasePair, budget: Budget, keep: bool) -> Candidate:
         """With the error that the compliance leaves, from a run in which nothing but the contact is softer."""
-        if not self.lacks_compliance:
+        if not self.misses_compliance_error:
             return self
         level, softer = self.level, replace(self.level, penetration=COMPLIANCE_RATIO * self.level.penetration)
-        run = pair.at_level(softer, budget, self.run.stop, keep=keep, residual=level.residual)
-        completed = replace(
+        run = pair.run_level(softer, budget, self.run.stop, keep=keep, residual=level.residual)
+        add_compliance_error = replace(
             self,
-            compliance=from_compliance(self.run.peaks, run, softer, pair.model),
-            coarser=(*self.coarser, (run, share_of_change(softer, pair.model))),
+            compliance=compliance_error(self.run.peaks, run, softer, pair.model),
+            coarser=(*self.coarser, (run, error_share_of_change(softer, pair.model))),
         )
         if run.outcome != Outcome.OK:
-            return completed
-        rounding = from_rounding(self.run.peaks, level, run.peaks, softer, SAFETY_OF_ROUNDING)
-        return replace(completed, rounding=np.minimum(self.rounding, rounding))
+            return add_compliance_error
+        rounding = rounding_error(self.run.peaks, level, run.peaks, softer, SAFETY_OF_ROUNDING)
+        return replace(add_compliance_error, rounding=np.minimum(self.rounding, rounding))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn
-from multibody.models.plate import COORDINATES, PLATE_MASS_RATIO, carried_along
+from multibody.models.plate import COORDINATES, PLATE_MASS_RATIO, carrying_axes
 from multibody.models.state import EngineState
 from multibody.models.system import EngineModel
 
@@ -26,7 +26,7 @@ INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT)
 MAX_CONTRACTIVITY = 0.2  # of modified Newton, above which the Jacobian is renewed: least time (measured)
 
 
-class Motion(NamedTuple):
+class EngineMotion(NamedTuple):
     """Steps of one run in units of the model, relative to the plate, the first row being its start."""
 
     time: Array  # (T,)
@@ -56,28 +56,28 @@ class Motion(NamedTuple):
         load: Array = vectors.shape[1] * np.abs((vectors[:, :, 0] * vectors[:, :, 1]).sum(axis=-1))
         return load
 
-    def until(self, row: int) -> Motion:
+    def cut_at(self, row: int) -> EngineMotion:
         """The rows up to and including `row`."""
-        return self if row == len(self.time) - 1 else Motion(*[column[: row + 1] for column in self])
+        return self if row == len(self.time) - 1 else EngineMotion(*[column[: row + 1] for column in self])
 
     @staticmethod
-    def concatenated(chunks: list[Motion]) -> Motion:
+    def concatenate(chunks: list[EngineMotion]) -> EngineMotion:
         """One motion from chunks, each of which starts with the last row of the one before."""
         whole, *rest = chunks
         columns = zip(whole, *(tuple(column[1:] for column in chunk) for chunk in rest))
-        return Motion(*map(np.concatenate, columns))
+        return EngineMotion(*map(np.concatenate, columns))
 
     @staticmethod
-    def empty(model: EngineModel) -> Motion:
+    def empty(model: EngineModel) -> EngineMotion:
         """No rows at all, of a model whose contact forces are recorded."""
         size, contacts = model.coordinates, len(model.recorders.contact)
         widths = [(size,), (size,), (size,), (4 * contacts,), (6 * contacts,), (3, 3)]
-        return Motion(np.empty(0), *(np.empty((0, *width)) for width in widths))
+        return EngineMotion(np.empty(0), *(np.empty((0, *width)) for width in widths))
 
-    def state(self, row: int) -> EngineState:
+    def state_at(self, row: int) -> EngineState:
         """State of the engine at an instant, with the rates of slip and load since the instant before."""
         row = range(len(self.time))[row]
-        near = Motion(*[column[max(row - 1, 0) : row + 1] for column in self])
+        near = EngineMotion(*[column[max(row - 1, 0) : row + 1] for column in self])
         slip, load = near.slip, near.load
         rates: list[Array | None] = [None, None]
         if row > 0:
@@ -104,7 +104,7 @@ def set_initial_state(model: EngineModel, state: EngineState) -> None:
     """Make `state` the one that the engine's next run starts from."""
     coordinates, velocities = state.coordinates, state.velocities
     if model.moving_plate:
-        axes = carried_along(model.carried, len(coordinates))
+        axes = carrying_axes(model.carried, len(coordinates))
         shift = np.hstack([state.plate, np.zeros((3, 1))])
         turns = np.zeros(COORDINATES - 3)
         coordinates = np.concatenate([coordinates + shift[0, axes], state.plate[0], turns])
@@ -115,7 +115,7 @@ def set_initial_state(model: EngineModel, state: EngineState) -> None:
     data.SetDataCoordinates(state.contact, configuration=INITIAL)
 
 
-class Engine:
+class EngineSolver:
     """
     Runs one model.
 
@@ -134,7 +134,7 @@ class Engine:
     ) -> None:
         self.model = model
         # over a moving plate the first residual is the heavy plate's: only the absolute tolerance has an effect
-        self.settings = _settings(newton / PLATE_MASS_RATIO if model.moving_plate else newton, residual)
+        self.settings = _solver_settings(newton / PLATE_MASS_RATIO if model.moving_plate else newton, residual)
         if model.coordinates > MAX_DENSE_COORDINATES:
             self.settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
         if discontinuous is not None:
@@ -152,7 +152,7 @@ class Engine:
         self.sensors: list[list[Any]] = [getattr(model.recorders, group.name) for group in fields(model.recorders)]
         self.iterations = 0  # of Newton's method in the last run, with those of steps that were tried again
 
-    def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
+    def run(self, state: EngineState, begin: float, step: float, count: int) -> EngineMotion | None:
         """`count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
         set_initial_state(self.model, state)
         self.model.ground.begin(begin)
@@ -172,29 +172,29 @@ class Engine:
             self.iterations = int(self.solver.it.newtonStepsCount)
         return self._read()
 
-    def _read(self) -> Motion:
+    def _read(self) -> EngineMotion:
         stored = self.model.mbs.GetSensorStoredData
         tables = [[stored(sensor) for sensor in sensors] for sensors in self.sensors]
         time = tables[0][0][:, 0]  # the engine's own instants: it halves a step that its Newton iteration cannot solve
-        coordinates, velocities, accelerations, contact = [_values(group) for group in tables[:4]]
-        force = _values(tables[4]) if tables[4] else np.empty((len(time), 0))
+        coordinates, velocities, accelerations, contact = [_join_tables(group) for group in tables[:4]]
+        force = _join_tables(tables[4]) if tables[4] else np.empty((len(time), 0))
         plate = np.zeros((len(time), 3, 3))
         if self.model.moving_plate:
-            plate = _values(tables[5]).reshape(len(time), 3, -1)[:, :, :3]
+            plate = _join_tables(tables[5]).reshape(len(time), 3, -1)[:, :, :3]
             for derivative, part in enumerate((coordinates, velocities, accelerations)):
-                axes = carried_along(self.model.carried, part.shape[1])
+                axes = carrying_axes(self.model.carried, part.shape[1])
                 part[:, axes < 3] -= plate[:, derivative, axes[axes < 3]]
-        return Motion(time, coordinates, velocities, accelerations, contact, force, plate)
+        return EngineMotion(time, coordinates, velocities, accelerations, contact, force, plate)
 
 
-def _values(tables: list[Array]) -> Array:
+def _join_tables(tables: list[Array]) -> Array:
     """The values of tables (T, 1 + C), which begin with the time, side by side. A single table is not copied."""
     if len(tables) == 1:
         return tables[0][:, 1:]
     return np.concatenate([tables[0], *[table[:, 1:] for table in tables[1:]]], axis=1)[:, 1:]
 
 
-def _settings(newton: float, residual: float) -> Any:
+def _solver_settings(newton: float, residual: float) -> Any:
     settings = exudyn.SimulationSettings()
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = 0.0  # every step

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from multibody.integration.adaptive import EngineRun
 from multibody.integration.level import COMPLIANCE_RATIO, Level
-from multibody.integration.peak import Peaks
+from multibody.integration.peak import PeakReader
 from multibody.models.system import EngineModel
 from reference.problem import Outcome, Scene
 
@@ -47,7 +47,7 @@ MAX_CONVERGED_ERROR = 0.3  # relative: beyond it successive levels are different
 SMALLEST_CHANGE = 1e-290  # keeps a rate finite
 
 
-def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> Array:
+def error_between_levels(peaks: list[PeakReader], levels: list[Level], model: EngineModel) -> Array:
     """Error (N,) of the last of peaks at two or three consecutive levels, in units, without rounding of the contact."""
     last, before = peaks[-1].value, peaks[-2].value
     change = np.abs(last - before)
@@ -62,10 +62,15 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
     unsolved = levels[-1].newton * levels[-1].load
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
     level_error = level_error + unsolved if levels[-1].flat else np.maximum(level_error, unsolved)
-    return level_error + peaks[-1].sampling + _of_start(peaks[-1], levels[-1], model) + MIN_RELATIVE_ERROR * last
+    return (
+        level_error
+        + peaks[-1].sampling
+        + _error_of_starting_links(peaks[-1], levels[-1], model)
+        + MIN_RELATIVE_ERROR * last
+    )
 
 
-def _of_start(peaks: Peaks, level: Level, model: EngineModel) -> Array:
+def _error_of_starting_links(peaks: PeakReader, level: Level, model: EngineModel) -> Array:
     """Error (N,) by links that swing at the start: what they add to the first sample, unless the peak is larger."""
     if model.depressions is None or peaks.first is None:
         return np.zeros_like(peaks.value)
@@ -75,7 +80,9 @@ def _of_start(peaks: Peaks, level: Level, model: EngineModel) -> Array:
     return added
 
 
-def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safety: float = SAFETY_TWO_LEVELS) -> Array:
+def rounding_error(
+    peaks: PeakReader, level: Level, other: PeakReader, softer: Level, safety: float = SAFETY_TWO_LEVELS
+) -> Array:
     """Error (N,) by rounding of contact forces, beside a softer contact: rounding by x and 4 x differs by 3 x."""
     stiffer = softer.penetration / level.penetration
     if stiffer < COMPLIANCE_RATIO * (1.0 - 1e-9):
@@ -85,7 +92,7 @@ def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safet
     return np.minimum(level.rounding, shown)
 
 
-def from_contact_noise(run: EngineRun, level: Level, scene: Scene, model: EngineModel) -> Array:
+def contact_noise_error(run: EngineRun, level: Level, scene: Scene, model: EngineModel) -> Array:
     """
     Least error (N,) of a run, which the noise of the contact force leaves whatever other runs show.
 
@@ -108,16 +115,16 @@ def from_contact_noise(run: EngineRun, level: Level, scene: Scene, model: Engine
     return error
 
 
-def floor_with_impacts(before: int) -> float:
+def impact_error_floor(before: int) -> float:
     """Least relative error of a motion with impacts, with so many levels before it on the same springs."""
     return MIN_ERROR_WITH_IMPACTS / 2.0**before
 
 
-def widened_by_impacts(errors: Array, peaks: list[Peaks], run: EngineRun, before: int) -> Array:
+def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, before: int) -> Array:
     """Errors (N,) that impacts do not let fall below a share of the peaks, nor below levels that scatter."""
     if not run.impacts:
         return errors
-    widened = np.maximum(errors, floor_with_impacts(before) * run.peaks.value)
+    widened = np.maximum(errors, impact_error_floor(before) * run.peaks.value)
     if len(peaks) < 3:
         return widened
     values = np.array([each.value for each in peaks])
@@ -126,7 +133,7 @@ def widened_by_impacts(errors: Array, peaks: list[Peaks], run: EngineRun, before
     return np.where(scattered, np.maximum(widened, np.ptp(values, axis=0)), widened)
 
 
-def widened_without_convergence(errors: Array, run: EngineRun) -> Array:
+def widen_without_convergence(errors: Array, run: EngineRun) -> Array:
     """Errors (N,), none less than the peak where any shows no convergence: levels with impacts agree by chance."""
     peaks = run.peaks.value
     if (errors <= MAX_CONVERGED_ERROR * peaks).all():
@@ -134,13 +141,13 @@ def widened_without_convergence(errors: Array, run: EngineRun) -> Array:
     return np.maximum(errors, peaks)
 
 
-def from_sharing(run: EngineRun) -> Array:
+def load_sharing_error(run: EngineRun) -> Array:
     """Error (N,) of a run whose supports stay closed and do not quite share the load as elastic ones do."""
     error: Array = ERROR_PER_WARPING_LOAD * run.warping_load * run.peaks.value
     return error
 
 
-def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:
+def compliance_error(stiff: PeakReader, soft: EngineRun, level: Level, model: EngineModel) -> Array:
     """Error (N,) that the contact's compliance leaves in `stiff`, from a softer run; at least its share of rho."""
     if soft.outcome != Outcome.OK:
         return np.full_like(stiff.value, np.inf)
@@ -148,7 +155,7 @@ def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineMo
     return change + level.penetration * stiff.value
 
 
-def share_of_change(other: Level, model: EngineModel) -> float:
+def error_share_of_change(other: Level, model: EngineModel) -> float:
     """Share of the difference to a run at a coarser or softer level that counts as error, at the lowest rate."""
     return SAFETY_TWO_LEVELS * (1.0 + lag(other, model)) / (MIN_RATE - 1.0)
 

@@ -138,11 +138,11 @@ class Level:
         return max(1e-3 * self.newton * self.strength, self.rounding)
 
     @property
-    def is_loose(self) -> bool:
+    def precedes_level_0(self) -> bool:
         """Whether it comes before level 0."""
         return self.error_floor > MIN_RELATIVE_ERROR
 
-    def coarsened(self) -> Level:
+    def coarsen(self) -> Level:
         """The same contact in steps `SCAN_RATIO` times as large, to look ahead."""
         return replace(
             self,
@@ -194,10 +194,10 @@ def levels(
     """
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     with silence():
-        return levels_of(scene, assemble(scene, model, regularization), tolerance)
+        return plan_levels(scene, assemble(scene, model, regularization), tolerance)
 
 
-def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
+def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
     """All levels for a relative error of `tolerance`; the penetration stays where rounding would take over."""
     period = shortest_period(scene, model)
     step = largest_step(period, model)
@@ -205,7 +205,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
     followed, force_change = (
         MAX_CONTACT_TIME_OF_MOTION * scene.duration / model.units.time,
-        contact_change(scene, model),
+        bound_contact_change(scene, model),
     )
     slowest = followed if force_change == math.inf else 1.0
     most = min(most, COMPLIANCE_RATIO * slowest**2)
@@ -218,7 +218,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
     first = -1 if scene.recorded and tolerance >= LOOSE else 0
     numbers = range(first, first + MAX_LEVELS)
     penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in numbers]
-    brief = brief_motions(scene, model, step)
+    brief = list_brief_motions(scene, model, step)
     smallest = min([MIN_STEP_AT_STOP * MAX_SLIP_CHANGE * model.relaxation, *(needed for _, needed in brief)])
     max_divisions = MIN_DIVISIONS
     if smallest < step:
@@ -250,7 +250,7 @@ def newton_tolerance(number: int, step: float, penetration: float) -> float:
     return max(NEWTON_TOLERANCE / 4.0**number * stiff, MIN_NEWTON_TOLERANCE)
 
 
-def for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
+def soften_for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
     """`level` with a contact as soft and a residual as small as the smallest peak of a run asks for, in units of g."""
     if smallest >= WEAK_LOADING:
         return level
@@ -261,7 +261,7 @@ def for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
     return replace(level, penetration=penetration, strength=min(level.strength, smallest))
 
 
-def contact_change(scene: Scene, model: EngineModel) -> float:
+def bound_contact_change(scene: Scene, model: EngineModel) -> float:
     """Bound of the change of the contact's force within a brief motion from rest, in weights, by speed and way."""
     if model.ground.shakes(2):
         return math.inf
@@ -278,8 +278,8 @@ def weak_strength(scene: Scene) -> float:
 def largest_step(period: float, model: EngineModel) -> float:
     """Step of level 0 in units of the model, from the shortest `period` and from that of bars that give way."""
     step = period / STEPS_PER_PERIOD
-    if model.fastest_of_bars > 0.0:
-        of_bars = 2.0 * math.pi / model.fastest_of_bars / STEPS_PER_BAR_PERIOD
+    if model.fastest_bar_frequency > 0.0:
+        of_bars = 2.0 * math.pi / model.fastest_bar_frequency / STEPS_PER_BAR_PERIOD
         step = min(step, max(of_bars, step / MAX_BAR_DIVISION))
     return step
 
@@ -302,14 +302,14 @@ def shortest_period(scene: Scene, model: EngineModel) -> float:
     return min(fastest, *periods)
 
 
-def damped_rate(scene: Scene, units: Units) -> float:
+def fastest_damper_rate(scene: Scene, units: Units) -> float:
     """A bound of the rates at which dampers of the links settle, per unit of time (Gershgorin)."""
     per_mass = scene.damping.max(axis=1)
     below, above = per_mass / scene.masses[1:], per_mass / scene.masses[:-1]
     return float(2.0 * (np.append(above, 0.0) + np.append(0.0, below)).max() * units.time)
 
 
-def brief_motions(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
+def list_brief_motions(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
     """
     Until when the harmonics last that `step` does not resolve, and the step that they need, at level 0.
 
@@ -320,6 +320,6 @@ def brief_motions(scene: Scene, model: EngineModel, step: float) -> list[tuple[f
     rates: list[float] = [] if scene.recorded else list(-exponents(scene).real * model.units.time)
     rates.append(1.0 / viscous_relaxation(scene, model.units))
     if scene.damping.any():
-        rates.append(damped_rate(scene, model.units))
+        rates.append(fastest_damper_rate(scene, model.units))
     times = [1.0 / rate for rate in rates if rate > 0.0]
     return [(DECAY_TIMES * time, time / STEPS_PER_DECAY) for time in times if time / STEPS_PER_DECAY < step]

@@ -23,19 +23,19 @@ from multibody.integration.estimate import (
     ERROR_PER_WARPING_LOAD,
     MIN_RELATIVE_ERROR,
     SAFETY_OF_BEARINGS,
-    floor_with_impacts,
-    from_contact_noise,
-    from_levels,
-    from_rounding,
-    from_sharing,
-    share_of_change,
-    widened_by_impacts,
+    impact_error_floor,
+    contact_noise_error,
+    error_between_levels,
+    rounding_error,
+    load_sharing_error,
+    error_share_of_change,
+    widen_by_impacts,
 )
 from multibody.integration.level import (
     COMPLIANCE_OF_CLOSED,
     REAL_WARPING_COMPLIANCE,
     Level,
-    for_small_peaks,
+    soften_for_small_peaks,
 )
 from multibody.integration.one_run import PhasePair
 from multibody.models.system import EngineModel
@@ -83,7 +83,7 @@ class LevelRuns:
         runs = 1.0 + self.shares_contact(number) + (self.on_real is not None)
         # one level alone has no error and is no answer: a second one is tried even if it may not end
         growth = 1.0 if number == 1 else MAX_WORK_GROWTH
-        return not self.runs or self.budget.left >= runs * growth * _work_up_to(self.runs[-1], self.stop, self.pair.end)
+        return not self.runs or self.budget.left >= runs * growth * _work_until(self.runs[-1], self.stop, self.pair.end)
 
     def shares_contact(self, number: int) -> bool:
         """Whether the contact of a level is no stiffer than that of the level before."""
@@ -93,23 +93,23 @@ class LevelRuns:
         """The run at the next level; the levels to come are adapted to it."""
         number, level = len(self.runs), self.levels[len(self.runs)]
         trial = number == 0 and self.pair.model.warping_displacement is not None
-        run = self._trial(level) if trial else self._at(level, self.stop)
-        if self.stop < self.pair.end and not _stays_settled(run, self.runs[-1]):
+        run = self._run_trial(level) if trial else self._run_level(level, self.stop)
+        if self.stop < self.pair.end and not _confirms_early_stop(run, self.runs[-1]):
             self.stop = math.inf
-            run = self._at(level)
+            run = self._run_level(level)
         rattles = trial and run.outcome == Outcome.STEP_LIMIT
         if rattles or run.lifts_off:
-            run = self._on_springs_for_opening(run)
+            run = self._choose_springs_for_opening(run)
         if self.levels[number].warping_compliance == REAL_WARPING_COMPLIANCE:
             self.on_real = None
         self.runs.append(run)
         if run.outcome == Outcome.OK and run.stop == math.inf and not self.whole:
-            self.stop = _settled(run, self.pair.model, self.levels[0].step)
+            self.stop = _early_stop(run, self.pair.model, self.levels[0].step)
         if run.outcome not in UNFINISHED:
             self._adapt_levels(run)
         return run
 
-    def candidate(self) -> Candidate | None:
+    def make_candidate(self) -> Candidate | None:
         """The answer of the last level, beside the level before; None where it has none on real bearings."""
         number, run, model = len(self.runs) - 1, self.runs[-1], self.pair.model
         level, before = self.levels[number], self.levels[number - 1]
@@ -117,14 +117,14 @@ class LevelRuns:
         compliances = [other.warping_compliance for other in self.levels[max(number - 2, 0) : number + 1]]
         if compliances[0] != compliances[-2]:  # a change of springs is no rate of convergence
             finished = finished[-2:]
-        errors = from_levels(finished, self.levels[: number + 1], model)
-        rounding = from_rounding(run.peaks, level, self.runs[-2].peaks, before)
-        alike = self._levels_on_the_same_springs()
-        rounding = widened_by_impacts(errors + rounding, finished, run, alike)
-        errors = widened_by_impacts(errors, finished, run, alike)
+        errors = error_between_levels(finished, self.levels[: number + 1], model)
+        rounding = rounding_error(run.peaks, level, self.runs[-2].peaks, before)
+        alike = self._count_levels_on_same_springs()
+        rounding = widen_by_impacts(errors + rounding, finished, run, alike)
+        errors = widen_by_impacts(errors, finished, run, alike)
         rounding -= errors
         if not run.lifts_off:
-            errors = errors + from_sharing(run)
+            errors = errors + load_sharing_error(run)
         confirmed = True
         if self.on_real is not None:
             _, change = self.on_real
@@ -133,43 +133,45 @@ class LevelRuns:
                 level, run = self.levels[number], self.runs[-1]
             if run.outcome != Outcome.OK:
                 return None
-            errors = widened_by_impacts(errors + change, [], run, self._levels_on_the_same_springs())
-        confirmed = confirmed and not (run.impacts and before.is_loose)  # forces behind impacts differ from level 1 on
-        coarser = [(self.runs[-2], share_of_change(before, model))]
+            errors = widen_by_impacts(errors + change, [], run, self._count_levels_on_same_springs())
+        confirmed = confirmed and not (
+            run.impacts and before.precedes_level_0
+        )  # forces behind impacts differ from level 1 on
+        coarser = [(self.runs[-2], error_share_of_change(before, model))]
         if self.on_real is not None:
             coarser.append((self.on_real[0], 1.0))
-        least = from_contact_noise(run, level, self.pair.scene, model)
-        floor = max(level.error_floor, floor_with_impacts(self._levels_on_the_same_springs()) if run.impacts else 0.0)
+        least = contact_noise_error(run, level, self.pair.scene, model)
+        floor = max(level.error_floor, impact_error_floor(self._count_levels_on_same_springs()) if run.impacts else 0.0)
         floor = max(floor, 0.0 if run.lifts_off else run.warping_load)
         shared = self.shares_contact(number)
         return Candidate(run, level, shared, errors, rounding, least, tuple(coarser), confirmed, floor=floor)
 
-    def _levels_on_the_same_springs(self) -> int:
+    def _count_levels_on_same_springs(self) -> int:
         """How many levels from level 0 to the last have its springs: others are another motion, and confirm nothing."""
         *before, last = self.levels[: len(self.runs)]
         springs = last.warping_compliance
-        return sum(level.warping_compliance == springs and not level.is_loose for level in before)
+        return sum(level.warping_compliance == springs and not level.precedes_level_0 for level in before)
 
-    def _at(self, level: Level, stop: float = math.inf) -> EngineRun:
-        return self.pair.at_level(level, self.budget, stop, keep=self.keep)
+    def _run_level(self, level: Level, stop: float = math.inf) -> EngineRun:
+        return self.pair.run_level(level, self.budget, stop, keep=self.keep)
 
-    def _trial(self, level: Level) -> EngineRun:
+    def _run_trial(self, level: Level) -> EngineRun:
         """The first run of a model whose supports may rattle, with a share of the work."""
         trial = Budget(MAX_FIRST_SHARE * self.budget.left)
         self.budget.left -= trial.left
-        run = self.pair.at_level(level, trial, keep=self.keep)
+        run = self.pair.run_level(level, trial, keep=self.keep)
         self.budget.left += trial.left
         return run
 
-    def _on_springs_for_opening(self, run: EngineRun) -> EngineRun:
+    def _choose_springs_for_opening(self, run: EngineRun) -> EngineRun:
         """The last level's run where a support opens in `run`: that, or the one on springs of real bearings."""
         number = len(self.runs)
         level = self.levels[number]
         if level.warping_compliance == REAL_WARPING_COMPLIANCE:
-            return self._at(level) if number == 0 and run.outcome == Outcome.STEP_LIMIT else run
+            return self._run_level(level) if number == 0 and run.outcome == Outcome.STEP_LIMIT else run
         if self.on_real is not None:
             return run
-        real, change = self._on_real_bearings(level, run)
+        real, change = self._run_on_real_bearings(level, run)
         stiff = level.warping_compliance < REAL_WARPING_COMPLIANCE
         # stiff springs also lift supports off by the misfit of the platform alone
         if stiff and real.lifts_off and (change <= self.tolerance * run.peaks.value).all():
@@ -179,9 +181,9 @@ class LevelRuns:
         self._take_real_bearings(number)
         return real
 
-    def _on_real_bearings(self, level: Level, run: EngineRun) -> tuple[EngineRun, Array]:
+    def _run_on_real_bearings(self, level: Level, run: EngineRun) -> tuple[EngineRun, Array]:
         """The run of a level on springs of real bearings, and by how much its peaks, (N,), differ from `run`."""
-        real = self._at(_of_real_bearings(level))
+        real = self._run_level(_give_real_bearings(level))
         if real.outcome in UNFINISHED or real.outcome != run.outcome:
             return real, np.full_like(run.peaks.value, np.inf)
         return real, np.abs(run.peaks.value - real.peaks.value)
@@ -189,7 +191,7 @@ class LevelRuns:
     def _repeat_on_real_bearings(self, earlier: Array) -> tuple[Array, bool]:
         """Change (N,) of the last level's peaks on springs of real bearings, and whether a run that ends shows it."""
         number, run = len(self.runs) - 1, self.runs[-1]
-        real, change = self._on_real_bearings(self.levels[number], run)
+        real, change = self._run_on_real_bearings(self.levels[number], run)
         if real.outcome in UNFINISHED:  # its peaks may still grow
             return np.fmax(SAFETY_OF_BEARINGS * earlier, real.peaks.value - run.peaks.value), False
         change = np.maximum(earlier, change)
@@ -202,7 +204,7 @@ class LevelRuns:
 
     def _take_real_bearings(self, number: int) -> None:
         """Give all levels from `number` on the springs of real bearings."""
-        self.levels[number:] = [_of_real_bearings(level) for level in self.levels[number:]]
+        self.levels[number:] = [_give_real_bearings(level) for level in self.levels[number:]]
         self.stop, self.on_real = math.inf, None
 
     def _adapt_levels(self, run: EngineRun) -> None:
@@ -210,20 +212,20 @@ class LevelRuns:
         done = len(self.runs)
         if run.lifts_off:
             self.softest = REAL_WARPING_COMPLIANCE
-        coming = [_sharing(level, run, self.tolerance, self.softest) for level in self.levels[done:]]
+        coming = [_adapt_warping_compliance(level, run, self.tolerance, self.softest) for level in self.levels[done:]]
         # a softer contact would let a platform that turns tilt
         if self.softens and run.outcome == Outcome.OK and self.pair.model.depressions is None:
             smallest = float(run.peaks.value.min())
-            coming = [for_small_peaks(level, smallest, self.tolerance) for level in coming]
+            coming = [soften_for_small_peaks(level, smallest, self.tolerance) for level in coming]
         self.levels[done:] = coming
 
 
-def _of_real_bearings(level: Level) -> Level:
+def _give_real_bearings(level: Level) -> Level:
     """A level whose supports give way against warping as real bearings do."""
     return replace(level, warping_compliance=REAL_WARPING_COMPLIANCE)
 
 
-def _sharing(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:
+def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:
     """A level whose supports give way enough against warping, which took a load in `run` at the level before."""
     wanted = level.warping_compliance
     if run.lifts_off:
@@ -233,14 +235,14 @@ def _sharing(level: Level, run: EngineRun, tolerance: float, softest: float) -> 
     return replace(level, warping_compliance=min(wanted, softest))
 
 
-def _work_up_to(run: EngineRun, stop: float, end: float) -> float:
+def _work_until(run: EngineRun, stop: float, end: float) -> float:
     """Work of `run`, had it stopped at `stop`."""
-    own = min(run.looked_over, end)  # both runs look over what comes later
+    own = min(run.scanned_from, end)  # both runs look over what comes later
     shorter = min(stop, own) / min(run.stop, own) if run.outcome == Outcome.OK else 1.0
     return shorter * run.work
 
 
-def _settled(run: EngineRun, model: EngineModel, step: float) -> float:
+def _early_stop(run: EngineRun, model: EngineModel, step: float) -> float:
     """When runs at further levels may stop, after one to the end of the motion; step: the largest of any level."""
     limit = (1.0 - MIN_END_MARGIN) * min(model.rim, model.travel)
     if run.max_displacement > limit or run.min_load < MIN_END_MARGIN:
@@ -248,7 +250,7 @@ def _settled(run: EngineRun, model: EngineModel, step: float) -> float:
     return run.settled + STEPS_AFTER_SETTLING * step
 
 
-def _stays_settled(run: EngineRun, before: EngineRun) -> bool:
+def _confirms_early_stop(run: EngineRun, before: EngineRun) -> bool:
     """Whether a run that stopped early agrees so well with the one before that nothing later can matter."""
     if run.outcome != Outcome.OK:
         return False

@@ -16,8 +16,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.adaptive import Budget, EngineRun, Place, begin_run, go_on
-from multibody.integration.constant_step import Engine
+from multibody.integration.adaptive import Budget, EngineRun, Checkpoint, begin_run, continue_run
+from multibody.integration.constant_step import EngineSolver
 from multibody.integration.level import Level
 from multibody.models.state import EngineState
 from multibody.models.system import EngineModel
@@ -30,7 +30,7 @@ NEAR_LOAD = 0.2  # of the weight: with less on the contact in larger steps it mi
 WAIT = 2.0 * math.pi  # units of time from the last large value to a look ahead: a period of the pendulum
 
 
-def looks_ahead(model: EngineModel, level: Level) -> bool:
+def can_look_ahead(model: EngineModel, level: Level) -> bool:
     """Whether larger steps save work: they end at the knots of a record in any case, and heat remembers one run."""
     return (
         not (model.friction is not None and model.friction.law.heat)
@@ -38,41 +38,41 @@ def looks_ahead(model: EngineModel, level: Level) -> bool:
     )
 
 
-def longest_steps(model: EngineModel, level: Level, whole: bool) -> Level:
+def level_of_longest_steps(model: EngineModel, level: Level, whole: bool) -> Level:
     """The level of the longest steps in a run; whole: it takes its own steps to the end of the motion."""
-    return level.coarsened() if looks_ahead(model, level) and not whole else level
+    return level.coarsen() if can_look_ahead(model, level) and not whole else level
 
 
-def run_looking_ahead(
-    engine: Engine, start: EngineState, end: float, ground: Callable[[Array], Array], level: Level, budget: Budget
+def run_with_look_ahead(
+    engine: EngineSolver, start: EngineState, end: float, ground: Callable[[Array], Array], level: Level, budget: Budget
 ) -> EngineRun:
     """As `run_adaptively`, without the steps of a part in which nothing comes near a largest value."""
-    result, place = begin_run(engine.model), Place(start)
-    scan = level.coarsened()
+    result, place = begin_run(engine.model), Checkpoint(start)
+    scan = level.coarsen()
     if not budget.allows(end, scan):
-        return result.terminated(Outcome.STEP_LIMIT, 0.0)
-    scanning = Engine(engine.model, scan.newton, scan.residual)
+        return result.terminate(Outcome.STEP_LIMIT, 0.0)
+    scanning = EngineSolver(engine.model, scan.newton, scan.residual)
     large_at = 0.0  # the last instant at which a look ahead found something large
 
-    def quiet(time: float) -> bool:
+    def is_quiet(time: float) -> bool:
         return time >= max(large_at, result.settled) + WAIT and not result.opened
 
     while True:
-        place = go_on(result, place, engine, end, ground, level, budget, pause=quiet)
+        place = continue_run(result, place, engine, end, ground, level, budget, pause=is_quiet)
         if result.outcome != Outcome.OK or place.time >= end * (1.0 - 1e-12):
             return result
-        ahead = _ahead_of(result, engine.model)
-        large = partial(_large, ahead, result)
-        reached = go_on(ahead, place, scanning, end, ground, scan, budget, pause=large)
+        ahead = _begin_scan(result, engine.model)
+        large = partial(_comes_near_largest, ahead, result)
+        reached = continue_run(ahead, place, scanning, end, ground, scan, budget, pause=large)
         if ahead.outcome == Outcome.STEP_LIMIT:
-            return result.terminated(Outcome.STEP_LIMIT, place.time)
+            return result.terminate(Outcome.STEP_LIMIT, place.time)
         if ahead.outcome == Outcome.OK and not large(reached.time):
-            result.looked_over = place.time
+            result.scanned_from = place.time
             return result
         large_at = reached.time
 
 
-def _ahead_of(result: EngineRun, model: EngineModel) -> EngineRun:
+def _begin_scan(result: EngineRun, model: EngineModel) -> EngineRun:
     """A run that starts with what is nearly as large as in `result`: what it changes came near that."""
     ahead = begin_run(model)
     ahead.peaks.value[:] = NEAR_FRACTION * result.peaks.value
@@ -80,7 +80,7 @@ def _ahead_of(result: EngineRun, model: EngineModel) -> EngineRun:
     return ahead
 
 
-def _large(ahead: EngineRun, result: EngineRun, time: float) -> bool:
+def _comes_near_largest(ahead: EngineRun, result: EngineRun, time: float) -> bool:
     """Whether a run ahead, at `time`, came near a largest value of `result`, or near the opening of a contact."""
     return bool(
         (ahead.peaks.value > NEAR_FRACTION * result.peaks.value).any()

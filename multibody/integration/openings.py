@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from multibody.integration.constant_step import Engine, Motion
+from multibody.integration.constant_step import EngineSolver, EngineMotion
 from multibody.models.impact import ImpactLaw
 from multibody.models.state import EngineState
 
@@ -49,7 +49,7 @@ class Event:
 class Openings:
     """Which contacts are open, and what happened to them."""
 
-    engine: Engine
+    engine: EngineSolver
     law: ImpactLaw
     penetration: float
     is_open: Mask = field(init=False)  # (K,)
@@ -57,19 +57,19 @@ class Openings:
     impacts: int = 0
 
     def __post_init__(self) -> None:
-        self._set_open(np.zeros(len(self.law.depressions.ring), bool))
+        self._mark_open(np.zeros(len(self.law.depressions.ring), bool))
 
-    def _set_open(self, is_open: Mask) -> None:
+    def _mark_open(self, is_open: Mask) -> None:
         self.is_open = is_open
-        set_open = self.engine.model.set_open
-        assert set_open is not None
-        set_open(is_open, self.penetration)
+        take_out_open_contacts = self.engine.model.take_out_open_contacts
+        assert take_out_open_contacts is not None
+        take_out_open_contacts(is_open, self.penetration)
 
     def gaps(self, coordinates: Array) -> Array:
         """Gap (T, K) of every contact for coordinates (T, n)."""
         return self.law.depressions.clearance(coordinates) - self.penetration
 
-    def with_gaps(self, motion: Motion) -> Motion:
+    def fill_gaps_of_open_contacts(self, motion: EngineMotion) -> EngineMotion:
         """`motion` with the gaps of open contacts, which the engine takes for whole hollow spheres."""
         if not self.is_open.any():
             return motion
@@ -77,7 +77,7 @@ class Openings:
         contact[:, 0::4][:, self.is_open] = np.maximum(self.gaps(motion.coordinates)[:, self.is_open], 0.0)
         return motion._replace(contact=contact)
 
-    def first_event(self, motion: Motion) -> Event | None:
+    def find_first_event(self, motion: EngineMotion) -> Event | None:
         """The first opening or closing in the rows of `motion` behind its first one."""
         opens = (motion.gap[1:] > OPENING_GAP * self.penetration) & ~self.is_open
         closes = np.zeros_like(opens)
@@ -91,18 +91,18 @@ class Openings:
         closing = bool(closes[row].any())
         return Event(row, closing, closes[row] if closing else opens[row])
 
-    def opened(self, event: Event) -> None:
+    def open_contacts(self, event: Event) -> None:
         """Take the contacts that have opened out of the engine."""
-        self._set_open(self.is_open | event.which)
+        self._mark_open(self.is_open | event.which)
 
-    def located(self, state: EngineState, time: float, step: float, event: Event) -> Motion | None:
+    def locate_event(self, state: EngineState, time: float, step: float, event: Event) -> EngineMotion | None:
         """
         The step from `state`, of length `step` or less, that ends where the first contact of the event opens or closes.
 
         None if it has no length.
         """
         sign = 1.0 if event.closes else -1.0
-        done: dict[float, Motion | None] = {}
+        done: dict[float, EngineMotion | None] = {}
         values: dict[float, float] = {}
 
         def margin(length: float) -> float:  # positive before the event
@@ -130,14 +130,14 @@ class Openings:
         margin(length)
         return done.get(length)
 
-    def touching(self, motion: Motion, which: Mask) -> Motion:
+    def close_contacts(self, motion: EngineMotion, which: Mask) -> EngineMotion:
         """`motion`, at whose end contacts touch that were open before."""
-        motion = self.with_gaps(motion)
+        motion = self.fill_gaps_of_open_contacts(motion)
         touched = which & (self.gaps(motion.coordinates[-1:])[0] <= GAP_TOLERANCE * self.penetration)
         motion.contact[-1, 0::4][touched] = -GAP_TOLERANCE * self.penetration
         return motion
 
-    def after_impact(self, state: EngineState, time: float, which: Mask) -> EngineState:
+    def apply_impact(self, state: EngineState, time: float, which: Mask) -> EngineState:
         """The state behind the impact of `which`, and of contacts that are hit at once with them."""
         gaps = self.gaps(state.coordinates[None])[0]
         leaving, relative = self.law.normal_speeds(state.coordinates, state.velocities)
@@ -152,16 +152,16 @@ class Openings:
         if -2.0 * relative[hit].min() > MAX_QUIET_FORCE * response:
             self.settled = time + max(SETTLING_TIME * response, IMPACT_TIME)
         if -leaving[hit].min() < MIN_IMPACT_SPEED:
-            self._set_open(self.is_open & ~hit)
-            velocities = self.law.with_spheres_along(state.coordinates, state.velocities, hit)
+            self._mark_open(self.is_open & ~hit)
+            velocities = self.law.carry_spheres_along(state.coordinates, state.velocities, hit)
             return replace(state, velocities=velocities, contact=contact)
-        velocities, is_open = self.law.after(state.coordinates, state.velocities, ~self.is_open & ~hit, hit)
-        self._set_open(is_open)
+        velocities, is_open = self.law.velocities_after(state.coordinates, state.velocities, ~self.is_open & ~hit, hit)
+        self._mark_open(is_open)
         self.impacts += 1
         bar_lags = self.engine.model.bar_lags
         assert bar_lags is not None
         lags = bar_lags(self.penetration)
-        coordinates = self.law.with_bars_at_rest(state.coordinates, state.velocities, velocities, lags)
+        coordinates = self.law.relax_bars(state.coordinates, state.velocities, velocities, lags)
         return replace(
             state, coordinates=coordinates, velocities=velocities, contact=contact, slip_rate=None, load=None
         )

@@ -17,11 +17,11 @@ from numpy.typing import NDArray
 
 from multibody.integration.adaptive import Budget, EngineRun
 from multibody.integration.candidate import Candidate
-from multibody.integration.level import COMPLIANCE_RATIO, Level, levels_of
+from multibody.integration.level import COMPLIANCE_RATIO, Level, plan_levels
 from multibody.integration.level_runs import UNFINISHED, LevelRuns
-from multibody.integration.look_ahead import longest_steps
+from multibody.integration.look_ahead import level_of_longest_steps
 from multibody.integration.one_run import PhasePair
-from multibody.integration.peak import Peaks
+from multibody.integration.peak import PeakReader
 from multibody.models.system import EngineModel
 from reference.problem import Outcome, Scene, State
 from reference.problem.ranges import Range
@@ -61,15 +61,15 @@ def refine(
     """
     Peaks of the absolute accelerations for one phase pair (2,), rad, with a relative error below `tolerance`.
 
-    levels: those of `levels_of` if None. keep: the motions of the last run and of `coarser`. whole: every run goes to
+    levels: those of `plan_levels` if None. keep: the motions of the last run and of `coarser`. whole: every run goes to
     the end of the motion, as it does where motions are kept. max_work: steps that all runs together may take.
     """
     pair = PhasePair(scene, model, phase, initial, whole)
     budget, whole = Budget(max_work), keep or whole
-    planned = levels_of(scene, model, tolerance) if levels is None else list(levels)
-    if not budget.allows(pair.end, longest_steps(model, planned[0], whole)):
-        no_run = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
-        return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
+    planned = plan_levels(scene, model, tolerance) if levels is None else list(levels)
+    if not budget.allows(pair.end, level_of_longest_steps(model, planned[0], whole)):
+        no_run = EngineRun(PeakReader(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
+        return _make_no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     done = LevelRuns(pair, tolerance, budget, planned, softens=levels is None, whole=whole, keep=keep)
     different = 0  # how many of the last levels with impacts were another motion
     candidate: Candidate | None = None
@@ -90,7 +90,7 @@ def refine(
                 earlier.chunks.clear()
         if run.outcome != Outcome.OK:
             break
-        candidate = done.candidate()
+        candidate = done.make_candidate()
         if done.runs[-1] is not run:  # springs of real bearings change the answer: none before holds
             complete = best = None
         if candidate is None:
@@ -100,47 +100,47 @@ def refine(
         if different == MAX_DIFFERENT_MOTIONS:
             break  # impacts take every level elsewhere: a further one would, too
         if candidate.may_meet(tolerance):
-            candidate = candidate.completed(pair, budget, keep)
+            candidate = candidate.add_compliance_error(pair, budget, keep)
         complete = candidate if candidate.is_complete else complete
         if candidate.meets(tolerance):
-            return _answer(model, candidate, Outcome.OK)
+            return _make_answer(model, candidate, Outcome.OK)
         rounding = candidate.level.rounding
         if (rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)).any():
             if candidate.shares_contact:
                 break  # hardly more than rounding is left, and no further level rounds less or shows how little it does
             if best is not None and best.relative_error <= candidate.relative_error:
-                return _answer(model, best, Outcome.TOLERANCE_NOT_MET)  # rounding takes over at this level
+                return _make_answer(model, best, Outcome.TOLERANCE_NOT_MET)  # rounding takes over at this level
         if candidate.is_complete and (best is None or candidate.relative_error < best.relative_error):
             best = candidate
     if candidate is not None:
-        candidate = candidate.completed(pair, budget, keep)
+        candidate = candidate.add_compliance_error(pair, budget, keep)
         if best is not None and candidate.rounds_more_than(best):
-            return _answer(model, best, Outcome.TOLERANCE_NOT_MET)
-        return _beyond_tolerance(pair, candidate, complete)
-    return _unfinished(pair, done.runs)
+            return _make_answer(model, best, Outcome.TOLERANCE_NOT_MET)
+        return _answer_beyond_tolerance(pair, candidate, complete)
+    return _refuse_unfinished(pair, done.runs)
 
 
-def _beyond_tolerance(pair: PhasePair, finest: Candidate, complete: Candidate | None) -> Refinement:
+def _answer_beyond_tolerance(pair: PhasePair, finest: Candidate, complete: Candidate | None) -> Refinement:
     """The finest answer, whose error misses the tolerance, or the last one whose error is known."""
     if np.isfinite(finest.errors).all():
-        return _answer(pair.model, finest, Outcome.TOLERANCE_NOT_MET)
+        return _make_answer(pair.model, finest, Outcome.TOLERANCE_NOT_MET)
     # the run that shows what the compliance leaves has no answer
     if complete is not None:
-        answer = _answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET)
+        answer = _make_answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET)
         return replace(answer, finest=finest.run, coarser=finest.coarser[:-1], floor=finest.floor)
     why = next((run.outcome for run, _ in finest.coarser if run.outcome in UNFINISHED), Outcome.SOLVER_FAILED)
-    return _no_answer(pair.model, finest.run, why, pair.scene.duration)
+    return _make_no_answer(pair.model, finest.run, why, pair.scene.duration)
 
 
-def _unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
+def _refuse_unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
     """No two levels agree, or both end alike: by how the first of the last two that has no answer ends."""
     failed = next((run for run in runs[:-3:-1] if run.outcome != Outcome.OK), None)
     if failed is None:  # one level has an answer, and no steps are left for another that shows its error
-        return _no_answer(pair.model, runs[-1], Outcome.STEP_LIMIT, pair.scene.duration)
-    return _no_answer(pair.model, failed, failed.outcome, failed.instant * pair.model.units.time)
+        return _make_no_answer(pair.model, runs[-1], Outcome.STEP_LIMIT, pair.scene.duration)
+    return _make_no_answer(pair.model, failed, failed.outcome, failed.instant * pair.model.units.time)
 
 
-def _answer(model: EngineModel, candidate: Candidate, outcome: Outcome) -> Refinement:
+def _make_answer(model: EngineModel, candidate: Candidate, outcome: Outcome) -> Refinement:
     """Peaks with their errors, and where the largest of them is if they miss the tolerance."""
     peaks, errors, unit = candidate.run.peaks, candidate.errors, model.units.acceleration
     worst = float(peaks.instant[(errors / peaks.value).argmax()]) * model.units.time
@@ -149,6 +149,6 @@ def _answer(model: EngineModel, candidate: Candidate, outcome: Outcome) -> Refin
     return replace(answered, coarser=candidate.coarser, floor=candidate.floor)
 
 
-def _no_answer(model: EngineModel, run: EngineRun, outcome: Outcome, instant: float) -> Refinement:
+def _make_no_answer(model: EngineModel, run: EngineRun, outcome: Outcome, instant: float) -> Refinement:
     nothing = np.full(len(model.bodies), np.nan)
     return Refinement(nothing, nothing, outcome, instant, run)

@@ -7,14 +7,14 @@ import math
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from multibody.integration.constant_step import Motion
+from multibody.integration.constant_step import EngineMotion
 from multibody.models.system import EngineModel
 from reference.measures.demands import squares_and_summits
 
 BISECTIONS = 50
 
 
-def travel_reached(motion: Motion, model: EngineModel) -> tuple[float, int]:
+def find_travel_end(motion: EngineMotion, model: EngineModel) -> tuple[float, int]:
     """When the displacement passes the travel, in units of time, infinite if never, and the last row before."""
     time, axes, limit = motion.time, model.bodies[0, :2], model.travel**2
     if model.travel == math.inf:

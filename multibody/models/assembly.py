@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from multibody.models.engine import reset_with
+from multibody.models.engine import reset_when_unused
 from multibody.models.plate import LOADINGS
 from multibody.models.spatial import spatial
 from multibody.models.system import EngineModel
@@ -16,7 +16,7 @@ from reference.problem.ranges import REGULARIZATION, checked_choice, checked_num
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
 
 
-def required_model(scene: Scene, model: str, full: bool) -> str:
+def choose_model(scene: Scene, model: str, full: bool) -> str:
     """The model that answers for `model`: a platform that does not tilt needs no rotations, unless `full`."""
     return "translational" if model == "spatial" and not full and untilted(scene).allowed else model
 
@@ -42,5 +42,5 @@ def assemble(
     built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **options)
     if scene.isolator.travel is not None:
         built = replace(built, travel=scene.isolator.travel / built.units.length)
-    reset_with(built.recorders, built.container)  # a copy of the model with other settings shares them
+    reset_when_unused(built.recorders, built.container)  # a copy of the model with other settings shares them
     return built

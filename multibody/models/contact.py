@@ -65,7 +65,7 @@ def viscous_relaxation(scene: Scene, units: Units) -> float:
     return float(scene.masses[0]) / scene.total_mass / friction if friction > 0.0 else math.inf
 
 
-def platform_on_sphere(
+def place_on_sphere(
     offset: Array, speed: Array, ground: Array, penetration: float
 ) -> tuple[Array, Array, float, float]:
     """
@@ -84,7 +84,7 @@ def platform_on_sphere(
     return place, np.array([*speed, vertical]), -pressed, slip
 
 
-def settled_contact(state: EngineState, gap_rate: float, penetration: float, normal: list[float]) -> EngineState:
+def settle_contact(state: EngineState, gap_rate: float, penetration: float, normal: list[float]) -> EngineState:
     """
     The same state with the same contact force, carried by the gap alone and not by a leftover of normal velocity.
 

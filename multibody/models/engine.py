@@ -21,6 +21,6 @@ items: Any = import_module("exudyn.itemInterface")
 symbolic_function: Any = import_module("exudyn.advancedUtilities").CreateSymbolicUserFunction
 
 
-def reset_with(owner: Any, container: Any) -> None:
+def reset_when_unused(owner: Any, container: Any) -> None:
     """Reset the system container when `owner` is no longer used: until then the engine keeps its memory allocated."""
     weakref.finalize(owner, container.Reset).atexit = False

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import orth
 
-from multibody.models.depressions import Depressions, angular_velocity_matrix, rotation
+from multibody.models.depressions import Depressions, angular_velocity_matrix, rotation_matrices
 from reference.problem import DryFriction
 
 Array = NDArray[np.float64]
@@ -41,14 +41,14 @@ class ImpactLaw:
     corner: float  # slip speed under which the coefficient is reduced linearly
     rigid: Mask  # (N - 1,), links that are rigid in tension and bending
 
-    def after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
+    def velocities_after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
         """Velocities (n,) after an impact, and which contacts (K,) are open then, from those closed and those hit."""
         count = PER_BODY * len(self.masses)
-        turning = self._turning(coordinates)
+        turning = self._velocity_matrix(coordinates)
         speeds = turning @ velocities[:count]
-        normals, jacobian = self.depressions.motion_at_contacts(coordinates)
+        normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         struck = np.flatnonzero(closed | hit)
-        axes = _in_contact_axes(normals[struck])
+        axes = _contact_axes(normals[struck])
         rows = np.zeros((len(struck), 3, count))
         rows[:, :, :PER_BODY] = axes @ jacobian[struck]
         before = rows @ speeds
@@ -57,31 +57,31 @@ class ImpactLaw:
             # a sphere that springs up is too light to push the platform
             upward[hit[struck]] = np.minimum(upward[hit[struck]], 0.0)
             before -= axes[:, :, 2] * upward[:, None]
-        response = self._response(coordinates)
+        response = self._impulse_response(coordinates)
         flat = rows.reshape(-1, count)
         delassus = flat @ response @ flat.T
         rebound = np.where(hit[struck], -self.restitution * np.minimum(before[:, 0], 0.0), 0.0)
-        impulses = self._impulses(delassus, before, rebound)
+        impulses = self._solve_impulses(delassus, before, rebound)
         after = speeds + response @ flat.T @ impulses.ravel()
         normal_speed = before[:, 0] + (delassus @ impulses.ravel()).reshape(-1, 3)[:, 0]
         is_open = ~(closed | hit)
         is_open[struck] = normal_speed > OPENING_SPEED
         changed = velocities.copy()
         changed[:count] = np.linalg.solve(turning, after)
-        return self.with_spheres_along(coordinates, changed, hit & ~is_open), is_open
+        return self.carry_spheres_along(coordinates, changed, hit & ~is_open), is_open
 
-    def with_spheres_along(self, coordinates: Array, velocities: Array, hit: Mask) -> Array:
+    def carry_spheres_along(self, coordinates: Array, velocities: Array, hit: Mask) -> Array:
         """Velocities (n,) with those of the spheres that the platform hits, (K,), which are light and follow it."""
         vertical = self.depressions.vertical
         if not len(vertical):
             return velocities
-        normals, _ = self.depressions.motion_at_contacts(coordinates)
+        normals, _ = self.depressions.contact_normals_and_jacobian(coordinates)
         _, leaving = self.normal_speeds(coordinates, velocities)
         followed = velocities.copy()
         followed[vertical[hit]] += (leaving / normals[:, 2])[hit]
         return followed
 
-    def with_bars_at_rest(self, coordinates: Array, before: Array, after: Array, lags: Array) -> Array:
+    def relax_bars(self, coordinates: Array, before: Array, after: Array, lags: Array) -> Array:
         """
         Coordinates (n,) behind an impact that changed velocities (n,), at which no bar pushes for its damper's sake.
 
@@ -90,8 +90,8 @@ class ImpactLaw:
         damping over stiffness along the bars.
         """
         count = PER_BODY * len(self.masses)
-        turned = rotation(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
-        jump = (self._turning(coordinates) @ (after - before)[:count]).reshape(-1, 2, 3)
+        turned = rotation_matrices(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
+        jump = (self._velocity_matrix(coordinates) @ (after - before)[:count]).reshape(-1, 2, 3)
         shifted = coordinates.copy()
         for link, lag in enumerate(lags):
             along, levers = turned[link][:, 2], self._levers(link, turned)
@@ -102,8 +102,8 @@ class ImpactLaw:
 
     def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
         """Speeds (K,) at which the platform leaves spheres that hold still or give way, and spheres as they move."""
-        platform = (self._turning(coordinates) @ velocities[: PER_BODY * len(self.masses)])[:PER_BODY]
-        normals, jacobian = self.depressions.motion_at_contacts(coordinates)
+        platform = (self._velocity_matrix(coordinates) @ velocities[: PER_BODY * len(self.masses)])[:PER_BODY]
+        normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         leaving: Array = np.einsum("ki,kij,j->k", normals, jacobian, platform)
         if not len(self.depressions.vertical):
             return leaving, leaving
@@ -112,10 +112,10 @@ class ImpactLaw:
 
     def gap_rates(self, coordinates: Array) -> Array:
         """Rates (K, n) of the gaps over the engine's velocities, at coordinates (n,)."""
-        normals, jacobian = self.depressions.motion_at_contacts(coordinates)
+        normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         rates = np.zeros((len(normals), len(coordinates)))
         rates[:, :PER_BODY] = np.einsum("ki,kij->kj", normals, jacobian)
-        rates[:, :PER_BODY] = rates[:, :PER_BODY] @ self._turning(coordinates)[:PER_BODY, :PER_BODY]
+        rates[:, :PER_BODY] = rates[:, :PER_BODY] @ self._velocity_matrix(coordinates)[:PER_BODY, :PER_BODY]
         if len(self.depressions.vertical):
             rates[np.arange(len(normals)), self.depressions.vertical] = -normals[:, 2]
         return rates
@@ -125,11 +125,11 @@ class ImpactLaw:
         count = PER_BODY * len(self.masses)
         ring = self.depressions.ring[closed]
         heave_and_tilt = orth(np.column_stack([np.ones(len(ring)), ring])).T if len(ring) else np.empty((0, 0))
-        turned = rotation(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
-        bars = self._bars(coordinates, turned) @ self._turning(coordinates)
+        turned = rotation_matrices(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
+        bars = self._bar_rates(coordinates, turned) @ self._velocity_matrix(coordinates)
         return np.vstack([heave_and_tilt @ self.gap_rates(coordinates)[closed, :count], bars])
 
-    def _turning(self, coordinates: Array) -> Array:
+    def _velocity_matrix(self, coordinates: Array) -> Array:
         """Matrix (6 N, 6 N) that makes velocities and angular velocities of the bodies of the engine's velocities."""
         count = PER_BODY * len(self.masses)
         turning = np.eye(count)
@@ -138,24 +138,24 @@ class ImpactLaw:
             turning[angles, angles] = angular_velocity_matrix(coordinates[angles])
         return turning
 
-    def _response(self, coordinates: Array) -> Array:
+    def _impulse_response(self, coordinates: Array) -> Array:
         """Change of the velocities over an impulse on them, (6 N, 6 N), with bars that do not stretch or bend."""
         count = PER_BODY * len(self.masses)
         inverse = np.zeros((count, count))
-        turned = rotation(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
+        turned = rotation_matrices(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
         for body, (mass, inertia, axes) in enumerate(zip(self.masses, self.inertias, turned @ self.axes)):
             place = slice(PER_BODY * body, PER_BODY * body + 3)
             angles = slice(PER_BODY * body + 3, PER_BODY * (body + 1))
             inverse[place, place] = np.eye(3) / mass
             inverse[angles, angles] = axes / inertia @ axes.T
-        bars = self._bars(coordinates, turned)
+        bars = self._bar_rates(coordinates, turned)
         if not len(bars):
             return inverse
         held = inverse @ bars.T
         response: Array = inverse - held @ np.linalg.solve(bars @ held, held.T)
         return response
 
-    def _bars(self, coordinates: Array, turned: Array) -> Array:
+    def _bar_rates(self, coordinates: Array, turned: Array) -> Array:
         """Rates of stretching and bending of the rigid links over the velocities of the bodies, three rows of each."""
         count = len(self.masses)
         rows = np.zeros((3 * (count - 1), PER_BODY * count))
@@ -182,7 +182,7 @@ class ImpactLaw:
         half = 0.5 * (above[2] - below[2])
         return turned[link] @ [-below[0], -below[1], half], turned[link + 1] @ [-above[0], -above[1], -half]
 
-    def _impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
+    def _solve_impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
         """Impulses (K, 3), along the normal and across it, by sweeps; rebound: least normal speed afterwards."""
         impulses = np.zeros_like(before)
         scale = float(np.abs(before).max(initial=0.0))
@@ -207,7 +207,7 @@ class ImpactLaw:
         return impulses
 
 
-def _in_contact_axes(normals: Array) -> Array:
+def _contact_axes(normals: Array) -> Array:
     """Matrices (K, 3, 3) whose rows are the normals (K, 3) and two directions across each."""
     helper = np.where(np.abs(normals[:, :1]) < 0.5, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
     first = np.cross(normals, helper)

@@ -82,17 +82,17 @@ def add_links(
         neighbors, places = bodies[number : number + 2], centers[number : number + 2]
         connector = add_link(mbs, neighbors, places, damper)
         if bars is None:
-            twist = _twist(scene, number, units, shear, square_distance)
+            twist = _twist_stiffness(scene, number, units, shear, square_distance)
             links.append(Link(connector, carried, shear, twist))
             continue
-        own = _in_units(bars, units)
+        own = _bars_in_units(bars, units)
         lag = float(np.trace(damper) / np.trace(shear))
         _set_bars(mbs, connector, neighbors, places, carried, own, lag)
         links.append(Link(connector, carried, own.shear * np.eye(2), own.torsion, own))
     return links
 
 
-def _twist(scene: Scene, number: int, units: Units, shear: Array, square_distance: float) -> float:
+def _twist_stiffness(scene: Scene, number: int, units: Units, shear: Array, square_distance: float) -> float:
     """Stiffness against twist of a link that is stiff otherwise, of bars that stand where the supports do."""
     bars, swaying = scene.bodies[number + 1].bars, float(np.diag(shear).mean())
     if bars is None:
@@ -102,7 +102,7 @@ def _twist(scene: Scene, number: int, units: Units, shear: Array, square_distanc
     return square_spread * swaying + torsion / (units.force * units.length)
 
 
-def _in_units(bars: BarLink, units: Units) -> BarLink:
+def _bars_in_units(bars: BarLink, units: Units) -> BarLink:
     force, moment = units.force / units.length, units.force * units.length
     return replace(
         bars,
@@ -121,7 +121,7 @@ def add_link(mbs: Any, bodies: list[Any], centers: Array, damping: Array) -> Any
     for value, direction in zip(values, directions.T):
         add_damper(mbs, bodies, centers, np.append(direction, 0.0), value)
     connector = items.ObjectConnectorRigidBodySpringDamper(
-        markerNumbers=_ends(mbs, bodies, centers, np.zeros(3), 0.0), useIntrinsicFormulation=True
+        markerNumbers=_add_end_markers(mbs, bodies, centers, np.zeros(3), 0.0), useIntrinsicFormulation=True
     )
     return mbs.AddObject(connector)
 
@@ -130,7 +130,7 @@ def add_damper(mbs: Any, bodies: list[Any], centers: Array, direction: Array, da
     """A damper along a `direction` (3,) between the ends of a link."""
     if damping <= 0.0:
         return
-    forth, back = (_ends(mbs, bodies, centers, sign * ROD * direction, 0.5) for sign in (1.0, -1.0))
+    forth, back = (_add_end_markers(mbs, bodies, centers, sign * ROD * direction, 0.5) for sign in (1.0, -1.0))
     for ends in (forth, back):
         rod = items.ObjectConnectorSpringDamper(markerNumbers=ends, referenceLength=ROD, damping=0.5 * damping)
         mbs.AddObject(rod)
@@ -145,7 +145,7 @@ def add_damper(mbs: Any, bodies: list[Any], centers: Array, direction: Array, da
     mbs.AddObject(rope)
 
 
-def _ends(mbs: Any, bodies: list[Any], centers: Array, rod: Array, below: float) -> list[Any]:
+def _add_end_markers(mbs: Any, bodies: list[Any], centers: Array, rod: Array, below: float) -> list[Any]:
     """Markers on two neighbors at the ends of a rod (3,), of which this share lies below half-way up on the axis."""
     half = 0.5 * (centers[1, 2] - centers[0, 2]) * np.array([0.0, 0.0, 1.0])
     axis = [[-center[0], -center[1], 0.0] for center in centers]
@@ -186,7 +186,7 @@ def _set_bars(
     if bars.pendulum:
         stiffness[2] = offset[2] = 0.0
         rod = items.ObjectConnectorSpringDamper(
-            markerNumbers=_ends(mbs, bodies, centers, np.array([0.0, 0.0, bars.pendulum]), 0.5),
+            markerNumbers=_add_end_markers(mbs, bodies, centers, np.array([0.0, 0.0, bars.pendulum]), 0.5),
             referenceLength=bars.pendulum + bars.load / bars.tension,
             stiffness=bars.tension,
             damping=lag * bars.tension,
@@ -199,7 +199,7 @@ def _set_bars(
     mbs.SetObjectParameter(connector, "offset", offset)
 
 
-def fastest_of_bars(links: list[Link], masses: Array, tensors: Array, centers: Array) -> float:
+def fastest_bar_frequency(links: list[Link], masses: Array, tensors: Array, centers: Array) -> float:
     """Largest angular frequency that bars which give way make of bodies held by nothing else; 0 without bars."""
     if all(link.bars is None for link in links):
         return 0.0

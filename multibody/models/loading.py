@@ -45,7 +45,7 @@ class SymbolicGround:
         """Whether the plate is accelerated along `axis`."""
         return bool(self.amplitudes[axis].any())
 
-    def along(self, axis: int, time: Any) -> Any:
+    def acceleration_along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`."""
         terms = [  # no term that changes nothing: the engine evaluates all of them in every iteration
             (amplitude if exponent.real == 0.0 else amplitude * exudyn.symbolic.exp(exponent.real * time))
@@ -59,19 +59,19 @@ class SymbolicGround:
 Ground = SymbolicGround | RecordedGround
 
 
-def ground_of(mbs: Any, scene: Scene, units: Units) -> Ground:
+def make_ground(mbs: Any, scene: Scene, units: Units) -> Ground:
     """The loading of the scene as the engine's."""
     return RecordedGround(mbs, scene, units) if scene.recorded else SymbolicGround(scene, units)
 
 
-def symbolic_load(mbs: Any, load: Any, parameter: str, function: Callable[..., Any]) -> Any:
+def attach_symbolic_load(mbs: Any, load: Any, parameter: str, function: Callable[..., Any]) -> Any:
     """Give `load` the user function as a recorded expression, which the caller keeps alive as long as the system."""
     expression = symbolic_function(mbs, function, parameter, load)
     mbs.SetLoadParameter(load, parameter, expression)
     return expression
 
 
-def load_on_coordinate(mbs: Any, node: Any, coordinate: int, load: float = 0.0) -> Any:
+def add_coordinate_load(mbs: Any, node: Any, coordinate: int, load: float = 0.0) -> Any:
     """A constant load on a coordinate of a node; an expression may take its place."""
     marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=coordinate))
     return mbs.AddLoad(items.LoadCoordinate(markerNumber=marker, load=load))
@@ -86,15 +86,15 @@ class Push(NamedTuple):
     axis: int  # of the acceleration
 
 
-def push(mbs: Any, ground: Ground, pushes: Iterable[Push]) -> list[Any]:
+def push_coordinates(mbs: Any, ground: Ground, pushes: Iterable[Push]) -> list[Any]:
     """-m times the plate's acceleration on every coordinate, faster than forces on bodies. Returns the expressions."""
 
     def force(mass: float, axis: int) -> Any:
-        return lambda mbs, t, load: -mass * ground.along(axis, t)
+        return lambda mbs, t, load: -mass * ground.acceleration_along(axis, t)
 
     expressions = []
     for node, coordinate, mass, axis in pushes:
         if ground.shakes(axis):
-            load = load_on_coordinate(mbs, node, coordinate)
-            expressions.append(symbolic_load(mbs, load, "loadUserFunction", force(mass, axis)))
+            load = add_coordinate_load(mbs, node, coordinate)
+            expressions.append(attach_symbolic_load(mbs, load, "loadUserFunction", force(mass, axis)))
     return expressions

@@ -23,7 +23,7 @@ MIN_EXTENT = 1e4  # of the triangle, in units of length: its normal is known to 
 EXTENT_MARGIN = 2.0  # times the way that the loading and the start alone may take the platform
 
 
-def plane_contact(
+def make_plane_contact(
     sphere: Any, plane: Any, node: Any, radius: float, height: float, friction: float, threshold: float
 ) -> Any:
     """The contact of a sphere with the plane at `height` above the marker `plane`."""
@@ -31,7 +31,7 @@ def plane_contact(
         markerNumbers=[sphere, plane],
         nodeNumber=node,
         sphereRadius=radius,
-        trianglePoints=_triangle(MIN_EXTENT, height),
+        trianglePoints=_make_triangle(MIN_EXTENT, height),
         includeEdges=0,
         dynamicFriction=friction,
         frictionProportionalZone=threshold,
@@ -40,26 +40,24 @@ def plane_contact(
 
 def set_extent(mbs: Any, contact: Any, way: float, height: float) -> None:
     """Make the triangle at `height` large enough for a platform that goes `way`, in units of length."""
-    mbs.SetObjectParameter(contact, "trianglePoints", _triangle(max(MIN_EXTENT, EXTENT_MARGIN * way), height))
+    mbs.SetObjectParameter(contact, "trianglePoints", _make_triangle(max(MIN_EXTENT, EXTENT_MARGIN * way), height))
 
 
-def farthest(scene: Scene, units: Units, coordinates: Array, velocities: Array) -> float:
+def bound_distance(scene: Scene, units: Units, coordinates: Array, velocities: Array) -> float:
     """How far the start and the loading alone may take a body, in units of length."""
     end = scene.duration / units.time
     loading = 2.0 * scene.largest_acceleration / units.acceleration
     return float(np.abs(coordinates).max() + np.abs(velocities).max() * end + loading * end**2)
 
 
-def platform_on_plane(
-    offset: Array, speed: Array, ground: Array, penetration: float
-) -> tuple[Array, Array, float, float]:
+def place_on_plane(offset: Array, speed: Array, ground: Array, penetration: float) -> tuple[Array, Array, float, float]:
     """As `contact.platform_on_sphere`."""
     pressed = penetration * float(1.0 + ground[2])
     place = np.array([*offset, penetration - pressed])
     return place, np.array([*speed, 0.0]), -pressed, float(np.hypot(*speed))
 
 
-def _triangle(extent: float, height: float) -> Any:
+def _make_triangle(extent: float, height: float) -> Any:
     """A triangle whose center is above the origin."""
     points = [[-extent, -extent, height], [2.0 * extent, -extent, height], [-extent, 2.0 * extent, height]]
     return exudyn.Vector3DList(points)

@@ -2,7 +2,7 @@
 Where the loading acts: as inertial forces in the plate's frame, or as the motion of a plate that carries the supports.
 
 The moving plate is a rigid body far heavier than all others together. Its own mass times the loading's acceleration
-pushes it. Its coordinates are the system's last. `Engine` returns motion relative to it.
+pushes it. Its coordinates are the system's last. `EngineSolver` returns motion relative to it.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from multibody.models.engine import items
-from multibody.models.loading import Ground, symbolic_load
+from multibody.models.loading import Ground, attach_symbolic_load
 
 LOADINGS = ("inertial", "plate")
 PLATE_MASS_RATIO = 1e6  # mass of the plate over that of all bodies: they move it by a millionth of what it moves them
@@ -31,7 +31,7 @@ class Plate:
     expressions: tuple[Any, ...] = ()  # of its load, which the engine does not own
 
 
-def plate_for(mbs: Any, loading: str, ground: Ground) -> Plate:
+def add_plate(mbs: Any, loading: str, ground: Ground) -> Plate:
     """Add the plate, after all other coordinates, at the origin."""
     if loading == "inertial":
         return Plate(mbs.AddObject(items.ObjectGround()), moves=False)
@@ -41,14 +41,14 @@ def plate_for(mbs: Any, loading: str, ground: Ground) -> Plate:
     )
 
     def drive(mbs: Any, t: Any, loadVector: Any) -> list[Any]:
-        return [PLATE_MASS_RATIO * ground.along(axis, t) for axis in range(3)]
+        return [PLATE_MASS_RATIO * ground.acceleration_along(axis, t) for axis in range(3)]
 
     center = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
     load = mbs.AddLoad(items.LoadForceVector(markerNumber=center, loadVector=[0.0, 0.0, 0.0]))
-    return Plate(body, True, node, (symbolic_load(mbs, load, "loadVectorUserFunction", drive),))
+    return Plate(body, True, node, (attach_symbolic_load(mbs, load, "loadVectorUserFunction", drive),))
 
 
-def carried_along(carried: np.ndarray[Any, Any], count: int) -> np.ndarray[Any, Any]:
+def carrying_axes(carried: np.ndarray[Any, Any], count: int) -> np.ndarray[Any, Any]:
     """Which direction of the plate each of `count` coordinates goes along with, (count,); 3: none."""
     axes = np.full(count, 3)
     axes[carried] = np.arange(3)

@@ -44,22 +44,22 @@ class RecordedGround:
     def begin(self, time: float) -> None:
         """Make ready for a run that begins at this instant."""
         self._interval = -1
-        self._enter(int(np.searchsorted(self._time, time + self.near, side="right")))
+        self._enter_interval(int(np.searchsorted(self._time, time + self.near, side="right")))
 
     def shakes(self, axis: int) -> bool:
         """Whether the plate is accelerated along `axis`."""
         return bool(self._samples[:, axis].any())
 
-    def along(self, axis: int, time: Any) -> Any:
+    def acceleration_along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`, inside the step being made."""
         return self._value[axis] + self._rate[axis] * (time - self._origin)
 
     def before_step(self, mbs: Any, end: float) -> bool:
         """Enter the interval of the step that ends at this instant."""
-        self._enter(int(np.searchsorted(self._time, end - self.near)))
+        self._enter_interval(int(np.searchsorted(self._time, end - self.near)))
         return True
 
-    def _enter(self, interval: int) -> None:
+    def _enter_interval(self, interval: int) -> None:
         """Interval k lies between knots k - 1 and k; 0 before the first knot, where the first sample holds."""
         if interval == self._interval:
             return

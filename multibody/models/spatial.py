@@ -33,16 +33,16 @@ from multibody.models.contact import (
     FORCE_ROUNDING,
     contact_law,
     corner_and_relaxation,
-    platform_on_sphere,
+    place_on_sphere,
     set_contact_parameters,
 )
-from multibody.models.depressions import Depressions, FlatUnderside, rotation
+from multibody.models.depressions import Depressions, FlatUnderside, rotation_matrices
 from multibody.models.engine import exudyn, items
 from multibody.models.impact import ImpactLaw
-from multibody.models.links import PER_BODY, Link, add_links, fastest_of_bars
-from multibody.models.loading import Push, ground_of, load_on_coordinate, push
-from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
-from multibody.models.plate import plate_for
+from multibody.models.links import PER_BODY, Link, add_links, fastest_bar_frequency
+from multibody.models.loading import Push, make_ground, add_coordinate_load, push_coordinates
+from multibody.models.plane import bound_distance, make_plane_contact, place_on_plane, set_extent
+from multibody.models.plate import add_plate
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.state import EngineState
@@ -50,9 +50,9 @@ from multibody.models.supports import (
     DETERMINATE,
     MIN_WARPING_COMPLIANCE,
     Supports,
-    fixed_supports,
-    sharing_supports,
-    sphere_nodes,
+    add_fixed_supports,
+    add_sharing_supports,
+    add_sphere_nodes,
 )
 from multibody.models.system import EngineModel
 from multibody.models.units import Units, link_damping, link_stiffness, units_of
@@ -71,11 +71,11 @@ def spatial(
     units = units_of(scene)
     ring, radius, centers, sizes = _geometry(scene, units)
     masses = scene.masses / units.mass
-    inertias, axes = _inertias(masses, sizes), rotation(scene.yaws[:, None] * [0.0, 0.0, 1.0])
+    inertias, axes = _inertias(masses, sizes), rotation_matrices(scene.yaws[:, None] * [0.0, 0.0, 1.0])
     distances = np.hypot(*ring.T) if isinstance(scene.isolator.supports, list) else np.hypot(*ring[:1].T)
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
-    nodes, bodies = _boxes(mbs, masses, centers, inertias, axes)
+    nodes, bodies = _add_boxes(mbs, masses, centers, inertias, axes)
     along = axes[1:, :2, :2]  # of every link
     shear, damping = (
         along @ (values[:, :, None] * along.swapaxes(1, 2))
@@ -83,21 +83,21 @@ def spatial(
     )
     square_distance = float((distances**2).mean())
     links = add_links(mbs, scene, units, bodies, masses, centers, shear, damping, square_distance)
-    ground = ground_of(mbs, scene, units)
+    ground = make_ground(mbs, scene, units)
     bearings = scene.isolator.support_stiffness
     bearing_penetration = 0.0 if bearings is None else units.force / (len(ring) * bearings * units.length)
     shared = not bearing_penetration and len(ring) > DETERMINATE
-    spheres = sphere_nodes(mbs, ring, loading == "plate") if shared else []
-    plate = plate_for(mbs, loading, ground)
-    supports = sharing_supports(mbs, plate, ring, spheres) if shared else fixed_supports(mbs, plate, ring)
+    spheres = add_sphere_nodes(mbs, ring, loading == "plate") if shared else []
+    plate = add_plate(mbs, loading, ground)
+    supports = add_sharing_supports(mbs, plate, ring, spheres) if shared else add_fixed_supports(mbs, plate, ring)
     friction, threshold = contact_law(scene, regularization, units)
     depressions = np.column_stack([ring, np.zeros(len(ring))]) - centers[0]
-    contacts, contact_nodes = _contacts(
+    contacts, contact_nodes = _add_contacts(
         mbs, supports.markers, bodies[0], depressions, radius, friction, threshold, scene.flat
     )
-    _weights(mbs, nodes, masses)
+    _add_weights(mbs, nodes, masses)
     pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
-    expressions = [*plate.expressions] if plate.moves else push(mbs, ground, pushed)
+    expressions = [*plate.expressions] if plate.moves else push_coordinates(mbs, ground, pushed)
     forces = contacts if contact_force or scene.dry_friction.by_load else []
     recorders = add_recorders(mbs, [*nodes, *supports.nodes], supports.springs, contact_nodes, forces, plate.node)
     mbs.Assemble()
@@ -105,7 +105,7 @@ def spatial(
     index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
     constant = scene.dry_friction.constant
     varying = None if constant else SpeedFriction(mbs, scene, units, threshold, contacts, ground)
-    parts = _Parts(scene, mbs, units, index, contacts, links, supports, radius, bearing_penetration)
+    parts = _SpatialSystem(scene, mbs, units, index, contacts, links, supports, radius, bearing_penetration)
     vertical = parts.body_coordinates + supports.vertical
     under_platform = (FlatUnderside if scene.flat else Depressions)(ring, centers[0], radius, vertical)
     restitution = scene.isolator.restitution or 0.0
@@ -138,15 +138,15 @@ def spatial(
         critical_tilt=_critical_tilt(ring, radius, masses, centers),
         impact=None if bearing_penetration else impact_law,
         bar_lags=parts.bar_lags,
-        set_open=parts.set_open,
+        take_out_open_contacts=parts.take_out_open_contacts,
         friction=varying,
         rim=np.inf if scene.flat else 1.0,
-        fastest_of_bars=fastest_of_bars(links, masses, tensors, centers),
+        fastest_bar_frequency=fastest_bar_frequency(links, masses, tensors, centers),
     )
 
 
 @dataclass(frozen=True)
-class _Parts:
+class _SpatialSystem:
     """What can be set in the assembled system, and how it starts; in units of the model."""
 
     scene: Scene
@@ -166,7 +166,7 @@ class _Parts:
 
     def set_contact(self, penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
         """See `EngineModel`."""
-        self._press(penetration)
+        self._set_penetration(penetration)
         self.supports.set_stiffness(penetration, warping_compliance)
         for link in self.links:
             link.set_stiffness(self.mbs, penetration)
@@ -175,14 +175,14 @@ class _Parts:
         """See `EngineModel`."""
         return np.array([link.lag(penetration) for link in self.links])
 
-    def set_open(self, is_open: NDArray[np.bool_], penetration: float) -> None:
+    def take_out_open_contacts(self, is_open: NDArray[np.bool_], penetration: float) -> None:
         """See `EngineModel`."""
-        self._press(penetration)
+        self._set_penetration(penetration)
         for contact in compress(self.contacts, is_open):
             self.mbs.SetObjectParameter(contact, "contactStiffness", 0.0)
             self.mbs.SetObjectParameter(contact, "contactDamping", 0.0)
 
-    def _press(self, penetration: float) -> None:
+    def _set_penetration(self, penetration: float) -> None:
         """Stiffness, damping and radii of all contacts, for their penetration under the weight."""
         pressed = self.bearing_penetration or penetration
         radii = self.radius + pressed if self.scene.flat else [self.radius + pressed, self.radius + 1.0]
@@ -201,10 +201,10 @@ class _Parts:
         plate_acceleration = ground_acceleration / units.acceleration
         pressed = self.bearing_penetration or penetration
         if self.scene.flat:
-            way = farthest(self.scene, units, coordinates, velocities)
+            way = bound_distance(self.scene, units, coordinates, velocities)
             for contact in self.contacts:
                 set_extent(self.mbs, contact, way, 1.0 + self.radius)
-        on_surface = platform_on_plane if self.scene.flat else platform_on_sphere
+        on_surface = place_on_plane if self.scene.flat else place_on_sphere
         place, velocity, gap, slip = on_surface(coordinates[:2], velocities[:2], plate_acceleration, pressed)
         coordinates[:3], velocities[:3] = place, velocity
         coordinates[index[1:, 2]], velocities[index[1:, 2]] = place[2], velocity[2]
@@ -228,7 +228,7 @@ class _Parts:
         return largest
 
 
-def _boxes(mbs: Any, masses: Array, centers: Array, inertias: Array, axes: Array) -> tuple[list[Any], list[Any]]:
+def _add_boxes(mbs: Any, masses: Array, centers: Array, inertias: Array, axes: Array) -> tuple[list[Any], list[Any]]:
     """Nodes and bodies with moments of inertia (N, 3) about `axes` (N, 3, 3), columns."""
     nodes, bodies = [], []
     for mass, center, tensor in zip(masses, centers, (axes * inertias[:, None, :]) @ axes.swapaxes(1, 2)):
@@ -252,7 +252,7 @@ def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) ->
     return float(np.arctan2(inside, center[2] - (1.0 + radius)))
 
 
-def _contacts(
+def _add_contacts(
     mbs: Any,
     supports: list[Any],
     platform: Any,
@@ -268,7 +268,7 @@ def _contacts(
         nodes.append(mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4)))
         depression = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=platform, localPosition=[*place]))
         if flat:
-            contact = plane_contact(support, depression, nodes[-1], radius, 1.0 + radius, friction, threshold)
+            contact = make_plane_contact(support, depression, nodes[-1], radius, 1.0 + radius, friction, threshold)
             contacts.append(mbs.AddObject(contact))
             continue
         contact = items.ObjectContactSphereSphere(
@@ -283,9 +283,9 @@ def _contacts(
     return contacts, nodes
 
 
-def _weights(mbs: Any, nodes: list[Any], masses: Array) -> None:
+def _add_weights(mbs: Any, nodes: list[Any], masses: Array) -> None:
     for mass, node in zip(masses, nodes):
-        load_on_coordinate(mbs, node, 2, -float(mass))
+        add_coordinate_load(mbs, node, 2, -float(mass))
 
 
 def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:

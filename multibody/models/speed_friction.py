@@ -42,7 +42,7 @@ class SpeedFriction:
             self._heat = SurfaceHeat(law.heat, len(contacts), scene.duration, units.time, units.length)
             self._factor = np.ones(len(contacts))  # that heat leaves of the coefficients
             self._watt = scene.total_mass * GRAVITY * units.velocity / len(contacts)
-        self._contacts, self._ground, self._threshold = contacts, ground, threshold
+        self._add_contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
         self._slip = self._rate = self._load_rate = [0.0] * len(contacts)  # at the start of the step
         self._load = [1.0] * len(contacts)  # over the shares of the weight
@@ -51,16 +51,20 @@ class SpeedFriction:
 
     def begin(self, mbs: Any, state: EngineState, time: float) -> None:
         """Make ready for a run from `state` at this instant."""
-        nothing = [0.0] * len(self._contacts)
+        nothing = [0.0] * len(self._add_contacts)
         self._slip = state.contact[SLIP::DATA_PER_CONTACT].tolist()
         self._rate = nothing if state.slip_rate is None else state.slip_rate.tolist()
         self._load = [1.0] * len(nothing) if state.load is None else state.load.tolist()
         self._load_rate = nothing if state.load is None or state.load_rate is None else state.load_rate.tolist()
         self._start = self._end = time
         if self._heat is not None and not self._heat.begin(time):
-            self._set(mbs, 0.0)  # k_T there
-            self._heat.step_to(time, self._power(self._cold(0.0), 0.0), math.hypot(*state.coordinates[:2]))
-        self._set(mbs, 0.0)
+            self._set_coefficients(mbs, 0.0)  # k_T there
+            self._heat.step_to(
+                time,
+                self._friction_power(self._coefficients_without_heat(0.0), 0.0),
+                math.hypot(*state.coordinates[:2]),
+            )
+        self._set_coefficients(mbs, 0.0)
 
     def feedback(self, slip: Array) -> Array:
         """Rate at which a change of the coefficients acts back on slip speeds (T, K), the largest of the contacts."""
@@ -76,36 +80,38 @@ class SpeedFriction:
             span = self._end - self._start
             self._rate = [(new - old) / span for new, old in zip(slip, self._slip, strict=True)]
             if self.law.by_load:
-                load = self._loads(mbs)
+                load = self._read_loads(mbs)
                 self._load_rate = [(new - old) / span for new, old in zip(load, self._load, strict=True)]
                 self._load = load
             self._slip, self._start = slip, self._end
             if self._heat is not None:
                 place = mbs.systemData.GetODE2Coordinates()[:2]
-                self._heat.step_to(self._end, self._power(self._cold(0.0), 0.0), math.hypot(*place))
+                self._heat.step_to(
+                    self._end, self._friction_power(self._coefficients_without_heat(0.0), 0.0), math.hypot(*place)
+                )
         self._end = end
-        self._set(mbs, end - self._start)
+        self._set_coefficients(mbs, end - self._start)
         return True
 
-    def _loads(self, mbs: Any) -> list[float]:
+    def _read_loads(self, mbs: Any) -> list[float]:
         """Normal forces of the contacts over their shares of the weight."""
-        kind, count = exudyn.OutputVariableType, len(self._contacts)
+        kind, count = exudyn.OutputVariableType, len(self._add_contacts)
         pairs = [(mbs.GetObjectOutput(each, kind.Force), mbs.GetObjectOutput(each, kind.Director1))
-                 for each in self._contacts]  # fmt: skip
+                 for each in self._add_contacts]  # fmt: skip
         return [count * abs(float(force @ normal)) for force, normal in pairs]
 
-    def _set(self, mbs: Any, span: float) -> None:
+    def _set_coefficients(self, mbs: Any, span: float) -> None:
         """Set the coefficients at the speeds and loads that the contacts have after `span`."""
-        coefficients = self._cold(span)
+        coefficients = self._coefficients_without_heat(span)
         if self._heat is not None:
             end = self._start + span
-            celsius = self._heat.temperature(end, self._power(coefficients, span), self._heat.distance(end))
+            celsius = self._heat.temperature(end, self._friction_power(coefficients, span), self._heat.distance(end))
             self._factor = Heat.factor(celsius)
             coefficients = list(self._factor * coefficients)
-        for contact, coefficient in zip(self._contacts, coefficients, strict=True):
+        for contact, coefficient in zip(self._add_contacts, coefficients, strict=True):
             mbs.SetObjectParameter(contact, "dynamicFriction", coefficient)
 
-    def _cold(self, span: float) -> list[float]:
+    def _coefficients_without_heat(self, span: float) -> list[float]:
         """Coefficients of the contacts after `span`, without heat."""
         law, coefficients = self.law, []
         loads = zip(self._load, self._load_rate, strict=True)
@@ -117,7 +123,7 @@ class SpeedFriction:
             coefficients.append(coefficient)
         return coefficients
 
-    def _power(self, cold: list[float], span: float) -> Array:
+    def _friction_power(self, cold: list[float], span: float) -> Array:
         """Power of friction of each contact after `span`, W, from the coefficients then without heat."""
         slip, rate, load, load_rate = map(np.array, (self._slip, self._rate, self._load, self._load_rate))
         speed, pressed = np.maximum(slip + span * rate, 0.0), np.maximum(load + span * load_rate, 0.0)

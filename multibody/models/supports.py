@@ -51,14 +51,14 @@ class Supports:
         return penetration / SPHERE_STIFFNESS_RATIO if self.coordinates else 0.0
 
 
-def warping(ring: Array) -> Array:
+def warping_projection(ring: Array) -> Array:
     """Projection (K, K) of K forces at places (K, 2) onto the part that neither heave nor tilt contains."""
     patterns, _ = np.linalg.qr(np.column_stack([np.ones(len(ring)), ring]))
     projection: Array = np.eye(len(ring)) - patterns @ patterns.T
     return projection
 
 
-def sphere_nodes(mbs: Any, ring: Array, moving: bool) -> list[Any]:
+def add_sphere_nodes(mbs: Any, ring: Array, moving: bool) -> list[Any]:
     """Nodes of spheres that share the load at places (K, 2): a vertical coordinate, or six on a plate that moves."""
     if moving:
         places = [[*place, 1.0, 0.0, 0.0, 0.0] for place in ring]
@@ -66,7 +66,7 @@ def sphere_nodes(mbs: Any, ring: Array, moving: bool) -> list[Any]:
     return [mbs.AddNode(items.Node1D(referenceCoordinates=[0.0])) for _ in ring]
 
 
-def fixed_supports(mbs: Any, plate: Plate, ring: Array) -> Supports:
+def add_fixed_supports(mbs: Any, plate: Plate, ring: Array) -> Supports:
     """Spheres fixed to the plate at places (K, 2), a length of one above the plane of the depressions."""
     markers = [
         mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[*place, 1.0])) for place in ring
@@ -75,14 +75,14 @@ def fixed_supports(mbs: Any, plate: Plate, ring: Array) -> Supports:
     return Supports(markers, [], [], 0, none, none.reshape(0, 3), np.zeros((0, count)), lambda penetration, share: None)
 
 
-def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> Supports:
+def add_sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> Supports:
     """Spheres at places (K, 2) that share the load elastically; on a plate that moves, bodies too heavy to turn."""
     count = len(ring)
-    warped = warping(ring)
+    warped = warping_projection(ring)
     if plate.moves:
         inertia = [LOCKED_INERTIA] * 3 + [0.0] * 3
         spheres = [items.ObjectRigidBody(nodeNumber=node, mass=SPHERES_MASS / count, inertia=inertia) for node in nodes]
-        _, springs = _springs_on_plate(mbs, plate, nodes, warped)
+        _, springs = _add_springs_on_plate(mbs, plate, nodes, warped)
         read: tuple[list[Any], list[Any]] = nodes, []
         each, upright = COORDINATES, 2
     else:
@@ -92,7 +92,7 @@ def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> S
             )
             for node, place in zip(nodes, ring)
         ]
-        linear, springs = _springs_on_ground(mbs, nodes, warped)
+        linear, springs = _add_springs_on_ground(mbs, nodes, warped)
         read = [], [linear]
         each, upright = 1, 0
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=mbs.AddObject(sphere))) for sphere in spheres]
@@ -110,7 +110,7 @@ def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> S
 Springs = Callable[[float, float, float, float], None]  # stiffness against heave and tilt, warping; damping likewise
 
 
-def _springs_on_ground(mbs: Any, nodes: list[Any], warped: Array) -> tuple[Any, Springs]:
+def _add_springs_on_ground(mbs: Any, nodes: list[Any], warped: Array) -> tuple[Any, Springs]:
     """The springs as an object, and what sets them."""
     count = len(nodes)
     springs = mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=np.full(count, 1.0 / count)))
@@ -118,11 +118,11 @@ def _springs_on_ground(mbs: Any, nodes: list[Any], warped: Array) -> tuple[Any, 
     def matrix(stiff: float, soft: float) -> Array:
         return stiff * (np.eye(count) - warped) + soft * warped
 
-    return springs, _setter(mbs, springs, matrix)
+    return springs, _matrix_setter(mbs, springs, matrix)
 
 
-def _springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Array) -> tuple[Any, Springs]:
-    """As `_springs_on_ground`, over a plate that moves."""
+def _add_springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Array) -> tuple[Any, Springs]:
+    """As `_add_springs_on_ground`, over a plate that moves."""
     count = len(nodes)
     against = np.hstack([np.eye(count), -np.ones((count, 1))])  # of a sphere against the plate, along one axis
     index = [COORDINATES * np.arange(count + 1) + axis for axis in range(3)]
@@ -137,12 +137,12 @@ def _springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Array) -
             whole[np.ix_(axis, axis)] = against.T @ part @ against
         return whole
 
-    return springs, _setter(mbs, springs, matrix)
+    return springs, _matrix_setter(mbs, springs, matrix)
 
 
-def _setter(mbs: Any, springs: Any, matrix: Callable[[float, float], Array]) -> Springs:
-    def to(stiff: float, soft: float, stiff_damping: float, soft_damping: float) -> None:
+def _matrix_setter(mbs: Any, springs: Any, matrix: Callable[[float, float], Array]) -> Springs:
+    def set_matrices(stiff: float, soft: float, stiff_damping: float, soft_damping: float) -> None:
         mbs.SetObjectParameter(springs, "stiffnessMatrix", matrix(stiff, soft))
         mbs.SetObjectParameter(springs, "dampingMatrix", matrix(stiff_damping, soft_damping))
 
-    return to
+    return set_matrices

@@ -22,7 +22,7 @@ SLOWEST = 1e-5  # x times the root of the duration
 FASTEST = 1e-6  # of the duration, over which the kernel is cut off: sqrt of it is missed
 
 
-class _Memory(NamedTuple):
+class _HeatState(NamedTuple):
     """The contacts at an instant."""
 
     time: float  # in units of time
@@ -39,14 +39,14 @@ class SurfaceHeat:
         self._unit_time, self._count = unit_time, count
         low, high = math.log(SLOWEST), math.log(3.0 / math.sqrt(FASTEST * 1e-3))
         x = np.exp(np.arange(low, high, SPACING)) / math.sqrt(duration)
-        self._rates, self._weights = x * x, 2.0 / math.sqrt(math.pi) * SPACING * x
-        self._kept: list[_Memory] = []
+        self._rates, self._add_weights = x * x, 2.0 / math.sqrt(math.pi) * SPACING * x
+        self._kept: list[_HeatState] = []
 
     def begin(self, time: float) -> bool:
         """Forget what came after `time`; whether the power there is known, too."""
         if time == 0.0:
             nothing = np.zeros((self._count, len(self._rates)))
-            self._kept = [_Memory(0.0, nothing, nothing[:, 0], 0.0)]
+            self._kept = [_HeatState(0.0, nothing, nothing[:, 0], 0.0)]
             return False
         near = time * (1.0 + 1e-12)
         while self._kept[-1].time > near:
@@ -57,12 +57,12 @@ class SurfaceHeat:
 
     def step_to(self, time: float, power: Array, distance: float) -> None:
         """Remember a step up to `time` with this power at its end."""
-        self._kept.append(self._after(time, power, distance))
+        self._kept.append(self._advance(time, power, distance))
 
     def temperature(self, time: float, power: Array, distance: float) -> Array:
         """Temperature (K,), degrees C, at the end of a step up to `time` with this power there."""
-        shares = self._after(time, power, distance).shares if time > self._kept[-1].time else self._kept[-1].shares
-        celsius: Array = self._initial + self._rise * (shares @ self._weights)
+        shares = self._advance(time, power, distance).shares if time > self._kept[-1].time else self._kept[-1].shares
+        celsius: Array = self._initial + self._rise * (shares @ self._add_weights)
         return celsius
 
     def distance(self, time: float) -> float:
@@ -72,7 +72,7 @@ class SurfaceHeat:
             return last.distance
         return last.distance + (time - last.time) * (last.distance - before[0].distance) / (last.time - before[0].time)
 
-    def _after(self, time: float, power: Array, distance: float) -> _Memory:
+    def _advance(self, time: float, power: Array, distance: float) -> _HeatState:
         last = self._kept[-1]
         span = (time - last.time) * self._unit_time
         nearest, way = min(last.distance, distance), abs(distance - last.distance)
@@ -81,4 +81,4 @@ class SurfaceHeat:
         whole = -np.expm1(-z) / np.maximum(z, 1e-300)
         rising = np.where(z < 1e-4, 0.5 - z / 6.0, (1.0 - whole) / np.maximum(z, 1e-300))
         added = np.outer(last.power, whole - rising) + np.outer(power, rising)
-        return _Memory(time, last.shares * np.exp(-z) + covered * span * added, power, distance)
+        return _HeatState(time, last.shares * np.exp(-z) + covered * span * added, power, distance)

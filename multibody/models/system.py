@@ -62,7 +62,7 @@ class EngineModel:
     # damping over stiffness of each link along its bars, (N - 1,), in units of time, for a penetration of the contacts
     bar_lags: Callable[[float], Array] | None = None
     # takes contacts (K,) out of the engine, whose penetration is given, and puts the others in
-    set_open: Callable[[NDArray[np.bool_], float], None] | None = None
+    take_out_open_contacts: Callable[[NDArray[np.bool_], float], None] | None = None
     # of bodies that turn, and of their contacts and stiff links; None: the model starts in balance by itself
     kinematics: ImpactLaw | None = None
     # distance of the supports from a plane, (T,), for coordinates (T, n); None if the supports do not share the load
@@ -70,7 +70,7 @@ class EngineModel:
     bearing_penetration: float = 0.0  # by the weight, as the scene's bearings state it, or 0
     friction: SpeedFriction | None = None  # of contacts whose friction depends on slip speed or load
     rim: float = 1.0  # displacement of the platform at which it reaches the rim; inf on a plane
-    fastest_of_bars: float = 0.0  # largest angular frequency that bars make which give way; 0 without such bars
+    fastest_bar_frequency: float = 0.0  # largest angular frequency that bars make which give way; 0 without such bars
 
     @property
     def container(self) -> Any:

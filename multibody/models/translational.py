@@ -21,14 +21,14 @@ from multibody.models.contact import (
     FORCE_ROUNDING,
     contact_law,
     corner_and_relaxation,
-    platform_on_sphere,
+    place_on_sphere,
     set_contact_parameters,
-    settled_contact,
+    settle_contact,
 )
 from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn, items
-from multibody.models.loading import Push, ground_of, push
-from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
-from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
+from multibody.models.loading import Push, make_ground, push_coordinates
+from multibody.models.plane import bound_distance, make_plane_contact, place_on_plane, set_extent
+from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, add_plate
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.state import EngineState
@@ -65,14 +65,16 @@ def translational(
     platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * COORDINATES))
     depression = mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=platform_node))
     links = (link_stiffness(scene, units)[:, :axes], link_damping(scene, units)[:, :axes])
-    nodes, chain = _chain(mbs, platform_node, masses, *links)
+    nodes, chain = _add_chain(mbs, platform_node, masses, *links)
 
-    ground = ground_of(mbs, scene, units)
-    plate = plate_for(mbs, loading, ground)
+    ground = make_ground(mbs, scene, units)
+    plate = add_plate(mbs, loading, ground)
     friction, threshold = contact_law(scene, regularization, units)
-    add_contact = _contact_on_plane if scene.flat else _contact
+    add_contact = _add_contact_on_plane if scene.flat else _add_contact
     contact, contact_node = add_contact(mbs, plate, depression, friction, threshold)
-    expressions = [*plate.expressions] if plate.moves else push(mbs, ground, _pushed(masses, nodes, axes))
+    expressions = (
+        [*plate.expressions] if plate.moves else push_coordinates(mbs, ground, _list_pushes(masses, nodes, axes))
+    )
     recorders = add_recorders(
         mbs, [], [chain], [contact_node], [contact] if contact_force or scene.dry_friction.by_load else [], plate.node
     )
@@ -97,8 +99,8 @@ def translational(
             coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
             velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
         if scene.flat:
-            set_extent(mbs, contact, farthest(scene, units, coordinates, velocities), -SPHERE_ON_PLANE)
-        on_surface = platform_on_plane if scene.flat else platform_on_sphere
+            set_extent(mbs, contact, bound_distance(scene, units, coordinates, velocities), -SPHERE_ON_PLANE)
+        on_surface = place_on_plane if scene.flat else place_on_sphere
         coordinates[:3], velocities[:3], gap, slip = on_surface(
             coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
         )
@@ -109,7 +111,7 @@ def translational(
         x, y, z = (0.0, 0.0, 0.0) if scene.flat else state.coordinates[:3].tolist()
         inward = -x, -y, 1.0 - z  # from the middle of the hollow sphere
         length = math.hypot(*inward)
-        return settled_contact(state, float(gap_rate[0]), penetration, [part / length for part in inward])
+        return settle_contact(state, float(gap_rate[0]), penetration, [part / length for part in inward])
 
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
@@ -132,7 +134,7 @@ def translational(
     )
 
 
-def _contact(mbs: Any, plate: Plate, depression: Any, friction: float, threshold: float) -> tuple[Any, Any]:
+def _add_contact(mbs: Any, plate: Plate, depression: Any, friction: float, threshold: float) -> tuple[Any, Any]:
     """A sphere on the plate inside the platform's hollow sphere, and its data node; `set_contact` completes it."""
     node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
     sphere = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[0.0, 0.0, 1.0]))
@@ -147,15 +149,15 @@ def _contact(mbs: Any, plate: Plate, depression: Any, friction: float, threshold
     return mbs.AddObject(contact), node
 
 
-def _contact_on_plane(mbs: Any, plate: Plate, platform: Any, friction: float, threshold: float) -> tuple[Any, Any]:
-    """As `_contact`, of a sphere under the platform on the plane of the plate: no moment turns either of them."""
+def _add_contact_on_plane(mbs: Any, plate: Plate, platform: Any, friction: float, threshold: float) -> tuple[Any, Any]:
+    """As `_add_contact`, of a sphere under the platform on the plane of the plate: no moment turns either of them."""
     node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
     plane = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body))
-    contact = plane_contact(platform, plane, node, SPHERE_ON_PLANE, -SPHERE_ON_PLANE, friction, threshold)
+    contact = make_plane_contact(platform, plane, node, SPHERE_ON_PLANE, -SPHERE_ON_PLANE, friction, threshold)
     return mbs.AddObject(contact), node
 
 
-def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> tuple[list[Any], Any]:
+def _add_chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> tuple[list[Any], Any]:
     """
     All bodies and their weight as one linear object on the platform's coordinates and x, y (or x) of the others.
 
@@ -188,13 +190,13 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, dampin
             damping_matrix[pair] += damping[link, axis] * BETWEEN_TWO
     weight = np.zeros(len(mass_matrix))
     weight[2] = -1.0
-    matrices = {"massMatrix": _container(mass_matrix), "stiffnessMatrix": _container(stiffness_matrix)}
+    matrices = {"massMatrix": _matrix_container(mass_matrix), "stiffnessMatrix": _matrix_container(stiffness_matrix)}
     if damping.any():
-        matrices["dampingMatrix"] = _container(damping_matrix)
+        matrices["dampingMatrix"] = _matrix_container(damping_matrix)
     return nodes, mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=weight, **matrices))
 
 
-def _container(matrix: Array) -> Any:
+def _matrix_container(matrix: Array) -> Any:
     """A matrix (n, n) as the engine takes it: only its entries, where the sparse solver is used."""
     if len(matrix) <= MAX_DENSE_COORDINATES:
         return matrix
@@ -203,7 +205,7 @@ def _container(matrix: Array) -> Any:
     return entries
 
 
-def _pushed(masses: Array, nodes: list[Any], axes: int) -> list[Push]:
+def _list_pushes(masses: Array, nodes: list[Any], axes: int) -> list[Push]:
     """What the loading accelerates: the bodies above share the platform's vertical motion, so all of the mass there."""
     platform = [Push(nodes[0], axis, float(masses[0]), axis) for axis in range(2)]
     above = [

@@ -102,7 +102,7 @@ def test_a_link_under_an_eccentric_weight_is_straight_at_rest(axial: dict[str, A
     scene = load_scene("fig3-I").with_values(values)
     model, level = assemble(scene, "spatial", 1e-3), multibody.levels(scene, "spatial")[0]
     moment = 0.5 * np.hypot(*offset) / scene.radius  # of half of the weight, in weights times rho
-    run = PhasePair(scene, model, np.full(2, 0.5 * np.pi)).at_level(level, Budget(1e5), stop=1e-6, keep=True)
+    run = PhasePair(scene, model, np.full(2, 0.5 * np.pi)).run_level(level, Budget(1e5), stop=1e-6, keep=True)
     turns = run.chunks[0].coordinates[0][model.bodies + 3]
     # as stiff as a link of rigid bars is in bending, it would lean by ten penetrations
     assert np.abs(turns[1] - turns[0]).max() < 0.01 * LINK_COMPLIANCE_RATIO * level.penetration * moment

@@ -51,6 +51,6 @@ def test_a_slide_has_its_closed_form_and_second_order(slow: float, fast: float, 
     errors = []
     with silence():
         for count in 25 * 2 ** np.arange(halvings + 1):
-            run = pair.at_constant_step(int(count), 1e-8, 1e-7, 1e-11, "generalized alpha", None)
+            run = pair.run_constant_step(int(count), 1e-8, 1e-7, 1e-11, "generalized alpha", None)
             errors.append(float(run.chunks[-1].velocities[-1, 0]) * built.units.velocity - exact)
     np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.1)
