@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
 from multibody.integration.constant_step import silence
 from multibody.integration.level import Level
+from multibody.integration.one_run import PhasePair
 from multibody.integration.refine import MAX_WORK, WORK, Refinement, refine
 from multibody.models.assembly import assemble, choose_model
 from multibody.models.system import EngineModel
@@ -35,8 +37,8 @@ def amplification(
     scene: Scene,
     phases: ArrayLike,
     model: str = "translational",
-    regularization: float | None = 1e-3,
-    tolerance: float = 1e-3,
+    regularization: float | None = DEFAULT_V_REG,
+    tolerance: float = DEFAULT_TOLERANCE,
     loading: str = "inertial",
     full: bool = False,
     levels: Sequence[Level] | None = None,
@@ -128,30 +130,39 @@ def amplification(
 
 @dataclass(frozen=True)
 class _ReducedModel:
-    """The smallest model that answers for the one that is asked for."""
+    """
+    The smallest model that answers for the one that is asked for.
+
+    complete: assembles the model that is asked for where the reduced one has no answer; None where it is not reduced.
+    whole: every run goes to the end of the motion.
+    """
 
     scene: Scene
     built: EngineModel
-    asked: tuple[Scene, str, float | None, str] | None  # what to assemble where the reduced model has no answer
-    whole: bool  # whether every run goes to the end of the motion
+    complete: Callable[[], tuple[Scene, EngineModel]] | None
+    whole: bool
 
     def refine_point(
         self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
     ) -> Refinement:
-        asked: dict[str, Any] = {"whole": self.whole, "levels": levels, "max_work": max_work}
-        point = refine(self.scene, self.built, phase, tolerance, **asked)
-        if self.asked and np.isnan(point.peaks).any():  # off its supports the model that is asked for goes on
-            scene, model, regularization, loading = self.asked
-            complete = assemble(scene, model, regularization, loading=loading)
-            point = refine(scene, complete, phase, tolerance, **asked)
+        """Refine one phase pair (2,), rad; where the platform leaves its supports on the model that is asked for."""
+        pair = PhasePair(self.scene, self.built, phase, whole=self.whole)
+        point = refine(pair, tolerance, levels=levels, max_work=max_work)
+        if self.complete is not None and np.isnan(point.peaks).any():
+            pair = PhasePair(*self.complete(), phase, whole=self.whole)
+            point = refine(pair, tolerance, levels=levels, max_work=max_work)
         return point
 
 
 def _reduce_model(scene: Scene, model: str, regularization: float | None, loading: str, full: bool) -> _ReducedModel:
-    """The model that is required, and in a plane no coordinates across it."""
+    """Assemble the model that is required, in a plane without the coordinates across it."""
     chosen = choose_model(scene, model, full)
     planar = chosen == "translational" and not full and planar_chain(scene).allowed
     moving = in_plane(scene) if planar else scene
     axes: dict[str, Any] = {"axes": 1} if planar else {}
     built = assemble(moving, chosen, regularization, loading=loading, **axes)
-    return _ReducedModel(moving, built, (scene, model, regularization, loading) if chosen != model else None, full)
+
+    def complete() -> tuple[Scene, EngineModel]:
+        return scene, assemble(scene, model, regularization, loading=loading)
+
+    return _ReducedModel(moving, built, complete if chosen != model else None, full)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,23 +22,61 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 NO_KNOTS, NO_ROWS = np.empty(0), np.empty(0, np.intp)
-CARRIED_SAMPLES = 6  # samples carried over to the next chunk: what the readings from both sides of an instant need
-# of a step over its neighbor, across which a parabola is laid: more than the run itself changes its steps by at once
+
+# Number of samples carried over to the next chunk: what the readings from both sides of an instant need.
+CARRIED_SAMPLES = 6
+
+# Largest ratio of neighboring steps across which a parabola is laid: more than the run itself changes its steps by.
 MAX_STEP_CHANGE = 20.0
-MAX_STEPS_BEYOND = 1.5  # from the last sample to an instant that is read from the samples before it
-SAMPLES_BEHIND_CORNER = 3  # samples behind a corner, from which it is read
-LONGER_STEP = 1.5  # over the one before
-CANDIDATE_FRACTION = 0.97  # of the peak: samples below it cannot be raised above it by interpolation at a resolved step
+
+# Largest distance, in steps, from the last sample to an instant that is read from the samples before it.
+MAX_STEPS_BEYOND = 1.5
+
+# Number of samples behind a corner from which it is read.
+SAMPLES_BEHIND_CORNER = 3
+
+# Ratio of a step to the one before from which on it is the longer one of two.
+LONGER_STEP = 1.5
+
+# Share of the peak: samples below it cannot be raised above it by interpolation at a resolved step.
+CANDIDATE_FRACTION = 0.97
+
+
+class _Samples(NamedTuple):
+    """
+    Samples of an acceleration of each body, and where their slopes jump.
+
+    time: (T,). size: (T, N). slip: speeds (T, K). corners: rows behind which a slip speed passes the threshold. bends:
+    rows on kinks of the loading, and between steps one of which is much longer. ready: corners to read now.
+    """
+
+    time: Array
+    size: Array
+    slip: Array
+    corners: list[int]
+    bends: list[int]
+    ready: list[int]
 
 
 class PeakReader:
     """
     Running maximum over t of |absolute acceleration| per body, fed chunk by chunk; nothing else is kept.
 
-    threshold: slip speed v_reg at which the friction law has its corner; inf if it has none. knots: (K,), rising, where
-    the loading has a kink, each a sample within `near`.
-    value: (N,). sampling: (N,), estimated error of the reading between samples. instant: (N,), where. first: (N,), of
-    the first sample.
+    Parameters
+    ----------
+    bodies : int
+        Number N of bodies.
+    threshold : float
+        Slip speed v_reg at which the friction law has its corner; inf if it has none.
+    knots : (K,) array, near : float
+        Rising instants at which the loading has a kink, each a sample within `near`.
+
+    Attributes
+    ----------
+    value, sampling, instant : (N,) arrays
+        Largest value, estimated error of the reading between samples, and instant of each body.
+    first : (N,) array or None
+        Values of the first sample.
     """
 
     def __init__(self, bodies: int, threshold: float, knots: Array = NO_KNOTS, near: float = 0.0) -> None:
@@ -46,13 +85,13 @@ class PeakReader:
         self.instant = np.zeros(bodies)
         self.first: Array | None = None
         self._threshold, self._knots, self._near = threshold, knots, near
-        self._read = -np.inf  # start of the last interval whose corner was read
+        self._last_read_corner = -np.inf
         self._time = np.empty(0)
         self._size = np.empty((0, bodies))
         self._slip = np.empty((0, 0))
 
     def add(self, time: Array, size: Array, slip: Array) -> None:
-        """Sizes (T, N) at times (T,), slip speeds (T, K); their first row repeats the last one of the chunk before."""
+        """Add sizes (T, N) and slip speeds (T, K) at times (T,), the first of which repeats the last of the chunk before."""
         if self.first is None:
             self.first = size[0]
         carried = len(self._time)
@@ -68,17 +107,25 @@ class PeakReader:
 
     def _read_between(self, time: Array, size: Array, slip: Array) -> None:
         """Read the samples, and what lies between them."""
-        corners = self._corners(slip)
-        # each corner is read once, as soon as there are samples behind it
-        ready = [left for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._read]
+        # The largest acceleration lies between two samples. In smooth motion a parabola through the highest sample and
+        # its neighbors is of fourth order at the top. Nothing smooth may be laid across three kinds of rows: where the
+        # slip speed passes v_reg, the corner of the friction law, the slope of the acceleration jumps within the step;
+        # at kinks of a recorded loading and at steps much longer than their neighbor it changes at the sample. A corner
+        # is often the peak itself, at a stop. It is read from each side by itself, at the instant at which the slip
+        # speed of that side passes v_reg, once, as soon as there are samples behind it.
+        corners = self._find_corners(slip)
+        ready = [
+            left for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._last_read_corner
+        ]
         bends = sorted({*find_kinks(time, self._knots, self._near).tolist(), *_find_step_jumps(time).tolist()})
+        samples = _Samples(time, size, slip, corners, bends, ready)
         for body in range(size.shape[1]):
-            self._scan_body(body, time, size[:, body], slip, corners, bends, ready)
+            self._scan_body(body, samples)
         if ready:
-            self._read = float(time[ready[-1]])
+            self._last_read_corner = float(time[ready[-1]])
 
-    def _corners(self, slip: Array) -> list[int]:
-        """The rows behind which a slip speed (T, C) passes the threshold before the next row."""
+    def _find_corners(self, slip: Array) -> list[int]:
+        """Find the rows behind which a slip speed (T, C) passes the threshold before the next row."""
         beyond = slip > self._threshold
         rows: list[int] = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1)).tolist()
         return rows
@@ -88,7 +135,7 @@ class PeakReader:
         time, size, last = self._time, self._size, len(self._time) - 1
         if last < 2 or instant - time[-1] > MAX_STEPS_BEYOND * np.diff(time[-3:]).min():
             return
-        corners = self._corners(self._slip)
+        corners = self._find_corners(self._slip)
         bends: list[int] = find_kinks(time, self._knots, self._near).tolist()
         if max(_smooth_side(last, len(time), corners)[0], *bends, 0) > last - 2:
             return
@@ -101,21 +148,23 @@ class PeakReader:
         """Read nothing across this instant: velocities jump, and the next chunk need not begin here."""
         self._time, self._size, self._slip = self._time[:0], self._size[:0], self._slip[:0]
 
-    def _scan_body(
-        self, body: int, time: Array, size: Array, slip: Array, corners: list[int], bends: list[int], ready: list[int]
-    ) -> None:
+    def _scan_body(self, body: int, samples: _Samples) -> None:
+        """Read the largest values of one body from the samples."""
+        time, slip, corners = samples.time, samples.slip, samples.corners
+        size = samples.size[:, body]
         row = int(size.argmax())
         if size[row] <= CANDIDATE_FRACTION * self.value[body]:
             return
         unresolved = _error_of_lone_sample(time, size, row, corners)
-        for stretch in _smooth_stretches(row, len(size), corners, bends):
+        for stretch in _smooth_stretches(row, len(size), corners, samples.bends):
             value, error, instant = _read_smooth_top(time, size, row, *stretch)
             self._offer(body, value, max(error, unresolved), instant)
-        for left in ready:
+        for left in samples.ready:
             if max(size[left], size[left + 1]) > CANDIDATE_FRACTION * self.value[body]:
                 self._offer(body, *_read_corner(time, size, slip, left, self._threshold, corners))
 
     def _offer(self, body: int, value: float, error: float, instant: float) -> None:
+        """Take a reading if it is the largest so far; what an earlier one leaves possible stays part of the error."""
         possible = max(value + error, self.value[body] + self.sampling[body])
         if value > self.value[body]:
             self.value[body], self.instant[body] = value, instant
@@ -125,14 +174,14 @@ class PeakReader:
 
 
 def find_kinks(time: Array, knots: Array, near: float) -> Rows:
-    """The rows of `time` that lie on one of the knots, both rising."""
+    """Find the rows of `time` that lie on one of the knots, both rising."""
     if not len(knots):
         return NO_ROWS
     return np.flatnonzero(np.abs(knots[np.searchsorted(knots[:-1], time - near)] - time) <= near)
 
 
 def _find_step_jumps(time: Array) -> Rows:
-    """The rows between two steps one of which is much longer: the shorter one is not the slope of the other."""
+    """Find the rows between two steps one of which is much longer: the shorter one is not the slope of the other."""
     steps = np.diff(time)
     longer, shorter = np.maximum(steps[1:], steps[:-1]), np.minimum(steps[1:], steps[:-1])
     return np.flatnonzero(longer > MAX_STEP_CHANGE * shorter) + 1
@@ -141,7 +190,14 @@ def _find_step_jumps(time: Array) -> Rows:
 def _read_smooth_top(
     time: Array, size: Array, row: int, first: int, last: int, others: tuple[int, int]
 ) -> tuple[float, float, float]:
-    """Top and error of the parabola through the highest sample and two others, or the sample itself beside a corner."""
+    """
+    Read the top of the parabola through the highest sample and two others, or the sample itself next to a corner.
+
+    Returns value, error and instant.
+    """
+    # A fourth sample tells how far the signal is from the parabola: its third divided difference times the cubic that
+    # vanishes at the three samples is the error at the summit. Samples that alternate from step to step are no motion
+    # but ringing of the step, and half of what alternates is an error, whatever the parabola says.
     alternating = 0.0
     if last - first >= 4:
         begin = min(max(row - 2, first), last - 4)
@@ -177,14 +233,18 @@ def _alternating_part(time: Array, size: Array) -> float:
 
 
 def _error_of_lone_sample(time: Array, size: Array, row: int, corners: list[int]) -> float:
-    """Error of a sample alone between two corners: what the corners before it have changed."""
+    """
+    Error of a sample alone between two corners: what the corners before it have changed.
+
+    It is zero at the beginning of the motion, and where more samples have shown it before.
+    """
     if row - 1 not in corners or row not in corners:
         return 0.0
     last = row - 1
     while last - 1 in corners:
         last -= 1
     first = max(_smooth_side(last, len(size), corners)[0], last - 2)
-    if first == last:  # the begin of the motion, or seen before with more samples
+    if first == last:
         return 0.0
     before = slice(first, last + 1)
     return abs(_extrapolate(time[before], size[before], float(time[row])) - float(size[row]))
@@ -223,7 +283,7 @@ def _read_corner(
 def _smooth_stretches(
     row: int, count: int, corners: list[int], bends: list[int]
 ) -> Iterator[tuple[int, int, tuple[int, int]]]:
-    """First and last row of every smooth stretch that `row` belongs to, and the two rows nearest to it there."""
+    """Yield first and last row of every smooth stretch that `row` belongs to, and the two rows nearest to it there."""
     first, last = _smooth_side(row, count, corners)
     place = bisect_left(bends, row)
     before, here = [first, *bends[:place]], place < len(bends) and bends[place] == row
@@ -243,9 +303,9 @@ def _smooth_side(row: int, count: int, corners: list[int]) -> tuple[int, int]:
 
 
 def _extrapolate(time: Array, values: Array, instant: float) -> float:
-    """The polynomial through the given samples (one to three) at `instant`."""
+    """Extrapolate the polynomial through the given samples (one to three) to `instant` (Neville's algorithm)."""
     nodes, table = time.tolist(), values.tolist()
-    for order in range(1, len(nodes)):  # Neville
+    for order in range(1, len(nodes)):
         for i in range(len(nodes) - order):
             span = nodes[i + order] - nodes[i]
             table[i] = ((instant - nodes[i]) * table[i + 1] + (nodes[i + order] - instant) * table[i]) / span

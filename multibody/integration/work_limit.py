@@ -1,22 +1,25 @@
-"""Why a model is refused for a scene before any step is taken, and what would help: from the scene alone."""
+"""The refusal of a scene whose work exceeds the limit, before any step is taken, and what would help."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 
-from multibody.integration.adaptive import Budget
+from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
 from multibody.integration.constant_step import silence
-from multibody.integration.level import STEPS_PER_PERIOD, plan_levels
+from multibody.integration.engine_run import Budget
+from multibody.integration.level import plan_levels
 from multibody.integration.level_runs import MAX_WORK_GROWTH
 from multibody.integration.look_ahead import level_of_longest_steps
 from multibody.integration.refine import MAX_WORK, WORK
+from multibody.integration.time_scales import STEPS_PER_PERIOD
 from multibody.models.assembly import assemble, choose_model
 from reference.problem import Scene, SceneError
 from reference.problem.ranges import TOLERANCE, checked_number
 from reference.problem.scene import takes_scene
 
-# work of two levels and of the compliance of the second over a first level in its largest steps: stops take as many
+# Work of two levels, and of the compliance of the second, over a first level in its largest steps. The factor of two is
+# for smaller steps at stops, which take as many again.
 WHOLE_POINT = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
 
 
@@ -24,8 +27,8 @@ WHOLE_POINT = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
 def refusal(
     scene: Scene,
     model: str = "translational",
-    regularization: float | None = 1e-3,
-    tolerance: float = 1e-3,
+    regularization: float | None = DEFAULT_V_REG,
+    tolerance: float = DEFAULT_TOLERANCE,
     full: bool = False,
     max_work: float = MAX_WORK,
     softened: bool = False,

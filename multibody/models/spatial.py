@@ -40,7 +40,7 @@ from multibody.models.depressions import Depressions, FlatUnderside, rotation_ma
 from multibody.models.engine import exudyn, items
 from multibody.models.impact import ImpactLaw
 from multibody.models.links import PER_BODY, Link, add_links, fastest_bar_frequency
-from multibody.models.loading import Push, make_ground, add_coordinate_load, push_coordinates
+from multibody.models.loading import Push, add_coordinate_load, make_ground, push_coordinates
 from multibody.models.plane import bound_distance, make_plane_contact, place_on_plane, set_extent
 from multibody.models.plate import add_plate
 from multibody.models.recorders import add_recorders

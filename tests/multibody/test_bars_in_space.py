@@ -8,7 +8,7 @@ from beam_columns import Tower
 from scenes_at_hand import assert_agrees_with_newton_and_euler, assert_within, forces_of_links
 
 import multibody
-from multibody.integration.adaptive import Budget
+from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from multibody.models.engine import exudyn, items

@@ -11,7 +11,7 @@ from scenes_at_hand import assert_agree, one_body
 from scipy.optimize import brentq
 
 import multibody
-from multibody.integration.adaptive import Budget, EngineRun
+from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.estimate import widen_by_impacts
 from multibody.integration.level import REAL_WARPING_COMPLIANCE
 from multibody.integration.one_run import PhasePair

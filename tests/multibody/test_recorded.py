@@ -9,8 +9,8 @@ from scenes_at_hand import assert_agree
 
 import multibody
 import reference
-from multibody.integration.adaptive import Budget
 from multibody.integration.constant_step import silence
+from multibody.integration.engine_run import Budget
 from multibody.integration.level import plan_levels
 from multibody.integration.level_runs import LevelRuns
 from multibody.integration.one_run import PhasePair
@@ -52,7 +52,7 @@ def test_behind_impacts_a_loose_tolerance_goes_on_to_level_1(push: float, impact
     scene = Scene.model_validate({"title": "falls", "duration": 0.3, "isolator": on, "bodies": [body], **falls})
     with silence():
         built = assemble(scene, "spatial", 1e-3, contact_force=True)
-        point = refine(scene, built, np.zeros(2), 1e-2)
+        point = refine(PhasePair(scene, built, np.zeros(2)), 1e-2)
     assert (point.outcome, point.finest.impacts > 0) == ("ok", impacts)
     low, high = (1e-3, 2e-3) if impacts else (8e-4, 8e-4)  # at level 0 4e-3 and 8e-4
     assert low <= point.floor <= high

@@ -14,7 +14,7 @@ import reference
 from multibody.integration.candidate import Candidate
 from multibody.integration.estimate import compliance_error, error_between_levels, lag
 from multibody.integration.peak import PeakReader
-from multibody.integration.travel import find_travel_end
+from multibody.integration.termination import find_travel_end
 from multibody.models.assembly import assemble
 from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
@@ -96,7 +96,7 @@ def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
     run: Any = SimpleNamespace(peaks=peaks)
     for shown, expected in ((1e-3, (7e-3, 7e-3)), (0.31, (1.004, 2.004))):
         parts = np.array([shown, 1e-3]), np.full(2, 2e-3), np.zeros(2)
-        answer = Candidate(run, LEVELS[0], True, *parts, (), compliance=np.full(2, 4e-3))
+        answer = Candidate(run, LEVELS[0], True, *parts, np.full(2, 4e-3), (), confirmed=True, floor=0.0)
         np.testing.assert_allclose(answer.errors, expected)
         assert answer.relative_error == pytest.approx(expected[0])
 

@@ -9,7 +9,7 @@ from scenes_at_hand import assert_agrees_with_newton_and_euler
 
 import multibody
 import reference
-from multibody.integration.adaptive import Budget
+from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from reference.problem import GRAVITY, State, ground_acceleration, load_scene

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import multibody
-from multibody.integration.adaptive import Budget, EngineRun
+from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import COMPLIANCE_OF_CLOSED, COMPLIANCE_RATIO, REAL_WARPING_COMPLIANCE, Level
 from multibody.integration.level_runs import MAX_FIRST_SHARE
 from multibody.integration.one_run import PhasePair
@@ -75,7 +75,8 @@ def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
             return run
 
         monkeypatch.setattr(PhasePair, "run_level", run_level)
-        done.answer = refine(SCENE, MODEL, np.zeros(2), TOLERANCE, whole=True, levels=planned, max_work=max_work)
+        pair = PhasePair(SCENE, MODEL, np.zeros(2), whole=True)
+        done.answer = refine(pair, TOLERANCE, levels=planned, max_work=max_work)
         done.asked = done.asked.strip()
         return done
 

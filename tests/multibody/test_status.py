@@ -101,7 +101,7 @@ def test_an_answer_without_another_level_says_nothing_of_its_error() -> None:
     assert np.isnan(result.mu).all()
     scene = load_scene("fig3-I").with_values({"duration": 0.5})
     model = assemble(scene, "translational", 1e-3)
-    one = refine.refine(scene, model, np.array(PHASE), 1e-3, levels=plan_levels(scene, model, 1e-3)[:1])
+    one = refine.refine(PhasePair(scene, model, np.array(PHASE)), 1e-3, levels=plan_levels(scene, model, 1e-3)[:1])
     assert (one.outcome, one.instant) == (Outcome.STEP_LIMIT, 0.5)
     assert np.isnan(one.peaks).all()
 

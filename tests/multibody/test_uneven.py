@@ -10,7 +10,7 @@ from random_buildings import Building, random_building, under_a_record
 from scenes_at_hand import assert_agree, assert_agrees_with_newton_and_euler, assert_demands, assert_within
 
 import multibody
-from multibody.integration.adaptive import Budget
+from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from multibody.models.depressions import rotation_matrices
