@@ -173,7 +173,7 @@ class _Progress:
         """Let the engine make the steps, and count their work; None where it cannot or the budget is exceeded."""
         solver, budget = self.integration.solver, self.integration.budget
         motion = solver.run(self.at.state, self.at.time, step, count)
-        work = max(count, solver.iterations / FREE_ITERATIONS)
+        work = max(count, solver.newton_iterations / FREE_ITERATIONS)
         self.run.work += work
         budget.left -= work
         if budget.left < 0.0:

@@ -27,26 +27,17 @@ class Candidate:
     """
     The answer of one level, in units of the model.
 
-    Attributes
-    ----------
-    run : EngineRun
-    level : Level
-    shares_contact : bool
-        Whether the level before has the same contact, and so does not show the error that its compliance leaves.
-    level_errors : (N,) array
-        Errors that other levels and the springs of supports show.
-    rounding : (N,) array
-        Errors that rounding of the contact forces leaves.
-    least : (N,) array
-        Errors that the noise of the contact force leaves, however well runs agree.
-    compliance : (N,) array or None
-        Errors that the contact's compliance leaves where `shares_contact`; None until a run has shown them.
-    coarser : tuple of (EngineRun, float)
-        Other runs, and the share of their difference to this one that is an error.
-    confirmed : bool
-        Whether the runs that confirm the answer ended: on springs of real bearings, after level 0.
-    floor : float
-        Lower bound of the relative error of any number of the run.
+    Attributes:
+    - shares_contact: Whether the level before has the same contact, and so does not show the error that its compliance
+      leaves.
+    - level_errors: Errors that other levels and the springs of supports show, (N,).
+    - rounding: Errors that rounding of the contact forces leaves, (N,).
+    - least: Errors that the noise of the contact force leaves, however well runs agree, (N,).
+    - compliance: Errors that the contact's compliance leaves where `shares_contact`; None until a run has shown them,
+      (N,).
+    - coarser: Other runs, and the share of their difference to this one that is an error.
+    - confirmed: Whether the runs that confirm the answer ended: on springs of real bearings, after level 0.
+    - floor: Lower bound of the relative error of any number of the run.
     """
 
     run: EngineRun

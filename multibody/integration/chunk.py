@@ -1,5 +1,5 @@
 """
-What every chunk of steps is asked for, compiled: chunks are short, and a dozen array operations cost more than they.
+Compiled readings of a chunk of steps: chunks are short, and a dozen array operations would cost more than they.
 
 The arrays are those of a `EngineMotion`: accelerations and coordinates (T, n), contact (T, 4 K).
 """
@@ -61,7 +61,7 @@ def slip_changes(
 
 @cached_on_disk(__file__, nogil=True)
 def find_first_ends(coordinates: Array, height: int, rim: float, contact: Array) -> tuple[int, int]:
-    """First rows at which the coordinate `height` reaches `rim`, and at which every contact is open; T without."""
+    """Find the first rows at which the coordinate `height` reaches `rim` and at which no contact is closed; else T."""
     steps = len(coordinates)
     beyond, lost = steps, steps
     for row in range(steps):
@@ -88,7 +88,7 @@ def distances(coordinates: Array, axes: NDArray[np.int_]) -> Array:
 
 @cached_on_disk(__file__, nogil=True)
 def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: NDArray[np.int_]) -> float:
-    """Largest of such lengths, also between the instants (T,): `largest_displacement` of `reference.measures`."""
+    """Largest length of that vector, also between the instants (T,), as `reference.measures.largest_displacement`."""
     largest = before_square = before = 0.0
     for row in range(len(time)):
         x, y = coordinates[row, axes[0]], coordinates[row, axes[1]]
@@ -103,7 +103,7 @@ def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: N
 
 @cached_on_disk(__file__, nogil=True)
 def find_last_near(size: Array, sizes: Array, distance: Array, far: float) -> int:
-    """Last row at which an entry of `size` (T, N) reaches `sizes` (N,), or one of `distance` (T,) `far`; -1 without."""
+    """Find the last row at which `size` (T, N) reaches `sizes` (N,) anywhere, or `distance` (T,) `far`; else -1."""
     for row in range(len(size) - 1, -1, -1):
         if distance[row] >= far:
             return row
@@ -115,7 +115,7 @@ def find_last_near(size: Array, sizes: Array, distance: Array, far: float) -> in
 
 @cached_on_disk(__file__, nogil=True)
 def any_larger(size: Array, first: int, least: Array) -> bool:
-    """Whether an entry of `size` (T, N) is larger than its column's of `least` (N,), from the row `first` on."""
+    """Return whether an entry of `size` (T, N) is larger than its column's of `least` (N,), from row `first` on."""
     for row in range(first, len(size)):
         for body in range(size.shape[1]):
             if size[row, body] > least[body]:

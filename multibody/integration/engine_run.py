@@ -44,39 +44,23 @@ class EngineRun:
 
     All values are in units of the model.
 
-    Attributes
-    ----------
-    peaks : PeakReader
-        Largest absolute acceleration of each body.
-    stop : float
-        Time at which the run was to stop.
-    outcome, instant : Outcome, float
-        How the run ended, and when it terminated.
-    work : float
-        Steps as the budget counts them.
-    warping_load : float
-        Largest load that warping of the supports takes so far, in shares of the weight.
-    last_open : float
-        The latest instant at which a support carried no load.
-    max_displacement : float
-        Largest horizontal displacement of the platform.
-    max_vertical : float
-        Largest vertical acceleration of any body, relative to the plate.
-    last_large : float
-        The last instant at which an acceleration or the displacement of the platform came within `SETTLED_FRACTION` of
-        its largest value.
-    peaks_count_from : float
-        Instant at which contact forces have settled after the last impact: peaks are read from here on.
-    impacts : int
-        Number of times that supports closed again.
-    min_load : float
-        Smallest contact force in weights, of a model that ends where the contact opens.
-    opened : bool
-        Whether any contact carried no load.
-    scanned_from : float
-        Instant from which the motion was only scanned in larger steps.
-    chunks : list of EngineMotion
-        The motion, if it is kept.
+    Attributes:
+    - peaks: Largest absolute acceleration of each body.
+    - stop: Time at which the run was to stop.
+    - outcome, instant: How the run ended, and when it terminated.
+    - work: Steps as the budget counts them.
+    - warping_load: Largest load that warping of the supports takes so far, in shares of the weight.
+    - last_open: The latest instant at which a support carried no load.
+    - max_displacement: Largest horizontal displacement of the platform.
+    - max_vertical: Largest vertical acceleration of any body, relative to the plate.
+    - last_large: The last instant at which an acceleration or the displacement of the platform came within
+      `SETTLED_FRACTION` of its largest value.
+    - peaks_count_from: Instant at which contact forces have settled after the last impact: peaks are read from here on.
+    - impacts: Number of times that supports closed again.
+    - min_load: Smallest contact force in weights, of a model that ends where the contact opens.
+    - opened: Whether any contact carried no load.
+    - scanned_from: Instant from which the motion was only scanned in larger steps.
+    - chunks: The motion, if it is kept.
     """
 
     peaks: PeakReader

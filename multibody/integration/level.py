@@ -247,7 +247,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
     followed, force_change = (
         MAX_CONTACT_TIME_OF_MOTION * scene.duration / model.units.time,
-        bound_contact_change(scene, model),
+        largest_contact_change(scene, model),
     )
     slowest = followed if force_change == math.inf else 1.0
     most = min(most, COMPLIANCE_RATIO * slowest**2)
@@ -303,8 +303,8 @@ def soften_for_small_peaks(level: Level, smallest: float, tolerance: float) -> L
     return replace(level, penetration=penetration, strength=min(level.strength, smallest))
 
 
-def bound_contact_change(scene: Scene, model: EngineModel) -> float:
-    """Bound the change of the contact's force within a brief motion from rest, in weights, by speed and way."""
+def largest_contact_change(scene: Scene, model: EngineModel) -> float:
+    """Largest change of the contact's force within a brief motion from rest, in weights, by speed and way."""
     if model.ground.shakes(2):
         return math.inf
     speed = 2.0 * math.sqrt(2.0) * scene.largest_acceleration / GRAVITY * scene.duration / model.units.time

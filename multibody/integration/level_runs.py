@@ -70,26 +70,16 @@ class LevelRuns:
     """
     The runs of one phase pair so far, and its levels, which adapt to what the runs show.
 
-    Attributes
-    ----------
-    pair : PhasePair
-    tolerance : float
-        Relative error that is asked for.
-    budget : Budget
-        Steps left to all runs.
-    levels : list of Level
-        Those of the runs so far, and those to come.
-    softens : bool
-        Whether small peaks may soften the contact of the levels to come.
-    keep : bool
-        Whether the motions of the last two runs are kept; every run then goes to the end.
-    stop : float
-        Time at which the next run stops, where nothing later can matter.
-    softest : float
-        Largest compliance against warping that supports may have.
-    on_real : (EngineRun, (N,) array) or None
-        The last run on springs of real bearings that ended, and the change of the peaks on them, once supports opened
-        on stiffer ones.
+    Attributes:
+    - tolerance: Relative error that is asked for.
+    - budget: Steps left to all runs.
+    - levels: Those of the runs so far, and those to come.
+    - softens: Whether small peaks may soften the contact of the levels to come.
+    - keep: Whether the motions of the last two runs are kept; every run then goes to the end.
+    - stop: Time at which the next run stops, where nothing later can matter.
+    - softest: Largest compliance against warping that supports may have.
+    - on_real: The last run on springs of real bearings that ended, and the change of the peaks on them, once supports
+      opened on stiffer ones, (EngineRun, (N,).
     """
 
     pair: PhasePair

@@ -62,21 +62,15 @@ class PeakReader:
     """
     Running maximum over t of |absolute acceleration| per body, fed chunk by chunk; nothing else is kept.
 
-    Parameters
-    ----------
-    bodies : int
-        Number N of bodies.
-    threshold : float
-        Slip speed v_reg at which the friction law has its corner; inf if it has none.
-    knots : (K,) array, near : float
-        Rising instants at which the loading has a kink, each a sample within `near`.
+    Parameters:
+    - bodies: Number N of bodies.
+    - threshold: Slip speed v_reg at which the friction law has its corner; inf if it has none.
+    - knots: Rising instants at which the loading has a kink, each a sample within `near`, (K,).
 
-    Attributes
-    ----------
-    value, sampling, instant : (N,) arrays
-        Largest value, estimated error of the reading between samples, and instant of each body.
-    first : (N,) array or None
-        Values of the first sample.
+    Attributes:
+    - value, sampling, instant: Largest value, estimated error of the reading between samples, and instant of each body,
+      (N,).
+    - first: Values of the first sample, (N,).
     """
 
     def __init__(self, bodies: int, threshold: float, knots: Array = NO_KNOTS, near: float = 0.0) -> None:
@@ -91,7 +85,7 @@ class PeakReader:
         self._slip = np.empty((0, 0))
 
     def add(self, time: Array, size: Array, slip: Array) -> None:
-        """Add sizes (T, N) and slip speeds (T, K) at times (T,), the first of which repeats the last of the chunk before."""
+        """Add sizes (T, N) and slip speeds (T, K) at times (T,); the first row repeats the last one before."""
         if self.first is None:
             self.first = size[0]
         carried = len(self._time)

@@ -41,18 +41,12 @@ class Refinement:
     """
     The result of refinement for one phase pair.
 
-    Attributes
-    ----------
-    peaks, errors : (N,) arrays
-        m/s^2, NaN without an answer.
-    outcome, instant : Outcome, float
-        Outcome, and the instant, s, at which an outcome other than ok arose.
-    finest : EngineRun
-        The last run.
-    coarser : tuple of (EngineRun, float)
-        Runs whose differences to the last, in these shares, are errors.
-    floor : float
-        Lower bound of a relative error.
+    Attributes:
+    - peaks, errors: m/s^2, NaN without an answer, (N,).
+    - outcome, instant: Outcome, and the instant, s, at which an outcome other than ok arose.
+    - finest: The last run.
+    - coarser: Runs whose differences to the last, in these shares, are errors.
+    - floor: Lower bound of a relative error.
     """
 
     peaks: Array

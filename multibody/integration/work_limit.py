@@ -81,13 +81,13 @@ def refusal(
         f"refused before any step: it needs {needed:.2g} steps of the engine or more, and a phase pair may take "
         f"{max_work:.2g} ({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the "
         f"fastest period is {period:.2g} s). Allow more work (max_work or "
-        f"--max-work, about {_round_to_two_digits(work, math.ceil):g} steps), shorten the duration to about "
-        f"{_round_to_two_digits(enough, math.floor):g} s (above {_round_to_two_digits(tried, math.ceil):g} s no step is taken), "
+        f"--max-work, about {_round_digits(work, math.ceil):g} steps), shorten the duration to about "
+        f"{_round_digits(enough, math.floor):g} s (above {_round_digits(tried, math.ceil):g} s no step is taken), "
         f"or take a longer period; a looser tolerance {'may help' if looser_helps else 'does not help'}"
     )
 
 
-def _round_to_two_digits(value: float, rounded: Callable[[float], int]) -> float:
-    """Two digits of a positive number, rounded by `math.floor` or `math.ceil`."""
+def _round_digits(value: float, rounded: Callable[[float], int]) -> float:
+    """Round a positive number to two digits by `math.floor` or `math.ceil`."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return float(f"{rounded(value / unit) * unit:.2g}")

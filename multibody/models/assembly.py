@@ -1,4 +1,4 @@
-"""The engine's system of a scene: the model by its name, with its arguments checked."""
+"""Assembly of the engine's system of a scene: the model by its name, with its arguments checked."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translationa
 
 
 def choose_model(scene: Scene, model: str, full: bool) -> str:
-    """The model that answers for `model`: a platform that does not tilt needs no rotations, unless `full`."""
+    """Choose the model that answers for `model`: a platform that cannot tilt needs no rotations, unless `full`."""
     return "translational" if model == "spatial" and not full and untilted(scene).allowed else model
 
 
@@ -42,5 +42,6 @@ def assemble(
     built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **options)
     if scene.isolator.travel is not None:
         built = replace(built, travel=scene.isolator.travel / built.units.length)
-    reset_when_unused(built.recorders, built.container)  # a copy of the model with other settings shares them
+    # copies of the model with other settings share its recorders, so that these own the engine's memory
+    reset_when_unused(built.recorders, built.container)
     return built

@@ -1,5 +1,5 @@
 """
-Where the spheres are in the depressions of a platform that turns, and how fast the platform moves against them.
+Kinematics of the spheres in the depressions of a platform that turns.
 
 A depression is the upper half of a hollow sphere. The engine's contact is a whole one: it would press from the other
 side once the platform has risen by twice rho. So the clearance between platform and spheres is computed here.
@@ -18,15 +18,20 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Depressions:
-    """The platform's depressions over spheres on the plate, in units of the model, where rho is one."""
+    """
+    The platform's depressions over spheres on the plate, in units of the model, where rho is one.
 
-    ring: Array  # (K, 2), places of the spheres
-    center: Array  # (3,), the platform's center of mass at rest, from the middle of the plane of the depressions
-    radius: float  # of the spheres
-    vertical: NDArray[np.int_]  # (K,) or (0,), index of each sphere's vertical coordinate
+    ring: places of the spheres, (K, 2). center: the platform's center of mass at rest, from the middle of the plane of
+    the depressions, (3,). radius: of the spheres. vertical: index of each sphere's vertical coordinate, (K,) or (0,).
+    """
+
+    ring: Array
+    center: Array
+    radius: float
+    vertical: NDArray[np.int_]
 
     def sphere_positions(self, coordinates: Array) -> tuple[Array, Array]:
-        """Centers (T, K, 3) of the spheres from those of the depressions, in axes of the plate and of the platform."""
+        """Positions (T, K, 3) of the spheres in the depressions, in the axes of the plate and of the platform."""
         turned = rotation_matrices(coordinates[:, 3:6])
         local = np.column_stack([self.ring, np.zeros(len(self.ring))]) - self.center
         place = coordinates[:, None, :3] + self.center + np.einsum("tij,kj->tki", turned, local)
@@ -43,17 +48,17 @@ class Depressions:
 
     def is_near_rest(self, coordinates: Array) -> bool:
         """
-        Whether bounds prove for all coordinates (T, n) that no sphere is `rows_beyond_rim` and no tilt reaches 90 degrees.
+        Return whether bounds prove for all coordinates (T, n) that no sphere is out and no tilt reaches 90 degrees.
 
-        A platform that is displaced by u and turned by the angle t moves a depression at the distance l from its center
-        by |u| + t l at most, and lifts it by |u_z| + t l.
+        The proof spares `rows_beyond_rim`, which costs more. A platform that is displaced by u and turned by an angle t
+        moves a depression at the distance l from its center by |u| + t l at most, and lifts it by |u_z| + t l.
         """
         largest: list[float] = np.abs(coordinates).max(axis=0).tolist()
         shift, lift, turn = sum(largest[:3]), largest[2], sum(largest[3:6])
         sinking = max([largest[place] for place in self.vertical], default=0.0)
         moved = turn * self._farthest
-        above = 1.0 - sinking - lift - moved - turn * (1.0 + sinking + shift + moved)  # height of a sphere in the rim
-        return above > 0.0 and turn < 1.0
+        height_in_rim = 1.0 - sinking - lift - moved - turn * (1.0 + sinking + shift + moved)
+        return height_in_rim > 0.0 and turn < 1.0
 
     @cached_property
     def _farthest(self) -> float:
@@ -61,7 +66,7 @@ class Depressions:
         return float(np.hypot(np.hypot(*(self.ring - self.center[:2]).T), self.center[2]).max())
 
     def rows_beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:
-        """Whether a sphere has left its depression, (T,), for coordinates (T, n)."""
+        """Rows (T,) of coordinates (T, n) in which a sphere has left its depression, as a mask."""
         _, inside = self.sphere_positions(coordinates)
         outside = (inside[..., 2] <= 0.0) & (np.hypot(inside[..., 0], inside[..., 1]) >= 1.0)
         return np.asarray(outside.any(axis=1))
@@ -92,13 +97,13 @@ class FlatUnderside(Depressions):
     """The plane under the platform of a flat slider, as high above the middle as the tops of the spheres at rest."""
 
     def clearance(self, coordinates: Array) -> Array:
-        """See `Depressions`."""
+        """Distance (T, K) from the plane to spheres for coordinates (T, n), without penetration; negative: pressed."""
         _, inside = self.sphere_positions(coordinates)
         clear: Array = 1.0 - inside[..., 2]
         return clear
 
     def rows_beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:
-        """A plane has no rim."""
+        """Return no row: a plane has no rim."""
         return np.zeros(len(coordinates), dtype=bool)
 
     def _normals(self, coordinates: Array) -> Array:

@@ -2,10 +2,15 @@
 Velocities after an impact of the platform on spheres that had left it.
 
 An impact takes no time: positions stay, velocities jump. The impulses obey Newton's law of restitution along the
-normals and Coulomb's law across them, both stated with the velocities after the impact (Moreau). Spheres that carry
-load may push, too, and not pull. Bars are rigid in tension and bending, as they are beside the contacts' stiffness,
+normals and Coulomb's law across them, both stated with the velocities after the impact (Moreau 1988). Spheres that
+carry load may push, too, and not pull. Bars are rigid in tension and bending, as they are compared with the contacts,
 and give way in shear and twist. Bars with an axial stiffness of their own give way in every direction. The result does
 not depend on the stiffness of the contacts.
+
+References
+----------
+Moreau, J. J. (1988). Unilateral contact and dry friction in finite freedom dynamics. In: Nonsmooth Mechanics and
+Applications, CISM Courses and Lectures 302, 1-82.
 """
 
 from __future__ import annotations
@@ -23,26 +28,47 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 PER_BODY = 6
-MAX_SWEEPS, SWEEP_TOLERANCE = 2000, 1e-11  # over the contacts; change of a velocity in one over the largest before
-OPENING_SPEED = 1e-5  # units of velocity: contacts that separate faster are open
+
+# Largest number of sweeps over the contacts, and the change of a velocity in one, over the largest before the impact,
+# at which they end.
+MAX_SWEEPS, SWEEP_TOLERANCE = 2000, 1e-11
+
+# Speed in units of velocity beyond which contacts that separate are open.
+OPENING_SPEED = 1e-5
 
 
 @dataclass(frozen=True)
 class ImpactLaw:
-    """What an impact depends on, in units of the model."""
+    """
+    Law of impact of a platform with bodies on links, in units of the model.
+
+    Attributes:
+    - masses: (N,) array.
+    - inertias, axes: Moments of inertia about the axes of each body, and these axes at rest, columns, (N, 3), (N, 3,
+      3).
+    - centers: Centers of mass at rest, from the axis on which the links stand, (N, 3).
+    - friction: Law of the slip speed before the impact.
+    - corner: Slip speed below which the coefficient is reduced linearly.
+    - rigid: Links that are rigid in tension and bending, (N - 1,).
+    """
 
     depressions: Depressions
-    masses: Array  # (N,)
-    inertias: Array  # (N, 3), about the axes of each body
-    axes: Array  # (N, 3, 3), these axes at rest, columns
-    centers: Array  # (N, 3), of mass, at rest, from the axis on which the links stand
+    masses: Array
+    inertias: Array
+    axes: Array
+    centers: Array
     restitution: float
-    friction: DryFriction  # of the slip speed before the impact, in units of the model
-    corner: float  # slip speed under which the coefficient is reduced linearly
-    rigid: Mask  # (N - 1,), links that are rigid in tension and bending
+    friction: DryFriction
+    corner: float
+    rigid: Mask
 
     def velocities_after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
-        """Velocities (n,) after an impact, and which contacts (K,) are open then, from those closed and those hit."""
+        """Return velocities (n,) after an impact and the contacts (K,) that are open, from those closed and hit."""
+        # The impulses of all struck contacts act on the bodies at once, through the inverse of the mass matrix in which
+        # rigid links hold (Delassus' operator in the axes of the contacts). Contacts that are hit rebound by Newton's
+        # restitution, and closed ones may push without rebounding. Friction and unilateral contact are solved for the
+        # velocities after the impact, by sweeps over the contacts (`_solve_impulses`). The spheres are too light to
+        # matter: one that springs up does not push the platform, and one that is hit follows it.
         count = PER_BODY * len(self.masses)
         turning = self._velocity_matrix(coordinates)
         speeds = turning @ velocities[:count]
@@ -54,7 +80,6 @@ class ImpactLaw:
         before = rows @ speeds
         if len(self.depressions.vertical):
             upward = velocities[self.depressions.vertical[struck]]
-            # a sphere that springs up is too light to push the platform
             upward[hit[struck]] = np.minimum(upward[hit[struck]], 0.0)
             before -= axes[:, :, 2] * upward[:, None]
         response = self._impulse_response(coordinates)
@@ -71,7 +96,7 @@ class ImpactLaw:
         return self.carry_spheres_along(coordinates, changed, hit & ~is_open), is_open
 
     def carry_spheres_along(self, coordinates: Array, velocities: Array, hit: Mask) -> Array:
-        """Velocities (n,) with those of the spheres that the platform hits, (K,), which are light and follow it."""
+        """Return velocities (n,) with those of the light spheres that the platform hits, (K,): they follow it."""
         vertical = self.depressions.vertical
         if not len(vertical):
             return velocities
@@ -83,7 +108,7 @@ class ImpactLaw:
 
     def relax_bars(self, coordinates: Array, before: Array, after: Array, lags: Array) -> Array:
         """
-        Coordinates (n,) behind an impact that changed velocities (n,), at which no bar pushes for its damper's sake.
+        Return coordinates (n,) behind an impact that changed velocities (n,), at which no bar's damper pushes.
 
         The engine's damper of a link sees the speed of its two ends along the bars, and takes the turning of bars with
         an offset for stretching. A small stretch makes up for that; it jumps with the velocities. lags: (N - 1,),
@@ -183,7 +208,11 @@ class ImpactLaw:
         return turned[link] @ [-below[0], -below[1], half], turned[link + 1] @ [-above[0], -above[1], -half]
 
     def _solve_impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
-        """Impulses (K, 3), along the normal and across it, by sweeps; rebound: least normal speed afterwards."""
+        """Solve for impulses (K, 3), normal and across, by sweeps; rebound: least normal speed (K,) afterwards."""
+        # Projected Gauss-Seidel (Jean and Moreau 1992): each contact in turn takes the impulse that its own law asks
+        # for with all others as they are. Across the normal the block of the contact is replaced by its largest
+        # eigenvalue, so that Coulomb's law, linear below the corner, is solved in closed form and sweeps do not
+        # overshoot.
         impulses = np.zeros_like(before)
         scale = float(np.abs(before).max(initial=0.0))
         friction = self.friction.at(np.hypot(before[:, 1], before[:, 2])).tolist()

@@ -1,4 +1,4 @@
-"""Sensors of a model: everything a run is judged by, kept in the engine's memory and read back after each chunk."""
+"""Sensors of a model: all that a run is judged by, kept in the engine's memory and read back after each chunk."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def add_recorders(
     contacts: list[Any],
     plate: Any = None,
 ) -> Recorders:
-    """One sensor of motion of nodes and coordinates, of gap, slip, force and normal of contacts, of the plate."""
+    """Add sensors: motion of nodes and linear bodies, gap, slip, force and normal of contacts, motion of the plate."""
     kind = exudyn.OutputVariableType
 
     def sense_node(node: Any, quantity: Any) -> Any:

@@ -17,18 +17,28 @@ from reference.problem.friction import Heat
 
 Array = NDArray[np.float64]
 
-SPACING = 0.3  # of ln x: the rule's error is exp(-pi^2 / (2 SPACING)) of the kernel, 7e-8
-SLOWEST = 1e-5  # x times the root of the duration
-FASTEST = 1e-6  # of the duration, over which the kernel is cut off: sqrt of it is missed
+# Spacing of ln x in the trapezoidal rule, whose error is exp(-pi^2 / (2 SPACING)) of the kernel, 7e-8.
+SPACING = 0.3
+
+# Least x, times the root of the duration.
+SLOWEST = 1e-5
+
+# Time over which the kernel is cut off, in durations: the square root of it is missed.
+FASTEST = 1e-6
 
 
 class _HeatState(NamedTuple):
-    """The contacts at an instant."""
+    """
+    Heat of the contacts at an instant, in units of time.
 
-    time: float  # in units of time
-    shares: Array  # (K, X) of the decays, W s
-    power: Array  # (K,) of friction, W, covered or not
-    distance: float  # of the platform from the center, in units of length
+    shares: of the decays, W s, (K, X). power: of friction, W, covered or not, (K,). distance: of the platform from the
+    center, in units of length.
+    """
+
+    time: float
+    shares: Array
+    power: Array
+    distance: float
 
 
 class SurfaceHeat:
@@ -43,7 +53,7 @@ class SurfaceHeat:
         self._kept: list[_HeatState] = []
 
     def begin(self, time: float) -> bool:
-        """Forget what came after `time`; whether the power there is known, too."""
+        """Forget what came after `time`; return whether the power there is known, too."""
         if time == 0.0:
             nothing = np.zeros((self._count, len(self._rates)))
             self._kept = [_HeatState(0.0, nothing, nothing[:, 0], 0.0)]
@@ -73,6 +83,7 @@ class SurfaceHeat:
         return last.distance + (time - last.time) * (last.distance - before[0].distance) / (last.time - before[0].time)
 
     def _advance(self, time: float, power: Array, distance: float) -> _HeatState:
+        """Return the state after a step up to `time` in which power and distance change linearly."""
         last = self._kept[-1]
         span = (time - last.time) * self._unit_time
         nearest, way = min(last.distance, distance), abs(distance - last.distance)

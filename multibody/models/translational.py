@@ -19,6 +19,7 @@ from scipy.sparse import csr_matrix
 
 from multibody.models.contact import (
     FORCE_ROUNDING,
+    ContactLaw,
     contact_law,
     corner_and_relaxation,
     place_on_sphere,
@@ -27,7 +28,7 @@ from multibody.models.contact import (
 )
 from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn, items
 from multibody.models.loading import Push, make_ground, push_coordinates
-from multibody.models.plane import bound_distance, make_plane_contact, place_on_plane, set_extent
+from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_extent
 from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, add_plate
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
@@ -38,9 +39,14 @@ from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
 
-BETWEEN_TWO = np.array([[1.0, -1.0], [-1.0, 1.0]])  # what acts between two coordinates
-HOLLOW_RADIUS = 2.0  # R in units of rho; in translation only R - r matters
-SPHERE_ON_PLANE = 1.0  # radius of the sphere under the platform of a flat slider, in units of length
+# Pattern of a spring between two coordinates.
+BETWEEN_TWO = np.array([[1.0, -1.0], [-1.0, 1.0]])
+
+# Radius R of the hollow sphere in units of rho; in translation only R - r matters.
+HOLLOW_RADIUS = 2.0
+
+# Radius of the sphere under the platform of a flat slider, in units of length.
+SPHERE_ON_PLANE = 1.0
 
 
 def translational(
@@ -69,9 +75,9 @@ def translational(
 
     ground = make_ground(mbs, scene, units)
     plate = add_plate(mbs, loading, ground)
-    friction, threshold = contact_law(scene, regularization, units)
+    law = contact_law(scene, regularization, units)
     add_contact = _add_contact_on_plane if scene.flat else _add_contact
-    contact, contact_node = add_contact(mbs, plate, depression, friction, threshold)
+    contact, contact_node = add_contact(mbs, plate, depression, law)
     expressions = (
         [*plate.expressions] if plate.moves else push_coordinates(mbs, ground, _list_pushes(masses, nodes, axes))
     )
@@ -81,7 +87,7 @@ def translational(
     mbs.Assemble()
 
     constant = scene.dry_friction.constant
-    varying = None if constant else SpeedFriction(mbs, scene, units, threshold, [contact], ground)
+    varying = None if constant else SpeedFriction(mbs, scene, units, law.threshold, [contact], ground)
     count = COORDINATES + axes * (len(masses) - 1)
     bodies = np.tile(np.arange(3), (len(masses), 1))
     bodies[1:, :axes] = np.arange(COORDINATES, count).reshape(-1, axes)
@@ -99,7 +105,7 @@ def translational(
             coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
             velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
         if scene.flat:
-            set_extent(mbs, contact, bound_distance(scene, units, coordinates, velocities), -SPHERE_ON_PLANE)
+            set_extent(mbs, contact, largest_distance_possible(scene, units, coordinates, velocities), -SPHERE_ON_PLANE)
         on_surface = place_on_plane if scene.flat else place_on_sphere
         coordinates[:3], velocities[:3], gap, slip = on_surface(
             coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
@@ -109,9 +115,10 @@ def translational(
 
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
         x, y, z = (0.0, 0.0, 0.0) if scene.flat else state.coordinates[:3].tolist()
-        inward = -x, -y, 1.0 - z  # from the middle of the hollow sphere
-        length = math.hypot(*inward)
-        return settle_contact(state, float(gap_rate[0]), penetration, [part / length for part in inward])
+        to_center_of_hollow_sphere = -x, -y, 1.0 - z
+        length = math.hypot(*to_center_of_hollow_sphere)
+        normal = [part / length for part in to_center_of_hollow_sphere]
+        return settle_contact(state, float(gap_rate[0]), penetration, normal)
 
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
@@ -134,8 +141,8 @@ def translational(
     )
 
 
-def _add_contact(mbs: Any, plate: Plate, depression: Any, friction: float, threshold: float) -> tuple[Any, Any]:
-    """A sphere on the plate inside the platform's hollow sphere, and its data node; `set_contact` completes it."""
+def _add_contact(mbs: Any, plate: Plate, depression: Any, law: ContactLaw) -> tuple[Any, Any]:
+    """Add a sphere on the plate inside the platform's hollow sphere, and its data node; `set_contact` completes it."""
     node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
     sphere = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[0.0, 0.0, 1.0]))
     contact = items.ObjectContactSphereSphere(
@@ -143,23 +150,23 @@ def _add_contact(mbs: Any, plate: Plate, depression: Any, friction: float, thres
         nodeNumber=node,
         spheresRadii=[HOLLOW_RADIUS - 1.0, HOLLOW_RADIUS],
         isHollowSphere1=True,
-        dynamicFriction=friction,
-        frictionProportionalZone=threshold,
+        dynamicFriction=law.friction,
+        frictionProportionalZone=law.threshold,
     )
     return mbs.AddObject(contact), node
 
 
-def _add_contact_on_plane(mbs: Any, plate: Plate, platform: Any, friction: float, threshold: float) -> tuple[Any, Any]:
-    """As `_add_contact`, of a sphere under the platform on the plane of the plate: no moment turns either of them."""
+def _add_contact_on_plane(mbs: Any, plate: Plate, platform: Any, law: ContactLaw) -> tuple[Any, Any]:
+    """Add a sphere under the platform on the plane of the plate, and its data node: no moment turns either of them."""
     node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
     plane = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body))
-    contact = make_plane_contact(platform, plane, node, SPHERE_ON_PLANE, -SPHERE_ON_PLANE, friction, threshold)
+    contact = make_plane_contact(platform, plane, node, SPHERE_ON_PLANE, -SPHERE_ON_PLANE, law)
     return mbs.AddObject(contact), node
 
 
 def _add_chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> tuple[list[Any], Any]:
     """
-    All bodies and their weight as one linear object on the platform's coordinates and x, y (or x) of the others.
+    Add all bodies and their weight as one linear object on the platform's coordinates and x, y (or x) of the others.
 
     Returns the nodes and the object.
 
@@ -197,7 +204,7 @@ def _add_chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, da
 
 
 def _matrix_container(matrix: Array) -> Any:
-    """A matrix (n, n) as the engine takes it: only its entries, where the sparse solver is used."""
+    """Return a matrix (n, n) as the engine takes it: only its entries, where the sparse solver is used."""
     if len(matrix) <= MAX_DENSE_COORDINATES:
         return matrix
     entries = exudyn.MatrixContainer()
@@ -206,7 +213,7 @@ def _matrix_container(matrix: Array) -> Any:
 
 
 def _list_pushes(masses: Array, nodes: list[Any], axes: int) -> list[Push]:
-    """What the loading accelerates: the bodies above share the platform's vertical motion, so all of the mass there."""
+    """List the coordinates that the loading accelerates: the bodies above share the platform's vertical motion."""
     platform = [Push(nodes[0], axis, float(masses[0]), axis) for axis in range(2)]
     above = [
         Push(nodes[1], axes * number + axis, float(mass), axis)

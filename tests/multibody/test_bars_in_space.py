@@ -12,7 +12,7 @@ from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from multibody.models.engine import exudyn, items
-from multibody.models.links import LINK_COMPLIANCE_RATIO, add_links
+from multibody.models.links import LINK_COMPLIANCE_RATIO, RigidBodies, add_links
 from multibody.models.units import units_of
 from reference.problem import Outcome, Scene, load_scene
 
@@ -55,7 +55,7 @@ def on_the_ground(scene: Scene, force: float = 0.0) -> tuple[Any, Any, int]:
     marker = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
     mbs.AddLoad(items.LoadForceVector(markerNumber=marker, loadVector=[force * masses[1], 0.0, -masses[1]]))
     shear = scene.stiffness[:, :, None] * np.eye(2) * (units.time**2 / units.mass)
-    add_links(mbs, scene, units, [ground, body], masses, centers, shear, 0.0 * shear, 1.0)
+    add_links(mbs, scene, units, RigidBodies([ground, body], masses, centers), shear, 0.0 * shear, 1.0)
     mbs.Assemble()
     return container, mbs, node
 

@@ -13,6 +13,7 @@ from multibody import surface
 from multibody.integration import refine
 from multibody.integration.constant_step import EngineSolver
 from multibody.integration.level import plan_levels
+from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from reference.problem import GRAVITY, Outcome, Scene, load_scene
 
@@ -111,7 +112,7 @@ def test_iterations_in_vain_are_work_as_well(monkeypatch: pytest.MonkeyPatch) ->
 
     def vain(self: EngineSolver, *given: Any) -> Any:
         motion = ran(self, *given)
-        self.iterations = 10**6
+        self.newton_iterations = 10**6
         return motion
 
     monkeypatch.setattr(EngineSolver, "run", vain)
