@@ -47,7 +47,7 @@ def trajectory(
     phase : array_like, shape (2,)
         Initial phases of the two harmonics, rad.
     tolerance : float
-        Relative error that is asked of the largest accelerations.
+        Relative error that is asked of the largest accelerations; 0.001 (`DEFAULT_TOLERANCE`) if not given.
     initial : State, optional
         Displacements (N, 2), m, and velocities (N, 2), m/s, at time zero; at rest without.
 
@@ -128,9 +128,11 @@ def single_run(
         Run with this constant step, s, rounded so that the duration is a whole number of steps. Exactly one of `level`
         and `step` is required. The arguments below belong to `step`.
     penetration : float
-        Penetration of the contact under the weight, in units of rho: the inverse of its stiffness.
+        Penetration of the contact under the weight, in units of rho: the inverse of its stiffness. 1e-06
+        (`DEFAULT_PENETRATION`) if not given.
     newton : float
-        Tolerance of the forces in Newton's iteration, relative to the first residual of a step.
+        Tolerance of the forces in Newton's iteration, relative to the first residual of a step; 1e-05
+        (`DEFAULT_NEWTON_TOLERANCE`) if not given.
     residual : float, optional
         Smallest residual that is asked for, in units of the weight; 1e-3 of `newton` without.
     integrator : {"generalized alpha", "trapezoidal", "RK44", "velocity Verlet"}

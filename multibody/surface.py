@@ -56,10 +56,10 @@ def amplification(
     model : {"translational", "spatial"}
         The paper's degrees of freedom, or bodies that turn on supports that may open.
     regularization : float or None
-        v_reg, m/s, below which dry friction is linear in the slip velocity. None only where the contact is lubricated
-        or frictionless.
+        v_reg, m/s, below which dry friction is linear in the slip velocity; 0.001 (`DEFAULT_V_REG`) if not given. None
+        only where the contact is lubricated or frictionless.
     tolerance : float
-        Relative error that is asked of every mu.
+        Relative error that is asked of every mu; 0.001 (`DEFAULT_TOLERANCE`) if not given.
     loading : {"inertial", "plate"}
         Inertial forces in the plate's frame, or the motion of a plate that carries the supports.
     full : bool

@@ -98,12 +98,8 @@ def error_between_levels(peaks: list[PeakReader], levels: list[Level], model: En
     unsolved = levels[-1].newton * levels[-1].load
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
     level_error = level_error + unsolved if levels[-1].flat else np.maximum(level_error, unsolved)
-    return (
-        level_error
-        + peaks[-1].sampling
-        + _error_of_starting_links(peaks[-1], levels[-1], model)
-        + MIN_RELATIVE_ERROR * last
-    )
+    starting = _error_of_starting_links(peaks[-1], levels[-1], model)
+    return level_error + peaks[-1].sampling + starting + MIN_RELATIVE_ERROR * last
 
 
 def _error_of_starting_links(peaks: PeakReader, level: Level, model: EngineModel) -> Array:

@@ -206,9 +206,10 @@ def levels(
     scene : Scene
     model : {"translational", "spatial"}
     tolerance : float
-        Relative error of mu that is asked for. A looser one permits a softer contact at the first levels.
+        Relative error of mu that is asked for; 0.001 (`DEFAULT_TOLERANCE`) if not given. A looser one permits a softer
+        contact at the first levels.
     regularization : float or None
-        v_reg, m/s, as in `amplification`.
+        v_reg, m/s, as in `amplification`; 0.001 (`DEFAULT_V_REG`) if not given.
 
     Returns
     -------

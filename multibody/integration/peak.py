@@ -42,7 +42,7 @@ LONGER_STEP = 1.5
 CANDIDATE_FRACTION = 0.97
 
 
-class _Samples(NamedTuple):
+class _AccelerationSamples(NamedTuple):
     """
     Samples of an acceleration of each body, and where their slopes jump.
 
@@ -112,7 +112,7 @@ class PeakReader:
             left for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._last_read_corner
         ]
         bends = sorted({*find_kinks(time, self._knots, self._near).tolist(), *_find_step_jumps(time).tolist()})
-        samples = _Samples(time, size, slip, corners, bends, ready)
+        samples = _AccelerationSamples(time, size, slip, corners, bends, ready)
         for body in range(size.shape[1]):
             self._scan_body(body, samples)
         if ready:
@@ -142,7 +142,7 @@ class PeakReader:
         """Read nothing across this instant: velocities jump, and the next chunk need not begin here."""
         self._time, self._size, self._slip = self._time[:0], self._size[:0], self._slip[:0]
 
-    def _scan_body(self, body: int, samples: _Samples) -> None:
+    def _scan_body(self, body: int, samples: _AccelerationSamples) -> None:
         """Read the largest values of one body from the samples."""
         time, slip, corners = samples.time, samples.slip, samples.corners
         size = samples.size[:, body]

@@ -14,7 +14,7 @@ def add_recorders(
     linear: list[Any],
     contact_nodes: list[Any],
     contacts: list[Any],
-    plate: Any = None,
+    plate: Any,
 ) -> Recorders:
     """Add sensors: motion of nodes and linear bodies, gap, slip, force and normal of contacts, motion of the plate."""
     kind = exudyn.OutputVariableType
