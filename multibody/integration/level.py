@@ -26,7 +26,7 @@ from reference.problem.scene import takes_scene
 
 MAX_LEVELS = 8
 
-# Tolerance from which on a record has a level before level 0 (measured: docs/multibody.md).
+# Tolerance from which on a record has a level before level 0 (measured: docs/records/multibody.md).
 LOOSE = 1e-2
 
 # Relative error of a peak that level 0 typically has: closer agreement of two levels is treated as accidental.

@@ -119,7 +119,7 @@ class LevelRuns:
         # a share of the work: rattling on stiff springs would use up all of it. A run that stops early holds only if
         # its largest values confirm those of the run before: nothing later can then be larger, and otherwise the level
         # is run to the end. And where a support opens, the springs of real bearings are tried, since the platform of
-        # rigid supports is lifted off by its misfit alone (docs/multibody.md, supports).
+        # rigid supports is lifted off by its misfit alone (docs/records/multibody.md, supports).
         number, level = len(self.runs), self.levels[len(self.runs)]
         trial = number == 0 and self.pair.model.warping_displacement is not None
         run = self._run_trial(level) if trial else self._run_level(level, self.stop)
