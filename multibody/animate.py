@@ -60,12 +60,12 @@ SUFFIXES = (".gif",)
 VIEWER_STEPS_PER_SECOND = 1000.0
 
 
-def frame_count(duration: float, look: Look) -> int:
+def count_frames(duration: float, look: Look) -> int:
     """Number of frames of a film of `duration` s of motion."""
     return max(round(min(duration * look.rate / look.speed, 1e9)), 1) + 1
 
 
-def refuse_film(scene: Scene, out: Path, look: Look) -> None:
+def check_film_options(scene: Scene, out: Path, look: Look) -> None:
     """Raise ValueError, one line, if no film can be written to `out` or it would be absurd, before anything is run."""
     if not (np.isfinite(look.stretch) and 0.0 < look.stretch <= MAX_STRETCH):
         raise ValueError(f"--stretch: {look.stretch}: must be greater than 0 and at most {MAX_STRETCH:g}")
@@ -77,7 +77,7 @@ def refuse_film(scene: Scene, out: Path, look: Look) -> None:
         raise ValueError(f"--speed: {look.speed}: must be finite and greater than 0")
     fastest = scene.duration * look.rate
     slowest = fastest / (MAX_FRAMES - 1)
-    if look.speed > fastest or frame_count(scene.duration, look) > MAX_FRAMES:
+    if look.speed > fastest or count_frames(scene.duration, look) > MAX_FRAMES:
         raise ValueError(
             f"--speed: {look.speed:g}: a film of {scene.duration:g} s of motion has 2 to {MAX_FRAMES} frames, "
             f"{look.rate} per second: give {slowest:.2g} to {fastest:.2g}"
@@ -144,7 +144,7 @@ def main(words: list[str] | None = None) -> int:
             open_viewer(scene, phase, options.model, options.regularization)
             return 0
         look = Look(options.stretch, options.speed, options.rate, tuple(options.size))
-        refuse_film(scene, options.out, look)
+        check_film_options(scene, options.out, look)
         motion = trajectory(scene, phase, options.model, options.regularization, max_work=options.max_work)
         if len(motion.time) == 0:
             why = refusal(scene, options.model, options.regularization, full=True, max_work=options.max_work)
@@ -153,7 +153,7 @@ def main(words: list[str] | None = None) -> int:
     except (SceneError, ValueError) as error:
         print(error, file=sys.stderr)
         return 2
-    count = frame_count(float(motion.time[-1]), look)
+    count = count_frames(float(motion.time[-1]), look)
     written = write_new(options.out, draw_film(scene, motion, options.model, look, count))
     if written != options.out:
         print(f"{options.out} exists and stays: the film is in {written}", file=sys.stderr)

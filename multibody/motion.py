@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from multibody.defaults import DEFAULT_NEWTON_TOLERANCE, DEFAULT_PENETRATION, DEFAULT_TOLERANCE, DEFAULT_V_REG
-from multibody.integration.constant_step import INTEGRATORS, EngineMotion, silence
+from multibody.integration.constant_step import INTEGRATORS, EngineMotion, silence_engine
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level
 from multibody.integration.one_run import PhasePair
@@ -85,7 +85,7 @@ def trajectory(
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     max_work = checked_number("max_work", max_work, WORK)
     initial = _check_initial(scene, initial)
-    with silence():
+    with silence_engine():
         built = assemble(scene, model, regularization, loading=loading, contact_force=True)
         pair = PhasePair(scene, built, checked, initial)
         point = refine(pair, tolerance, keep=True, max_work=max_work)
@@ -171,7 +171,7 @@ def single_run(
     checked_choice("integrator", integrator, INTEGRATORS)
     penetration = checked_number("penetration", penetration, PENETRATION)
     newton = checked_number("newton", newton, NEWTON)
-    with silence():
+    with silence_engine():
         built = assemble(scene, model, regularization, contact_force=True)
         point = PhasePair(scene, built, pair, _check_initial(scene, initial))
         if level is not None:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
-from multibody.integration.constant_step import silence
+from multibody.integration.constant_step import silence_engine
 from multibody.integration.level import Level
 from multibody.integration.one_run import PhasePair
 from multibody.integration.refine import MAX_WORK, WORK, Refinement, refine
@@ -111,7 +111,7 @@ def amplification(
     status, instant = np.full(len(pairs), Outcome.OK.value, dtype="U32"), np.full(len(pairs), np.nan)
     displacement = np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
-    with silence():
+    with silence_engine():
         reduced = _reduce_model(scene, model, regularization, loading, full)
         for m, phase in enumerate(pairs):
             if ground[m] < LEAST_ACCELERATION:

@@ -32,7 +32,7 @@ from multibody.integration.step_control import (
     StepControl,
     gap_rate_at_end,
 )
-from multibody.integration.termination import find_termination, first_row
+from multibody.integration.termination import find_first_row, find_termination
 from multibody.models.recorded import align_steps
 from multibody.models.state import EngineState
 from reference.problem import Outcome
@@ -141,7 +141,7 @@ class _Progress:
         size = absolute_accelerations(self.model, motion, self.integration.ground)
         step_ratio = self.control.step_ratio(motion, size, self.run.peaks.value, step)
         last = len(motion.time) - 1
-        failing = first_row(step_ratio > 1.0)
+        failing = find_first_row(step_ratio > 1.0)
         rejected = at.divisions < level.max_divisions and failing <= last
         if rejected:
             last = max(failing - 1, 0)

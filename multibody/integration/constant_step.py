@@ -103,7 +103,7 @@ class EngineMotion(NamedTuple):
 
 
 @contextmanager
-def silence() -> Iterator[None]:
+def silence_engine() -> Iterator[None]:
     """Keep the engine from writing on the terminal: a failed step is reported by status, not by print."""
     before = exudyn.config.printToConsole
     exudyn.config.printToConsole = False

@@ -17,7 +17,9 @@ from multibody.models.system import EngineModel
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]
-Ground = Callable[[Array], Array]  # acceleration (T, 3) of the plate at times (T,), in units of the model
+
+# Acceleration (T, 3) of the plate as a function of times (T,), in units of the model.
+Ground = Callable[[Array], Array]
 
 # Share of a largest value: later values below it do not reach the largest one in a run of another level either.
 SETTLED_FRACTION = 0.9

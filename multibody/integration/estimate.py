@@ -81,11 +81,11 @@ def error_between_levels(peaks: list[PeakReader], levels: list[Level], model: En
     The estimate is Richardson's, with Roache's safety factors.
     """
     # With an error that a level divides by `rate`, the change between two levels is (rate - 1) times the error that is
-    # left. Two levels show no rate: the lowest one that occurs, at stops, is assumed. Three show it, but a rate above
-    # that of smooth motion means that two errors cancel at one level. The earlier change then counts, at the lowest
-    # rate, and so do two changes of opposite sign. A contact that is slower than friction relaxes by x (see `lag`)
-    # leaves more, by 1 + x. No agreement takes the error below the floor that the level typically has, nor below what
-    # Newton's iteration leaves. On a plane that is added, since friction alone accelerates the platform there.
+    # left. Two levels show no rate, nor do two changes of opposite sign: the lowest one that occurs, at stops, is
+    # assumed. A rate above that of smooth motion means that two errors cancel at one level: the earlier change then
+    # counts, at the lowest rate. A contact that is slower than friction relaxes (`contact_lag`, x) leaves more, by 1 +
+    # x. No agreement takes the error below the floor that the level typically has, nor below what Newton's iteration
+    # leaves. On a plane that is added, since friction alone accelerates the platform there.
     last, before = peaks[-1].value, peaks[-2].value
     change = np.abs(last - before)
     safety, rate = SAFETY_TWO_LEVELS, np.full_like(change, MIN_RATE)
@@ -95,7 +95,7 @@ def error_between_levels(peaks: list[PeakReader], levels: list[Level], model: En
         change = np.where(rate > MAX_CREDIBLE_RATE, earlier / MIN_RATE, change)
         turned = np.sign(last - before) != np.sign(before - peaks[-3].value)
         rate = np.where(turned | (rate > MAX_CREDIBLE_RATE), MIN_RATE, np.clip(rate, MIN_RATE, MAX_RATE))
-    change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
+    change = safety * change * (1.0 + contact_lag(levels[-2], model)) / (rate - 1.0)
     unsolved = levels[-1].newton * levels[-1].load
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
     level_error = level_error + unsolved if levels[-1].flat else np.maximum(level_error, unsolved)
@@ -184,15 +184,15 @@ def compliance_error(stiff: PeakReader, soft: EngineRun, level: Level, model: En
     """Error (N,) that the contact's compliance leaves in `stiff`, from a softer run; at least its share of rho."""
     if soft.outcome != Outcome.OK:
         return np.full_like(stiff.value, np.inf)
-    change: Array = SAFETY_TWO_LEVELS * np.abs(stiff.value - soft.peaks.value) * (1.0 + lag(level, model))
+    change: Array = SAFETY_TWO_LEVELS * np.abs(stiff.value - soft.peaks.value) * (1.0 + contact_lag(level, model))
     return change + level.penetration * stiff.value
 
 
 def error_share_of_change(other: Level, model: EngineModel) -> float:
     """Share of the difference to a run at a coarser or softer level that counts as error, at the lowest rate."""
-    return SAFETY_TWO_LEVELS * (1.0 + lag(other, model)) / (MIN_RATE - 1.0)
+    return SAFETY_TWO_LEVELS * (1.0 + contact_lag(other, model)) / (MIN_RATE - 1.0)
 
 
-def lag(level: Level, model: EngineModel) -> float:
+def contact_lag(level: Level, model: EngineModel) -> float:
     """Response time of the contact over the relaxation time of friction, x."""
     return math.sqrt(level.penetration) / model.relaxation

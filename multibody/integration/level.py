@@ -15,7 +15,7 @@ import math
 from dataclasses import dataclass, replace
 
 from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
-from multibody.integration.constant_step import silence
+from multibody.integration.constant_step import silence_engine
 from multibody.integration.time_scales import largest_step, list_brief_motions, shortest_period
 from multibody.models.assembly import assemble
 from multibody.models.supports import MIN_WARPING_COMPLIANCE
@@ -228,7 +228,7 @@ def levels(
     8
     """
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
-    with silence():
+    with silence_engine():
         return plan_levels(scene, assemble(scene, model, regularization), tolerance)
 
 

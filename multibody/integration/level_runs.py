@@ -98,7 +98,7 @@ class LevelRuns:
         """Whether every run goes to the end."""
         return self.keep or self.pair.whole
 
-    def can_go_on(self) -> bool:
+    def can_run_next(self) -> bool:
         """Return whether there is another level, and work for it."""
         number = len(self.runs)
         if number == len(self.levels):
@@ -113,7 +113,7 @@ class LevelRuns:
         """Return whether the contact of a level is no stiffer than that of the level before."""
         return number > 0 and self.levels[number].penetration >= self.levels[number - 1].penetration
 
-    def run_next(self) -> EngineRun:
+    def run_next_level(self) -> EngineRun:
         """Make the run at the next level, and adapt the levels to come to it."""
         # Three things may replace the plain run at the level. The first run of supports that may rattle is a trial with
         # a share of the work: rattling on stiff springs would use up all of it. A run that stops early holds only if
@@ -133,7 +133,7 @@ class LevelRuns:
             self.on_real = None
         self.runs.append(run)
         if run.outcome == Outcome.OK and run.stop == math.inf and not self.whole:
-            self.stop = _early_stop(run, self.pair.model, self.levels[0].step)
+            self.stop = _choose_early_stop(run, self.pair.model, self.levels[0].step)
         if run.outcome not in UNFINISHED:
             self._adapt_levels(run)
         return run
@@ -236,7 +236,8 @@ class LevelRuns:
         """Repeat the last level on springs of real bearings; return the change (N,) of its peaks, and if it ended."""
         number, run = len(self.runs) - 1, self.runs[-1]
         real, change = self._run_on_real_bearings(self.levels[number], run)
-        if real.outcome in UNFINISHED:  # its peaks may still grow
+        if real.outcome in UNFINISHED:
+            # the peaks of a run that did not end may still grow
             return np.fmax(SAFETY_OF_BEARINGS * earlier, real.peaks.value - run.peaks.value), False
         change = np.maximum(earlier, change)
         if (change <= self.tolerance * run.peaks.value).all():
@@ -286,7 +287,7 @@ def _work_until(run: EngineRun, stop: float, end: float) -> float:
     return shorter * run.work
 
 
-def _early_stop(run: EngineRun, model: EngineModel, step: float) -> float:
+def _choose_early_stop(run: EngineRun, model: EngineModel, step: float) -> float:
     """Time at which runs at further levels may stop, after one to the end; step: the largest of any level."""
     limit = (1.0 - MIN_END_MARGIN) * min(model.rim, model.travel)
     if run.max_displacement > limit or run.min_load < MIN_END_MARGIN:

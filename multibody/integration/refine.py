@@ -78,7 +78,7 @@ def refine(
         no_run = EngineRun(PeakReader(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
         return _make_no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
     search = _Search(LevelRuns(pair, tolerance, budget, planned, softens=levels is None, keep=keep))
-    while not search.has_ended and search.runs.can_go_on():
+    while not search.has_ended and search.runs.can_run_next():
         search.add_level()
     return search.answer or search.make_last_answer()
 
@@ -111,7 +111,7 @@ class _Search:
 
     def add_level(self) -> None:
         """Run the next level, and judge its answer if it has one."""
-        run = self.runs.run_next()
+        run = self.runs.run_next_level()
         done = self.runs.runs
         if run.outcome in UNFINISHED:
             unfinished = sum(other.outcome in UNFINISHED for other in done)

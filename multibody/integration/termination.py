@@ -69,7 +69,7 @@ def _find_end_of_validity(motion: EngineMotion, model: EngineModel) -> tuple[Out
         if model.depressions.is_near_rest(motion.coordinates):
             return Outcome.OK, count - 1
         tilt = _tilt(motion, model)
-        row = first_row(model.depressions.rows_beyond_rim(motion.coordinates) | (tilt >= 0.5 * math.pi))
+        row = find_first_row(model.depressions.rows_beyond_rim(motion.coordinates) | (tilt >= 0.5 * math.pi))
         if row == count:
             return Outcome.OK, count - 1
         return Outcome.OVERTURNED if tilt[row] > model.critical_tilt else Outcome.RIM_REACHED, row
@@ -88,7 +88,7 @@ def _tilt(motion: EngineMotion, model: EngineModel) -> Array:
     return tilt
 
 
-def first_row(holds: Any) -> int:
+def find_first_row(holds: Any) -> int:
     """First row of a mask (T,) that is true; T if there is none."""
     row = int(holds.argmax())
     return row if holds[row] else len(holds)

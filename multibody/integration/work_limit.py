@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
-from multibody.integration.constant_step import silence
+from multibody.integration.constant_step import silence_engine
 from multibody.integration.engine_run import Budget
 from multibody.integration.level import plan_levels
 from multibody.integration.level_runs import MAX_WORK_GROWTH
@@ -66,7 +66,7 @@ def refusal(
             scene = scene.softened()
         except SceneError as error:
             return f"refused before any step: {error}"
-    with silence():
+    with silence_engine():
         built = assemble(scene, choose_model(scene, model, full), regularization)
     first = plan_levels(scene, built, tolerance)[0]
     longest = level_of_longest_steps(built, first, full)

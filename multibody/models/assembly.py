@@ -7,13 +7,13 @@ from dataclasses import replace
 
 from multibody.models.engine import reset_when_unused
 from multibody.models.plate import LOADINGS
-from multibody.models.spatial import spatial
+from multibody.models.spatial import assemble_spatial
 from multibody.models.system import EngineModel
-from multibody.models.translational import translational
+from multibody.models.translational import assemble_translational
 from reference.problem import Scene, untilted
 from reference.problem.ranges import REGULARIZATION, checked_choice, checked_number
 
-BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
+BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": assemble_translational, "spatial": assemble_spatial}
 
 
 def choose_model(scene: Scene, model: str, full: bool) -> str:

@@ -202,7 +202,7 @@ class ImpactLaw:
         return rows[np.repeat(self.rigid, 3)]
 
     def _levers(self, link: int, turned: Array) -> tuple[Array, Array]:
-        """From the centers of two neighbors, turned by (N, 3, 3), to the ends (3,) of the link between them."""
+        """Levers from the centers of two neighbors, turned by (N, 3, 3), to the ends (3,) of the link between them."""
         below, above = self.centers[link : link + 2]
         half = 0.5 * (above[2] - below[2])
         return turned[link] @ [-below[0], -below[1], half], turned[link + 1] @ [-above[0], -above[1], -half]

@@ -90,7 +90,7 @@ class Push(NamedTuple):
     axis: int
 
 
-def push_coordinates(mbs: Any, ground: Ground, pushes: Iterable[Push]) -> list[Any]:
+def load_coordinates(mbs: Any, ground: Ground, pushes: Iterable[Push]) -> list[Any]:
     """Load every coordinate by -m times the plate's acceleration, faster than by forces; return the expressions."""
 
     def force(mass: float, axis: int) -> Any:

@@ -40,7 +40,7 @@ def make_plane_contact(sphere: Any, plane: Any, node: Any, radius: float, height
     )
 
 
-def set_extent(mbs: Any, contact: Any, way: float, height: float) -> None:
+def set_plane_extent(mbs: Any, contact: Any, way: float, height: float) -> None:
     """Make the triangle at `height` large enough for a platform that goes `way`, in units of length."""
     mbs.SetObjectParameter(contact, "trianglePoints", _make_triangle(max(MIN_EXTENT, EXTENT_MARGIN * way), height))
 

@@ -41,8 +41,8 @@ from multibody.models.depressions import Depressions, FlatUnderside, rotation_ma
 from multibody.models.engine import exudyn, items
 from multibody.models.impact import ImpactLaw
 from multibody.models.links import PER_BODY, Link, RigidBodies, add_links, fastest_bar_frequency
-from multibody.models.loading import Push, add_coordinate_load, make_ground, push_coordinates
-from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_extent
+from multibody.models.loading import Push, add_coordinate_load, load_coordinates, make_ground
+from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_plane_extent
 from multibody.models.plate import add_plate
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
@@ -63,11 +63,11 @@ from reference.problem.supports import ring_places
 Array = NDArray[np.float64]
 
 
-def spatial(
+def assemble_spatial(
     scene: Scene, regularization: float | None, *, loading: str = "inertial", contact_force: bool = False
 ) -> EngineModel:
     """
-    Assemble the spatial model; arguments are those of `translational`.
+    Assemble the spatial model; arguments are those of `assemble_translational`.
 
     Raises ValueError if the scene has no data of supports or bodies.
     """
@@ -101,7 +101,7 @@ def spatial(
     )
     _add_weights(mbs, nodes, masses)
     pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
-    expressions = [*plate.expressions] if plate.moves else push_coordinates(mbs, ground, pushed)
+    expressions = [*plate.expressions] if plate.moves else load_coordinates(mbs, ground, pushed)
     forces = contacts if contact_force or scene.dry_friction.by_load else []
     recorders = add_recorders(mbs, [*nodes, *supports.nodes], supports.springs, contact_nodes, forces, plate.node)
     mbs.Assemble()
@@ -215,7 +215,7 @@ class _SpatialSystem:
         if self.scene.flat:
             way = largest_distance_possible(self.scene, units, coordinates, velocities)
             for contact in self.contacts:
-                set_extent(self.mbs, contact, way, 1.0 + self.radius)
+                set_plane_extent(self.mbs, contact, way, 1.0 + self.radius)
         on_surface = place_on_plane if self.scene.flat else place_on_sphere
         place, velocity, gap, slip = on_surface(coordinates[:2], velocities[:2], plate_acceleration, pressed)
         coordinates[:3], velocities[:3] = place, velocity

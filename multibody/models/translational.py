@@ -27,8 +27,8 @@ from multibody.models.contact import (
     settle_contact,
 )
 from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn, items
-from multibody.models.loading import Push, make_ground, push_coordinates
-from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_extent
+from multibody.models.loading import Push, load_coordinates, make_ground
+from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_plane_extent
 from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, add_plate
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
@@ -49,7 +49,7 @@ HOLLOW_RADIUS = 2.0
 SPHERE_ON_PLANE = 1.0
 
 
-def translational(
+def assemble_translational(
     scene: Scene,
     regularization: float | None,
     *,
@@ -79,7 +79,7 @@ def translational(
     add_contact = _add_contact_on_plane if scene.flat else _add_contact
     contact, contact_node = add_contact(mbs, plate, depression, law)
     expressions = (
-        [*plate.expressions] if plate.moves else push_coordinates(mbs, ground, _list_pushes(masses, nodes, axes))
+        [*plate.expressions] if plate.moves else load_coordinates(mbs, ground, _list_pushes(masses, nodes, axes))
     )
     recorders = add_recorders(
         mbs, [], [chain], [contact_node], [contact] if contact_force or scene.dry_friction.by_load else [], plate.node
@@ -105,7 +105,9 @@ def translational(
             coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
             velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
         if scene.flat:
-            set_extent(mbs, contact, largest_distance_possible(scene, units, coordinates, velocities), -SPHERE_ON_PLANE)
+            set_plane_extent(
+                mbs, contact, largest_distance_possible(scene, units, coordinates, velocities), -SPHERE_ON_PLANE
+            )
         on_surface = place_on_plane if scene.flat else place_on_sphere
         coordinates[:3], velocities[:3], gap, slip = on_surface(
             coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration

@@ -8,7 +8,7 @@ import pytest
 from scenes_at_hand import CONSTANT, one_body
 
 import multibody
-from multibody.integration.constant_step import EngineSolver, silence
+from multibody.integration.constant_step import EngineSolver, silence_engine
 from multibody.models.assembly import assemble
 from multibody.models.state import EngineState
 from reference.problem import GRAVITY, Outcome, Scene, State, Trajectory
@@ -26,7 +26,7 @@ def test_the_weight_presses_the_contact_in(within: Callable[[float, float], None
     model.set_contact(penetration)
     begin = model.start(None, np.zeros(3), penetration)
     raised = begin.coordinates + np.array([0.0, 0.0, penetration, 0.0, 0.0, 0.0])  # touching, not yet pressed in
-    with silence():
+    with silence_engine():
         motion = EngineSolver(model, 1e-8, 1e-12).run(
             EngineState(raised, begin.velocities, np.zeros(4)), 0.0, 1e-3, 1000
         )
@@ -42,7 +42,7 @@ def test_a_settled_restart_with_a_smaller_step_does_not_ring() -> None:
     model.set_contact(penetration)
     state = model.start(State(np.array([[0.05, 0.0]]), np.array([[0.3, 0.4]])), np.zeros(3), penetration)
     engine, jitter = EngineSolver(model, 1e-8, 1e-9), []
-    with silence():
+    with silence_engine():
         sliding = engine.run(state, 0.0, coarse, 40)
         rate = (sliding.gap[-1] - sliding.gap[-5]) / (sliding.time[-1] - sliding.time[-5])
         for begin in (sliding.state_at(-1), model.settle(sliding.state_at(-1), rate, penetration)):

@@ -14,7 +14,7 @@ from multibody.integration.adaptive import Checkpoint, Integration, continue_run
 from multibody.integration.chunk import find_first_ends, find_last_near, largest_distance
 from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level
-from multibody.integration.level_runs import _early_stop
+from multibody.integration.level_runs import _choose_early_stop
 from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
 from multibody.integration.refine import refine
@@ -149,4 +149,4 @@ def test_a_look_ahead_ends_at_all_that_is_asked_for(changes: dict[str, Any]) -> 
 def test_a_run_close_to_its_travel_or_to_opening_goes_to_the_end(travel: float, load: float, stop: float) -> None:
     run = EngineRun(PeakReader(1, math.inf), math.inf, max_displacement=0.499, min_load=load, last_large=2.0)
     model: Any = SimpleNamespace(rim=1.0, travel=travel)
-    assert _early_stop(run, model, 1e-3) == pytest.approx(stop)
+    assert _choose_early_stop(run, model, 1e-3) == pytest.approx(stop)

@@ -9,7 +9,7 @@ from scenes_at_hand import assert_agree
 
 import multibody
 import reference
-from multibody.integration.constant_step import silence
+from multibody.integration.constant_step import silence_engine
 from multibody.integration.engine_run import Budget
 from multibody.integration.level import plan_levels
 from multibody.integration.level_runs import LevelRuns
@@ -50,7 +50,7 @@ def test_behind_impacts_a_loose_tolerance_goes_on_to_level_1(push: float, impact
     body = {"mass": 1e3, "height": 0.1, "size": [1.0, 1.0, 0.1]}
     falls = {"excitation": {"record": "falls.csv", "samples": samples}}
     scene = Scene.model_validate({"title": "falls", "duration": 0.3, "isolator": on, "bodies": [body], **falls})
-    with silence():
+    with silence_engine():
         built = assemble(scene, "spatial", 1e-3, contact_force=True)
         point = refine(PhasePair(scene, built, np.zeros(2)), 1e-2)
     assert (point.outcome, point.finest.impacts > 0) == ("ok", impacts)
@@ -90,7 +90,7 @@ def test_steps_end_at_every_knot_passed(time, step, count, expected):
 def test_knots_do_not_make_the_chunks_behind_them_short(parts: int) -> None:
     """Chunks of 1, 2, 4 and 8 steps up to each knot, of 15 between two, left a weak record 2.5 stated errors off."""
     scene = EXAMPLE.with_values({"excitation.scale": 0.16, "duration": 3.0})
-    with silence():
+    with silence_engine():
         model = assemble(scene, "translational", 1e-3)
         interval, level = model.ground.knots[1], plan_levels(scene, model, 1e-3)[0]
         run = PhasePair(scene, model, np.array(ANY)).run_level(

@@ -12,7 +12,7 @@ from scenes_at_hand import forces_of_links
 import multibody
 import reference
 from multibody.integration.candidate import Candidate
-from multibody.integration.estimate import compliance_error, error_between_levels, lag
+from multibody.integration.estimate import compliance_error, contact_lag, error_between_levels
 from multibody.integration.peak import PeakReader
 from multibody.integration.termination import find_travel_end
 from multibody.models.assembly import assemble
@@ -53,7 +53,7 @@ def test_a_softer_contact_leaves_at_least_its_share_of_rho_open() -> None:
     for change, outcome in ((0.0, Outcome.OK), (0.01, Outcome.OK), (0.01, Outcome.STEP_LIMIT)):
         stiff, soft = peaks_of((1.0, 2.0), (1.0 + change, 2.0 - change))
         run: Any = SimpleNamespace(outcome=outcome, peaks=soft)
-        expected = 1.5 * change * (1.0 + lag(LEVELS[0], MODEL)) + LEVELS[0].penetration * stiff.value
+        expected = 1.5 * change * (1.0 + contact_lag(LEVELS[0], MODEL)) + LEVELS[0].penetration * stiff.value
         expected += 0.0 if outcome == Outcome.OK else np.inf
         np.testing.assert_allclose(compliance_error(stiff, run, LEVELS[0], MODEL), expected)
 
@@ -64,9 +64,9 @@ def test_the_error_of_levels_is_what_richardson_says() -> None:
     is 2, and of 1.25 at three, whose r is seen, between 2 and 4. Changes of opposite sign show no rate; one that falls
     more than fivefold is accidental, and half of the one before counts. The error of reading adds.
     """
-    slow = 1.0 + lag(LEVELS[1], MODEL)
+    slow = 1.0 + contact_lag(LEVELS[1], MODEL)
     for values, expected in (
-        ((1.0, 1.01), 1.5 * 0.01 * (1.0 + lag(LEVELS[0], MODEL))),
+        ((1.0, 1.01), 1.5 * 0.01 * (1.0 + contact_lag(LEVELS[0], MODEL))),
         ((0.96, 1.0, 1.016), 1.25 * 0.016 * slow / (2.5 - 1.0)),
         ((0.99, 1.0, 1.02), 1.25 * 0.02 * slow),
         ((0.955, 1.0, 1.01), 1.25 * 0.01 * slow / (4.0 - 1.0)),
@@ -83,7 +83,7 @@ def test_the_error_of_levels_is_what_richardson_says() -> None:
 
 def test_what_newton_s_method_leaves_is_an_error() -> None:
     """On a plane it adds to what levels show, which all share it; elsewhere it is the least error."""
-    shown = 1.5 * 0.01 * (1.0 + lag(LEVELS[0], MODEL))
+    shown = 1.5 * 0.01 * (1.0 + contact_lag(LEVELS[0], MODEL))
     for flat, left, expected in ((True, 0.4, shown + 0.4), (False, 0.4, 0.4), (False, 1e-3, shown)):
         last = replace(LEVELS[1], newton=0.5 * left, load=2.0, flat=flat)
         error = error_between_levels(peaks_of(1.0, 1.01), [LEVELS[0], last], MODEL)[0]
@@ -104,7 +104,7 @@ def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
 def test_a_motion_comes_with_the_accuracy_of_all_its_numbers() -> None:
     """At the lowest rate a whole change counts, with the safety of two levels and more where the contact is slow."""
     accuracy = multibody.trajectory(BRIEF, PHASE).accuracy
-    assert accuracy.share == pytest.approx([1.5 * (1.0 + lag(LEVELS[0], MODEL))])
+    assert accuracy.share == pytest.approx([1.5 * (1.0 + contact_lag(LEVELS[0], MODEL))])
     assert accuracy.floor == LEVELS[1].error_floor == 2e-4
 
 
