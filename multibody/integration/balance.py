@@ -37,7 +37,7 @@ MAX_ITERATIONS = 50
 # Largest residual of the forces, in weights, to which their rounding is added with a safety factor for many contacts
 # and stiff links.
 MAX_RESIDUAL = 1e-9
-SAFETY_OF_ROUNDING = 100.0
+SAFETY_OF_RESIDUAL = 100.0
 
 CURRENT = exudyn.ConfigurationType.Current
 
@@ -94,7 +94,7 @@ class _Balance:
         self._carried = np.zeros(self._size)
         self._carried[self.model.carried] = self.acceleration
         rounding = self.model.rounding / self.penetration
-        self._limit = MAX_RESIDUAL + SAFETY_OF_ROUNDING * rounding
+        self._limit = MAX_RESIDUAL + SAFETY_OF_RESIDUAL * rounding
 
     def gaps(self, coordinates: Array) -> Array:
         """Gaps (K,) of the contacts at coordinates (n,)."""

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn
-from multibody.models.plate import COORDINATES, PLATE_MASS_RATIO, carrying_axes
+from multibody.models.engine import BODY_COORDINATES, MAX_DENSE_COORDINATES, exudyn
+from multibody.models.plate import PLATE_MASS_RATIO, carrying_axes
 from multibody.models.state import EngineState
 from multibody.models.system import EngineModel
 
@@ -119,7 +119,7 @@ def set_initial_state(model: EngineModel, state: EngineState) -> None:
     if model.moving_plate:
         axes = carrying_axes(model.carried, len(coordinates))
         shift = np.hstack([state.plate, np.zeros((3, 1))])
-        turns = np.zeros(COORDINATES - 3)
+        turns = np.zeros(BODY_COORDINATES - 3)
         coordinates = np.concatenate([coordinates + shift[0, axes], state.plate[0], turns])
         velocities = np.concatenate([velocities + shift[1, axes], state.plate[1], turns])
     data = model.mbs.systemData

@@ -65,7 +65,7 @@ ERROR_PER_WARPING_LOAD = 0.25
 MIN_ERROR_WITH_IMPACTS = 4e-3
 
 # Smallest relative error of a peak: smaller ones are not measured.
-MIN_RELATIVE_ERROR = 1e-6
+SMALLEST_MEASURED_ERROR = 1e-6
 
 # Relative error beyond which successive levels are different motions.
 MAX_CONVERGED_ERROR = 0.3
@@ -100,7 +100,7 @@ def error_between_levels(peaks: list[PeakReader], levels: list[Level], model: En
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
     level_error = level_error + unsolved if levels[-1].flat else np.maximum(level_error, unsolved)
     starting = _error_of_starting_links(peaks[-1], levels[-1], model)
-    return level_error + peaks[-1].sampling + starting + MIN_RELATIVE_ERROR * last
+    return level_error + peaks[-1].sampling + starting + SMALLEST_MEASURED_ERROR * last
 
 
 def _error_of_starting_links(peaks: PeakReader, level: Level, model: EngineModel) -> Array:

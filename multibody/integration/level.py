@@ -30,7 +30,7 @@ MAX_LEVELS = 8
 LOOSE = 1e-2
 
 # Relative error of a peak that level 0 typically has: closer agreement of two levels is treated as accidental.
-MIN_RELATIVE_ERROR = 8e-4
+ERROR_FLOOR_OF_LEVEL_0 = 8e-4
 
 # Allowed change of the slip velocity in one step at level 0, as its fraction.
 MAX_SLIP_CHANGE = 0.14
@@ -171,7 +171,7 @@ class Level:
     @property
     def precedes_level_0(self) -> bool:
         """Whether it comes before level 0."""
-        return self.error_floor > MIN_RELATIVE_ERROR
+        return self.error_floor > ERROR_FLOOR_OF_LEVEL_0
 
     def coarsen(self) -> Level:
         """Return a level of the same contact in steps `SCAN_RATIO` times as large, to look ahead."""
@@ -234,13 +234,12 @@ def levels(
 
 def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
     """Plan all levels for a relative error of `tolerance`."""
-    # Step, change of the slip velocity and tolerance of Newton's iteration follow from the level's number alone. The
-    # penetration is bounded from both sides. A softer contact than `softest` would lag behind friction at a stop, join
-    # in the motion of stiff links, or not have followed by the end. A stiffer one than `stiffest` would round its
-    # force, a position over a penetration, by more than a share of the tolerance. So the penetration falls by
-    # COMPLIANCE_RATIO as often as there is room between the two, and then the levels share it: `refine` adds a run on a
-    # softer contact in place of what they cannot show. A weak loading is compared with its own strength, and its
-    # contact may be softer.
+    # Step and change of the slip velocity follow from the level's number alone. The penetration is bounded from both
+    # sides. A softer contact than `softest` would lag behind friction at a stop, join in the motion of stiff links, or
+    # not have followed by the end. A stiffer one than `stiffest` would round its force, a position over a penetration,
+    # by more than a share of the tolerance. So the penetration falls by COMPLIANCE_RATIO as often as there is room
+    # between the two, and then the levels share it: `refine` adds a run on a softer contact in place of what they
+    # cannot show. A weak loading is compared with its own strength, and its contact may be softer.
     period = shortest_period(scene, model)
     step = largest_step(period, model)
     # a tower tilts on soft contacts, so that its contact stays stiff under a weak loading
@@ -274,7 +273,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
             newton=newton_tolerance(level, step / 2.0**level, penetration),
             rounding_moment=model.rounding,
             max_divisions=max_divisions,
-            error_floor=MIN_RELATIVE_ERROR / 4.0**level,
+            error_floor=ERROR_FLOOR_OF_LEVEL_0 / 4.0**level,
             warping_compliance=MIN_WARPING_COMPLIANCE,
             decays=tuple((until, needed / 2.0**level) for until, needed in brief),
             strength=strength,

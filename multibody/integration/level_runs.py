@@ -21,8 +21,8 @@ from multibody.integration.candidate import Candidate
 from multibody.integration.engine_run import SETTLED_FRACTION, Budget, EngineRun
 from multibody.integration.estimate import (
     ERROR_PER_WARPING_LOAD,
-    MIN_RELATIVE_ERROR,
     SAFETY_OF_BEARINGS,
+    SMALLEST_MEASURED_ERROR,
     contact_noise_error,
     error_between_levels,
     error_share_of_change,
@@ -275,7 +275,7 @@ def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, so
     wanted = level.warping_compliance
     if run.lifts_off:
         wanted *= max(run.warping_load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance), 1.0)
-    elif run.warping_load > MIN_RELATIVE_ERROR:
+    elif run.warping_load > SMALLEST_MEASURED_ERROR:
         wanted = softest
     return replace(level, warping_compliance=min(wanted, softest))
 

@@ -49,11 +49,11 @@ def level_of_longest_steps(model: EngineModel, level: Level, whole: bool) -> Lev
 def run_with_look_ahead(integration: Integration, start: EngineState) -> EngineRun:
     """Run as `run_adaptively` does, without the steps of a part in which nothing comes near a largest value."""
     # The maximum in (5.1) needs no accurate motion where the accelerations are small. A scan costs a quarter of the
-    # steps, and its error cannot hide a large value: values count as near from NEAR_FRACTION of the largest on, a
-    # margin of 20 % against errors of some per cent at these steps. The scan has a result of its own, which starts with
-    # that margin, so that whatever it changes came near. It stops where something large comes, opens or fails; the run
-    # is then integrated from its own checkpoint, up to a period of the pendulum behind that instant, and the question
-    # is put again.
+    # steps, and its error hides no large value: values count as near from NEAR_FRACTION of the largest on, and the
+    # largest values of scans fell to 0.96 of those of the level's own steps at worst (measured on 200 random scenes:
+    # docs/records/multibody.md). The scan has a result of its own, which starts with that fraction, so that whatever it
+    # changes came near. It stops where something large comes, opens or fails. The run then goes on from its own
+    # checkpoint, up to a period of the pendulum behind that instant, and the question is put again.
     model, end = integration.solver.model, integration.end
     run, checkpoint = begin_run(model), Checkpoint(start)
     coarse = integration.level.coarsen()

@@ -10,6 +10,9 @@ from typing import Any
 # Number of coordinates beyond which a sparse solver takes less time a step (measured: a third at 360).
 MAX_DENSE_COORDINATES = 40
 
+# Number of coordinates of a rigid body: x, y, z of the center of mass and three rotations.
+BODY_COORDINATES = 6
+
 try:
     exudyn: Any = import_module("exudyn")
 except ImportError as error:

@@ -22,12 +22,11 @@ from numpy.typing import NDArray
 from scipy.linalg import orth
 
 from multibody.models.depressions import Depressions, angular_velocity_matrix, rotation_matrices
+from multibody.models.engine import BODY_COORDINATES
 from reference.problem import DryFriction
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-
-PER_BODY = 6
 
 # Largest number of sweeps over the contacts, and the change of a velocity in one, over the largest before the impact,
 # at which they end.
@@ -69,14 +68,14 @@ class ImpactLaw:
         # restitution, and closed ones may push without rebounding. Friction and unilateral contact are solved for the
         # velocities after the impact, by sweeps over the contacts (`_solve_impulses`). The spheres are too light to
         # matter: one that springs up does not push the platform, and one that is hit follows it.
-        count = PER_BODY * len(self.masses)
+        count = BODY_COORDINATES * len(self.masses)
         turning = self._velocity_matrix(coordinates)
         speeds = turning @ velocities[:count]
         normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         struck = np.flatnonzero(closed | hit)
         axes = _contact_axes(normals[struck])
         rows = np.zeros((len(struck), 3, count))
-        rows[:, :, :PER_BODY] = axes @ jacobian[struck]
+        rows[:, :, :BODY_COORDINATES] = axes @ jacobian[struck]
         before = rows @ speeds
         if len(self.depressions.vertical):
             upward = velocities[self.depressions.vertical[struck]]
@@ -114,20 +113,24 @@ class ImpactLaw:
         an offset for stretching. A small stretch makes up for that; it jumps with the velocities. lags: (N - 1,),
         damping over stiffness along the bars.
         """
-        count = PER_BODY * len(self.masses)
-        turned = rotation_matrices(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
+        count = BODY_COORDINATES * len(self.masses)
+        turned = rotation_matrices(coordinates[:count].reshape(-1, BODY_COORDINATES)[:, 3:])
         jump = (self._velocity_matrix(coordinates) @ (after - before)[:count]).reshape(-1, 2, 3)
         shifted = coordinates.copy()
         for link, lag in enumerate(lags):
             along, levers = turned[link][:, 2], self._levers(link, turned)
             ends = [jump[body, 0] + np.cross(jump[body, 1], lever) for body, lever in enumerate(levers, start=link)]
             for body in range(link + 1, len(self.masses)):
-                shifted[PER_BODY * body : PER_BODY * body + 3] -= lag * float(along @ (ends[1] - ends[0])) * along
+                shifted[BODY_COORDINATES * body : BODY_COORDINATES * body + 3] -= (
+                    lag * float(along @ (ends[1] - ends[0])) * along
+                )
         return shifted
 
     def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
         """Speeds (K,) at which the platform leaves spheres that hold still or give way, and spheres as they move."""
-        platform = (self._velocity_matrix(coordinates) @ velocities[: PER_BODY * len(self.masses)])[:PER_BODY]
+        platform = (self._velocity_matrix(coordinates) @ velocities[: BODY_COORDINATES * len(self.masses)])[
+            :BODY_COORDINATES
+        ]
         normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         leaving: Array = np.einsum("ki,kij,j->k", normals, jacobian, platform)
         if not len(self.depressions.vertical):
@@ -139,38 +142,40 @@ class ImpactLaw:
         """Rates (K, n) of the gaps over the engine's velocities, at coordinates (n,)."""
         normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         rates = np.zeros((len(normals), len(coordinates)))
-        rates[:, :PER_BODY] = np.einsum("ki,kij->kj", normals, jacobian)
-        rates[:, :PER_BODY] = rates[:, :PER_BODY] @ self._velocity_matrix(coordinates)[:PER_BODY, :PER_BODY]
+        rates[:, :BODY_COORDINATES] = np.einsum("ki,kij->kj", normals, jacobian)
+        rates[:, :BODY_COORDINATES] = (
+            rates[:, :BODY_COORDINATES] @ self._velocity_matrix(coordinates)[:BODY_COORDINATES, :BODY_COORDINATES]
+        )
         if len(self.depressions.vertical):
             rates[np.arange(len(normals)), self.depressions.vertical] = -normals[:, 2]
         return rates
 
     def stiff_rates(self, coordinates: Array, closed: Mask) -> Array:
         """Rates (s, 6 N) of heave and tilt on closed contacts and of rigid links, over the engine's velocities."""
-        count = PER_BODY * len(self.masses)
+        count = BODY_COORDINATES * len(self.masses)
         ring = self.depressions.ring[closed]
         heave_and_tilt = orth(np.column_stack([np.ones(len(ring)), ring])).T if len(ring) else np.empty((0, 0))
-        turned = rotation_matrices(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
+        turned = rotation_matrices(coordinates[:count].reshape(-1, BODY_COORDINATES)[:, 3:])
         bars = self._bar_rates(coordinates, turned) @ self._velocity_matrix(coordinates)
         return np.vstack([heave_and_tilt @ self.gap_rates(coordinates)[closed, :count], bars])
 
     def _velocity_matrix(self, coordinates: Array) -> Array:
         """Matrix (6 N, 6 N) that makes velocities and angular velocities of the bodies of the engine's velocities."""
-        count = PER_BODY * len(self.masses)
+        count = BODY_COORDINATES * len(self.masses)
         turning = np.eye(count)
-        for first in range(0, count, PER_BODY):
-            angles = slice(first + 3, first + PER_BODY)
+        for first in range(0, count, BODY_COORDINATES):
+            angles = slice(first + 3, first + BODY_COORDINATES)
             turning[angles, angles] = angular_velocity_matrix(coordinates[angles])
         return turning
 
     def _impulse_response(self, coordinates: Array) -> Array:
         """Change of the velocities over an impulse on them, (6 N, 6 N), with bars that do not stretch or bend."""
-        count = PER_BODY * len(self.masses)
+        count = BODY_COORDINATES * len(self.masses)
         inverse = np.zeros((count, count))
-        turned = rotation_matrices(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
+        turned = rotation_matrices(coordinates[:count].reshape(-1, BODY_COORDINATES)[:, 3:])
         for body, (mass, inertia, axes) in enumerate(zip(self.masses, self.inertias, turned @ self.axes)):
-            place = slice(PER_BODY * body, PER_BODY * body + 3)
-            angles = slice(PER_BODY * body + 3, PER_BODY * (body + 1))
+            place = slice(BODY_COORDINATES * body, BODY_COORDINATES * body + 3)
+            angles = slice(BODY_COORDINATES * body + 3, BODY_COORDINATES * (body + 1))
             inverse[place, place] = np.eye(3) / mass
             inverse[angles, angles] = axes / inertia @ axes.T
         bars = self._bar_rates(coordinates, turned)
@@ -183,11 +188,11 @@ class ImpactLaw:
     def _bar_rates(self, coordinates: Array, turned: Array) -> Array:
         """Rates of stretching and bending of the rigid links over the velocities of the bodies, three rows of each."""
         count = len(self.masses)
-        rows = np.zeros((3 * (count - 1), PER_BODY * count))
-        places = coordinates[: PER_BODY * count].reshape(-1, PER_BODY)[:, :3].copy()
+        rows = np.zeros((3 * (count - 1), BODY_COORDINATES * count))
+        places = coordinates[: BODY_COORDINATES * count].reshape(-1, BODY_COORDINATES)[:, :3].copy()
         places += self.centers
         for link in range(count - 1):
-            below, above = PER_BODY * link, PER_BODY * (link + 1)
+            below, above = BODY_COORDINATES * link, BODY_COORDINATES * (link + 1)
             levers = self._levers(link, turned)
             shift = places[link + 1] + levers[1] - places[link] - levers[0]
             across, along = turned[link][:, :2].T, turned[link][:, 2]

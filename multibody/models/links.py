@@ -23,15 +23,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from multibody.models.engine import exudyn, items
+from multibody.models.engine import BODY_COORDINATES, exudyn, items
 from multibody.models.units import Units
 from reference.problem import Scene
 from reference.problem.bar_links import BarLink
 
 Array = NDArray[np.float64]
-
-# Number of coordinates of a body: x, y, z of the center of mass and three rotations.
-PER_BODY = 6
 
 # Largest stiffness of bars in tension, weights over rho, and in bending: as good as rigid.
 MAX_BAR_STIFFNESS = 1e7
@@ -227,20 +224,20 @@ def fastest_bar_frequency(links: list[Link], masses: Array, tensors: Array, cent
     """Largest angular frequency that bars which give way make of bodies held by nothing else; 0 without bars."""
     if all(link.bars is None for link in links):
         return 0.0
-    size = PER_BODY * len(masses)
+    size = BODY_COORDINATES * len(masses)
     inertia, stiffness = np.zeros((2, size, size))
     for body, (mass, tensor) in enumerate(zip(masses, tensors)):
-        first = PER_BODY * body
+        first = BODY_COORDINATES * body
         inertia[first : first + 3, first : first + 3] = mass * np.eye(3)
         inertia[first + 3 : first + 6, first + 3 : first + 6] = tensor
     for number, link in enumerate(links):
         if link.bars is None:
             continue
         half = 0.5 * (centers[number + 1, 2] - centers[number, 2])
-        apart = np.zeros((PER_BODY, size))
+        apart = np.zeros((BODY_COORDINATES, size))
         for body, sign in ((number, -1.0), (number + 1, 1.0)):
-            lever, first = np.array([*-centers[body, :2], -sign * half]), PER_BODY * body
-            apart[:, first : first + PER_BODY] = sign * np.eye(PER_BODY)
+            lever, first = np.array([*-centers[body, :2], -sign * half]), BODY_COORDINATES * body
+            apart[:, first : first + BODY_COORDINATES] = sign * np.eye(BODY_COORDINATES)
             apart[:3, first + 3 : first + 6] = -sign * np.cross(lever, np.eye(3))
         bars = link.bars
         own = np.array([bars.shear, bars.shear, bars.tension, bars.bending, bars.bending, bars.torsion])

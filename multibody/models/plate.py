@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from multibody.models.engine import items
+from multibody.models.engine import BODY_COORDINATES, items
 from multibody.models.loading import Ground, attach_symbolic_load
 
 LOADINGS = ("inertial", "plate")
@@ -21,9 +21,6 @@ PLATE_MASS_RATIO = 1e6
 
 # Moment of inertia in units of mass * length^2: the body turns by 1e-11 rad in 20 s under the largest torque.
 LOCKED_INERTIA = 1e15
-
-# Number of coordinates of a rigid body: x, y, z and three rotations.
-COORDINATES = 6
 
 
 @dataclass(frozen=True)
@@ -40,7 +37,7 @@ def add_plate(mbs: Any, loading: str, ground: Ground) -> Plate:
     """Add the plate, after all other coordinates, at the origin."""
     if loading == "inertial":
         return Plate(mbs.AddObject(items.ObjectGround()), moves=False)
-    node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * COORDINATES))
+    node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * BODY_COORDINATES))
     body = mbs.AddObject(
         items.ObjectRigidBody(nodeNumber=node, mass=PLATE_MASS_RATIO, inertia=[LOCKED_INERTIA] * 3 + [0.0] * 3)
     )

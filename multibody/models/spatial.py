@@ -38,9 +38,9 @@ from multibody.models.contact import (
     set_contact_parameters,
 )
 from multibody.models.depressions import Depressions, FlatUnderside, rotation_matrices
-from multibody.models.engine import exudyn, items
+from multibody.models.engine import BODY_COORDINATES, exudyn, items
 from multibody.models.impact import ImpactLaw
-from multibody.models.links import PER_BODY, Link, RigidBodies, add_links, fastest_bar_frequency
+from multibody.models.links import Link, RigidBodies, add_links, fastest_bar_frequency
 from multibody.models.loading import Push, add_coordinate_load, load_coordinates, make_ground
 from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_plane_extent
 from multibody.models.plate import add_plate
@@ -106,7 +106,7 @@ def assemble_spatial(
     recorders = add_recorders(mbs, [*nodes, *supports.nodes], supports.springs, contact_nodes, forces, plate.node)
     mbs.Assemble()
 
-    index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
+    index = BODY_COORDINATES * np.arange(len(masses))[:, None] + np.arange(3)
     constant = scene.dry_friction.constant
     varying = None if constant else SpeedFriction(mbs, scene, units, engine_law.threshold, contacts, ground)
     parts = _SpatialSystem(scene, mbs, units, index, contacts, links, supports, radius, bearing_penetration)
@@ -174,7 +174,7 @@ class _SpatialSystem:
     @property
     def body_coordinates(self) -> int:
         """Number of the coordinates of the bodies, which come before those of the spheres."""
-        return PER_BODY * len(self.index)
+        return BODY_COORDINATES * len(self.index)
 
     def set_contact(self, penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
         """Set the penetration of the contacts under the weight and the compliance of the supports against warping."""

@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.models.engine import items
-from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate
+from multibody.models.engine import BODY_COORDINATES, items
+from multibody.models.plate import LOCKED_INERTIA, Plate
 
 Array = NDArray[np.float64]
 
@@ -108,7 +108,7 @@ def add_sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) 
         spheres = [items.ObjectRigidBody(nodeNumber=node, mass=SPHERES_MASS / count, inertia=inertia) for node in nodes]
         _, springs = _add_springs_on_plate(mbs, plate, nodes, warped)
         read: tuple[list[Any], list[Any]] = nodes, []
-        each, upright = COORDINATES, 2
+        each, upright = BODY_COORDINATES, 2
     else:
         spheres = [
             items.ObjectMass1D(
@@ -146,8 +146,8 @@ def _add_springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Arra
     """Add the springs over a plate that moves; return the object and the function that sets them."""
     count = len(nodes)
     sphere_against_plate = np.hstack([np.eye(count), -np.ones((count, 1))])
-    index = [COORDINATES * np.arange(count + 1) + axis for axis in range(3)]
-    size = COORDINATES * (count + 1)
+    index = [BODY_COORDINATES * np.arange(count + 1) + axis for axis in range(3)]
+    size = BODY_COORDINATES * (count + 1)
     weight = np.zeros(size)
     weight[index[2]] = [*[1.0 / count] * count, -1.0]
     springs = mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[*nodes, plate.node], forceVector=weight))

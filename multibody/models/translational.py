@@ -26,10 +26,10 @@ from multibody.models.contact import (
     set_contact_parameters,
     settle_contact,
 )
-from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn, items
+from multibody.models.engine import BODY_COORDINATES, MAX_DENSE_COORDINATES, exudyn, items
 from multibody.models.loading import Push, load_coordinates, make_ground
 from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_plane_extent
-from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, add_plate
+from multibody.models.plate import LOCKED_INERTIA, Plate, add_plate
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.state import EngineState
@@ -68,7 +68,7 @@ def assemble_translational(
     masses = scene.masses / units.mass
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
-    platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * COORDINATES))
+    platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * BODY_COORDINATES))
     depression = mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=platform_node))
     links = (link_stiffness(scene, units)[:, :axes], link_damping(scene, units)[:, :axes])
     nodes, chain = _add_chain(mbs, platform_node, masses, *links)
@@ -88,9 +88,9 @@ def assemble_translational(
 
     constant = scene.dry_friction.constant
     varying = None if constant else SpeedFriction(mbs, scene, units, law.threshold, [contact], ground)
-    count = COORDINATES + axes * (len(masses) - 1)
+    count = BODY_COORDINATES + axes * (len(masses) - 1)
     bodies = np.tile(np.arange(3), (len(masses), 1))
-    bodies[1:, :axes] = np.arange(COORDINATES, count).reshape(-1, axes)
+    bodies[1:, :axes] = np.arange(BODY_COORDINATES, count).reshape(-1, axes)
 
     def set_contact(penetration: float, warping_compliance: float = 0.0) -> None:
         # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
@@ -185,13 +185,13 @@ def _add_chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, da
             numberOfODE2Coordinates=count,
         )
         nodes.append(mbs.AddNode(above))
-    mass_matrix = np.zeros((COORDINATES + count, COORDINATES + count))
+    mass_matrix = np.zeros((BODY_COORDINATES + count, BODY_COORDINATES + count))
     stiffness_matrix, damping_matrix = np.zeros((2, *mass_matrix.shape))
-    np.fill_diagonal(mass_matrix[:COORDINATES], [masses[0]] * 3 + [LOCKED_INERTIA] * 3)
+    np.fill_diagonal(mass_matrix[:BODY_COORDINATES], [masses[0]] * 3 + [LOCKED_INERTIA] * 3)
     mass_matrix[2, 2] += masses[1:].sum()
     for link in range(len(masses) - 1):
         for axis in range(axes):
-            upper = COORDINATES + axes * link + axis
+            upper = BODY_COORDINATES + axes * link + axis
             lower = upper - axes if link > 0 else axis
             mass_matrix[upper, upper] = masses[link + 1]
             pair = np.ix_([lower, upper], [lower, upper])
