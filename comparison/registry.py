@@ -38,7 +38,7 @@ from comparison.report.surface_sections import (
 )
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
-from comparison.study.levels import Level, levels_of
+from comparison.study.levels import StudyLevel, levels_of
 from comparison.study.study import Study
 from comparison.surfaces.completion import CompletedSurfaces
 from comparison.surfaces.figures.pictures import Pictures
@@ -108,6 +108,6 @@ def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
     ]
 
 
-def levels(study: Study) -> list[Level]:
+def levels(study: Study) -> list[StudyLevel]:
     """The levels of a study, from coarse to fine."""
     return levels_of(study, {analysis.key: analysis.level for analysis in chosen_analyses(study)})

@@ -20,7 +20,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.film import Look, film
+from multibody.defaults import DEFAULT_PENETRATION, DEFAULT_V_REG
+from multibody.film import Look, draw_film
 from multibody.integration.constant_step import set_initial_state
 from multibody.integration.refine import MAX_WORK
 from multibody.integration.work_limit import refusal
@@ -40,20 +41,32 @@ from reference.problem.files import write_new
 
 Array = NDArray[np.float64]
 
-MAX_FRAMES = 1500  # of a film: the paths of its contact points are drawn anew in each
-MAX_STRETCH = 1e6  # times
-RATES = (1, 2, 4, 5, 10, 20, 25, 50)  # frames per second: a GIF counts hundredths of a second
-SIZES = (320, 4000)  # pixels
-SUFFIXES = (".gif",)  # of files that can be written with what is installed
+# Largest number of frames of a film: the paths of its contact points are drawn anew in each.
+MAX_FRAMES = 1500
+
+# Largest factor on displacements.
+MAX_STRETCH = 1e6
+
+# Numbers of frames per second: a GIF counts hundredths of a second.
+RATES = (1, 2, 4, 5, 10, 20, 25, 50)
+
+# Least and largest width and height, pixels.
+SIZES = (320, 4000)
+
+# Endings of the files that can be written with what is installed.
+SUFFIXES = (".gif",)
+
+# Number of steps of the viewer's run in a second of motion.
+VIEWER_STEPS_PER_SECOND = 1000.0
 
 
-def frame_count(duration: float, look: Look) -> int:
-    """Frames of a film of so many s of motion."""
+def count_frames(duration: float, look: Look) -> int:
+    """Number of frames of a film of `duration` s of motion."""
     return max(round(min(duration * look.rate / look.speed, 1e9)), 1) + 1
 
 
-def refuse_film(scene: Scene, out: Path, look: Look) -> None:
-    """Raise ValueError, one line, if no film can be written to `out` or it would be absurd: before anything is run."""
+def check_film_options(scene: Scene, out: Path, look: Look) -> None:
+    """Raise ValueError, one line, if no film can be written to `out` or it would be absurd, before anything is run."""
     if not (np.isfinite(look.stretch) and 0.0 < look.stretch <= MAX_STRETCH):
         raise ValueError(f"--stretch: {look.stretch}: must be greater than 0 and at most {MAX_STRETCH:g}")
     if look.rate not in RATES:
@@ -64,7 +77,7 @@ def refuse_film(scene: Scene, out: Path, look: Look) -> None:
         raise ValueError(f"--speed: {look.speed}: must be finite and greater than 0")
     fastest = scene.duration * look.rate
     slowest = fastest / (MAX_FRAMES - 1)
-    if look.speed > fastest or frame_count(scene.duration, look) > MAX_FRAMES:
+    if look.speed > fastest or count_frames(scene.duration, look) > MAX_FRAMES:
         raise ValueError(
             f"--speed: {look.speed:g}: a film of {scene.duration:g} s of motion has 2 to {MAX_FRAMES} frames, "
             f"{look.rate} per second: give {slowest:.2g} to {fastest:.2g}"
@@ -79,19 +92,18 @@ def refuse_film(scene: Scene, out: Path, look: Look) -> None:
         raise ValueError(f"--out: {out}: cannot be written")
 
 
-def view(scene: Scene, phase: Array, model: str, regularization: float | None) -> None:
+def open_viewer(scene: Scene, phase: Array, model: str, regularization: float | None) -> None:
     """Run the model in the engine's own viewer. Raises ValueError without a screen."""
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         raise ValueError("--view: no screen: DISPLAY is not set; leave --view out to write a film instead")
     built = assemble(scene, model, regularization)
-    penetration = 1e-6
-    built.set_contact(penetration)
+    built.set_contact(DEFAULT_PENETRATION)
     built.ground.set_phase(phase)
-    state = built.start(None, ground_acceleration(scene, phase, [0.0])[0], penetration)
+    state = built.start(None, ground_acceleration(scene, phase, [0.0])[0], DEFAULT_PENETRATION)
     set_initial_state(built, state)
     settings = exudyn.SimulationSettings()
     settings.timeIntegration.endTime = scene.duration / built.units.time
-    settings.timeIntegration.numberOfSteps = round(scene.duration * 1000.0)
+    settings.timeIntegration.numberOfSteps = round(scene.duration * VIEWER_STEPS_PER_SECOND)
     settings.timeIntegration.realtime.active = True
     settings.timeIntegration.realtime.factor = 1.0 / built.units.time
     container = built.container
@@ -102,12 +114,12 @@ def view(scene: Scene, phase: Array, model: str, regularization: float | None) -
     container.renderer.Stop()
 
 
-def _arguments(words: list[str] | None) -> argparse.Namespace:
+def _parse_arguments(words: list[str] | None) -> argparse.Namespace:
     parser = OneLineParser("python -m multibody.animate", __doc__.splitlines()[1])
     parser.add_argument("scene", help="name of a built-in scene, or a TOML file")
     parser.add_argument("--phases", nargs=2, type=float, required=True, metavar=("A1", "A2"), help="rad")
     parser.add_argument("--model", default="translational")
-    parser.add_argument("--regularization", type=float, default=1e-3, help="v_reg, m/s")
+    parser.add_argument("--regularization", type=float, default=DEFAULT_V_REG, help="v_reg, m/s")
     parser.add_argument("--amplitude", type=float, help="largest entry of the amplitude matrix, m/s^2")
     parser.add_argument(
         "--max-work", type=float, default=MAX_WORK, help="most steps of the engine, %(default)g if not given"
@@ -123,16 +135,16 @@ def _arguments(words: list[str] | None) -> argparse.Namespace:
 
 
 def main(words: list[str] | None = None) -> int:
-    """Exit code 0, or 2 and one line for a wrong scene or option."""
+    """Return exit code 0, or 2 after one line for a wrong scene or option."""
     try:
-        options = _arguments(words)
+        options = _parse_arguments(words)
         phase = np.array(options.phases)
         scene = load_scene(options.scene, options.amplitude)
         if options.view:
-            view(scene, phase, options.model, options.regularization)
+            open_viewer(scene, phase, options.model, options.regularization)
             return 0
         look = Look(options.stretch, options.speed, options.rate, tuple(options.size))
-        refuse_film(scene, options.out, look)
+        check_film_options(scene, options.out, look)
         motion = trajectory(scene, phase, options.model, options.regularization, max_work=options.max_work)
         if len(motion.time) == 0:
             why = refusal(scene, options.model, options.regularization, full=True, max_work=options.max_work)
@@ -141,8 +153,8 @@ def main(words: list[str] | None = None) -> int:
     except (SceneError, ValueError) as error:
         print(error, file=sys.stderr)
         return 2
-    count = frame_count(float(motion.time[-1]), look)
-    written = write_new(options.out, film(scene, motion, options.model, look, count))
+    count = count_frames(float(motion.time[-1]), look)
+    written = write_new(options.out, draw_film(scene, motion, options.model, look, count))
     if written != options.out:
         print(f"{options.out} exists and stays: the film is in {written}", file=sys.stderr)
     print(f"{written}: {motion.time[-1]:.2f} s of motion, status {motion.status}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
+from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
 from multibody.integration.refine import MAX_WORK
 from multibody.motion import trajectory
 from reference.measures import PeakDemands
@@ -17,13 +18,13 @@ def peak_demands(
     scene: Scene,
     phases: ArrayLike,
     model: str = "translational",
-    regularization: float | None = 1e-3,
-    tolerance: float = 1e-3,
+    regularization: float | None = DEFAULT_V_REG,
+    tolerance: float = DEFAULT_TOLERANCE,
     loading: str = "inertial",
     max_work: float = MAX_WORK,
 ) -> PeakDemands:
     """
-    What the motion at every phase pair demands of isolator and structure, with errors.
+    Compute what the motion at every phase pair demands of isolator and structure, with errors.
 
     Parameters
     ----------
@@ -56,7 +57,7 @@ def peak_demands(
     (1,)
     """
 
-    def move(phase: ArrayLike) -> Trajectory:
+    def compute_motion(phase: ArrayLike) -> Trajectory:
         return trajectory(scene, phase, model, regularization, tolerance, loading=loading, max_work=max_work)
 
-    return demands_of_motions(scene, phases, move)
+    return demands_of_motions(scene, phases, compute_motion)

@@ -27,22 +27,39 @@ from reference.problem import Scene, Trajectory, verbatim
 
 Array = NDArray[np.float64]
 
-RING, SPHERE = 1.0, 0.05  # m: drawn where the scene gives no spatial data
-BARE_SUPPORTS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * RING / np.sqrt(2.0)  # m, likewise
-STORY, THICKNESS = 0.5, 0.1  # of a box's width: distance and thickness of boxes, likewise
-MIN_SPAN, MAX_SPAN = 0.35, 1.2  # of the widest box: the distance of the lowest and the highest as it is drawn
-MAX_THICKNESS, MAX_DIP = 0.4, 0.2  # of the smallest distance of two boxes: a box, and its edge where it is tilted
-MAX_DRAWN = 0.3  # rad or m, up to which turns and contact paths are magnified
-MAX_MAGNIFICATION = 1e4  # times
-POLE = 0.15  # of the widest box: length of the poles
-LAYOUT_WIDTH = 12.0  # inches of the figure's layout, whatever its pixels
-COLORS = 255  # of a film, besides one that stands for what has not changed
+# Radii of the ring of supports and of the spheres, m, and the supports (K, 2), m, drawn where a scene has no spatial
+# data.
+RING, SPHERE = 1.0, 0.05
+BARE_SUPPORTS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * RING / np.sqrt(2.0)
+
+# Distance and thickness of boxes of such a scene, in widths of a box.
+STORY, THICKNESS = 0.5, 0.1
+
+# Bounds of the drawn distance of the lowest and the highest box, in widths of the widest.
+MIN_SPAN, MAX_SPAN = 0.35, 1.2
+
+# Largest thickness of a box, and largest dip of its edge where it is tilted, in smallest distances of two boxes.
+MAX_THICKNESS, MAX_DIP = 0.4, 0.2
+
+# Bound up to which turns, rad, and contact paths, m, are magnified, and the largest factor.
+MAX_DRAWN = 0.3
+MAX_MAGNIFICATION = 1e4
+
+# Length of the poles of the supports, in widths of the widest box.
+POLE = 0.15
+
+# Width of the figure's layout, inches, whatever its pixels.
+LAYOUT_WIDTH = 12.0
+
+# Number of colors of a film, and one more that stands for what has not changed.
+COLORS = 255
+
 CORNERS = 0.5 * np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 1.0)])
 
 
 @dataclass(frozen=True)
 class Look:
-    """How a film is made. stretch: factor on displacements. speed: s of motion per s. rate: frames per s. size: px."""
+    """Settings of a film. stretch: factor on displacements. speed: s of motion per s. rate: frames per s. size: px."""
 
     stretch: float = 5.0
     speed: float = 1.0
@@ -52,15 +69,21 @@ class Look:
 
 @dataclass(frozen=True)
 class Drawing:
-    """What is drawn, in m, magnified: F frames, N bodies, K supports."""
+    """
+    All that is drawn, in m, magnified: F frames, N bodies, K supports.
 
-    corners: Array  # (F, N, 8, 3) of the boxes
-    centers: Array  # (F, N, 3)
-    supports: Array  # (K, 2)
-    paths: Array  # (F, K, 2) of the contact points
-    swing: Array  # (S, 2), x and z of the curve that the platform's center swings on, from its place at rest
-    rest: Array  # (2,), that place
-    scales: str  # the factors, in words
+    corners: of the boxes, (F, N, 8, 3). centers: (F, N, 3). supports: (K, 2). paths: of the contact points, (F, K, 2).
+    swing: x and z of the curve that the platform's center swings on, (S, 2), from its place at `rest`, (2,).
+    scales: the factors in words.
+    """
+
+    corners: Array
+    centers: Array
+    supports: Array
+    paths: Array
+    swing: Array
+    rest: Array
+    scales: str
 
     @property
     def reach(self) -> float:
@@ -68,31 +91,31 @@ class Drawing:
         return 1.08 * float(max(np.abs(self.corners[..., :2]).max(), np.abs(self.supports).max()))
 
 
-def frames(time: Array, values: Array, count: int) -> Array:
-    """`values` (T, ...) given at `time` (T,), s, at `count` equally spaced instants, (F, ...)."""
+def sample_frames(time: Array, values: Array, count: int) -> Array:
+    """Interpolate `values` (T, ...) given at `time` (T,), s, at `count` equally spaced instants, (F, ...)."""
     instants = np.linspace(time[0], time[-1], count)
     columns = [np.interp(instants, time, column) for column in values.reshape(len(time), -1).T]
     return np.stack(columns, axis=-1).reshape(count, *values.shape[1:])
 
 
-def box_corners(center: Array, size: Array, turns: Array) -> Array:
+def locate_box_corners(center: Array, size: Array, turns: Array) -> Array:
     """Corners (..., 8, 3), m, of boxes at `center` (..., 3), m, turned by Rx(a) Ry(b) Rz(c), `turns` (..., 3), rad."""
     matrices = Rotation.from_euler("XYZ", turns.reshape(-1, 3)).as_matrix().reshape(*turns.shape, 3)
     turned: Array = (CORNERS * np.asarray(size)[..., None, :]) @ np.swapaxes(matrices, -1, -2)
     return center[..., None, :] + turned
 
 
-def magnified(values: Array, seen: float) -> float:
-    """Factor 1, 2 or 5 times a power of ten, at most MAX_MAGNIFICATION, that makes the largest value at most `seen`."""
+def choose_magnification(values: Array, seen: float) -> float:
+    """Choose a factor 1, 2 or 5 times a power of ten, so that the largest value is at most `seen` as drawn."""
     largest = float(np.abs(values).max())
     wanted = min(max(seen / largest, 1.0), MAX_MAGNIFICATION) if largest > 0.0 else MAX_MAGNIFICATION
     power = 10.0 ** np.floor(np.log10(wanted))
     return float(max(step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted))
 
 
-def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
-    """From each support to its contact point in plan, (F, K, 2), m, for the platform's `shift` and `turns` (F, 3)."""
-    supports = _supports(scene)
+def trace_contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
+    """Trace the contact point in plan from each support, (F, K, 2), m, for the platform's `shift`, `turns` (F, 3)."""
+    supports = _support_places(scene)
     arms = np.column_stack([supports - scene.offsets[0], np.full(len(supports), -(scene.bodies[0].height or 0.0))])
     matrices = Rotation.from_euler("XYZ", turns).as_matrix()
     depressions = shift[:, None, :] + arms @ np.swapaxes(matrices, 1, 2) - arms
@@ -101,7 +124,7 @@ def contact_paths(scene: Scene, shift: Array, turns: Array) -> Array:
     return paths
 
 
-def drawn_boxes(scene: Scene) -> tuple[Array, Array, float]:
+def arrange_boxes(scene: Scene) -> tuple[Array, Array, float]:
     """Heights (N,), from zero, and sizes (N, 3), m, of the boxes as they are drawn, and the factor on the heights."""
     width = 2.0 * (scene.support_radius or scene.isolator.ring or RING)
     sizes: Array = np.array([body.size or [width, width, THICKNESS * width] for body in scene.bodies])
@@ -118,16 +141,16 @@ def drawn_boxes(scene: Scene) -> tuple[Array, Array, float]:
     return factor * heights, sizes, factor
 
 
-def drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -> Drawing:
-    """`count` frames of a motion."""
-    shifts = frames(motion.time, motion.position, count)
-    turns = frames(motion.time, motion.extra.get("turns", np.zeros_like(motion.position)), count)
-    heights, sizes, factor = drawn_boxes(scene)
+def make_drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -> Drawing:
+    """Return the drawing of a motion in `count` frames."""
+    shifts = sample_frames(motion.time, motion.position, count)
+    turns = sample_frames(motion.time, motion.extra.get("turns", np.zeros_like(motion.position)), count)
+    heights, sizes, factor = arrange_boxes(scene)
     gap = float(np.diff(heights).min(initial=np.inf))
     dip = min(MAX_DRAWN, MAX_DIP * gap / (0.5 * float(np.hypot(*sizes[:, :2].max(axis=0)))))
-    tilt, yaw = magnified(turns[..., :2], dip), magnified(turns[..., 2], MAX_DRAWN)
-    paths = contact_paths(scene, shifts[:, 0], turns[:, 0])
-    closer = magnified(paths, MAX_DRAWN * float(np.hypot(*_supports(scene).T).max()))
+    tilt, yaw = choose_magnification(turns[..., :2], dip), choose_magnification(turns[..., 2], MAX_DRAWN)
+    paths = trace_contact_paths(scene, shifts[:, 0], turns[:, 0])
+    closer = choose_magnification(paths, MAX_DRAWN * float(np.hypot(*_support_places(scene).T).max()))
     scales = f"displacements x {stretch:g}, contact paths x {closer:g}"
     scales += f", tilt x {tilt:g}, yaw x {yaw:g}" if "turns" in motion.extra else ""
     scales += f", heights x {factor:.2g}" if factor != 1.0 else ""
@@ -136,19 +159,19 @@ def drawing(scene: Scene, motion: Trajectory, stretch: float, count: int) -> Dra
     rise = np.zeros(101) if scene.flat else scene.radius - np.sqrt(scene.radius**2 - across**2)
     centers = np.column_stack([scene.offsets, heights]) + shifts * stretch
     return Drawing(
-        corners=box_corners(centers, sizes, turns * [tilt, tilt, yaw] + scene.yaws[:, None] * [0.0, 0.0, 1.0]),
+        corners=locate_box_corners(centers, sizes, turns * [tilt, tilt, yaw] + scene.yaws[:, None] * [0.0, 0.0, 1.0]),
         centers=centers,
-        supports=_supports(scene),
-        paths=_supports(scene) + paths * closer,
+        supports=_support_places(scene),
+        paths=_support_places(scene) + paths * closer,
         swing=stretch * np.column_stack([across, rise]),
         rest=scene.offsets[0],
         scales=scales,
     )
 
 
-def film(scene: Scene, motion: Trajectory, model: str, look: Look, count: int) -> bytes:
-    """The GIF of a motion that `model` computed, in `count` frames."""
-    drawn = drawing(scene, motion, look.stretch, count)
+def draw_film(scene: Scene, motion: Trajectory, model: str, look: Look, count: int) -> bytes:
+    """Draw the GIF of a motion that `model` computed, in `count` frames."""
+    drawn = make_drawing(scene, motion, look.stretch, count)
     width, height = look.size
     figure = Figure((LAYOUT_WIDTH, LAYOUT_WIDTH * height / width), dpi=width / LAYOUT_WIDTH)
     canvas: Any = FigureCanvasAgg(figure)
@@ -165,7 +188,7 @@ def film(scene: Scene, motion: Trajectory, model: str, look: Look, count: int) -
     canvas.draw()
     background = canvas.copy_from_bbox(figure.bbox)
 
-    def picture(frame: int) -> Image.Image:
+    def draw_frame(frame: int) -> Image.Image:
         canvas.restore_region(background)
         clock.set_text(f"t = {frame * look.speed / look.rate:.2f} s")
         for view in views:
@@ -174,12 +197,13 @@ def film(scene: Scene, motion: Trajectory, model: str, look: Look, count: int) -
             figure.draw_artist(artist)
         return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3])
 
-    return _gif((picture(frame) for frame in range(count)), picture(count // 2), look.rate)
+    return _encode_gif((draw_frame(frame) for frame in range(count)), draw_frame(count // 2), look.rate)
 
 
-def _gif(pictures: Iterator[Image.Image], typical: Image.Image, rate: int) -> bytes:
-    """The pictures in the colors of a typical one, one after the other: none is kept."""
-    palette = typical.quantize(COLORS, Image.Quantize.MAXCOVERAGE)  # white stays white
+def _encode_gif(pictures: Iterator[Image.Image], typical: Image.Image, rate: int) -> bytes:
+    """Encode the pictures in the colors of a typical one, one after the other: none is kept."""
+    white_stays_white = Image.Quantize.MAXCOVERAGE
+    palette = typical.quantize(COLORS, white_stays_white)
     reduced = (picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures)
     content = io.BytesIO()
     next(reduced).save(content, "GIF", save_all=True, append_images=reduced, duration=1000 // rate, loop=0)
@@ -187,13 +211,13 @@ def _gif(pictures: Iterator[Image.Image], typical: Image.Image, rate: int) -> by
 
 
 class _View:
-    """One panel: what moves in it, and how it stands in a frame."""
+    """One panel, with the artists that move in it."""
 
     def __init__(self, panel: Any, drawn: Drawing, axes: tuple[int, int], alpha: float) -> None:
         self.drawn, self.axes = drawn, list(axes)
         self.outlines = [
             panel.fill([0.0], [0.0], facecolor=(*color, alpha), edgecolor=color, label=label, animated=True)[0]
-            for color, label in _bodies(drawn.corners.shape[1])
+            for color, label in _colors_and_names(drawn.corners.shape[1])
         ]
         self.moving: list[Any] = [*self.outlines]
         names = ["xyz"[axis] for axis in axes]
@@ -201,6 +225,7 @@ class _View:
         panel.set_ylabel(f"{names[1]} [m]" if names[1] != "z" else "z", labelpad=2.0)
 
     def show(self, frame: int) -> None:
+        """Move the artists to where they are in a frame."""
         for body, outline in enumerate(self.outlines):
             flat = self.drawn.corners[frame, body][:, self.axes]
             outline.set_xy(flat[ConvexHull(flat).vertices])
@@ -237,7 +262,7 @@ class _FromSide(_View):
         super().__init__(panel, drawn, (axis, 2), 0.35)
         panel.set_title("along y" if axis == 0 else "along x", fontsize="small")
         self.axis = axis
-        top = float(drawn.corners[:, 0, :, 2].min())  # as low as the platform ever comes
+        top = float(drawn.corners[:, 0, :, 2].min())
         low = top - POLE * 2.0 * drawn.reach
         panel.set(ylim=(low, float(drawn.corners[..., 2].max()) + 0.05 * drawn.reach), yticks=[])
         for support in drawn.supports[:, axis]:
@@ -254,13 +279,13 @@ class _FromSide(_View):
         self.mast.set_data(self.drawn.centers[frame, :, self.axis], self.drawn.centers[frame, :, 2])
 
 
-def _bodies(count: int) -> list[tuple[tuple[float, float, float], str]]:
+def _colors_and_names(count: int) -> list[tuple[tuple[float, float, float], str]]:
     """Color and name of every body; names of as many as a legend holds."""
     colors = [colormaps["tab10"](body % 10)[:3] for body in range(count)]
     names = ["platform", *(f"body {body}" for body in range(2, count + 1))]
     return list(zip(colors, [name if body < 6 else "_" for body, name in enumerate(names)]))
 
 
-def _supports(scene: Scene) -> Array:
+def _support_places(scene: Scene) -> Array:
     """Places of the supports in the plane, (K, 2), m."""
     return BARE_SUPPORTS if scene.support_places is None else scene.support_places

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from multibody.integration.adaptive import Budget, EngineRun
-from multibody.integration.constant_step import INTEGRATORS, Motion, silence
+from multibody.defaults import DEFAULT_NEWTON_TOLERANCE, DEFAULT_PENETRATION, DEFAULT_TOLERANCE, DEFAULT_V_REG
+from multibody.integration.constant_step import INTEGRATORS, EngineMotion, silence_engine
+from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level
 from multibody.integration.one_run import PhasePair
 from multibody.integration.refine import MAX_WORK, WORK, refine
@@ -18,7 +19,8 @@ from reference.problem import Accuracy, Scene, State, Trajectory, checked_phase,
 from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_state
 from reference.problem.scene import takes_scene
 
-MAX_STEPS = 1e7  # of a single run, which is held in memory whole
+# Largest number of steps of a single run, which is held in memory whole.
+MAX_STEPS = 1e7
 PENETRATION = Range(1e-14, 0.1, "of rho")
 NEWTON = Range(1e-14, 1.0)
 
@@ -28,8 +30,8 @@ def trajectory(
     scene: Scene,
     phase: ArrayLike,
     model: str = "translational",
-    regularization: float | None = 1e-3,
-    tolerance: float = 1e-3,
+    regularization: float | None = DEFAULT_V_REG,
+    tolerance: float = DEFAULT_TOLERANCE,
     initial: State | None = None,
     loading: str = "inertial",
     max_work: float = MAX_WORK,
@@ -45,7 +47,7 @@ def trajectory(
     phase : array_like, shape (2,)
         Initial phases of the two harmonics, rad.
     tolerance : float
-        Relative error that is asked of the largest accelerations.
+        Relative error that is asked of the largest accelerations; 0.001 (`DEFAULT_TOLERANCE`) if not given.
     initial : State, optional
         Displacements (N, 2), m, and velocities (N, 2), m/s, at time zero; at rest without.
 
@@ -79,18 +81,18 @@ def trajectory(
     True
     """
     scene = scene.softened() if softened else scene
-    pair = checked_phase(phase)
+    checked = checked_phase(phase)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     max_work = checked_number("max_work", max_work, WORK)
-    initial = _checked_initial(scene, initial)
-    with silence():
+    initial = _check_initial(scene, initial)
+    with silence_engine():
         built = assemble(scene, model, regularization, loading=loading, contact_force=True)
-        point = refine(scene, built, pair, tolerance, initial=initial, keep=True, max_work=max_work)
-    run_of = PhasePair(scene, built, pair, initial)
-    motion = _trajectory(run_of, point.finest, point.outcome, point.instant)
+        pair = PhasePair(scene, built, checked, initial)
+        point = refine(pair, tolerance, keep=True, max_work=max_work)
+    motion = _make_trajectory(pair, point.finest, point.outcome, point.instant)
     if not point.coarser:
         return motion
-    coarser = tuple(_trajectory(run_of, run, run.outcome, np.nan) for run, _ in point.coarser)
+    coarser = tuple(_make_trajectory(pair, run, run.outcome, np.nan) for run, _ in point.coarser)
     shares = tuple(share for _, share in point.coarser)
     return replace(motion, accuracy=Accuracy(point.errors, coarser, shares, point.floor))
 
@@ -100,12 +102,12 @@ def single_run(
     scene: Scene,
     phase: ArrayLike,
     model: str = "translational",
-    regularization: float | None = 1e-3,
+    regularization: float | None = DEFAULT_V_REG,
     *,
     level: Level | None = None,
     step: float | None = None,
-    penetration: float = 1e-6,
-    newton: float = 1e-5,
+    penetration: float = DEFAULT_PENETRATION,
+    newton: float = DEFAULT_NEWTON_TOLERANCE,
     residual: float | None = None,
     integrator: str = "generalized alpha",
     discontinuous: float | None = None,
@@ -126,9 +128,11 @@ def single_run(
         Run with this constant step, s, rounded so that the duration is a whole number of steps. Exactly one of `level`
         and `step` is required. The arguments below belong to `step`.
     penetration : float
-        Of the contact under the weight, in units of rho: the inverse of its stiffness.
+        Penetration of the contact under the weight, in units of rho: the inverse of its stiffness. 1e-06
+        (`DEFAULT_PENETRATION`) if not given.
     newton : float
-        Tolerance of the forces in Newton's iteration, relative to the first residual of a step.
+        Tolerance of the forces in Newton's iteration, relative to the first residual of a step; 1e-05
+        (`DEFAULT_NEWTON_TOLERANCE`) if not given.
     residual : float, optional
         Smallest residual that is asked for, in units of the weight; 1e-3 of `newton` without.
     integrator : {"generalized alpha", "trapezoidal", "RK44", "velocity Verlet"}
@@ -167,48 +171,50 @@ def single_run(
     checked_choice("integrator", integrator, INTEGRATORS)
     penetration = checked_number("penetration", penetration, PENETRATION)
     newton = checked_number("newton", newton, NEWTON)
-    with silence():
+    with silence_engine():
         built = assemble(scene, model, regularization, contact_force=True)
-        point = PhasePair(scene, built, pair, _checked_initial(scene, initial))
+        point = PhasePair(scene, built, pair, _check_initial(scene, initial))
         if level is not None:
-            run = point.at_level(level, Budget(MAX_STEPS), keep=True)
+            run = point.run_level(level, Budget(MAX_STEPS), keep=True)
         else:
             allowed = Range(scene.duration / MAX_STEPS, scene.duration, "s")
             count = round(scene.duration / checked_number("step", step, allowed))
             residual = 1e-3 * newton if residual is None else residual
-            run = point.at_constant_step(count, penetration, newton, residual, integrator, discontinuous)
-    return _trajectory(point, run, run.outcome, run.instant * built.units.time)
+            run = point.run_constant_step(count, penetration, newton, residual, integrator, discontinuous)
+    return _make_trajectory(point, run, run.outcome, run.instant * built.units.time)
 
 
-def _checked_initial(scene: Scene, initial: State | None) -> State | None:
+def _check_initial(scene: Scene, initial: State | None) -> State | None:
+    """Return an initial state whose arrays fit the scene. Raises ValueError for a wrong one."""
     if initial is None:
         return None
     return State(*checked_state(initial, len(scene.bodies), scene.radius, scene.isolator.travel))
 
 
-def _trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) -> Trajectory:
-    """The motion of a run in SI units, with the accelerations of the plate."""
-    model, motion = pair.model, Motion.concatenated(run.chunks) if run.chunks else Motion.empty(pair.model)
+def _make_trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) -> Trajectory:
+    """Return the motion of a run in SI units, with the accelerations of the plate."""
+    model, motion = pair.model, EngineMotion.concatenate(run.chunks) if run.chunks else EngineMotion.empty(pair.model)
     units, bodies = model.units, model.bodies
     time = motion.time * units.time
     if model.moving_plate:
         ground = motion.plate[:, 2] * units.acceleration
     else:
         ground = ground_acceleration(pair.scene, pair.phase, time)
-    vectors = motion.force.reshape(len(time), motion.force.shape[1] // 6, 2, 3)  # per contact: force, normal
-    normal_force = (vectors[:, :, 0] * vectors[:, :, 1]).sum(axis=-1)
-    friction = np.linalg.norm(vectors[:, :, 0] - normal_force[:, :, None] * vectors[:, :, 1], axis=-1)
+    contacts = motion.force.reshape(len(time), motion.force.shape[1] // 6, 2, 3)
+    force, normal = contacts[:, :, 0], contacts[:, :, 1]
+    normal_force = (force * normal).sum(axis=-1)
+    friction = np.linalg.norm(force - normal_force[:, :, None] * normal, axis=-1)
     support_force = np.abs(normal_force) * units.force
     extra = {"slip_speed": motion.slip * units.velocity, "support_force": support_force}
     if model.allows_liftoff:
-        extra |= _attitude(model, motion, time) | {"uplift": np.maximum(motion.gap, 0.0) * units.length}
+        extra |= _measure_attitude(model, motion, time) | {"uplift": np.maximum(motion.gap, 0.0) * units.length}
     return Trajectory(
         time=time,
         position=motion.coordinates[:, bodies] * units.length,
         velocity=motion.velocities[:, bodies] * units.velocity,
         absolute_acceleration=motion.accelerations[:, bodies] * units.acceleration + ground[:, None, :],
         contact_force=support_force.sum(axis=1),
-        stick=_intervals(time, (motion.slip < model.corner).all(axis=1) & np.isfinite(model.corner)),
+        stick=_find_intervals(time, (motion.slip < model.corner).all(axis=1) & np.isfinite(model.corner)),
         status=status,
         instant=instant,
         scene=pair.scene,
@@ -219,20 +225,22 @@ def _trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) ->
     )
 
 
-def _attitude(model: EngineModel, motion: Motion, time: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-    """How the bodies turn, and when the platform leaves a support."""
-    turns = motion.coordinates[:, model.bodies + 3]  # of a body, behind its three displacements
+def _measure_attitude(
+    model: EngineModel, motion: EngineMotion, time: NDArray[np.float64]
+) -> dict[str, NDArray[np.float64]]:
+    """Angles of the bodies, tilt and yaw of the platform, and the intervals in which it leaves a support."""
+    turns = motion.coordinates[:, model.bodies + 3]
     roll, pitch, yaw = turns[:, 0].T
     open_at = [
         (float(support), *interval)
         for support, gap in enumerate(motion.gap.T)
-        for interval in _intervals(time, gap >= 0.0, around=1)
+        for interval in _find_intervals(time, gap >= 0.0, around=1)
     ]
     tilt = np.arcsin(np.hypot(np.sin(pitch), np.sin(roll) * np.cos(pitch)))
     return {"yaw": yaw, "tilt": tilt, "turns": turns, "liftoff": np.array(open_at).reshape(-1, 3)}
 
 
-def _intervals(time: NDArray[np.float64], holds: NDArray[np.bool_], around: int = 0) -> list[tuple[float, float]]:
+def _find_intervals(time: NDArray[np.float64], holds: NDArray[np.bool_], around: int = 0) -> list[tuple[float, float]]:
     """First and last instant of every unbroken run of rows in which something holds, `around` rows beyond."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], holds.astype(int), [0]])))
     last = len(time) - 1

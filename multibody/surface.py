@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from multibody.integration.constant_step import silence
+from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
+from multibody.integration.constant_step import silence_engine
 from multibody.integration.level import Level
+from multibody.integration.one_run import PhasePair
 from multibody.integration.refine import MAX_WORK, WORK, Refinement, refine
-from multibody.models.assembly import assemble, required_model
+from multibody.models.assembly import assemble, choose_model
 from multibody.models.system import EngineModel
 from reference.problem import (
     Amplification,
@@ -35,8 +37,8 @@ def amplification(
     scene: Scene,
     phases: ArrayLike,
     model: str = "translational",
-    regularization: float | None = 1e-3,
-    tolerance: float = 1e-3,
+    regularization: float | None = DEFAULT_V_REG,
+    tolerance: float = DEFAULT_TOLERANCE,
     loading: str = "inertial",
     full: bool = False,
     levels: Sequence[Level] | None = None,
@@ -54,10 +56,10 @@ def amplification(
     model : {"translational", "spatial"}
         The paper's degrees of freedom, or bodies that turn on supports that may open.
     regularization : float or None
-        v_reg, m/s, below which dry friction is linear in the slip velocity. None only where the contact is lubricated
-        or frictionless.
+        v_reg, m/s, below which dry friction is linear in the slip velocity; 0.001 (`DEFAULT_V_REG`) if not given. None
+        only where the contact is lubricated or frictionless.
     tolerance : float
-        Relative error that is asked of every mu.
+        Relative error that is asked of every mu; 0.001 (`DEFAULT_TOLERANCE`) if not given.
     loading : {"inertial", "plate"}
         Inertial forces in the plate's frame, or the motion of a plate that carries the supports.
     full : bool
@@ -109,15 +111,15 @@ def amplification(
     status, instant = np.full(len(pairs), Outcome.OK.value, dtype="U32"), np.full(len(pairs), np.nan)
     displacement = np.full(len(pairs), np.nan)
     ground = ground_peak(scene, pairs)
-    with silence():
-        reduced = _reduced(scene, model, regularization, loading, full)
+    with silence_engine():
+        reduced = _reduce_model(scene, model, regularization, loading, full)
         for m, phase in enumerate(pairs):
             if ground[m] < LEAST_ACCELERATION:
                 status[m], instant[m] = Outcome.NO_GROUND_MOTION, 0.0
             elif not np.isfinite(ground[m]):
                 status[m], instant[m] = Outcome.NON_FINITE_LOAD, 0.0
             else:
-                point = reduced.refined(phase, tolerance, levels, max_work)
+                point = reduced.refine_point(phase, tolerance, levels, max_work)
                 status[m], instant[m] = point.outcome, point.instant
                 mu[m], error[m] = point.peaks / ground[m], point.errors / ground[m]
                 if np.isfinite(point.peaks).all():
@@ -127,29 +129,40 @@ def amplification(
 
 
 @dataclass(frozen=True)
-class _Reduced:
-    """The smallest model that answers for the one that is asked for."""
+class _ReducedModel:
+    """
+    The smallest model that answers for the one that is asked for.
+
+    complete: assembles the model that is asked for where the reduced one has no answer; None where it is not reduced.
+    whole: every run goes to the end of the motion.
+    """
 
     scene: Scene
     built: EngineModel
-    asked: tuple[Scene, str, float | None, str] | None  # what to assemble where the reduced model has no answer
-    whole: bool  # whether every run goes to the end of the motion
+    complete: Callable[[], tuple[Scene, EngineModel]] | None
+    whole: bool
 
-    def refined(self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float) -> Refinement:
-        asked: dict[str, Any] = {"whole": self.whole, "levels": levels, "max_work": max_work}
-        point = refine(self.scene, self.built, phase, tolerance, **asked)
-        if self.asked and np.isnan(point.peaks).any():  # off its supports the model that is asked for goes on
-            scene, model, regularization, loading = self.asked
-            complete = assemble(scene, model, regularization, loading=loading)
-            point = refine(scene, complete, phase, tolerance, **asked)
+    def refine_point(
+        self, phase: Array, tolerance: float, levels: Sequence[Level] | None, max_work: float
+    ) -> Refinement:
+        """Refine one phase pair (2,), rad; where the platform leaves its supports on the model that is asked for."""
+        pair = PhasePair(self.scene, self.built, phase, whole=self.whole)
+        point = refine(pair, tolerance, levels=levels, max_work=max_work)
+        if self.complete is not None and np.isnan(point.peaks).any():
+            pair = PhasePair(*self.complete(), phase, whole=self.whole)
+            point = refine(pair, tolerance, levels=levels, max_work=max_work)
         return point
 
 
-def _reduced(scene: Scene, model: str, regularization: float | None, loading: str, full: bool) -> _Reduced:
-    """The model that is required, and in a plane no coordinates across it."""
-    chosen = required_model(scene, model, full)
+def _reduce_model(scene: Scene, model: str, regularization: float | None, loading: str, full: bool) -> _ReducedModel:
+    """Assemble the model that is required, in a plane without the coordinates across it."""
+    chosen = choose_model(scene, model, full)
     planar = chosen == "translational" and not full and planar_chain(scene).allowed
     moving = in_plane(scene) if planar else scene
     axes: dict[str, Any] = {"axes": 1} if planar else {}
     built = assemble(moving, chosen, regularization, loading=loading, **axes)
-    return _Reduced(moving, built, (scene, model, regularization, loading) if chosen != model else None, full)
+
+    def complete() -> tuple[Scene, EngineModel]:
+        return scene, assemble(scene, model, regularization, loading=loading)
+
+    return _ReducedModel(moving, built, complete if chosen != model else None, full)

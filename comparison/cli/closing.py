@@ -13,7 +13,7 @@ from comparison.cli.options import Options
 from comparison.cli.terminal import new_table
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
-from comparison.study.levels import Level
+from comparison.study.levels import StudyLevel
 from comparison.surfaces.headline import Headline
 from comparison.wording import percent, signed
 from reference.problem import builtin_scenes, example_scenes
@@ -68,7 +68,7 @@ def print_closing(console: Console, results: Results, options: Options, words: S
         console.print(line, soft_wrap=True)
 
 
-def print_level(console: Console, results: Results, before: Results | None, level: Level, report: Path) -> None:
+def print_level(console: Console, results: Results, before: Results | None, level: StudyLevel, report: Path) -> None:
     """What there is after a level that is not the last: the place of its report, and its first new sentences."""
     console.print(f"{level.title.capitalize()}: {report / 'index.html'}", soft_wrap=True)
     known = set(_sentences(before)) if before else set()

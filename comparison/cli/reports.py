@@ -20,7 +20,7 @@ from comparison.runner.output import on_stderr, replace_report
 from comparison.runner.runner import Runner, compiling_task
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.levels import Level
+from comparison.study.levels import StudyLevel
 from comparison.study.study import Study
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.surfaces import batch_results, labeled_surfaces, surface_tasks
@@ -33,13 +33,13 @@ PATIENCE = 3.0  # s: a level that is done sooner after the report before has non
 class Complete:
     """A level of which everything is computed: its study knows which models have no value, its surfaces are labeled."""
 
-    level: Level
+    level: StudyLevel
     study: Study
     tasks: Sequence[Task]  # of the surfaces
     surfaces: xr.Dataset
 
 
-def computed_level(level: Level, runner: Runner) -> Complete:
+def computed_level(level: StudyLevel, runner: Runner) -> Complete:
     """Compute what a level still lacks: its surfaces with the analyses beside them, then what the surfaces choose."""
     analyses = chosen_analyses(level.study)
     tasks = surface_tasks(level.study)
@@ -66,7 +66,7 @@ class Reports:
         self._last = began.wall
         self.place = options.out
         self.results: Results | None = None
-        self.level: Level | None = None
+        self.level: StudyLevel | None = None
         self.seconds = 0.0
 
     def is_due(self, complete: Complete, runner: Runner) -> bool:

@@ -15,7 +15,7 @@ MOST: tuple[Mapping[str, float], ...] = (
 
 
 @dataclass(frozen=True)
-class Level:
+class StudyLevel:
     """One level: its study, and its number of how many."""
 
     study: Study
@@ -33,7 +33,7 @@ class Level:
         return f"level {self.number} of {self.of}"
 
 
-def levels_of(study: Study, first: Mapping[str, int]) -> list[Level]:
+def levels_of(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
     """The levels of a study, from coarse to fine; first: the level that an analysis is first made at, by its key."""
     made = [key for key in first if study.selecting(key).scenes]
     studies: list[Study] = []
@@ -45,7 +45,7 @@ def levels_of(study: Study, first: Mapping[str, int]) -> list[Level]:
     different = [
         each for each, finer in zip(studies, [*studies[1:], None]) if finer is None or _work(each) != _work(finer)
     ]
-    return [Level(each, number, len(different)) for number, each in enumerate(different, start=1)]
+    return [StudyLevel(each, number, len(different)) for number, each in enumerate(different, start=1)]
 
 
 def _work(study: Study) -> tuple[object, ...]:

@@ -1,440 +1,243 @@
 """
 Adaptive integration: one run of the engine in chunks, each with the step that the motion needs there.
 
-The engine's own control of the step answers to failed Newton iterations, not to wrong results. What a constant step
-gets wrong here is the stop. While the slip speed is small, the slip direction turns and the regularized friction
-relaxes within milliseconds. So the velocity of the platform may change in one step by no more than a fraction of the
-slip speed (of v_reg, where the slip is slower than that). A chunk is accepted up to the first step that breaks this.
-The run starts again from the stored state there with a smaller step. The step grows again once the motion allows it.
+The engine's own control of the step answers to failed Newton iterations, not to wrong results. Here a chunk is accepted
+up to the first step that is larger than `step_control` allows. The run starts again from the stored state there with a
+smaller step. The step grows again once the motion allows it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.chunk import (
-    absolute_sizes,
-    distances,
-    first_ends,
-    largest_distance,
-    last_near,
-    loaded_slip,
-    slip_changes,
+from multibody.integration.constant_step import EngineMotion, EngineSolver
+from multibody.integration.engine_run import (
+    Budget,
+    EngineRun,
+    Ground,
+    absolute_accelerations,
+    begin_run,
+    record_steps,
 )
-from multibody.integration.constant_step import Engine, Motion
 from multibody.integration.level import STEP_RATIO, Level
-from multibody.integration.openings import FIRST_STEP, Event, Openings
-from multibody.integration.peak import CANDIDATE_FRACTION, Peaks, kinks
-from multibody.integration.travel import travel_reached
+from multibody.integration.openings import Event, Openings
+from multibody.integration.step_control import (
+    MAX_CHUNK_STEPS,
+    MIN_CHUNK_STEPS,
+    StepControl,
+    gap_rate_at_end,
+)
+from multibody.integration.termination import find_first_row, find_termination
 from multibody.models.recorded import align_steps
 from multibody.models.state import EngineState
-from multibody.models.system import EngineModel
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]
 
-FIRST_DIVISIONS = 2  # of the largest step in the first chunk: the contact settles
-MIN_CHUNK_STEPS, MAX_CHUNK_STEPS = 32, 256  # steps in a chunk at the largest step
-# steps in a chunk at smaller steps, times the allowed change of the slip velocity: the chunks of all levels then end,
-# and their steps grow, at the same instants; within bounds for levels that no model has by itself
-DIVIDED_CHUNK_CHANGE = 4.48
-MIN_DIVIDED_CHUNK_STEPS, MAX_DIVIDED_CHUNK_STEPS = 8, 4096
-CHUNK_GROWTH = 2  # of the steps in a chunk at the largest step over those of the one before
-FREE_ITERATIONS = 2  # of Newton's method in a step; further ones count as steps
-GAP_RATE_STEPS = 4  # over which the rate of a gap is taken
-KINK_STEP_RATIO = 4.0  # first step behind a kink of the loading over slip_change times the relaxation of friction
-# step times the rate at which friction that depends on the slip speed acts back on it (SpeedFriction), over the allowed
-# change of the slip velocity; at most, as well below the 2/3 at which steps of alternating friction begin to grow
-FEEDBACK_PER_SLIP_CHANGE, MAX_FEEDBACK = 2.0, 0.3
-RIM = 1.0  # largest rise of the platform, in units of length, which is rho
-RECENT_ROWS = 8  # at the end of a chunk: they decide whether the step may grow
-SETTLED_FRACTION = 0.9  # of a largest value: later values below it do not reach it in a run of another level either
-WARPING_RELAXATION = 20.0  # time until warping has relaxed, in square roots of the warping compliance
+# Divisions of the largest step by `STEP_RATIO` in the first chunk, in which the contact settles.
+FIRST_DIVISIONS = 2
+
+# Largest factor from one chunk at the largest step to the next, in their numbers of steps.
+CHUNK_GROWTH = 2
+
+# Iterations of Newton's method in a step that are no extra work: further ones count as steps.
+FREE_ITERATIONS = 2
+
+# Rows at the end of a chunk that decide whether the step may grow.
+RECENT_ROWS = 8
+
+# Rounding of the instant at which a run has reached its end, relative.
+TIME_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class Integration:
+    """
+    Everything that the steps of a run depend on.
+
+    ground: acceleration of the plate. end: of the motion, in units of time. budget: steps left to all runs of the
+    point. keep: whether the run keeps its motion.
+    """
+
+    solver: EngineSolver
+    ground: Ground
+    end: float
+    level: Level
+    budget: Budget
+    keep: bool = False
 
 
 @dataclass
-class Budget:
-    """Steps of the engine left to all runs of one point: the answer does not depend on the machine."""
+class Checkpoint:
+    """
+    The place from which a run goes on.
 
-    left: float
-
-    def allows(self, span: float, level: Level) -> bool:
-        """Whether what is left is enough for `span` at the largest step of a level."""
-        return span / level.step <= self.left
-
-
-@dataclass
-class Place:
-    """Where a run is, and how it goes on from there."""
+    time: in units of time. divisions: of the largest step by `STEP_RATIO`. next_count: steps of the next chunk at the
+    largest step.
+    """
 
     state: EngineState
-    time: float = 0.0  # in units of time
-    divisions: int = FIRST_DIVISIONS  # of the largest step
-    next_count: int = MAX_CHUNK_STEPS  # steps of the next chunk at the largest step
+    time: float = 0.0
+    divisions: int = FIRST_DIVISIONS
+    next_count: int = MAX_CHUNK_STEPS
 
 
-@dataclass
-class EngineRun:
-    """The result of one run from the start of the loading to its end, or to where the run terminates."""
-
-    peaks: Peaks  # of each body
-    stop: float  # when it was to stop, in units of time
-    outcome: Outcome = Outcome.OK
-    instant: float = math.nan  # of a termination, in units of time
-    work: float = 0.0  # steps as the budget counts them
-    warping_load: float = 0.0  # largest load that warping of the supports takes so far, in shares of the weight
-    last_open: float = -math.inf  # the latest instant at which a support carried no load, in units of time
-    max_displacement: float = 0.0  # horizontal, of the platform, in units of length
-    max_vertical: float = 0.0  # acceleration of any body, relative to the plate
-    # the last instant at which an acceleration or the displacement of the platform came within SETTLED_FRACTION of its
-    # largest value, in units of time
-    settled: float = 0.0
-    undisturbed: float = -math.inf  # contact forces have settled after the last impact: peaks are read from here on
-    impacts: int = 0  # of supports that closed again
-    min_load: float = math.inf  # smallest contact force, in weights, of a model that ends where the contact opens
-    opened: bool = False  # whether any contact carried no load
-    looked_over: float = math.inf  # from here on the motion was only looked over in larger steps, in units of time
-    chunks: list[Motion] = field(default_factory=list)  # the motion, if it is kept
-
-    @property
-    def lifts_off(self) -> bool:
-        """Whether a support of those that share the load opened."""
-        return self.last_open > -math.inf
-
-    def terminated(self, outcome: Outcome, instant: float) -> EngineRun:
-        """This run, which ends with `outcome` at `instant`."""
-        self.outcome, self.instant = outcome, instant
-        return self
+def run_adaptively(integration: Integration, start: EngineState, stop: float = math.inf) -> EngineRun:
+    """Run from `start` at time 0 to the end of the motion, not beyond `stop`."""
+    run = begin_run(integration.solver.model, stop)
+    if not integration.budget.allows(min(integration.end, stop), integration.level):
+        return run.terminate(Outcome.STEP_LIMIT, 0.0)
+    continue_run(integration, run, Checkpoint(start))
+    return run
 
 
-def run_adaptively(
-    engine: Engine,
-    start: EngineState,
-    end: float,
-    ground: Callable[[Array], Array],
-    level: Level,
-    budget: Budget,
-    *,
-    stop: float = math.inf,
-    keep: bool = False,
-) -> EngineRun:
-    """Run from `start` at 0 to `end`, not beyond `stop`; ground: plate's acceleration (T, 3) at times (T,)."""
-    result = begin_run(engine.model, stop)
-    if not budget.allows(min(end, stop), level):
-        return result.terminated(Outcome.STEP_LIMIT, 0.0)
-    go_on(result, Place(start), engine, end, ground, level, budget, keep=keep)
-    return result
-
-
-def begin_run(model: EngineModel, stop: float = math.inf) -> EngineRun:
-    """The result of a run that has taken no step yet."""
-    peaks = Peaks(len(model.bodies), model.corner, model.ground.knots, model.ground.near)
-    return EngineRun(peaks, stop)
-
-
-def go_on(
-    result: EngineRun,
-    place: Place,
-    engine: Engine,
-    end: float,
-    ground: Callable[[Array], Array],
-    level: Level,
-    budget: Budget,
-    *,
-    keep: bool = False,
+def continue_run(
+    integration: Integration,
+    run: EngineRun,
+    checkpoint: Checkpoint,
     pause: Callable[[float], bool] = lambda time: False,
-) -> Place:
-    """Go on with a run from `place`; where it ends. Before every chunk `pause` says whether to end at its instant."""
-    model = engine.model
-    openings = None if model.impact is None else Openings(engine, model.impact, level.penetration)
-    state, time, divisions, next_count = place.state, place.time, place.divisions, place.next_count
-    while time < min(end, result.stop) * (1.0 - 1e-12) and not pause(time):
-        divisions = max(divisions, level.min_divisions(time))
-        step = level.step / STEP_RATIO**divisions
-        asked = next_count if divisions == 0 else _divided_steps(level)
-        asked = min(asked, math.ceil((end - time) / step * (1.0 - 1e-12)))
-        step, count = align_steps(model.ground.knots, model.ground.near, time, min(step, (end - time) / asked), asked)
-        motion = engine.run(state, time, step, count)
-        work = max(count, engine.iterations / FREE_ITERATIONS)
-        result.work += work
-        budget.left -= work
-        if budget.left < 0.0:
-            result.terminated(Outcome.STEP_LIMIT, time)
+) -> Checkpoint:
+    """Continue a run from a checkpoint to its end, or to where `pause` asks for it; return the place reached."""
+    progress = _Progress(integration, run, replace(checkpoint))
+    end = min(integration.end, run.stop) * (1.0 - TIME_ROUNDING)
+    while progress.at.time < end and not pause(progress.at.time):
+        if not progress.advance():
             break
-        if motion is None or not np.isfinite(motion.accelerations).all():
-            if divisions == level.max_divisions:
-                result.terminated(Outcome.SOLVER_FAILED, time)
-                break
-            divisions += 1
-            continue
+    return progress.at
+
+
+class _Progress:
+    """A run under way: one chunk of steps after the other is made, judged and accepted as far as it is accurate."""
+
+    # A chunk can end in four ways. The engine cannot solve a step: the chunk is made again in smaller steps. A step is
+    # larger than the motion allows: the rows before it are accepted, and the run goes on in smaller steps from there,
+    # with a contact force that the gap alone carries. A support opens or closes: the rows before it are accepted, the
+    # event is located, and the run goes on behind it. Otherwise all rows are accepted, and the step may grow by one
+    # division if the last rows would have allowed that. Every step size is the largest one over a power of STEP_RATIO,
+    # so that runs of successive levels take comparable steps at the same instants, which their error estimate needs.
+
+    def __init__(self, integration: Integration, run: EngineRun, at: Checkpoint) -> None:
+        self.integration, self.run, self.at = integration, run, at
+        solver, level = integration.solver, integration.level
+        self.model, self.level = solver.model, level
+        self.control = StepControl(self.model, level)
+        impact = self.model.impact
+        self.openings = None if impact is None else Openings(solver, impact, level.penetration)
+
+    def advance(self) -> bool:
+        """Make one chunk of steps and accept what is accurate; return whether the run goes on."""
+        at, level, openings = self.at, self.level, self.openings
+        asked, step, count = self._choose_steps()
+        motion = self._integrate(step, count)
+        if motion is None:
+            return self._divide_after_failure()
         if openings is not None:
-            motion = openings.with_gaps(motion)
-        size = absolute_accelerations(model, motion, ground)
-        step_ratio = _step_ratio(motion, engine, size, result.peaks.value, step, level)
+            motion = openings.fill_gaps_of_open_contacts(motion)
+        size = absolute_accelerations(self.model, motion, self.integration.ground)
+        step_ratio = self.control.step_ratio(motion, size, self.run.peaks.value, step)
         last = len(motion.time) - 1
-        failing = _first(step_ratio > 1.0)
-        rejected = divisions < level.max_divisions and failing <= last
+        failing = find_first_row(step_ratio > 1.0)
+        rejected = at.divisions < level.max_divisions and failing <= last
         if rejected:
             last = max(failing - 1, 0)
-        event = None if openings is None else openings.first_event(motion.until(last))
-        if openings is not None and event is not None:
+        event = None if openings is None else openings.find_first_event(motion.cut_at(last))
+        if event is not None:
             last, rejected = event.row, False
-        if last > 0:
-            accepted = motion.until(last)
-            if not _record(result, accepted, size[: last + 1], model, level, keep):
-                break
-            state, time = accepted.state(last), float(accepted.time[last])
-            if rejected:
-                state = model.settle(state, _gap_rate(accepted), level.penetration)
+        if last > 0 and not self._accept(motion.cut_at(last), size[: last + 1], settle=rejected):
+            return False
         if openings is not None and event is not None:
-            passed = _pass(event, openings, state, time, step, result, ground, level, keep)
-            budget.left -= 1.0
-            if passed is None:
-                break
-            state, time = passed
-            if event.closes:
-                divisions = max(divisions, _divisions_behind_impact(level))
-            next_count = MIN_CHUNK_STEPS
-        elif rejected:
-            divisions += 1 if step_ratio[failing] < STEP_RATIO else 2
-            divisions = min(divisions, level.max_divisions)
+            return self._pass_event(openings, event, step)
+        if rejected:
+            at.divisions += 1 if step_ratio[failing] < STEP_RATIO else 2
+            at.divisions = min(at.divisions, level.max_divisions)
         else:
-            # not what a knot left of it: restarts cost accuracy, and a chunk of one step up to a knot would make the
-            # next ones as short
-            before = asked if divisions == 0 else min(asked, MIN_CHUNK_STEPS)
-            if divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
-                divisions -= 1
-            if divisions == 0:
-                next_count = min(_steps_ahead(motion, engine, level), CHUNK_GROWTH * before)
-    return Place(state, time, divisions, next_count)
+            self._enlarge_steps(motion, step_ratio, asked)
+        return True
 
+    def _choose_steps(self) -> tuple[int, float, int]:
+        """Choose the next chunk: the number of steps wanted, and length and number of those that end at knots."""
+        at, level, end, ground = self.at, self.level, self.integration.end, self.model.ground
+        at.divisions = max(at.divisions, level.min_divisions(at.time))
+        step = level.step / STEP_RATIO**at.divisions
+        asked = at.next_count if at.divisions == 0 else self.control.count_small_steps()
+        asked = min(asked, math.ceil((end - at.time) / step * (1.0 - TIME_ROUNDING)))
+        longest = min(step, (end - at.time) / asked)
+        return asked, *align_steps(ground.knots, ground.near, at.time, longest, asked)
 
-def _pass(
-    event: Event,
-    openings: Openings,
-    state: EngineState,
-    time: float,
-    step: float,
-    result: EngineRun,
-    ground: Callable[[Array], Array],
-    level: Level,
-    keep: bool,
-) -> tuple[EngineState, float] | None:
-    """State and instant behind an opening or closing of supports; None if the run ends before."""
-    model = openings.engine.model
-    motion = openings.located(state, time, step, event)
-    if motion is not None:
-        size = absolute_accelerations(model, motion, ground)
-        motion = openings.touching(motion, event.which) if event.closes else openings.with_gaps(motion)
-        # so short a step tells nothing about a peak that may lie in it: forces have not settled at its end
-        if not _record(result, motion, size, model, level, keep, read=False):
+    def _integrate(self, step: float, count: int) -> EngineMotion | None:
+        """Let the engine make the steps, and count their work; None where it cannot or the budget is exceeded."""
+        solver, budget = self.integration.solver, self.integration.budget
+        motion = solver.run(self.at.state, self.at.time, step, count)
+        work = max(count, solver.newton_iterations / FREE_ITERATIONS)
+        self.run.work += work
+        budget.left -= work
+        if budget.left < 0.0:
+            self.run.terminate(Outcome.STEP_LIMIT, self.at.time)
             return None
-        state, time = motion.state(-1), float(motion.time[-1])
-    if not event.closes:
-        openings.opened(event)
-        return state, time
-    if time > result.undisturbed:
-        result.peaks.read_until(time)
-    state = openings.after_impact(state, time, event.which)
-    result.undisturbed, result.impacts = openings.settled, openings.impacts
-    result.peaks.restart()
-    return state, time
+        return motion if motion is not None and np.isfinite(motion.accelerations).all() else None
 
+    def _divide_after_failure(self) -> bool:
+        """Divide the step that the engine could not solve; return whether the run goes on."""
+        if self.run.outcome != Outcome.OK:
+            return False
+        if self.at.divisions == self.level.max_divisions:
+            self.run.terminate(Outcome.SOLVER_FAILED, self.at.time)
+            return False
+        self.at.divisions += 1
+        return True
 
-def _divisions_behind_impact(level: Level) -> int:
-    """How often the largest step is divided while contact forces settle."""
-    wanted = math.ceil(math.log(level.step / (FIRST_STEP * math.sqrt(level.penetration)), STEP_RATIO))
-    return min(max(wanted, 0), level.max_divisions)
+    def _accept(self, motion: EngineMotion, size: Array, *, settle: bool = False, read: bool = True) -> bool:
+        """Accept steps up to where the model's validity ends, and move on; return whether the run goes on."""
+        outcome, row, instant = find_termination(motion, self.model)
+        if self.integration.keep:
+            self.run.chunks.append(motion.cut_at(row))
+        if outcome != Outcome.OK:
+            self.run.terminate(outcome, instant)
+            return False
+        record_steps(self.run, motion, size, self.model, self.level, read)
+        self.at.state, self.at.time = motion.state_at(-1), float(motion.time[-1])
+        if settle:
+            self.at.state = self.model.settle(self.at.state, gap_rate_at_end(motion), self.level.penetration)
+        return True
 
+    def _pass_event(self, openings: Openings, event: Event, step: float) -> bool:
+        """Pass an opening or closing of supports, which lies within the next step; return whether the run goes on."""
+        at, run = self.at, self.run
+        motion = openings.locate_event(at.state, at.time, step, event)
+        self.integration.budget.left -= 1.0
+        if motion is not None:
+            size = absolute_accelerations(self.model, motion, self.integration.ground)
+            if event.closes:
+                motion = openings.close_contacts(motion, event.which)
+            else:
+                motion = openings.fill_gaps_of_open_contacts(motion)
+            # so short a step tells nothing about a peak that may lie in it: forces have not settled at its end
+            if not self._accept(motion, size, read=False):
+                return False
+        if event.closes:
+            if at.time > run.peaks_count_from:
+                run.peaks.read_until(at.time)
+            at.state = openings.apply_impact(at.state, at.time, event.which)
+            run.peaks_count_from, run.impacts = openings.settled_at, openings.impacts
+            run.peaks.restart()
+            at.divisions = max(at.divisions, self.control.divisions_behind_impact())
+        else:
+            openings.open_contacts(event)
+        at.next_count = MIN_CHUNK_STEPS
+        return True
 
-def absolute_accelerations(model: EngineModel, motion: Motion, ground: Callable[[Array], Array]) -> Array:
-    """Sizes of the bodies' accelerations with that of the plate, (T, N), in units of the model."""
-    plate = motion.plate[:, 2] if model.moving_plate else ground(motion.time)
-    sizes: Array = absolute_sizes(motion.accelerations, model.bodies, plate)
-    return sizes
-
-
-def _record(
-    result: EngineRun, motion: Motion, size: Array, model: EngineModel, level: Level, keep: bool, read: bool = True
-) -> bool:
-    """Add an accepted chunk, read for peaks or not, up to where the model's validity ends; whether the run goes on."""
-    outcome, row, instant = termination(motion, model)
-    if keep:
-        result.chunks.append(motion.until(row))
-    if outcome != Outcome.OK:
-        result.terminated(outcome, instant)
-        return False
-    _record_warping(result, motion, model, level)
-    axes = model.bodies[0, :2]
-    distance = distances(motion.coordinates, axes)
-    if distance.max() > CANDIDATE_FRACTION * result.max_displacement:
-        displacement = largest_distance(motion.time, motion.coordinates, motion.velocities, axes)
-        result.max_displacement = max(result.max_displacement, displacement)
-    time, slip = motion.time, motion.slip
-    if result.undisturbed > time[0]:
-        time, slip, size, distance = _from(result.undisturbed, time, slip, size, distance)
-    vertical = float(np.abs(motion.accelerations[:, model.bodies[:, 2]]).max())
-    result.max_vertical = max(result.max_vertical, vertical)
-    if read and len(time):
-        result.peaks.add(time, size, slip)
-        _record_settling(result, time, size, distance)
-    gap = float(motion.gap.max())
-    result.opened |= gap >= 0.0
-    if not model.allows_liftoff:
-        result.min_load = min(result.min_load, -gap / level.penetration)
-    return True
-
-
-def _from(instant: float, time: Array, *columns: Array) -> list[Array]:
-    """Times (T,) and columns from `instant` on, interpolated there: it is behind the first row."""
-    first = int(np.searchsorted(time, instant, side="right"))
-    if first == len(time):
-        return [time[first:], *(column[first:] for column in columns)]
-    share = (instant - time[first - 1]) / (time[first] - time[first - 1])
-    begin = [column[first - 1] + share * (column[first] - column[first - 1]) for column in columns]
-    rows = [np.concatenate([value[None], column[first:]]) for value, column in zip(begin, columns)]
-    return [np.append(instant, time[first:]), *rows]
-
-
-def _record_settling(result: EngineRun, time: Array, size: Array, displacement: Array) -> None:
-    """Record when something that is asked for last came near its largest value so far."""
-    large, far = SETTLED_FRACTION * result.peaks.value, SETTLED_FRACTION * result.max_displacement
-    row = last_near(size, large, displacement, far)
-    if row >= 0:
-        result.settled = float(time[row])
-
-
-def _step_ratio(motion: Motion, engine: Engine, size: Array, peaks: Array, step: float, level: Level) -> Array:
-    """Each step over what is allowed there, (T,), from accelerations (T, N) and the peaks so far, (N,)."""
-    per_change = step / level.slip_change
-    step_ratio = _slip_change(motion, engine, per_change)
-    if engine.model.friction is not None:
-        allowed = min(FEEDBACK_PER_SLIP_CHANGE * level.slip_change, MAX_FEEDBACK)
-        step_ratio = np.maximum(step_ratio, step / allowed * engine.model.friction.feedback(motion.slip))
-    if len(engine.model.ground.knots):
-        step_ratio = np.maximum(step_ratio, _behind_kinks(motion, size, engine, peaks, per_change, level.error_floor))
-    return step_ratio
-
-
-def _slip_change(motion: Motion, engine: Engine, per_change: float) -> Array:
-    """Change of the slip velocity in one step over what is allowed, (T,)."""
-    corner = engine.model.corner
-    if not math.isfinite(corner):
-        return np.zeros(len(motion.time))
-    changes: Array = slip_changes(motion.accelerations, engine.model.bodies[0], motion.contact, per_change, corner)
-    return changes
-
-
-def _behind_kinks(motion: Motion, size: Array, engine: Engine, peaks: Array, per_change: float, floor: float) -> Array:
-    """
-    First step behind a kink of the loading over what is allowed, (T,), where a body's peak may be: zero elsewhere.
-
-    While the platform creeps, its acceleration follows the ground's with the relaxation of regularized friction. Behind
-    a kink its slope changes, which longer steps would take for a swing. Bodies that turn with it and dampers follow.
-    Samples on one parabola, within `floor` of the peak, follow no kink.
-    """
-    step_ratio, model, last = np.zeros(len(motion.time)), engine.model, len(motion.time) - 1
-    rows = kinks(motion.time, model.ground.knots, model.ground.near)
-    rows = rows[rows < last]
-    if len(rows) and np.isfinite(model.corner):
-        largest = np.maximum(peaks, size.max(axis=0))
-        bent = np.abs(np.diff(size[np.minimum(rows + np.arange(4)[:, None], last)], 3, axis=0)[0]) > floor * largest
-        rows = rows[
-            (bent & (size[rows] > CANDIDATE_FRACTION * largest)).any(axis=1)
-            & (motion.slip[rows].min(axis=1) < model.corner)
-        ]
-        step_ratio[rows + 1] = per_change / (KINK_STEP_RATIO * model.relaxation)
-    return step_ratio
-
-
-def _record_warping(result: EngineRun, motion: Motion, model: EngineModel, level: Level) -> None:
-    """Record the largest load that warping takes while all contacts are closed: elastic supports would take none."""
-    if model.warping_displacement is None:
-        return
-    displacement = model.warping_displacement(motion.coordinates)
-    if result.lifts_off or motion.gap.max() >= 0.0:
-        is_open = (motion.gap >= 0.0).any(axis=1)
-        last_open = np.maximum.accumulate(np.where(is_open, motion.time, result.last_open))
-        displacement = displacement[motion.time - last_open > WARPING_RELAXATION * math.sqrt(level.warping_compliance)]
-        result.last_open = float(last_open[-1])
-    result.warping_load = max(result.warping_load, float(displacement.max(initial=0.0)) / level.warping_compliance)
-
-
-def _gap_rate(motion: Motion) -> Array:
-    """Rate of each gap at the end of a chunk, (K,), over an even number of steps: the contact may alternate."""
-    rows = min(GAP_RATE_STEPS, (len(motion.time) - 1) // 2 * 2)
-    if rows == 0:
-        return np.zeros(motion.gap.shape[1])
-    rate: Array = (motion.gap[-1] - motion.gap[-1 - rows]) / (motion.time[-1] - motion.time[-1 - rows])
-    return rate
-
-
-def _divided_steps(level: Level) -> int:
-    """Steps in a chunk of smaller steps than the largest."""
-    steps = DIVIDED_CHUNK_CHANGE / level.slip_change
-    return round(min(max(steps, MIN_DIVIDED_CHUNK_STEPS), MAX_DIVIDED_CHUNK_STEPS))
-
-
-def _steps_ahead(motion: Motion, engine: Engine, level: Level) -> int:
-    """How many of the largest steps to try: up to where the slip speed, going on as now, asks for smaller ones."""
-    corner = engine.model.corner
-    if len(motion.time) < 2 or not math.isfinite(corner):
-        return MAX_CHUNK_STEPS
-    before, slip = loaded_slip(motion.contact, -2), loaded_slip(motion.contact, -1)
-    if not math.isfinite(before + slip):
-        return MAX_CHUNK_STEPS
-    rate = (slip - before) / float(motion.time[-1] - motion.time[-2])
-    target = corner
-    if slip > corner:
-        size = float(np.linalg.norm(motion.accelerations[-1, engine.model.bodies[0]]))
-        target = max(corner, size * level.step / level.slip_change)
-    if (target - slip) * rate <= 0.0:
-        return MAX_CHUNK_STEPS
-    return int(min(max((target - slip) / rate / level.step, MIN_CHUNK_STEPS), MAX_CHUNK_STEPS))
-
-
-def termination(motion: Motion, model: EngineModel) -> tuple[Outcome, int, float]:
-    """The first event that ends the motion, its row and its instant; OK and the last row if there is none."""
-    outcome, row = _end_of_validity(motion, model)
-    instant, before = travel_reached(motion, model)
-    if instant <= motion.time[row]:
-        return Outcome.TRAVEL_REACHED, before, instant
-    return outcome, row, float(motion.time[row])
-
-
-def _end_of_validity(motion: Motion, model: EngineModel) -> tuple[Outcome, int]:
-    """The first event that ends the model's validity and its row; OK and the last row if there is none."""
-    count = len(motion.time)
-    if model.depressions is not None:
-        if model.depressions.near_rest(motion.coordinates):
-            return Outcome.OK, count - 1
-        tilt = _tilt(motion, model)
-        row = _first(model.depressions.beyond_rim(motion.coordinates) | (tilt >= 0.5 * math.pi))
-        if row == count:
-            return Outcome.OK, count - 1
-        return Outcome.OVERTURNED if tilt[row] > model.critical_tilt else Outcome.RIM_REACHED, row
-    # by height: the horizontal offset only touches rho at the rim and falls again beyond
-    rim, contact_lost = first_ends(motion.coordinates, model.bodies[0, 2], RIM, motion.contact)
-    contact_lost = count if model.allows_liftoff else contact_lost
-    if min(rim, contact_lost) == count:
-        return Outcome.OK, count - 1
-    return (Outcome.RIM_REACHED, rim) if rim <= contact_lost else (Outcome.CONTACT_LOST, contact_lost)
-
-
-def _tilt(motion: Motion, model: EngineModel) -> Array:
-    """Angle of the platform's axis to the vertical, (T,), rad."""
-    about_x, about_y = (motion.coordinates[:, axis] for axis in model.bodies[0, :2] + 3)
-    tilt: Array = np.arccos(np.cos(about_x) * np.cos(about_y))
-    return tilt
-
-
-def _first(holds: Any) -> int:
-    """The first row of (T,) in which something holds; T if there is none."""
-    row = int(holds.argmax())
-    return row if holds[row] else len(holds)
+    def _enlarge_steps(self, motion: EngineMotion, step_ratio: Array, asked: int) -> None:
+        """Enlarge the step, or the number of largest steps, as far as the last rows allow; asked: steps wanted now."""
+        # The number wanted counts, not what a knot left of it: restarts cost accuracy, and a chunk of one step up to a
+        # knot would make the next ones as short.
+        at = self.at
+        before = asked if at.divisions == 0 else min(asked, MIN_CHUNK_STEPS)
+        if at.divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
+            at.divisions -= 1
+        if at.divisions == 0:
+            at.next_count = min(self.control.count_largest_steps(motion), CHUNK_GROWTH * before)

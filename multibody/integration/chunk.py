@@ -1,7 +1,7 @@
 """
-What every chunk of steps is asked for, compiled: chunks are short, and a dozen array operations cost more than they.
+Compiled readings of a chunk of steps: chunks are short, and a dozen array operations would cost more than they.
 
-The arrays are those of a `Motion`: accelerations and coordinates (T, n), contact (T, 4 K).
+The arrays are those of a `EngineMotion`: accelerations and coordinates (T, n), contact (T, 4 K).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 @cached_on_disk(__file__, nogil=True)
-def absolute_sizes(accelerations: Array, bodies: NDArray[np.int_], plate: Array) -> Array:
+def absolute_acceleration_sizes(accelerations: Array, bodies: NDArray[np.int_], plate: Array) -> Array:
     """Sizes (T, N) of the accelerations of the coordinates `bodies` (N, 3) with that of the plate (T, 3)."""
     steps, count = len(accelerations), len(bodies)
     size = np.empty((steps, count))
@@ -31,7 +31,7 @@ def absolute_sizes(accelerations: Array, bodies: NDArray[np.int_], plate: Array)
 
 
 @cached_on_disk(__file__, nogil=True)
-def loaded_slip(contact: Array, row: int) -> float:
+def slowest_loaded_slip(contact: Array, row: int) -> float:
     """Smallest slip speed of the contacts that carry load in a row; inf where none does."""
     slip = math.inf
     for place in range(0, contact.shape[1], 4):
@@ -54,14 +54,14 @@ def slip_changes(
             # an acceleration that changes within a step counts twice: it says more about the steps that follow
             dx, dy, dz = x - before_x, y - before_y, z - before_z
             size = max(size, 2.0 * math.sqrt(dx * dx + dy * dy + dz * dz))
-        step_ratio[row] = per_change * size / max(loaded_slip(contact, row), corner)
+        step_ratio[row] = per_change * size / max(slowest_loaded_slip(contact, row), corner)
         before_x, before_y, before_z = x, y, z
     return step_ratio
 
 
 @cached_on_disk(__file__, nogil=True)
-def first_ends(coordinates: Array, height: int, rim: float, contact: Array) -> tuple[int, int]:
-    """First rows at which the coordinate `height` reaches `rim`, and at which every contact is open; T without."""
+def find_first_ends(coordinates: Array, height: int, rim: float, contact: Array) -> tuple[int, int]:
+    """Find the first rows at which the coordinate `height` reaches `rim` and at which no contact is closed; else T."""
     steps = len(coordinates)
     beyond, lost = steps, steps
     for row in range(steps):
@@ -88,7 +88,7 @@ def distances(coordinates: Array, axes: NDArray[np.int_]) -> Array:
 
 @cached_on_disk(__file__, nogil=True)
 def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: NDArray[np.int_]) -> float:
-    """Largest of such lengths, also between the instants (T,): `largest_displacement` of `reference.measures`."""
+    """Largest length of that vector, also between the instants (T,), as `reference.measures.largest_displacement`."""
     largest = before_square = before = 0.0
     for row in range(len(time)):
         x, y = coordinates[row, axes[0]], coordinates[row, axes[1]]
@@ -102,8 +102,8 @@ def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: N
 
 
 @cached_on_disk(__file__, nogil=True)
-def last_near(size: Array, sizes: Array, distance: Array, far: float) -> int:
-    """Last row at which an entry of `size` (T, N) reaches `sizes` (N,), or one of `distance` (T,) `far`; -1 without."""
+def find_last_near(size: Array, sizes: Array, distance: Array, far: float) -> int:
+    """Find the last row at which `size` (T, N) reaches `sizes` (N,) anywhere, or `distance` (T,) `far`; else -1."""
     for row in range(len(size) - 1, -1, -1):
         if distance[row] >= far:
             return row
@@ -115,7 +115,7 @@ def last_near(size: Array, sizes: Array, distance: Array, far: float) -> int:
 
 @cached_on_disk(__file__, nogil=True)
 def any_larger(size: Array, first: int, least: Array) -> bool:
-    """Whether an entry of `size` (T, N) is larger than its column's of `least` (N,), from the row `first` on."""
+    """Return whether an entry of `size` (T, N) is larger than its column's of `least` (N,), from row `first` on."""
     for row in range(first, len(size)):
         for body in range(size.shape[1]):
             if size[row, body] > least[body]:

@@ -10,32 +10,45 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn
-from multibody.models.plate import COORDINATES, PLATE_MASS_RATIO, carried_along
+from multibody.models.engine import BODY_COORDINATES, MAX_DENSE_COORDINATES, exudyn
+from multibody.models.plate import PLATE_MASS_RATIO, carrying_axes
 from multibody.models.state import EngineState
 from multibody.models.system import EngineModel
 
 Array = NDArray[np.float64]
 
-SPECTRAL_RADIUS = 0.8  # of generalized alpha: the contact must not ring, the rest must not be damped
-MAX_STEP_REDUCTION = 1e4  # of a step that the engine cannot solve: contacts touch, friction turns
-EXPLICIT = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}  # integrators, and their names in the engine
+# Spectral radius of generalized alpha at infinite frequency (Chung and Hulbert 1993): the contact must not ring, and
+# the rest must not be damped.
+SPECTRAL_RADIUS = 0.8
+
+# Largest reduction of a step that the engine cannot solve: contacts touch, friction turns.
+MAX_STEP_REDUCTION = 1e4
+
+# Largest contractivity of modified Newton, above which the Jacobian is renewed: least time (measured).
+MAX_CONTRACTIVITY = 0.2
+
+# Explicit integrators, and their names in the engine.
+EXPLICIT = {"RK44": "RK44", "velocity Verlet": "VelocityVerlet"}
 INITIAL = exudyn.ConfigurationType.Initial
 INTEGRATORS = ("generalized alpha", "trapezoidal", *EXPLICIT)
 
-MAX_CONTRACTIVITY = 0.2  # of modified Newton, above which the Jacobian is renewed: least time (measured)
 
+class EngineMotion(NamedTuple):
+    """
+    Steps of one run in units of the model, relative to the plate, the first row being its start.
 
-class Motion(NamedTuple):
-    """Steps of one run in units of the model, relative to the plate, the first row being its start."""
+    time: (T,). coordinates, velocities, accelerations: (T, n). contact: gap, slip speed and two unused entries of each
+    contact, (T, 4 K). force: force vector and normal of each contact, (T, 6 K), or (T, 0) unless recorded. plate:
+    displacement, velocity and acceleration of a plate that moves, else zero, (T, 3, 3).
+    """
 
-    time: Array  # (T,)
-    coordinates: Array  # (T, n)
-    velocities: Array  # (T, n)
-    accelerations: Array  # (T, n)
-    contact: Array  # (T, 4 K): gap, slip speed, two unused entries, per contact
-    force: Array  # (T, 6 K): force vector and normal, per contact; (T, 0) unless recorded
-    plate: Array  # (T, 3, 3): displacement, velocity, acceleration of a plate that moves; else zero
+    time: Array
+    coordinates: Array
+    velocities: Array
+    accelerations: Array
+    contact: Array
+    force: Array
+    plate: Array
 
     @property
     def gap(self) -> Array:
@@ -56,28 +69,28 @@ class Motion(NamedTuple):
         load: Array = vectors.shape[1] * np.abs((vectors[:, :, 0] * vectors[:, :, 1]).sum(axis=-1))
         return load
 
-    def until(self, row: int) -> Motion:
-        """The rows up to and including `row`."""
-        return self if row == len(self.time) - 1 else Motion(*[column[: row + 1] for column in self])
+    def cut_at(self, row: int) -> EngineMotion:
+        """Return the rows up to and including `row`."""
+        return self if row == len(self.time) - 1 else EngineMotion(*[column[: row + 1] for column in self])
 
     @staticmethod
-    def concatenated(chunks: list[Motion]) -> Motion:
-        """One motion from chunks, each of which starts with the last row of the one before."""
+    def concatenate(chunks: list[EngineMotion]) -> EngineMotion:
+        """Join chunks, each of which starts with the last row of the one before."""
         whole, *rest = chunks
         columns = zip(whole, *(tuple(column[1:] for column in chunk) for chunk in rest))
-        return Motion(*map(np.concatenate, columns))
+        return EngineMotion(*map(np.concatenate, columns))
 
     @staticmethod
-    def empty(model: EngineModel) -> Motion:
-        """No rows at all, of a model whose contact forces are recorded."""
+    def empty(model: EngineModel) -> EngineMotion:
+        """Return a motion without rows, of a model whose contact forces are recorded."""
         size, contacts = model.coordinates, len(model.recorders.contact)
         widths = [(size,), (size,), (size,), (4 * contacts,), (6 * contacts,), (3, 3)]
-        return Motion(np.empty(0), *(np.empty((0, *width)) for width in widths))
+        return EngineMotion(np.empty(0), *(np.empty((0, *width)) for width in widths))
 
-    def state(self, row: int) -> EngineState:
+    def state_at(self, row: int) -> EngineState:
         """State of the engine at an instant, with the rates of slip and load since the instant before."""
         row = range(len(self.time))[row]
-        near = Motion(*[column[max(row - 1, 0) : row + 1] for column in self])
+        near = EngineMotion(*[column[max(row - 1, 0) : row + 1] for column in self])
         slip, load = near.slip, near.load
         rates: list[Array | None] = [None, None]
         if row > 0:
@@ -90,7 +103,7 @@ class Motion(NamedTuple):
 
 
 @contextmanager
-def silence() -> Iterator[None]:
+def silence_engine() -> Iterator[None]:
     """Keep the engine from writing on the terminal: a failed step is reported by status, not by print."""
     before = exudyn.config.printToConsole
     exudyn.config.printToConsole = False
@@ -104,9 +117,9 @@ def set_initial_state(model: EngineModel, state: EngineState) -> None:
     """Make `state` the one that the engine's next run starts from."""
     coordinates, velocities = state.coordinates, state.velocities
     if model.moving_plate:
-        axes = carried_along(model.carried, len(coordinates))
+        axes = carrying_axes(model.carried, len(coordinates))
         shift = np.hstack([state.plate, np.zeros((3, 1))])
-        turns = np.zeros(COORDINATES - 3)
+        turns = np.zeros(BODY_COORDINATES - 3)
         coordinates = np.concatenate([coordinates + shift[0, axes], state.plate[0], turns])
         velocities = np.concatenate([velocities + shift[1, axes], state.plate[1], turns])
     data = model.mbs.systemData
@@ -115,9 +128,9 @@ def set_initial_state(model: EngineModel, state: EngineState) -> None:
     data.SetDataCoordinates(state.contact, configuration=INITIAL)
 
 
-class Engine:
+class EngineSolver:
     """
-    Runs one model.
+    The engine's solver of one model.
 
     newton: tolerance of a step's equations, relative to their first residual. residual: smallest residual asked for,
     in units of force. integrator: one of INTEGRATORS. discontinuous: tolerance of the iteration over contacts that open
@@ -134,7 +147,7 @@ class Engine:
     ) -> None:
         self.model = model
         # over a moving plate the first residual is the heavy plate's: only the absolute tolerance has an effect
-        self.settings = _settings(newton / PLATE_MASS_RATIO if model.moving_plate else newton, residual)
+        self.settings = _solver_settings(newton / PLATE_MASS_RATIO if model.moving_plate else newton, residual)
         if model.coordinates > MAX_DENSE_COORDINATES:
             self.settings.linearSolver.solverType = exudyn.LinearSolverType.EigenSparse
         if discontinuous is not None:
@@ -150,10 +163,10 @@ class Engine:
         kind = exudyn.MainSolverExplicit if self.explicit else exudyn.MainSolverImplicitSecondOrder
         self.solver = kind()
         self.sensors: list[list[Any]] = [getattr(model.recorders, group.name) for group in fields(model.recorders)]
-        self.iterations = 0  # of Newton's method in the last run, with those of steps that were tried again
+        self.newton_iterations = 0
 
-    def run(self, state: EngineState, begin: float, step: float, count: int) -> Motion | None:
-        """`count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
+    def run(self, state: EngineState, begin: float, step: float, count: int) -> EngineMotion | None:
+        """Make `count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
         set_initial_state(self.model, state)
         self.model.ground.begin(begin)
         if self.model.friction is not None:
@@ -169,35 +182,38 @@ class Engine:
         except (exudyn.ExudynError, RuntimeError, ValueError):
             return None
         finally:
-            self.iterations = int(self.solver.it.newtonStepsCount)
+            self.newton_iterations = int(self.solver.it.newtonStepsCount)
         return self._read()
 
-    def _read(self) -> Motion:
+    def _read(self) -> EngineMotion:
+        """Read the last run from the sensors, at the engine's own instants: it halves steps that it cannot solve."""
         stored = self.model.mbs.GetSensorStoredData
         tables = [[stored(sensor) for sensor in sensors] for sensors in self.sensors]
-        time = tables[0][0][:, 0]  # the engine's own instants: it halves a step that its Newton iteration cannot solve
-        coordinates, velocities, accelerations, contact = [_values(group) for group in tables[:4]]
-        force = _values(tables[4]) if tables[4] else np.empty((len(time), 0))
+        time = tables[0][0][:, 0]
+        coordinates, velocities, accelerations, contact = [_join_tables(group) for group in tables[:4]]
+        force = _join_tables(tables[4]) if tables[4] else np.empty((len(time), 0))
         plate = np.zeros((len(time), 3, 3))
         if self.model.moving_plate:
-            plate = _values(tables[5]).reshape(len(time), 3, -1)[:, :, :3]
+            plate = _join_tables(tables[5]).reshape(len(time), 3, -1)[:, :, :3]
             for derivative, part in enumerate((coordinates, velocities, accelerations)):
-                axes = carried_along(self.model.carried, part.shape[1])
+                axes = carrying_axes(self.model.carried, part.shape[1])
                 part[:, axes < 3] -= plate[:, derivative, axes[axes < 3]]
-        return Motion(time, coordinates, velocities, accelerations, contact, force, plate)
+        return EngineMotion(time, coordinates, velocities, accelerations, contact, force, plate)
 
 
-def _values(tables: list[Array]) -> Array:
-    """The values of tables (T, 1 + C), which begin with the time, side by side. A single table is not copied."""
+def _join_tables(tables: list[Array]) -> Array:
+    """Join the values of tables (T, 1 + C), which begin with the time. A single table is not copied."""
     if len(tables) == 1:
         return tables[0][:, 1:]
     return np.concatenate([tables[0], *[table[:, 1:] for table in tables[1:]]], axis=1)[:, 1:]
 
 
-def _settings(newton: float, residual: float) -> Any:
+def _solver_settings(newton: float, residual: float) -> Any:
+    """Settings of the implicit solver for tolerances of Newton's iteration, relative and absolute."""
     settings = exudyn.SimulationSettings()
     settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = 0.0  # every step
+    every_step = 0.0
+    settings.solution.sensors.writePeriod = every_step
     integration = settings.timeIntegration
     integration.verboseMode = 0
     integration.newton.relativeTolerance = newton

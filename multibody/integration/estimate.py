@@ -5,6 +5,11 @@ Peaks in smooth motion converge by a factor of four from level to level. Those a
 the contact is slower than friction relaxes (see `level`) a level removes at most 1 / (2 + x) of the error, x being that
 of the coarser level. A difference that is smaller than convergence by four explains is accidental: errors cancel. It
 does not count. Two changes of opposite sign show no rate.
+
+References
+----------
+Roache, P. J. (1994). Perspective: a method for uniform reporting of grid refinement studies. Journal of Fluids
+Engineering 116, 405-413: Richardson's estimate with a safety factor, the grid convergence index.
 """
 
 from __future__ import annotations
@@ -14,41 +19,73 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.adaptive import EngineRun
+from multibody.integration.engine_run import EngineRun
 from multibody.integration.level import COMPLIANCE_RATIO, Level
-from multibody.integration.peak import Peaks
+from multibody.integration.peak import PeakReader
 from multibody.models.system import EngineModel
 from reference.problem import Outcome, Scene
 
 Array = NDArray[np.float64]
 
-SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25  # on the error that so many levels, or more, show (Roache)
-# on what a softer contact shows of rounding at the same step: its own compliance may act against that (measured: 2 is
-# 1.2 times too little, once in 48)
+# Safety factors on the error that two levels show, and on that of three or more. Roache's are 3 and 1.25. Two levels
+# count at the lowest rate that occurs here and not at the formal one, on which 1.5 is as safe
+# (docs/records/multibody.md).
+SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25
+
+# Safety factor on what a softer contact shows of rounding at the same step: its own compliance may act against that
+# (measured: 2 is 1.2 times too little, once in 48).
 SAFETY_OF_ROUNDING = 3.0
-NOISE_OF_ROUNDING = 0.5  # of the contact force, over the bound of its rounding (measured: up to 0.27)
-NOISE_OF_TURNING = 0.2  # likewise, of a platform that turns (measured: up to 0.10)
-# force on the platform of a flat slider over Newton's residual, from which on that does not act in full (measured: 34)
+
+# Noise of the contact force over the bound of its rounding: in translation (measured: up to 0.27), and of a platform
+# that turns (measured: up to 0.10).
+NOISE_OF_ROUNDING = 0.5
+NOISE_OF_TURNING = 0.2
+
+# Force on the platform of a flat slider, over Newton's residual, from which on that does not act in full (measured:
+# 34).
 MAX_FORCE_WITHOUT_ITERATION = 40.0
-SAFETY_OF_BEARINGS = 2.0  # on what springs of real bearings change at a coarser level
-# time from the start in which stiff links swing, in square roots of the penetration (measured: peaks at 1.7)
+
+# Safety factor on what springs of real bearings change at a coarser level.
+SAFETY_OF_BEARINGS = 2.0
+
+# Time from the start in which stiff links swing, in square roots of the penetration (measured: peaks at 1.7).
 STARTING_TIME = 4.0
-MIN_RATE, MAX_RATE = 2.0, 4.0  # factor by which a level reduces the error: at stops, in smooth motion
-MAX_CREDIBLE_RATE = 5.0  # a larger factor is accidental
-# relative change of a peak over the largest load that warping takes while all supports are closed (measured: up to
-# 0.22, where supports come to v_reg one by one)
+
+# Factor by which a level reduces the error: at stops, in smooth motion. A larger one than the last is accidental.
+MIN_RATE, MAX_RATE = 2.0, 4.0
+MAX_CREDIBLE_RATE = 5.0
+
+# Relative change of a peak over the largest load that warping takes while all supports are closed (measured: up to
+# 0.22, where supports come to v_reg one by one).
 ERROR_PER_WARPING_LOAD = 0.25
-# relative error of the first level of a motion with impacts, halved by every level on the same springs: the order of
+
+# Relative error of the first level of a motion with impacts, halved by every level on the same springs: the order of
 # impacts among the supports is decided by rounding, and two levels agree better by chance (measured: 1.1e-3 between
-# levels 1 to 4)
+# levels 1 to 4).
 MIN_ERROR_WITH_IMPACTS = 4e-3
-MIN_RELATIVE_ERROR = 1e-6  # of a peak: smaller errors are not measured
-MAX_CONVERGED_ERROR = 0.3  # relative: beyond it successive levels are different motions
-SMALLEST_CHANGE = 1e-290  # keeps a rate finite
+
+# Smallest relative error of a peak: smaller ones are not measured.
+SMALLEST_MEASURED_ERROR = 1e-6
+
+# Relative error beyond which successive levels are different motions.
+MAX_CONVERGED_ERROR = 0.3
+
+# Least change, which keeps a rate of convergence finite.
+SMALLEST_CHANGE = 1e-290
 
 
-def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> Array:
-    """Error (N,) of the last of peaks at two or three consecutive levels, in units, without rounding of the contact."""
+def error_between_levels(peaks: list[PeakReader], levels: list[Level], model: EngineModel) -> Array:
+    """
+    Estimate the error (N,) of the last of peaks at two or three consecutive levels, without rounding of the contact.
+
+    The estimate is Richardson's, with Roache's safety factors.
+    """
+    # With an error that a level divides by `rate`, the change between two levels is (rate - 1) times the error that is
+    # left. Two levels show no rate, nor do two changes of opposite sign: the lowest one that occurs, at stops, is
+    # assumed. A rate above that of smooth motion means that two errors cancel at one level: the earlier change then
+    # counts, at the lowest rate. A contact that is slower than friction relaxes (`contact_lag`, x) leaves more, by 1 +
+    # x. No agreement takes the error below the floor that the level typically has, nor below what Newton's iteration
+    # leaves. On a plane that is added, since friction alone accelerates the platform there.
     last, before = peaks[-1].value, peaks[-2].value
     change = np.abs(last - before)
     safety, rate = SAFETY_TWO_LEVELS, np.full_like(change, MIN_RATE)
@@ -58,14 +95,15 @@ def from_levels(peaks: list[Peaks], levels: list[Level], model: EngineModel) -> 
         change = np.where(rate > MAX_CREDIBLE_RATE, earlier / MIN_RATE, change)
         turned = np.sign(last - before) != np.sign(before - peaks[-3].value)
         rate = np.where(turned | (rate > MAX_CREDIBLE_RATE), MIN_RATE, np.clip(rate, MIN_RATE, MAX_RATE))
-    change = safety * change * (1.0 + lag(levels[-2], model)) / (rate - 1.0)
+    change = safety * change * (1.0 + contact_lag(levels[-2], model)) / (rate - 1.0)
     unsolved = levels[-1].newton * levels[-1].load
     level_error: Array = np.maximum(change, levels[-1].error_floor * last)
     level_error = level_error + unsolved if levels[-1].flat else np.maximum(level_error, unsolved)
-    return level_error + peaks[-1].sampling + _of_start(peaks[-1], levels[-1], model) + MIN_RELATIVE_ERROR * last
+    starting = _error_of_starting_links(peaks[-1], levels[-1], model)
+    return level_error + peaks[-1].sampling + starting + SMALLEST_MEASURED_ERROR * last
 
 
-def _of_start(peaks: Peaks, level: Level, model: EngineModel) -> Array:
+def _error_of_starting_links(peaks: PeakReader, level: Level, model: EngineModel) -> Array:
     """Error (N,) by links that swing at the start: what they add to the first sample, unless the peak is larger."""
     if model.depressions is None or peaks.first is None:
         return np.zeros_like(peaks.value)
@@ -75,8 +113,10 @@ def _of_start(peaks: Peaks, level: Level, model: EngineModel) -> Array:
     return added
 
 
-def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safety: float = SAFETY_TWO_LEVELS) -> Array:
-    """Error (N,) by rounding of contact forces, beside a softer contact: rounding by x and 4 x differs by 3 x."""
+def rounding_error(
+    peaks: PeakReader, level: Level, other: PeakReader, softer: Level, safety: float = SAFETY_TWO_LEVELS
+) -> Array:
+    """Error (N,) by rounding of contact forces, from a run on a softer contact: x and 4 x differ by 3 x."""
     stiffer = softer.penetration / level.penetration
     if stiffer < COMPLIANCE_RATIO * (1.0 - 1e-9):
         return np.full_like(peaks.value, level.rounding)
@@ -85,7 +125,7 @@ def from_rounding(peaks: Peaks, level: Level, other: Peaks, softer: Level, safet
     return np.minimum(level.rounding, shown)
 
 
-def from_contact_noise(run: EngineRun, level: Level, scene: Scene, model: EngineModel) -> Array:
+def contact_noise_error(run: EngineRun, level: Level, scene: Scene, model: EngineModel) -> Array:
     """
     Least error (N,) of a run, which the noise of the contact force leaves whatever other runs show.
 
@@ -108,16 +148,16 @@ def from_contact_noise(run: EngineRun, level: Level, scene: Scene, model: Engine
     return error
 
 
-def floor_with_impacts(before: int) -> float:
-    """Least relative error of a motion with impacts, with so many levels before it on the same springs."""
+def impact_error_floor(before: int) -> float:
+    """Least relative error of a motion with impacts; before: number of coarser levels on the same springs."""
     return MIN_ERROR_WITH_IMPACTS / 2.0**before
 
 
-def widened_by_impacts(errors: Array, peaks: list[Peaks], run: EngineRun, before: int) -> Array:
-    """Errors (N,) that impacts do not let fall below a share of the peaks, nor below levels that scatter."""
+def widen_by_impacts(errors: Array, peaks: list[PeakReader], run: EngineRun, before: int) -> Array:
+    """Widen errors (N,) of a motion with impacts to a share of the peaks, and to the spread of levels that scatter."""
     if not run.impacts:
         return errors
-    widened = np.maximum(errors, floor_with_impacts(before) * run.peaks.value)
+    widened = np.maximum(errors, impact_error_floor(before) * run.peaks.value)
     if len(peaks) < 3:
         return widened
     values = np.array([each.value for each in peaks])
@@ -126,33 +166,33 @@ def widened_by_impacts(errors: Array, peaks: list[Peaks], run: EngineRun, before
     return np.where(scattered, np.maximum(widened, np.ptp(values, axis=0)), widened)
 
 
-def widened_without_convergence(errors: Array, run: EngineRun) -> Array:
-    """Errors (N,), none less than the peak where any shows no convergence: levels with impacts agree by chance."""
+def widen_without_convergence(errors: Array, run: EngineRun) -> Array:
+    """Widen errors (N,) to the peaks where any shows no convergence: levels with impacts agree by chance."""
     peaks = run.peaks.value
     if (errors <= MAX_CONVERGED_ERROR * peaks).all():
         return errors
     return np.maximum(errors, peaks)
 
 
-def from_sharing(run: EngineRun) -> Array:
+def load_sharing_error(run: EngineRun) -> Array:
     """Error (N,) of a run whose supports stay closed and do not quite share the load as elastic ones do."""
     error: Array = ERROR_PER_WARPING_LOAD * run.warping_load * run.peaks.value
     return error
 
 
-def from_compliance(stiff: Peaks, soft: EngineRun, level: Level, model: EngineModel) -> Array:
+def compliance_error(stiff: PeakReader, soft: EngineRun, level: Level, model: EngineModel) -> Array:
     """Error (N,) that the contact's compliance leaves in `stiff`, from a softer run; at least its share of rho."""
     if soft.outcome != Outcome.OK:
         return np.full_like(stiff.value, np.inf)
-    change: Array = SAFETY_TWO_LEVELS * np.abs(stiff.value - soft.peaks.value) * (1.0 + lag(level, model))
+    change: Array = SAFETY_TWO_LEVELS * np.abs(stiff.value - soft.peaks.value) * (1.0 + contact_lag(level, model))
     return change + level.penetration * stiff.value
 
 
-def share_of_change(other: Level, model: EngineModel) -> float:
+def error_share_of_change(other: Level, model: EngineModel) -> float:
     """Share of the difference to a run at a coarser or softer level that counts as error, at the lowest rate."""
-    return SAFETY_TWO_LEVELS * (1.0 + lag(other, model)) / (MIN_RATE - 1.0)
+    return SAFETY_TWO_LEVELS * (1.0 + contact_lag(other, model)) / (MIN_RATE - 1.0)
 
 
-def lag(level: Level, model: EngineModel) -> float:
-    """How slow the contact is beside the relaxation of friction, x."""
+def contact_lag(level: Level, model: EngineModel) -> float:
+    """Response time of the contact over the relaxation time of friction, x."""
     return math.sqrt(level.penetration) / model.relaxation

@@ -4,9 +4,9 @@ Levels of accuracy: from one level to the next everything that the answer depend
 The step and the change of the slip velocity in one step fall by two. The compliance of the contact and the tolerance
 of Newton's iteration fall by four. The contact follows a change of the force that it must carry within
 sqrt(penetration) units of time. At a stop that force changes within the time in which regularized friction relaxes,
-share * v_reg / mu. A slower contact would give the friction limit of a moment ago. Then its error at the corner of the
-law is in proportion to x / (1 + x), x = sqrt(penetration) / relaxation: the answer of a first-order lag to an
-exponential.
+share * v_reg / mu with the platform's share of the mass. A slower contact would give the friction limit of a moment
+ago. Then its error at the corner of the law is in proportion to x / (1 + x), x = sqrt(penetration) / relaxation: the
+answer of a first-order lag to an exponential.
 """
 
 from __future__ import annotations
@@ -14,55 +14,86 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from multibody.integration.constant_step import silence
+from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
+from multibody.integration.constant_step import silence_engine
+from multibody.integration.time_scales import largest_step, list_brief_motions, shortest_period
 from multibody.models.assembly import assemble
-from multibody.models.contact import viscous_relaxation
 from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from multibody.models.system import EngineModel
-from multibody.models.units import Units, link_stiffness
-from reference.problem import GRAVITY, Scene, exponents
+from reference.problem import GRAVITY, Scene
 from reference.problem.ranges import TOLERANCE, checked_number
 from reference.problem.scene import takes_scene
 
 MAX_LEVELS = 8
-LOOSE = 1e-2  # tolerance, from which on a record has a level before level 0 (measured: docs/multibody.md)
-STEPS_PER_PERIOD = 150  # of the fastest motion that matters, at level 0
-STEPS_PER_BAR_PERIOD = 40  # of the fastest motion that bars make which give way: a small part of the accelerations
-MAX_BAR_DIVISION = 20.0  # of the step for that motion: faster ones hardly move the bodies and are not resolved
-STEPS_PER_DECAY = 24  # of the time in which a harmonic falls by e, at level 0, while it lasts
-DECAY_TIMES = 28.0  # after which a harmonic has fallen by 1e12
-MIN_RELATIVE_ERROR = 8e-4  # of a peak, at level 0: closer agreement of two levels is treated as accidental
-MAX_SLIP_CHANGE = 0.14  # of the slip velocity in one step, as its fraction, at level 0
-MAX_PENETRATION = 1e-6  # of rho, at level 0
-MAX_CONTACT_LAG = 0.3  # x at level 0 where rounding allows: from there on a level halves the contact's error (measured)
-# time in which the contact follows over the inverse of the largest angular frequency that matters, at level 0: on the
-# slope of the sphere a slower contact takes part in the motion of stiff links, and its damper ends that at every level
+
+# Tolerance from which on a record has a level before level 0 (measured: docs/records/multibody.md).
+LOOSE = 1e-2
+
+# Relative error of a peak that level 0 typically has: closer agreement of two levels is treated as accidental.
+ERROR_FLOOR_OF_LEVEL_0 = 8e-4
+
+# Allowed change of the slip velocity in one step at level 0, as its fraction.
+MAX_SLIP_CHANGE = 0.14
+
+# Largest penetration of the contact at level 0, in units of rho.
+MAX_PENETRATION = 1e-6
+
+# Largest x at level 0 where rounding allows: from there on a level halves the contact's error (measured).
+MAX_CONTACT_LAG = 0.3
+
+# Largest time in which the contact follows at level 0, over the inverse of the largest angular frequency that matters.
+# On the slope of the sphere a slower contact takes part in the motion of stiff links, and its damper ends that motion
+# at every level. Where bodies turn, links press the supports by their height, too, and the time is shorter.
 MAX_CONTACT_TIME = 0.25
-# of the duration, where the force on the contact changes: a slower contact has not followed when the motion ends, and
-# a softer one would not show it
+MAX_CONTACT_TIME_OF_ROCKING = 0.04
+
+# Largest time in which the contact follows where its force changes, over the duration: a slower contact has not
+# followed when the motion ends, and a softer one would not show it.
 MAX_CONTACT_TIME_OF_MOTION = 0.05
-MAX_CHANGE_WITHOUT_CONTACT = 0.03  # of that force, over a peak: it adds as a square
-MAX_CONTACT_TIME_OF_ROCKING = 0.04  # likewise, where bodies turn: links then press the supports by their height, too
-NEWTON_TOLERANCE = 1e-5  # relative, of the forces, at level 0
-# squared step over the penetration, up to which that is enough: it is relative to a step's first residual, which is
-# what the prediction of the step misses, pressed on the contact
+
+# Largest change of that force, over a peak, that needs no contact that follows: it adds as a square.
+MAX_CHANGE_WITHOUT_CONTACT = 0.03
+
+# Relative tolerance of the forces in Newton's iteration at level 0, and the rounding of the residuals, below which no
+# level goes.
+NEWTON_TOLERANCE = 1e-5
+MIN_NEWTON_TOLERANCE = 1e-12
+
+# Squared step over the penetration up to which that tolerance is enough: it is relative to a step's first residual,
+# which is what the prediction of the step misses, pressed on the contact.
 MAX_SQUARED_STEP = 1e3
-MIN_NEWTON_TOLERANCE = 1e-12  # rounding of the residuals
-MAX_ROUNDING_SHARE = 0.25  # of the tolerance, that rounding of the forces may take at a peak of MIN_PEAK
-MIN_PEAK = 0.2  # of g
-LOOSEST_FOR_ROUNDING = 1e-3  # tolerance: a looser one permits no more rounding, which at a stop may grow a hundredfold
-WEAK_LOADING = 1e-4  # of g: below, the loading itself is the peak that rounding is compared with
-MAX_WEAK_PENETRATION = 4e-4  # of rho, under such a loading: the contact force hardly changes
-WEAKEST_PEAK = 1e-300  # of g: keeps the softer contact finite
-REAL_WARPING_COMPLIANCE = 4e-4  # of rho under the weight, of real bearings: answers with open supports refer to it
-COMPLIANCE_OF_CLOSED = 1e4  # of rho under the weight, where none opens: spheres only follow the platform's misfit
-COMPLIANCE_RATIO = 4.0  # of the penetrations of two successive levels
-SCAN_RATIO, SCAN_NEWTON_RATIO = 4.0, 10.0  # of steps and tolerances that look ahead over those of the level
-STEP_RATIO = 4  # between neighboring step sizes
-MIN_DIVISIONS = 7  # least number of step sizes below the largest step
-MIN_STEP_AT_STOP = 0.05  # smallest step over the step that is allowed at a stop
+
+# Share of the tolerance that rounding of the forces may take at a peak of MIN_PEAK, in units of g.
+MAX_ROUNDING_SHARE = 0.25
+MIN_PEAK = 0.2
+
+# Tolerance from which on a looser one permits no more rounding, which at a stop may grow a hundredfold.
+LOOSEST_FOR_ROUNDING = 1e-3
+
+# Loading in units of g below which it is itself the peak that rounding is compared with, and the largest penetration
+# under it, in units of rho: the contact force hardly changes.
+WEAK_LOADING = 1e-4
+MAX_WEAK_PENETRATION = 4e-4
+
+# Least peak in units of g, which keeps the softer contact finite.
+WEAKEST_PEAK = 1e-300
+
+# Compliance against warping in units of rho under the weight: that of real bearings, to which answers with open
+# supports refer, and that of supports none of which opens, where spheres only follow the platform's misfit.
+REAL_WARPING_COMPLIANCE = 4e-4
+COMPLIANCE_OF_CLOSED = 1e4
+
+# Ratio of the penetrations of two successive levels.
+COMPLIANCE_RATIO = 4.0
+
+# Ratios of steps and of Newton's tolerance of a scan that looks ahead over those of the level.
+SCAN_RATIO, SCAN_NEWTON_RATIO = 4.0, 10.0
+
+# Ratio of neighboring step sizes, least number of step sizes below the largest step, and smallest step over the step
+# that is allowed at a stop.
+STEP_RATIO = 4
+MIN_DIVISIONS = 7
+MIN_STEP_AT_STOP = 0.05
 
 
 @dataclass(frozen=True)
@@ -79,21 +110,21 @@ class Level:
     slip_change : float
         Allowed change of the slip velocity in one step, as its fraction.
     penetration : float
-        Of the contact under the weight, of rho: the inverse of its stiffness.
+        Penetration of the contact under the weight, in units of rho: the inverse of its stiffness.
     newton : float
         Relative tolerance of the forces in Newton's iteration.
     rounding_moment : float
         Rounding of a contact force times the penetration, in weights times rho.
     max_divisions : int
-        How often the largest step may be divided by `STEP_RATIO`.
+        Largest number of divisions of the largest step by `STEP_RATIO`.
     error_floor : float
         Relative error that the level typically has: closer agreement is treated as accidental.
     warping_compliance : float
-        Of supports against warping under the weight, of rho.
+        Compliance of the supports against warping under the weight, in units of rho.
     decays : tuple of (float, float)
         For everything that dies faster than the largest step resolves: the instant until which it lasts, and its step.
     strength : float
-        Of a weak loading, in units of g; one for any other. The residual is compared with it.
+        Strength of a weak loading, in units of g; one for any other. The residual is compared with it.
     load : float
         The loading, in units of g; zero for bodies that turn on a sphere. What accelerates the bodies may be a small
         difference of it and of other forces, which Newton's iteration solves to its tolerance.
@@ -138,12 +169,12 @@ class Level:
         return max(1e-3 * self.newton * self.strength, self.rounding)
 
     @property
-    def is_loose(self) -> bool:
+    def precedes_level_0(self) -> bool:
         """Whether it comes before level 0."""
-        return self.error_floor > MIN_RELATIVE_ERROR
+        return self.error_floor > ERROR_FLOOR_OF_LEVEL_0
 
-    def coarsened(self) -> Level:
-        """The same contact in steps `SCAN_RATIO` times as large, to look ahead."""
+    def coarsen(self) -> Level:
+        """Return a level of the same contact in steps `SCAN_RATIO` times as large, to look ahead."""
         return replace(
             self,
             step=SCAN_RATIO * self.step,
@@ -153,7 +184,7 @@ class Level:
         )
 
     def min_divisions(self, time: float) -> int:
-        """How often the largest step must be divided at `time` for the decay of the loading."""
+        """Least number of divisions of the largest step at `time`, for the decay of the loading."""
         if not self.decays:
             return 0
         allowed = min((step for until, step in self.decays if time < until), default=self.step)
@@ -162,7 +193,10 @@ class Level:
 
 @takes_scene
 def levels(
-    scene: Scene, model: str = "translational", tolerance: float = 1e-3, regularization: float | None = 1e-3
+    scene: Scene,
+    model: str = "translational",
+    tolerance: float = DEFAULT_TOLERANCE,
+    regularization: float | None = DEFAULT_V_REG,
 ) -> list[Level]:
     """
     List the levels of accuracy that `amplification` goes through for a scene.
@@ -172,9 +206,10 @@ def levels(
     scene : Scene
     model : {"translational", "spatial"}
     tolerance : float
-        Relative error of mu that is asked for. A looser one permits a softer contact at the first levels.
+        Relative error of mu that is asked for; 0.001 (`DEFAULT_TOLERANCE`) if not given. A looser one permits a softer
+        contact at the first levels.
     regularization : float or None
-        v_reg, m/s, as in `amplification`.
+        v_reg, m/s, as in `amplification`; 0.001 (`DEFAULT_V_REG`) if not given.
 
     Returns
     -------
@@ -193,19 +228,26 @@ def levels(
     8
     """
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
-    with silence():
-        return levels_of(scene, assemble(scene, model, regularization), tolerance)
+    with silence_engine():
+        return plan_levels(scene, assemble(scene, model, regularization), tolerance)
 
 
-def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
-    """All levels for a relative error of `tolerance`; the penetration stays where rounding would take over."""
+def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]:
+    """Plan all levels for a relative error of `tolerance`."""
+    # Step and change of the slip velocity follow from the level's number alone. The penetration is bounded from both
+    # sides. A softer contact than `softest` would lag behind friction at a stop, join in the motion of stiff links, or
+    # not have followed by the end. A stiffer one than `stiffest` would round its force, a position over a penetration,
+    # by more than a share of the tolerance. So the penetration falls by COMPLIANCE_RATIO as often as there is room
+    # between the two, and then the levels share it: `refine` adds a run on a softer contact in place of what they
+    # cannot show. A weak loading is compared with its own strength, and its contact may be softer.
     period = shortest_period(scene, model)
     step = largest_step(period, model)
-    strength = 1.0 if model.allows_liftoff else weak_strength(scene)  # a tower tilts on soft contacts
+    # a tower tilts on soft contacts, so that its contact stays stiff under a weak loading
+    strength = 1.0 if model.allows_liftoff else weak_strength(scene)
     peak, most = (MIN_PEAK, MAX_PENETRATION) if strength == 1.0 else (strength, MAX_WEAK_PENETRATION)
     followed, force_change = (
         MAX_CONTACT_TIME_OF_MOTION * scene.duration / model.units.time,
-        contact_change(scene, model),
+        largest_contact_change(scene, model),
     )
     slowest = followed if force_change == math.inf else 1.0
     most = min(most, COMPLIANCE_RATIO * slowest**2)
@@ -218,7 +260,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
     first = -1 if scene.recorded and tolerance >= LOOSE else 0
     numbers = range(first, first + MAX_LEVELS)
     penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in numbers]
-    brief = brief_motions(scene, model, step)
+    brief = list_brief_motions(scene, model, step)
     smallest = min([MIN_STEP_AT_STOP * MAX_SLIP_CHANGE * model.relaxation, *(needed for _, needed in brief)])
     max_divisions = MIN_DIVISIONS
     if smallest < step:
@@ -231,7 +273,7 @@ def levels_of(scene: Scene, model: EngineModel, tolerance: float) -> list[Level]
             newton=newton_tolerance(level, step / 2.0**level, penetration),
             rounding_moment=model.rounding,
             max_divisions=max_divisions,
-            error_floor=MIN_RELATIVE_ERROR / 4.0**level,
+            error_floor=ERROR_FLOOR_OF_LEVEL_0 / 4.0**level,
             warping_compliance=MIN_WARPING_COMPLIANCE,
             decays=tuple((until, needed / 2.0**level) for until, needed in brief),
             strength=strength,
@@ -250,8 +292,8 @@ def newton_tolerance(number: int, step: float, penetration: float) -> float:
     return max(NEWTON_TOLERANCE / 4.0**number * stiff, MIN_NEWTON_TOLERANCE)
 
 
-def for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
-    """`level` with a contact as soft and a residual as small as the smallest peak of a run asks for, in units of g."""
+def soften_for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
+    """Soften the contact and reduce the residual of a level as the smallest peak of a run, in units of g, asks for."""
     if smallest >= WEAK_LOADING:
         return level
     wanted = level.rounding_moment / (MAX_ROUNDING_SHARE * tolerance * max(smallest, WEAKEST_PEAK))
@@ -261,8 +303,8 @@ def for_small_peaks(level: Level, smallest: float, tolerance: float) -> Level:
     return replace(level, penetration=penetration, strength=min(level.strength, smallest))
 
 
-def contact_change(scene: Scene, model: EngineModel) -> float:
-    """Bound of the change of the contact's force within a brief motion from rest, in weights, by speed and way."""
+def largest_contact_change(scene: Scene, model: EngineModel) -> float:
+    """Largest change of the contact's force within a brief motion from rest, in weights, by speed and way."""
     if model.ground.shakes(2):
         return math.inf
     speed = 2.0 * math.sqrt(2.0) * scene.largest_acceleration / GRAVITY * scene.duration / model.units.time
@@ -273,53 +315,3 @@ def weak_strength(scene: Scene) -> float:
     """The largest acceleration of a weak loading along any axis, in units of g; one for any other."""
     strength = scene.largest_acceleration / GRAVITY
     return strength if 0.0 < strength < WEAK_LOADING else 1.0
-
-
-def largest_step(period: float, model: EngineModel) -> float:
-    """Step of level 0 in units of the model, from the shortest `period` and from that of bars that give way."""
-    step = period / STEPS_PER_PERIOD
-    if model.fastest_of_bars > 0.0:
-        of_bars = 2.0 * math.pi / model.fastest_of_bars / STEPS_PER_BAR_PERIOD
-        step = min(step, max(of_bars, step / MAX_BAR_DIVISION))
-    return step
-
-
-def shortest_period(scene: Scene, model: EngineModel) -> float:
-    """Shortest period of the loading, the pendulum and every mode of the chain, in units: all swing from the start."""
-    periods = [2.0 * math.pi]
-    if not scene.recorded:  # a record is linear within every step
-        periods += [2.0 * math.pi / (pace * model.units.time) for pace in exponents(scene).imag]
-    masses = scene.masses / model.units.mass
-    fastest = math.inf
-    for axis in range(2):
-        stiffness = np.zeros((len(masses), len(masses)))
-        stiffness[0, 0] = 0.0 if scene.flat else 1.0  # the pendulum carries all bodies
-        for link, k in enumerate(link_stiffness(scene, model.units)[:, axis]):
-            stiffness[link : link + 2, link : link + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
-        scaled = stiffness / np.sqrt(np.outer(masses, masses))
-        highest = float(np.linalg.eigvalsh(scaled)[-1])
-        fastest = min(fastest, 2.0 * math.pi / math.sqrt(highest) if highest > 0.0 else math.inf)
-    return min(fastest, *periods)
-
-
-def damped_rate(scene: Scene, units: Units) -> float:
-    """A bound of the rates at which dampers of the links settle, per unit of time (Gershgorin)."""
-    per_mass = scene.damping.max(axis=1)
-    below, above = per_mass / scene.masses[1:], per_mass / scene.masses[:-1]
-    return float(2.0 * (np.append(above, 0.0) + np.append(0.0, below)).max() * units.time)
-
-
-def brief_motions(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
-    """
-    Until when the harmonics last that `step` does not resolve, and the step that they need, at level 0.
-
-    The start of a lubricated platform is such a motion, too. From rest it takes on the speed that balances the loading
-    within its relaxation time. Over much longer steps the integrator's acceleration would overshoot by as much again.
-    So is the start of strongly damped links.
-    """
-    rates: list[float] = [] if scene.recorded else list(-exponents(scene).real * model.units.time)
-    rates.append(1.0 / viscous_relaxation(scene, model.units))
-    if scene.damping.any():
-        rates.append(damped_rate(scene, model.units))
-    times = [1.0 / rate for rate in rates if rate > 0.0]
-    return [(DECAY_TIMES * time, time / STEPS_PER_DECAY) for time in times if time / STEPS_PER_DECAY < step]

@@ -17,25 +17,25 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.adaptive import SETTLED_FRACTION, Budget, EngineRun
 from multibody.integration.candidate import Candidate
+from multibody.integration.engine_run import SETTLED_FRACTION, Budget, EngineRun
 from multibody.integration.estimate import (
     ERROR_PER_WARPING_LOAD,
-    MIN_RELATIVE_ERROR,
     SAFETY_OF_BEARINGS,
-    floor_with_impacts,
-    from_contact_noise,
-    from_levels,
-    from_rounding,
-    from_sharing,
-    share_of_change,
-    widened_by_impacts,
+    SMALLEST_MEASURED_ERROR,
+    contact_noise_error,
+    error_between_levels,
+    error_share_of_change,
+    impact_error_floor,
+    load_sharing_error,
+    rounding_error,
+    widen_by_impacts,
 )
 from multibody.integration.level import (
     COMPLIANCE_OF_CLOSED,
     REAL_WARPING_COMPLIANCE,
     Level,
-    for_small_peaks,
+    soften_for_small_peaks,
 )
 from multibody.integration.one_run import PhasePair
 from multibody.models.system import EngineModel
@@ -44,38 +44,62 @@ from reference.problem import Outcome
 Array = NDArray[np.float64]
 
 UNFINISHED = (Outcome.STEP_LIMIT, Outcome.SOLVER_FAILED)
-# of the tolerance, that the load of warped supports may take as an error before one opens
+
+# Share of the tolerance that the load of warped supports may take as an error before one opens.
 MAX_WARPING_ERROR_SHARE = 0.2
-MAX_FIRST_SHARE = 0.2  # of the work of a point, that its first run may take where supports may rattle
-MAX_WORK_GROWTH = 2.0  # work of a level over that of the level before
-STEPS_AFTER_SETTLING = 20.0  # largest steps from the last large value of a run to the end of the next
-# change between two levels over what separates later values from the largest: beyond it a run goes to the end after all
+
+# Share of the work of a point that its first run may take where supports may rattle.
+MAX_FIRST_SHARE = 0.2
+
+# Work of a level over that of the level before.
+MAX_WORK_GROWTH = 2.0
+
+# Number of largest steps from the last large value of a run to the end of the next.
+STEPS_AFTER_SETTLING = 20.0
+
+# Change between two levels, over what separates later values from the largest, beyond which a run goes to the end.
 MAX_EARLY_CHANGE = 0.2
-# of the first run from the rim, in rho, and the end of its travel, and contact force, in weights: closer, all go to the
-# end
+
+# Distance of the first run from the rim, in rho, from the end of its travel, relative, and from the opening of the
+# contact, in weights: where it comes closer, all runs go to the end.
 MIN_END_MARGIN = 0.1
 
 
 @dataclass
 class LevelRuns:
-    """The runs of one phase pair so far, and its levels, which adapt to what the runs show."""
+    """
+    The runs of one phase pair so far, and its levels, which adapt to what the runs show.
+
+    Attributes:
+    - tolerance: Relative error that is asked for.
+    - budget: Steps left to all runs.
+    - levels: Those of the runs so far, and those to come.
+    - softens: Whether small peaks may soften the contact of the levels to come.
+    - keep: Whether the motions of the last two runs are kept; every run then goes to the end.
+    - stop: Time at which the next run stops, where nothing later can matter.
+    - softest: Largest compliance against warping that supports may have.
+    - on_real: The last run on springs of real bearings that ended, and the change of the peaks on them, once supports
+      opened on stiffer ones, (EngineRun, (N,).
+    """
 
     pair: PhasePair
-    tolerance: float  # relative error that is asked for
-    budget: Budget  # of all runs
-    levels: list[Level]  # those of the runs, and those to come
-    softens: bool  # whether small peaks may soften the contact of the levels to come
-    whole: bool  # whether every run goes to the end
-    keep: bool  # the motions of the last two runs
+    tolerance: float
+    budget: Budget
+    levels: list[Level]
+    softens: bool
+    keep: bool
     runs: list[EngineRun] = field(default_factory=list)
-    stop: float = math.inf  # of the next run, where nothing later can matter
-    softest: float = COMPLIANCE_OF_CLOSED  # compliance against warping that supports may have
-    # the last run on springs of real bearings that ended, and the change of the peaks, (N,), on them, once supports
-    # opened on stiffer ones
+    stop: float = math.inf
+    softest: float = COMPLIANCE_OF_CLOSED
     on_real: tuple[EngineRun, Array] | None = None
 
-    def can_go_on(self) -> bool:
-        """Whether there is another level, and work for it."""
+    @property
+    def whole(self) -> bool:
+        """Whether every run goes to the end."""
+        return self.keep or self.pair.whole
+
+    def can_run_next(self) -> bool:
+        """Return whether there is another level, and work for it."""
         number = len(self.runs)
         if number == len(self.levels):
             return False
@@ -83,48 +107,59 @@ class LevelRuns:
         runs = 1.0 + self.shares_contact(number) + (self.on_real is not None)
         # one level alone has no error and is no answer: a second one is tried even if it may not end
         growth = 1.0 if number == 1 else MAX_WORK_GROWTH
-        return not self.runs or self.budget.left >= runs * growth * _work_up_to(self.runs[-1], self.stop, self.pair.end)
+        return not self.runs or self.budget.left >= runs * growth * _work_until(self.runs[-1], self.stop, self.pair.end)
 
     def shares_contact(self, number: int) -> bool:
-        """Whether the contact of a level is no stiffer than that of the level before."""
+        """Return whether the contact of a level is no stiffer than that of the level before."""
         return number > 0 and self.levels[number].penetration >= self.levels[number - 1].penetration
 
-    def run_next(self) -> EngineRun:
-        """The run at the next level; the levels to come are adapted to it."""
+    def run_next_level(self) -> EngineRun:
+        """Make the run at the next level, and adapt the levels to come to it."""
+        # Three things may replace the plain run at the level. The first run of supports that may rattle is a trial with
+        # a share of the work: rattling on stiff springs would use up all of it. A run that stops early holds only if
+        # its largest values confirm those of the run before: nothing later can then be larger, and otherwise the level
+        # is run to the end. And where a support opens, the springs of real bearings are tried, since the platform of
+        # rigid supports is lifted off by its misfit alone (docs/records/multibody.md, supports).
         number, level = len(self.runs), self.levels[len(self.runs)]
         trial = number == 0 and self.pair.model.warping_displacement is not None
-        run = self._trial(level) if trial else self._at(level, self.stop)
-        if self.stop < self.pair.end and not _stays_settled(run, self.runs[-1]):
+        run = self._run_trial(level) if trial else self._run_level(level, self.stop)
+        if self.stop < self.pair.end and not _confirms_early_stop(run, self.runs[-1]):
             self.stop = math.inf
-            run = self._at(level)
+            run = self._run_level(level)
         rattles = trial and run.outcome == Outcome.STEP_LIMIT
         if rattles or run.lifts_off:
-            run = self._on_springs_for_opening(run)
+            run = self._choose_springs_for_opening(run)
         if self.levels[number].warping_compliance == REAL_WARPING_COMPLIANCE:
             self.on_real = None
         self.runs.append(run)
         if run.outcome == Outcome.OK and run.stop == math.inf and not self.whole:
-            self.stop = _settled(run, self.pair.model, self.levels[0].step)
+            self.stop = _choose_early_stop(run, self.pair.model, self.levels[0].step)
         if run.outcome not in UNFINISHED:
             self._adapt_levels(run)
         return run
 
-    def candidate(self) -> Candidate | None:
-        """The answer of the last level, beside the level before; None where it has none on real bearings."""
+    def make_candidate(self) -> Candidate | None:
+        """Make the answer of the last level with its error; None where it has none on springs of real bearings."""
+        # The error is a sum of parts that different comparisons show: step, iteration and contact from the levels
+        # before, rounding of contact forces from the stiffness of two levels, load sharing from what warping takes, and
+        # the springs of real bearings from a run on them. Two rules keep the parts from hiding each other. Levels on
+        # other springs are other models, so they show no rate of convergence and confirm nothing. And behind impacts,
+        # whose order rounding decides, levels agree by chance: both the sum and what rounding adds to it are widened,
+        # so that rounding counts as the difference of two widened errors.
         number, run, model = len(self.runs) - 1, self.runs[-1], self.pair.model
         level, before = self.levels[number], self.levels[number - 1]
         finished = [other.peaks for other in self.runs[-3:] if other.outcome == Outcome.OK]
         compliances = [other.warping_compliance for other in self.levels[max(number - 2, 0) : number + 1]]
-        if compliances[0] != compliances[-2]:  # a change of springs is no rate of convergence
+        if compliances[0] != compliances[-2]:
             finished = finished[-2:]
-        errors = from_levels(finished, self.levels[: number + 1], model)
-        rounding = from_rounding(run.peaks, level, self.runs[-2].peaks, before)
-        alike = self._levels_on_the_same_springs()
-        rounding = widened_by_impacts(errors + rounding, finished, run, alike)
-        errors = widened_by_impacts(errors, finished, run, alike)
+        errors = error_between_levels(finished, self.levels[: number + 1], model)
+        rounding = rounding_error(run.peaks, level, self.runs[-2].peaks, before)
+        alike = self._count_levels_on_same_springs()
+        rounding = widen_by_impacts(errors + rounding, finished, run, alike)
+        errors = widen_by_impacts(errors, finished, run, alike)
         rounding -= errors
         if not run.lifts_off:
-            errors = errors + from_sharing(run)
+            errors = errors + load_sharing_error(run)
         confirmed = True
         if self.on_real is not None:
             _, change = self.on_real
@@ -133,43 +168,54 @@ class LevelRuns:
                 level, run = self.levels[number], self.runs[-1]
             if run.outcome != Outcome.OK:
                 return None
-            errors = widened_by_impacts(errors + change, [], run, self._levels_on_the_same_springs())
-        confirmed = confirmed and not (run.impacts and before.is_loose)  # forces behind impacts differ from level 1 on
-        coarser = [(self.runs[-2], share_of_change(before, model))]
+            errors = widen_by_impacts(errors + change, [], run, self._count_levels_on_same_springs())
+        # forces behind impacts differ from level 1 on
+        confirmed = confirmed and not (run.impacts and before.precedes_level_0)
+        coarser = [(self.runs[-2], error_share_of_change(before, model))]
         if self.on_real is not None:
             coarser.append((self.on_real[0], 1.0))
-        least = from_contact_noise(run, level, self.pair.scene, model)
-        floor = max(level.error_floor, floor_with_impacts(self._levels_on_the_same_springs()) if run.impacts else 0.0)
+        noise = contact_noise_error(run, level, self.pair.scene, model)
+        floor = max(level.error_floor, impact_error_floor(self._count_levels_on_same_springs()) if run.impacts else 0.0)
         floor = max(floor, 0.0 if run.lifts_off else run.warping_load)
-        shared = self.shares_contact(number)
-        return Candidate(run, level, shared, errors, rounding, least, tuple(coarser), confirmed, floor=floor)
+        return Candidate(
+            run=run,
+            level=level,
+            shares_contact=self.shares_contact(number),
+            level_errors=errors,
+            rounding=rounding,
+            least=noise,
+            compliance=None,
+            coarser=tuple(coarser),
+            confirmed=confirmed,
+            floor=floor,
+        )
 
-    def _levels_on_the_same_springs(self) -> int:
-        """How many levels from level 0 to the last have its springs: others are another motion, and confirm nothing."""
+    def _count_levels_on_same_springs(self) -> int:
+        """Count the levels from level 0 to the last with the springs of the last: others confirm nothing."""
         *before, last = self.levels[: len(self.runs)]
         springs = last.warping_compliance
-        return sum(level.warping_compliance == springs and not level.is_loose for level in before)
+        return sum(level.warping_compliance == springs and not level.precedes_level_0 for level in before)
 
-    def _at(self, level: Level, stop: float = math.inf) -> EngineRun:
-        return self.pair.at_level(level, self.budget, stop, keep=self.keep)
+    def _run_level(self, level: Level, stop: float = math.inf) -> EngineRun:
+        return self.pair.run_level(level, self.budget, stop, keep=self.keep)
 
-    def _trial(self, level: Level) -> EngineRun:
-        """The first run of a model whose supports may rattle, with a share of the work."""
+    def _run_trial(self, level: Level) -> EngineRun:
+        """Make the first run of a model whose supports may rattle, with a share of the work."""
         trial = Budget(MAX_FIRST_SHARE * self.budget.left)
         self.budget.left -= trial.left
-        run = self.pair.at_level(level, trial, keep=self.keep)
+        run = self.pair.run_level(level, trial, keep=self.keep)
         self.budget.left += trial.left
         return run
 
-    def _on_springs_for_opening(self, run: EngineRun) -> EngineRun:
-        """The last level's run where a support opens in `run`: that, or the one on springs of real bearings."""
+    def _choose_springs_for_opening(self, run: EngineRun) -> EngineRun:
+        """Return the last level's run where a support opens in `run`: that, or one on springs of real bearings."""
         number = len(self.runs)
         level = self.levels[number]
         if level.warping_compliance == REAL_WARPING_COMPLIANCE:
-            return self._at(level) if number == 0 and run.outcome == Outcome.STEP_LIMIT else run
+            return self._run_level(level) if number == 0 and run.outcome == Outcome.STEP_LIMIT else run
         if self.on_real is not None:
             return run
-        real, change = self._on_real_bearings(level, run)
+        real, change = self._run_on_real_bearings(level, run)
         stiff = level.warping_compliance < REAL_WARPING_COMPLIANCE
         # stiff springs also lift supports off by the misfit of the platform alone
         if stiff and real.lifts_off and (change <= self.tolerance * run.peaks.value).all():
@@ -179,18 +225,19 @@ class LevelRuns:
         self._take_real_bearings(number)
         return real
 
-    def _on_real_bearings(self, level: Level, run: EngineRun) -> tuple[EngineRun, Array]:
-        """The run of a level on springs of real bearings, and by how much its peaks, (N,), differ from `run`."""
-        real = self._at(_of_real_bearings(level))
+    def _run_on_real_bearings(self, level: Level, run: EngineRun) -> tuple[EngineRun, Array]:
+        """Run a level on springs of real bearings; return it and the differences (N,) of its peaks from `run`."""
+        real = self._run_level(_give_real_bearings(level))
         if real.outcome in UNFINISHED or real.outcome != run.outcome:
             return real, np.full_like(run.peaks.value, np.inf)
         return real, np.abs(run.peaks.value - real.peaks.value)
 
     def _repeat_on_real_bearings(self, earlier: Array) -> tuple[Array, bool]:
-        """Change (N,) of the last level's peaks on springs of real bearings, and whether a run that ends shows it."""
+        """Repeat the last level on springs of real bearings; return the change (N,) of its peaks, and if it ended."""
         number, run = len(self.runs) - 1, self.runs[-1]
-        real, change = self._on_real_bearings(self.levels[number], run)
-        if real.outcome in UNFINISHED:  # its peaks may still grow
+        real, change = self._run_on_real_bearings(self.levels[number], run)
+        if real.outcome in UNFINISHED:
+            # the peaks of a run that did not end may still grow
             return np.fmax(SAFETY_OF_BEARINGS * earlier, real.peaks.value - run.peaks.value), False
         change = np.maximum(earlier, change)
         if (change <= self.tolerance * run.peaks.value).all():
@@ -202,54 +249,54 @@ class LevelRuns:
 
     def _take_real_bearings(self, number: int) -> None:
         """Give all levels from `number` on the springs of real bearings."""
-        self.levels[number:] = [_of_real_bearings(level) for level in self.levels[number:]]
+        self.levels[number:] = [_give_real_bearings(level) for level in self.levels[number:]]
         self.stop, self.on_real = math.inf, None
 
     def _adapt_levels(self, run: EngineRun) -> None:
-        """Supports and contact of the levels to come, as soft as `run` asks for."""
+        """Soften the supports and the contact of the levels to come as far as `run` asks for."""
         done = len(self.runs)
         if run.lifts_off:
             self.softest = REAL_WARPING_COMPLIANCE
-        coming = [_sharing(level, run, self.tolerance, self.softest) for level in self.levels[done:]]
+        coming = [_adapt_warping_compliance(level, run, self.tolerance, self.softest) for level in self.levels[done:]]
         # a softer contact would let a platform that turns tilt
         if self.softens and run.outcome == Outcome.OK and self.pair.model.depressions is None:
             smallest = float(run.peaks.value.min())
-            coming = [for_small_peaks(level, smallest, self.tolerance) for level in coming]
+            coming = [soften_for_small_peaks(level, smallest, self.tolerance) for level in coming]
         self.levels[done:] = coming
 
 
-def _of_real_bearings(level: Level) -> Level:
-    """A level whose supports give way against warping as real bearings do."""
+def _give_real_bearings(level: Level) -> Level:
+    """Return a level whose supports give way against warping as real bearings do."""
     return replace(level, warping_compliance=REAL_WARPING_COMPLIANCE)
 
 
-def _sharing(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:
-    """A level whose supports give way enough against warping, which took a load in `run` at the level before."""
+def _adapt_warping_compliance(level: Level, run: EngineRun, tolerance: float, softest: float) -> Level:
+    """Return a level whose supports give way enough against warping, which took a load in `run` before."""
     wanted = level.warping_compliance
     if run.lifts_off:
         wanted *= max(run.warping_load * ERROR_PER_WARPING_LOAD / (MAX_WARPING_ERROR_SHARE * tolerance), 1.0)
-    elif run.warping_load > MIN_RELATIVE_ERROR:
+    elif run.warping_load > SMALLEST_MEASURED_ERROR:
         wanted = softest
     return replace(level, warping_compliance=min(wanted, softest))
 
 
-def _work_up_to(run: EngineRun, stop: float, end: float) -> float:
-    """Work of `run`, had it stopped at `stop`."""
-    own = min(run.looked_over, end)  # both runs look over what comes later
+def _work_until(run: EngineRun, stop: float, end: float) -> float:
+    """Work of `run`, had it stopped at `stop`; both scan what comes later."""
+    own = min(run.scanned_from, end)
     shorter = min(stop, own) / min(run.stop, own) if run.outcome == Outcome.OK else 1.0
     return shorter * run.work
 
 
-def _settled(run: EngineRun, model: EngineModel, step: float) -> float:
-    """When runs at further levels may stop, after one to the end of the motion; step: the largest of any level."""
+def _choose_early_stop(run: EngineRun, model: EngineModel, step: float) -> float:
+    """Time at which runs at further levels may stop, after one to the end; step: the largest of any level."""
     limit = (1.0 - MIN_END_MARGIN) * min(model.rim, model.travel)
     if run.max_displacement > limit or run.min_load < MIN_END_MARGIN:
         return math.inf
-    return run.settled + STEPS_AFTER_SETTLING * step
+    return run.last_large + STEPS_AFTER_SETTLING * step
 
 
-def _stays_settled(run: EngineRun, before: EngineRun) -> bool:
-    """Whether a run that stopped early agrees so well with the one before that nothing later can matter."""
+def _confirms_early_stop(run: EngineRun, before: EngineRun) -> bool:
+    """Return whether a run that stopped early agrees so well with the one before that nothing later can matter."""
     if run.outcome != Outcome.OK:
         return False
     largest = np.array([*run.peaks.value, run.max_displacement])

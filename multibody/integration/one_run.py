@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.adaptive import (
-    Budget,
-    EngineRun,
-    absolute_accelerations,
-    begin_run,
-    run_adaptively,
-    termination,
-)
-from multibody.integration.balance import balanced_start
-from multibody.integration.constant_step import Engine
+from multibody.integration.adaptive import Integration, run_adaptively
+from multibody.integration.balance import find_balanced_start
+from multibody.integration.constant_step import EngineSolver
+from multibody.integration.engine_run import Budget, EngineRun, Ground, absolute_accelerations, begin_run
 from multibody.integration.level import Level
-from multibody.integration.look_ahead import looks_ahead, run_looking_ahead
-from multibody.integration.peak import Peaks
+from multibody.integration.look_ahead import can_look_ahead, run_with_look_ahead
+from multibody.integration.peak import PeakReader
+from multibody.integration.termination import find_termination
 from multibody.models.state import EngineState
 from multibody.models.system import EngineModel
 from reference.problem import Outcome, Scene, State, ground_acceleration
@@ -33,13 +27,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class PhasePair:
-    """One phase pair of a scene on an assembled model."""
+    """
+    One phase pair (2,), rad, of a scene on an assembled model.
+
+    initial: state from which the motion starts, at rest without. whole: whether every run without a stop takes its own
+    steps to the end of the motion.
+    """
 
     scene: Scene
     model: EngineModel
-    phase: Array  # (2,), rad
-    initial: State | None = None  # at rest without
-    whole: bool = False  # whether every run without a stop takes its own steps to the end of the motion
+    phase: Array
+    initial: State | None = None
+    whole: bool = False
 
     @property
     def end(self) -> float:
@@ -47,25 +46,26 @@ class PhasePair:
         return self.scene.duration / self.model.units.time
 
     @cached_property
-    def ground(self) -> Callable[[Array], Array]:
-        """The plate's acceleration (T, 3) as a function of times (T,), in units of the model."""
+    def ground(self) -> Ground:
+        """Acceleration of the plate in units of the model."""
         units, acceleration = self.model.units, acceleration_of_ground(self.scene, self.phase)
         return lambda time: acceleration(time * units.time) / units.acceleration
 
-    def at_level(
+    def run_level(
         self, level: Level, budget: Budget, stop: float = math.inf, *, keep: bool = False, residual: float | None = None
     ) -> EngineRun:
         """Run with the steps of `level`, up to `stop` or, unless kept, to where nothing large comes any more."""
-        engine = Engine(self.model, level.newton, level.residual if residual is None else residual)
+        solver = EngineSolver(self.model, level.newton, level.residual if residual is None else residual)
         self.model.set_contact(level.penetration, level.warping_compliance)
-        start = self._start(level.penetration)
+        start = self._find_start(level.penetration)
         if start is None:
-            return begin_run(self.model, stop).terminated(Outcome.SOLVER_FAILED, 0.0)
-        if stop == math.inf and not (keep or self.whole) and looks_ahead(self.model, level):
-            return run_looking_ahead(engine, start, self.end, self.ground, level, budget)
-        return run_adaptively(engine, start, self.end, self.ground, level, budget, stop=stop, keep=keep)
+            return begin_run(self.model, stop).terminate(Outcome.SOLVER_FAILED, 0.0)
+        integration = Integration(solver, self.ground, self.end, level, budget, keep)
+        if stop == math.inf and not (keep or self.whole) and can_look_ahead(self.model, level):
+            return run_with_look_ahead(integration, start)
+        return run_adaptively(integration, start, stop)
 
-    def at_constant_step(
+    def run_constant_step(
         self,
         count: int,
         penetration: float,
@@ -75,24 +75,24 @@ class PhasePair:
         discontinuous: float | None,
     ) -> EngineRun:
         """Run in `count` equal steps, without control of their error; the motion is kept."""
-        model, engine = self.model, Engine(self.model, newton, residual, integrator, discontinuous)
+        model, solver = self.model, EngineSolver(self.model, newton, residual, integrator, discontinuous)
         model.set_contact(penetration)
-        start = self._start(penetration)
-        motion = None if start is None else engine.run(start, 0.0, self.end / count, count)
-        result = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, work=count)
+        start = self._find_start(penetration)
+        motion = None if start is None else solver.run(start, 0.0, self.end / count, count)
+        result = EngineRun(PeakReader(len(model.bodies), model.corner), math.inf, work=count)
         if motion is None or not np.isfinite(motion.accelerations).all():
-            return result.terminated(Outcome.SOLVER_FAILED, 0.0)
-        outcome, row, instant = termination(motion, model)
-        motion = motion.until(row)
+            return result.terminate(Outcome.SOLVER_FAILED, 0.0)
+        outcome, row, instant = find_termination(motion, model)
+        motion = motion.cut_at(row)
         result.chunks.append(motion)
         result.peaks.add(motion.time, absolute_accelerations(model, motion, self.ground), motion.slip)
-        return result if outcome == Outcome.OK else result.terminated(outcome, instant)
+        return result if outcome == Outcome.OK else result.terminate(outcome, instant)
 
-    def _start(self, penetration: float) -> EngineState | None:
-        """The state at time zero, in balance where the motion starts at rest; None if it is not to be had."""
+    def _find_start(self, penetration: float) -> EngineState | None:
+        """Find the state at time zero, in balance where the motion starts at rest; None where no balance is found."""
         self.model.ground.set_phase(self.phase)
         acceleration = ground_acceleration(self.scene, self.phase, [0.0])[0]
         start = self.model.start(self.initial, acceleration, penetration)
         if self.initial is not None:
             return start
-        return balanced_start(self.model, start, acceleration / self.model.units.acceleration, penetration)
+        return find_balanced_start(self.model, start, acceleration / self.model.units.acceleration, penetration)

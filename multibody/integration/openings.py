@@ -16,69 +16,93 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from multibody.integration.constant_step import Engine, Motion
+from multibody.integration.constant_step import EngineMotion, EngineSolver
 from multibody.models.impact import ImpactLaw
 from multibody.models.state import EngineState
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-GAP_TOLERANCE = 1e-4  # of the penetration, at a located closing
-OPENING_GAP = 2.0 * GAP_TOLERANCE  # likewise, beyond which a contact is open: one that has just closed stays closed
-SIMULTANEOUS = 1e-7  # units of time: contacts that close within it are hit at once
-# of the penetration, likewise: a platform leaves contacts with uneven loads at a tilt that rigid ones would not give it
+# Bound of the gap at a located closing, in penetrations.
+GAP_TOLERANCE = 1e-4
+
+# Gap beyond which a contact is open, in penetrations. It is larger than the bound of a located closing, so that a
+# contact that has just closed stays closed.
+OPENING_GAP = 2.0 * GAP_TOLERANCE
+
+# Span, in units of time, within which contacts that close are hit at once.
+SIMULTANEOUS = 1e-7
+
+# Gap, in penetrations, up to which open contacts are hit together with one that closes: a platform leaves contacts with
+# uneven loads at a tilt that rigid ones would not give it.
 MAX_GAP_OF_COMPLIANCE = 1.0
-MIN_IMPACT_SPEED = 1e-5  # of an approach, in units of velocity: slower ones are left to the contact's damper
-MAX_QUIET_FORCE = 1e-3  # of that damper, in weights: more of it is an impact, too
-IMPACT_TIME = 0.04  # units of time: as long as real bearings, which give way by 4e-4 rho, take to spring back
-SETTLING_TIME = 40.0  # of contact forces behind an impact, in square roots of the penetration
-SHARES_OF_A_FLIGHT = 2.0 ** np.arange(1, 8)  # of a step, into which a flight within it is looked for
-FIRST_STEP = 0.25  # behind an impact, likewise
+
+# Speed of approach, in units of velocity, below which a closing is left to the contact's damper.
+MIN_IMPACT_SPEED = 1e-5
+
+# Force of that damper, in weights, beyond which accelerations do not count until contact forces have settled.
+MAX_QUIET_FORCE = 1e-3
+
+# Time of settling behind a closing: the longer one of a time of the contact, in square roots of the penetration, and of
+# one that real bearings, which give way by 4e-4 rho, take to spring back, in units of time.
+SETTLING_TIME = 40.0
+IMPACT_TIME = 0.04
+
+# Shares of a step at which a flight within it is looked for.
+SHARES_OF_A_FLIGHT = 2.0 ** np.arange(1, 8)
+
+# First step behind an impact, in square roots of the penetration, the response time of the contact.
+FIRST_STEP_OVER_RESPONSE = 0.25
 
 
 @dataclass(frozen=True)
 class Event:
-    """The first opening or closing in a chunk."""
+    """The first opening or closing in a chunk: the last row before it, and the contacts (K,) that open or close."""
 
-    row: int  # the last one before it
+    row: int
     closes: bool
-    which: Mask  # (K,)
+    which: Mask
 
 
 @dataclass
 class Openings:
-    """Which contacts are open, and what happened to them."""
+    """
+    The contacts (K,) that are open, and the impacts so far.
 
-    engine: Engine
+    settled_at: instant at which contact forces have settled after the last impact, in units of time.
+    """
+
+    solver: EngineSolver
     law: ImpactLaw
     penetration: float
-    is_open: Mask = field(init=False)  # (K,)
-    settled: float = -math.inf  # when contact forces have settled after the last impact, in units of time
+    is_open: Mask = field(init=False)
+    settled_at: float = -math.inf
     impacts: int = 0
 
     def __post_init__(self) -> None:
-        self._set_open(np.zeros(len(self.law.depressions.ring), bool))
+        self._mark_open(np.zeros(len(self.law.depressions.ring), bool))
 
-    def _set_open(self, is_open: Mask) -> None:
+    def _mark_open(self, is_open: Mask) -> None:
+        """Take the open contacts out of the engine's system, and put the others in."""
         self.is_open = is_open
-        set_open = self.engine.model.set_open
-        assert set_open is not None
-        set_open(is_open, self.penetration)
+        take_out_open_contacts = self.solver.model.take_out_open_contacts
+        assert take_out_open_contacts is not None
+        take_out_open_contacts(is_open, self.penetration)
 
     def gaps(self, coordinates: Array) -> Array:
         """Gap (T, K) of every contact for coordinates (T, n)."""
         return self.law.depressions.clearance(coordinates) - self.penetration
 
-    def with_gaps(self, motion: Motion) -> Motion:
-        """`motion` with the gaps of open contacts, which the engine takes for whole hollow spheres."""
+    def fill_gaps_of_open_contacts(self, motion: EngineMotion) -> EngineMotion:
+        """Return `motion` with the gaps of open contacts, which the engine takes for whole hollow spheres."""
         if not self.is_open.any():
             return motion
         contact = motion.contact.copy()
         contact[:, 0::4][:, self.is_open] = np.maximum(self.gaps(motion.coordinates)[:, self.is_open], 0.0)
         return motion._replace(contact=contact)
 
-    def first_event(self, motion: Motion) -> Event | None:
-        """The first opening or closing in the rows of `motion` behind its first one."""
+    def find_first_event(self, motion: EngineMotion) -> Event | None:
+        """Find the first opening or closing in the rows of `motion` behind its first one."""
         opens = (motion.gap[1:] > OPENING_GAP * self.penetration) & ~self.is_open
         closes = np.zeros_like(opens)
         if self.is_open.any():
@@ -91,23 +115,29 @@ class Openings:
         closing = bool(closes[row].any())
         return Event(row, closing, closes[row] if closing else opens[row])
 
-    def opened(self, event: Event) -> None:
+    def open_contacts(self, event: Event) -> None:
         """Take the contacts that have opened out of the engine."""
-        self._set_open(self.is_open | event.which)
+        self._mark_open(self.is_open | event.which)
 
-    def located(self, state: EngineState, time: float, step: float, event: Event) -> Motion | None:
+    def locate_event(self, state: EngineState, time: float, step: float, event: Event) -> EngineMotion | None:
         """
-        The step from `state`, of length `step` or less, that ends where the first contact of the event opens or closes.
+        Make the step from `state`, of length `step` or less, that ends where the first contact of the event changes.
 
-        None if it has no length.
+        Returns None if that step has no length.
         """
+        # The engine knows no events, so the length of the step is the unknown: steps of trial lengths are made from the
+        # same state until the smallest gap of the event's contacts is zero (Brent's method). Two things make this less
+        # than plain root finding. A contact that touches within the tolerance at the start has no sign change behind
+        # it, unless the platform leaves and comes back within the step: such a flight is looked for at ever shorter
+        # steps. And an event whose margin is still positive at the whole step, which rounding permits, ends with it.
         sign = 1.0 if event.closes else -1.0
-        done: dict[float, Motion | None] = {}
+        done: dict[float, EngineMotion | None] = {}
         values: dict[float, float] = {}
 
-        def margin(length: float) -> float:  # positive before the event
+        def margin(length: float) -> float:
+            """Gap that is left before a closing, or closure before an opening, after a step: positive before it."""
             if length not in values:
-                done[length] = motion = self.engine.run(state, time, length, 1)
+                done[length] = motion = self.solver.run(state, time, length, 1)
                 gaps = None if motion is None else self.gaps(motion.coordinates[-1:])[0, event.which]
                 values[length] = -self.penetration if gaps is None else float((sign * gaps).min())
             return values[length]
@@ -118,7 +148,6 @@ class Openings:
         if begin <= tolerance:
             if not event.closes:
                 return None
-            # the platform may leave, and come back within the step
             first = next((length for length in step / SHARES_OF_A_FLIGHT if margin(length) > tolerance), 0.0)
             if first == 0.0:
                 return None
@@ -130,15 +159,21 @@ class Openings:
         margin(length)
         return done.get(length)
 
-    def touching(self, motion: Motion, which: Mask) -> Motion:
-        """`motion`, at whose end contacts touch that were open before."""
-        motion = self.with_gaps(motion)
+    def close_contacts(self, motion: EngineMotion, which: Mask) -> EngineMotion:
+        """Return `motion` with contacts that touch at its end closed there."""
+        motion = self.fill_gaps_of_open_contacts(motion)
         touched = which & (self.gaps(motion.coordinates[-1:])[0] <= GAP_TOLERANCE * self.penetration)
         motion.contact[-1, 0::4][touched] = -GAP_TOLERANCE * self.penetration
         return motion
 
-    def after_impact(self, state: EngineState, time: float, which: Mask) -> EngineState:
-        """The state behind the impact of `which`, and of contacts that are hit at once with them."""
+    def apply_impact(self, state: EngineState, time: float, which: Mask) -> EngineState:
+        """Return the state behind the impact of `which`, and of contacts that are hit at once with them."""
+        # Contacts that close within SIMULTANEOUS, or whose gap the compliance of the others explains, are hit together:
+        # impacts one after the other, in an order that rounding decides, would leave other velocities. A contact that
+        # is hardly pressed closes without a jump, for its own damper ends so slow an approach, and only the light
+        # spheres follow the platform. Otherwise velocities jump by the impact law, and with them the stretch at which
+        # no bar pushes for its damper's sake. Forces behind the jump are those of the contact's stiffness until they
+        # have settled, so that no acceleration counts before `settled_at`.
         gaps = self.gaps(state.coordinates[None])[0]
         leaving, relative = self.law.normal_speeds(state.coordinates, state.velocities)
         at_once = np.maximum(SIMULTANEOUS * -relative, MAX_GAP_OF_COMPLIANCE * self.penetration)
@@ -150,18 +185,18 @@ class Openings:
         contact[0::4][hit] = -GAP_TOLERANCE * self.penetration
         response = math.sqrt(self.penetration)
         if -2.0 * relative[hit].min() > MAX_QUIET_FORCE * response:
-            self.settled = time + max(SETTLING_TIME * response, IMPACT_TIME)
+            self.settled_at = time + max(SETTLING_TIME * response, IMPACT_TIME)
         if -leaving[hit].min() < MIN_IMPACT_SPEED:
-            self._set_open(self.is_open & ~hit)
-            velocities = self.law.with_spheres_along(state.coordinates, state.velocities, hit)
+            self._mark_open(self.is_open & ~hit)
+            velocities = self.law.carry_spheres_along(state.coordinates, state.velocities, hit)
             return replace(state, velocities=velocities, contact=contact)
-        velocities, is_open = self.law.after(state.coordinates, state.velocities, ~self.is_open & ~hit, hit)
-        self._set_open(is_open)
+        velocities, is_open = self.law.velocities_after(state.coordinates, state.velocities, ~self.is_open & ~hit, hit)
+        self._mark_open(is_open)
         self.impacts += 1
-        bar_lags = self.engine.model.bar_lags
+        bar_lags = self.solver.model.bar_lags
         assert bar_lags is not None
         lags = bar_lags(self.penetration)
-        coordinates = self.law.with_bars_at_rest(state.coordinates, state.velocities, velocities, lags)
+        coordinates = self.law.relax_bars(state.coordinates, state.velocities, velocities, lags)
         return replace(
             state, coordinates=coordinates, velocities=velocities, contact=contact, slip_rate=None, load=None
         )

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,23 +22,55 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.intp]
 
 NO_KNOTS, NO_ROWS = np.empty(0), np.empty(0, np.intp)
-CARRIED_SAMPLES = 6  # samples carried over to the next chunk: what the readings from both sides of an instant need
-# of a step over its neighbor, across which a parabola is laid: more than the run itself changes its steps by at once
+
+# Number of samples carried over to the next chunk: what the readings from both sides of an instant need.
+CARRIED_SAMPLES = 6
+
+# Largest ratio of neighboring steps across which a parabola is laid: more than the run itself changes its steps by.
 MAX_STEP_CHANGE = 20.0
-MAX_STEPS_BEYOND = 1.5  # from the last sample to an instant that is read from the samples before it
-SAMPLES_BEHIND_CORNER = 3  # samples behind a corner, from which it is read
-LONGER_STEP = 1.5  # over the one before
-CANDIDATE_FRACTION = 0.97  # of the peak: samples below it cannot be raised above it by interpolation at a resolved step
+
+# Largest distance, in steps, from the last sample to an instant that is read from the samples before it.
+MAX_STEPS_BEYOND = 1.5
+
+# Number of samples behind a corner from which it is read.
+SAMPLES_BEHIND_CORNER = 3
+
+# Ratio of a step to the one before from which on it is the longer one of two.
+LONGER_STEP = 1.5
+
+# Share of the peak: samples below it cannot be raised above it by interpolation at a resolved step.
+CANDIDATE_FRACTION = 0.97
 
 
-class Peaks:
+class _AccelerationSamples(NamedTuple):
+    """
+    Samples of an acceleration of each body, and where their slopes jump.
+
+    time: (T,). size: (T, N). slip: speeds (T, K). corners: rows behind which a slip speed passes the threshold. bends:
+    rows on kinks of the loading, and between steps one of which is much longer. ready: corners to read now.
+    """
+
+    time: Array
+    size: Array
+    slip: Array
+    corners: list[int]
+    bends: list[int]
+    ready: list[int]
+
+
+class PeakReader:
     """
     Running maximum over t of |absolute acceleration| per body, fed chunk by chunk; nothing else is kept.
 
-    threshold: slip speed v_reg at which the friction law has its corner; inf if it has none. knots: (K,), rising, where
-    the loading has a kink, each a sample within `near`.
-    value: (N,). sampling: (N,), estimated error of the reading between samples. instant: (N,), where. first: (N,), of
-    the first sample.
+    Parameters:
+    - bodies: Number N of bodies.
+    - threshold: Slip speed v_reg at which the friction law has its corner; inf if it has none.
+    - knots: Rising instants at which the loading has a kink, each a sample within `near`, (K,).
+
+    Attributes:
+    - value, sampling, instant: Largest value, estimated error of the reading between samples, and instant of each body,
+      (N,).
+    - first: Values of the first sample, (N,).
     """
 
     def __init__(self, bodies: int, threshold: float, knots: Array = NO_KNOTS, near: float = 0.0) -> None:
@@ -46,13 +79,13 @@ class Peaks:
         self.instant = np.zeros(bodies)
         self.first: Array | None = None
         self._threshold, self._knots, self._near = threshold, knots, near
-        self._read = -np.inf  # start of the last interval whose corner was read
+        self._last_read_corner = -np.inf
         self._time = np.empty(0)
         self._size = np.empty((0, bodies))
         self._slip = np.empty((0, 0))
 
     def add(self, time: Array, size: Array, slip: Array) -> None:
-        """Sizes (T, N) at times (T,), slip speeds (T, K); their first row repeats the last one of the chunk before."""
+        """Add sizes (T, N) and slip speeds (T, K) at times (T,); the first row repeats the last one before."""
         if self.first is None:
             self.first = size[0]
         carried = len(self._time)
@@ -68,17 +101,25 @@ class Peaks:
 
     def _read_between(self, time: Array, size: Array, slip: Array) -> None:
         """Read the samples, and what lies between them."""
-        corners = self._corners(slip)
-        # each corner is read once, as soon as there are samples behind it
-        ready = [left for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._read]
-        bends = sorted({*kinks(time, self._knots, self._near).tolist(), *_uneven(time).tolist()})
+        # The largest acceleration lies between two samples. In smooth motion a parabola through the highest sample and
+        # its neighbors is of fourth order at the top. Nothing smooth may be laid across three kinds of rows: where the
+        # slip speed passes v_reg, the corner of the friction law, the slope of the acceleration jumps within the step;
+        # at kinks of a recorded loading and at steps much longer than their neighbor it changes at the sample. A corner
+        # is often the peak itself, at a stop. It is read from each side by itself, at the instant at which the slip
+        # speed of that side passes v_reg, once, as soon as there are samples behind it.
+        corners = self._find_corners(slip)
+        ready = [
+            left for left in corners if left + SAMPLES_BEHIND_CORNER < len(time) and time[left] > self._last_read_corner
+        ]
+        bends = sorted({*find_kinks(time, self._knots, self._near).tolist(), *_find_step_jumps(time).tolist()})
+        samples = _AccelerationSamples(time, size, slip, corners, bends, ready)
         for body in range(size.shape[1]):
-            self._scan(body, time, size[:, body], slip, corners, bends, ready)
+            self._scan_body(body, samples)
         if ready:
-            self._read = float(time[ready[-1]])
+            self._last_read_corner = float(time[ready[-1]])
 
-    def _corners(self, slip: Array) -> list[int]:
-        """The rows behind which a slip speed (T, C) passes the threshold before the next row."""
+    def _find_corners(self, slip: Array) -> list[int]:
+        """Find the rows behind which a slip speed (T, C) passes the threshold before the next row."""
         beyond = slip > self._threshold
         rows: list[int] = np.flatnonzero((beyond[1:] != beyond[:-1]).any(axis=1)).tolist()
         return rows
@@ -88,12 +129,12 @@ class Peaks:
         time, size, last = self._time, self._size, len(self._time) - 1
         if last < 2 or instant - time[-1] > MAX_STEPS_BEYOND * np.diff(time[-3:]).min():
             return
-        corners = self._corners(self._slip)
-        bends: list[int] = kinks(time, self._knots, self._near).tolist()
-        if max(_side(last, len(time), corners)[0], *bends, 0) > last - 2:
+        corners = self._find_corners(self._slip)
+        bends: list[int] = find_kinks(time, self._knots, self._near).tolist()
+        if max(_smooth_side(last, len(time), corners)[0], *bends, 0) > last - 2:
             return
         for body, values in enumerate(size.T):
-            linear, curved = (_extrapolated(time[-count:], values[-count:], instant) for count in (2, 3))
+            linear, curved = (_extrapolate(time[-count:], values[-count:], instant) for count in (2, 3))
             if abs(curved - linear) < abs(linear - values[-1]):
                 self._offer(body, curved, abs(curved - linear), instant)
 
@@ -101,21 +142,23 @@ class Peaks:
         """Read nothing across this instant: velocities jump, and the next chunk need not begin here."""
         self._time, self._size, self._slip = self._time[:0], self._size[:0], self._slip[:0]
 
-    def _scan(
-        self, body: int, time: Array, size: Array, slip: Array, corners: list[int], bends: list[int], ready: list[int]
-    ) -> None:
+    def _scan_body(self, body: int, samples: _AccelerationSamples) -> None:
+        """Read the largest values of one body from the samples."""
+        time, slip, corners = samples.time, samples.slip, samples.corners
+        size = samples.size[:, body]
         row = int(size.argmax())
         if size[row] <= CANDIDATE_FRACTION * self.value[body]:
             return
-        unresolved = _unresolved(time, size, row, corners)
-        for stretch in _neighbors(row, len(size), corners, bends):
-            value, error, instant = _smooth(time, size, row, *stretch)
+        unresolved = _error_of_lone_sample(time, size, row, corners)
+        for stretch in _smooth_stretches(row, len(size), corners, samples.bends):
+            value, error, instant = _read_smooth_top(time, size, row, *stretch)
             self._offer(body, value, max(error, unresolved), instant)
-        for left in ready:
+        for left in samples.ready:
             if max(size[left], size[left + 1]) > CANDIDATE_FRACTION * self.value[body]:
-                self._offer(body, *_corner(time, size, slip, left, self._threshold, corners))
+                self._offer(body, *_read_corner(time, size, slip, left, self._threshold, corners))
 
     def _offer(self, body: int, value: float, error: float, instant: float) -> None:
+        """Take a reading if it is the largest so far; what an earlier one leaves possible stays part of the error."""
         possible = max(value + error, self.value[body] + self.sampling[body])
         if value > self.value[body]:
             self.value[body], self.instant[body] = value, instant
@@ -124,28 +167,35 @@ class Peaks:
             self.sampling[body] = possible - self.value[body]
 
 
-def kinks(time: Array, knots: Array, near: float) -> Rows:
-    """The rows of `time` that lie on one of the knots, both rising."""
+def find_kinks(time: Array, knots: Array, near: float) -> Rows:
+    """Find the rows of `time` that lie on one of the knots, both rising."""
     if not len(knots):
         return NO_ROWS
     return np.flatnonzero(np.abs(knots[np.searchsorted(knots[:-1], time - near)] - time) <= near)
 
 
-def _uneven(time: Array) -> Rows:
-    """The rows between two steps one of which is much longer: the shorter one is not the slope of the other."""
+def _find_step_jumps(time: Array) -> Rows:
+    """Find the rows between two steps one of which is much longer: the shorter one is not the slope of the other."""
     steps = np.diff(time)
     longer, shorter = np.maximum(steps[1:], steps[:-1]), np.minimum(steps[1:], steps[:-1])
     return np.flatnonzero(longer > MAX_STEP_CHANGE * shorter) + 1
 
 
-def _smooth(
+def _read_smooth_top(
     time: Array, size: Array, row: int, first: int, last: int, others: tuple[int, int]
 ) -> tuple[float, float, float]:
-    """Top and error of the parabola through the highest sample and two others, or the sample itself beside a corner."""
+    """
+    Read the top of the parabola through the highest sample and two others, or the sample itself next to a corner.
+
+    Returns value, error and instant.
+    """
+    # A fourth sample tells how far the signal is from the parabola: its third divided difference times the cubic that
+    # vanishes at the three samples is the error at the summit. Samples that alternate from step to step are no motion
+    # but ringing of the step, and half of what alternates is an error, whatever the parabola says.
     alternating = 0.0
     if last - first >= 4:
         begin = min(max(row - 2, first), last - 4)
-        alternating = _alternating(time[begin : begin + 5], size[begin : begin + 5])
+        alternating = _alternating_part(time[begin : begin + 5], size[begin : begin + 5])
     sample = float(size[row]), alternating, float(time[row])
     if not (first <= min(others) and max(others) <= last):
         return sample
@@ -167,7 +217,7 @@ def _smooth(
     return float(size[row]) + rise, error, float(time[row]) + summit
 
 
-def _alternating(time: Array, size: Array) -> float:
+def _alternating_part(time: Array, size: Array) -> float:
     """Part of five samples that alternates from step to step: next to nothing where steps resolve the motion."""
     apart = time[:, None] - time
     np.fill_diagonal(apart, 1.0)
@@ -176,21 +226,25 @@ def _alternating(time: Array, size: Array) -> float:
     return float(abs(weights @ size) / (abs(weights[-1]) if longer else np.abs(weights).sum()))
 
 
-def _unresolved(time: Array, size: Array, row: int, corners: list[int]) -> float:
-    """Error of a sample alone between two corners: what the corners before it have changed."""
+def _error_of_lone_sample(time: Array, size: Array, row: int, corners: list[int]) -> float:
+    """
+    Error of a sample alone between two corners: what the corners before it have changed.
+
+    It is zero at the beginning of the motion, and where more samples have shown it before.
+    """
     if row - 1 not in corners or row not in corners:
         return 0.0
     last = row - 1
     while last - 1 in corners:
         last -= 1
-    first = max(_side(last, len(size), corners)[0], last - 2)
-    if first == last:  # the begin of the motion, or seen before with more samples
+    first = max(_smooth_side(last, len(size), corners)[0], last - 2)
+    if first == last:
         return 0.0
     before = slice(first, last + 1)
-    return abs(_extrapolated(time[before], size[before], float(time[row])) - float(size[row]))
+    return abs(_extrapolate(time[before], size[before], float(time[row])) - float(size[row]))
 
 
-def _corner(
+def _read_corner(
     time: Array, size: Array, slip: Array, left: int, threshold: float, corners: list[int]
 ) -> tuple[float, float, float]:
     """
@@ -199,14 +253,14 @@ def _corner(
     Each side tells by itself when the slip speed passes the threshold, whose rate jumps there as well. Error: half the
     gap between the two readings, and what their two instants leave open.
     """
-    first, _ = _side(left, len(size), corners)
-    _, last = _side(left + 1, len(size), corners)
+    first, _ = _smooth_side(left, len(size), corners)
+    _, last = _smooth_side(left + 1, len(size), corners)
     before = slice(max(first, left - 2), left + 1)
     after = slice(left + 1, min(last, left + 3) + 1)
     contact = int(((slip[left] > threshold) != (slip[left + 1] > threshold)).argmax())
     ends = float(time[left]), float(time[left + 1])
     instants = [
-        _passing(time[side], slip[side, contact], threshold, ends)
+        _crossing_instant(time[side], slip[side, contact], threshold, ends)
         for side in (before, after)
         if side.stop - side.start > 1
     ]
@@ -214,17 +268,17 @@ def _corner(
         low, high = slip[left, contact], slip[left + 1, contact]
         instants = [ends[0] + (threshold - low) / (high - low) * (ends[1] - ends[0])]
     instant = sum(instants) / len(instants)
-    readings = [_extrapolated(time[side], size[side], instant) for side in (before, after)]
+    readings = [_extrapolate(time[side], size[side], instant) for side in (before, after)]
     slope = max(abs(float(size[left + 1] - size[left])), abs(readings[0] - readings[1])) / (ends[1] - ends[0])
     error = 0.5 * abs(readings[0] - readings[1]) + 0.5 * (max(instants) - min(instants)) * slope
     return 0.5 * (readings[0] + readings[1]), error, instant
 
 
-def _neighbors(
+def _smooth_stretches(
     row: int, count: int, corners: list[int], bends: list[int]
 ) -> Iterator[tuple[int, int, tuple[int, int]]]:
-    """First and last row of every smooth stretch that `row` belongs to, and the two rows nearest to it there."""
-    first, last = _side(row, count, corners)
+    """Yield first and last row of every smooth stretch that `row` belongs to, and the two rows nearest to it there."""
+    first, last = _smooth_side(row, count, corners)
     place = bisect_left(bends, row)
     before, here = [first, *bends[:place]], place < len(bends) and bends[place] == row
     after = [*bends[place + here :], last]
@@ -235,28 +289,28 @@ def _neighbors(
         yield max(first, before[-1]), min(last, after[0]), (row - 1, row + 1)
 
 
-def _side(row: int, count: int, corners: list[int]) -> tuple[int, int]:
+def _smooth_side(row: int, count: int, corners: list[int]) -> tuple[int, int]:
     """First and last row on the same side of all corners as `row`."""
     place = bisect_left(corners, row)
     first = corners[place - 1] + 1 if place > 0 else 0
     return first, corners[place] if place < len(corners) else count - 1
 
 
-def _extrapolated(time: Array, values: Array, instant: float) -> float:
-    """The polynomial through the given samples (one to three) at `instant`."""
+def _extrapolate(time: Array, values: Array, instant: float) -> float:
+    """Extrapolate the polynomial through the given samples (one to three) to `instant` (Neville's algorithm)."""
     nodes, table = time.tolist(), values.tolist()
-    for order in range(1, len(nodes)):  # Neville
+    for order in range(1, len(nodes)):
         for i in range(len(nodes) - order):
             span = nodes[i + order] - nodes[i]
             table[i] = ((instant - nodes[i]) * table[i + 1] + (nodes[i + order] - instant) * table[i]) / span
     return float(table[0])
 
 
-def _passing(time: Array, slip: Array, threshold: float, ends: tuple[float, float]) -> float:
+def _crossing_instant(time: Array, slip: Array, threshold: float, ends: tuple[float, float]) -> float:
     """Instant between `ends` at which the slip speed of one side (two or three samples) passes the threshold."""
     near, far = (-1, -2) if time[-1] <= ends[0] else (0, 1)
     rate = float((slip[near] - slip[far]) / (time[near] - time[far]))
     if rate == 0.0:
         return 0.5 * (ends[0] + ends[1])
     instant = min(max(float(time[near]) + (threshold - float(slip[near])) / rate, ends[0]), ends[1])
-    return min(max(instant - (_extrapolated(time, slip, instant) - threshold) / rate, ends[0]), ends[1])
+    return min(max(instant - (_extrapolate(time, slip, instant) - threshold) / rate, ends[0]), ends[1])

@@ -15,140 +15,199 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.integration.adaptive import Budget, EngineRun
 from multibody.integration.candidate import Candidate
-from multibody.integration.level import COMPLIANCE_RATIO, Level, levels_of
+from multibody.integration.engine_run import Budget, EngineRun
+from multibody.integration.level import Level, plan_levels
 from multibody.integration.level_runs import UNFINISHED, LevelRuns
-from multibody.integration.look_ahead import longest_steps
+from multibody.integration.look_ahead import level_of_longest_steps
 from multibody.integration.one_run import PhasePair
-from multibody.integration.peak import Peaks
+from multibody.integration.peak import PeakReader
 from multibody.models.system import EngineModel
-from reference.problem import Outcome, Scene, State
+from reference.problem import Outcome
 from reference.problem.ranges import Range
 
 Array = NDArray[np.float64]
 
-MAX_WORK = 2e6  # steps of the engine in all runs of one point, where the caller says nothing else
+# Steps of the engine in all runs of one point, where the caller says nothing else.
+MAX_WORK = 2e6
 WORK = Range(1.0, 1e12, "steps")
-MAX_DIFFERENT_MOTIONS = 3  # successive levels with impacts that are another motion than the level before
+
+# Number of successive levels with impacts that are another motion than the level before: a further one would be, too.
+MAX_DIFFERENT_MOTIONS = 3
 
 
 @dataclass(frozen=True)
 class Refinement:
-    """The result of refinement for one phase pair."""
+    """
+    The result of refinement for one phase pair.
 
-    peaks: Array  # (N,), m/s^2, NaN without an answer
-    errors: Array  # (N,), m/s^2, NaN without an answer
+    Attributes:
+    - peaks, errors: m/s^2, NaN without an answer, (N,).
+    - outcome, instant: Outcome, and the instant, s, at which an outcome other than ok arose.
+    - finest: The last run.
+    - coarser: Runs whose differences to the last, in these shares, are errors.
+    - floor: Lower bound of a relative error.
+    """
+
+    peaks: Array
+    errors: Array
     outcome: Outcome
-    instant: float  # s, when an outcome other than ok arose
-    finest: EngineRun  # the last run
-    coarser: tuple[tuple[EngineRun, float], ...] = ()  # runs whose differences to the last, in these shares, are errors
-    floor: float = math.nan  # lower bound of a relative error
+    instant: float
+    finest: EngineRun
+    coarser: tuple[tuple[EngineRun, float], ...] = ()
+    floor: float = math.nan
 
 
 def refine(
-    scene: Scene,
-    model: EngineModel,
-    phase: Array,
+    pair: PhasePair,
     tolerance: float,
     *,
-    initial: State | None = None,
     keep: bool = False,
-    whole: bool = False,
     levels: Sequence[Level] | None = None,
     max_work: float = MAX_WORK,
 ) -> Refinement:
     """
-    Peaks of the absolute accelerations for one phase pair (2,), rad, with a relative error below `tolerance`.
+    Compute the peaks of the absolute accelerations for one phase pair with a relative error below `tolerance`.
 
-    levels: those of `levels_of` if None. keep: the motions of the last run and of `coarser`. whole: every run goes to
-    the end of the motion, as it does where motions are kept. max_work: steps that all runs together may take.
+    keep: whether the motions of the last run and of `coarser` are kept; every run then goes to the end of the motion.
+    levels: those of `plan_levels` if None. max_work: steps that all runs together may take.
     """
-    pair = PhasePair(scene, model, phase, initial, whole)
-    budget, whole = Budget(max_work), keep or whole
-    planned = levels_of(scene, model, tolerance) if levels is None else list(levels)
-    if not budget.allows(pair.end, longest_steps(model, planned[0], whole)):
-        no_run = EngineRun(Peaks(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
-        return _no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
-    done = LevelRuns(pair, tolerance, budget, planned, softens=levels is None, whole=whole, keep=keep)
-    different = 0  # how many of the last levels with impacts were another motion
-    candidate: Candidate | None = None
-    complete: Candidate | None = None  # the last candidate whose error lacks nothing
-    best: Candidate | None = None  # the complete candidate whose error is least
-    while done.can_go_on():
-        run = done.run_next()
+    model, budget, whole = pair.model, Budget(max_work), keep or pair.whole
+    planned = plan_levels(pair.scene, model, tolerance) if levels is None else list(levels)
+    if not budget.allows(pair.end, level_of_longest_steps(model, planned[0], whole)):
+        no_run = EngineRun(PeakReader(len(model.bodies), model.corner), math.inf, Outcome.STEP_LIMIT, 0.0)
+        return _make_no_answer(model, no_run, Outcome.STEP_LIMIT, 0.0)
+    search = _Search(LevelRuns(pair, tolerance, budget, planned, softens=levels is None, keep=keep))
+    while not search.has_ended and search.runs.can_run_next():
+        search.add_level()
+    return search.answer or search.make_last_answer()
+
+
+class _Search:
+    """
+    The candidates among the levels of one phase pair.
+
+    candidate: that of the last level, if it has one. complete: the last one whose error misses no part. best: the
+    complete one whose error is least. different_motions: number of the last levels with impacts that were another
+    motion than the level before. answer: where one is final before the levels end.
+    """
+
+    # Levels are added until one meets the tolerance, or until no further one can help. Three cases end the search
+    # early. Two runs without an end, or one behind an answer: a finer run takes more steps still. Impacts that
+    # take three levels in a row elsewhere: the order of impacts is decided by rounding, and no step changes that.
+    # Rounding that exceeds both the tolerance and what the next level would leave: a stiffer contact rounds more, and a
+    # shared one shows no less. What is returned then is the best complete answer with its honest error, called
+    # "tolerance not met". Another set of springs under the supports is another model, so that a change of them
+    # forgets the answers before it.
+
+    def __init__(self, runs: LevelRuns) -> None:
+        self.runs, self.tolerance = runs, runs.tolerance
+        self.candidate: Candidate | None = None
+        self.complete: Candidate | None = None
+        self.best: Candidate | None = None
+        self.answer: Refinement | None = None
+        self.different_motions = 0
+        self.has_ended = False
+
+    def add_level(self) -> None:
+        """Run the next level, and judge its answer if it has one."""
+        run = self.runs.run_next_level()
+        done = self.runs.runs
         if run.outcome in UNFINISHED:
-            if candidate is not None or sum(other.outcome in UNFINISHED for other in done.runs) > 1:
-                break
-            continue
-        candidate = None
-        if len(done.runs) == 1 or done.runs[-2].outcome != run.outcome:
-            continue
-        answered = [] if best is None else [best.run, *(other for other, _ in best.coarser)]
-        for earlier in done.runs[:-2]:
-            if not any(earlier is other for other in answered):
-                earlier.chunks.clear()
+            unfinished = sum(other.outcome in UNFINISHED for other in done)
+            self.has_ended = self.candidate is not None or unfinished > 1
+            return
+        self.candidate = None
+        if len(done) == 1 or done[-2].outcome != run.outcome:
+            return
+        self._forget_motions()
         if run.outcome != Outcome.OK:
-            break
-        candidate = done.candidate()
-        if done.runs[-1] is not run:  # springs of real bearings change the answer: none before holds
-            complete = best = None
-        if candidate is None:
-            continue
-        run = candidate.run
-        different = different + 1 if run.impacts and (candidate.errors >= run.peaks.value).all() else 0
-        if different == MAX_DIFFERENT_MOTIONS:
-            break  # impacts take every level elsewhere: a further one would, too
-        if candidate.may_meet(tolerance):
-            candidate = candidate.completed(pair, budget, keep)
-        complete = candidate if candidate.is_complete else complete
-        if candidate.meets(tolerance):
-            return _answer(model, candidate, Outcome.OK)
-        rounding = candidate.level.rounding
-        if (rounding > np.maximum(tolerance * run.peaks.value, candidate.errors / COMPLIANCE_RATIO)).any():
+            self.has_ended = True
+            return
+        self.candidate = self.runs.make_candidate()
+        if done[-1] is not run:  # the springs of real bearings have taken its place
+            self.complete = self.best = None
+        if self.candidate is not None:
+            self._judge(self.candidate)
+
+    def make_last_answer(self) -> Refinement:
+        """Return the answer that misses the tolerance, or why there is none."""
+        pair = self.runs.pair
+        if self.candidate is None:
+            return _refuse_unfinished(pair, self.runs.runs)
+        candidate = self._complete(self.candidate)
+        if self.best is not None and candidate.rounds_more_than(self.best):
+            return _make_answer(pair.model, self.best, Outcome.TOLERANCE_NOT_MET)
+        return _answer_beyond_tolerance(pair, candidate, self.complete)
+
+    def _judge(self, candidate: Candidate) -> None:
+        """Decide whether the answer of the last level ends the search, and which one is best so far."""
+        run, model, best = candidate.run, self.runs.pair.model, self.best
+        differs = bool(run.impacts) and bool((candidate.errors >= run.peaks.value).all())
+        self.different_motions = self.different_motions + 1 if differs else 0
+        if self.different_motions == MAX_DIFFERENT_MOTIONS:
+            self.has_ended = True
+            return
+        if candidate.may_meet(self.tolerance):
+            self.candidate = candidate = self._complete(candidate)
+        self.complete = candidate if candidate.is_complete else self.complete
+        if candidate.meets(self.tolerance):
+            self._end_with(_make_answer(model, candidate, Outcome.OK))
+            return
+        if candidate.rounds_beyond(self.tolerance):
             if candidate.shares_contact:
-                break  # hardly more than rounding is left, and no further level rounds less or shows how little it does
+                self.has_ended = True
+                return
             if best is not None and best.relative_error <= candidate.relative_error:
-                return _answer(model, best, Outcome.TOLERANCE_NOT_MET)  # rounding takes over at this level
+                self._end_with(_make_answer(model, best, Outcome.TOLERANCE_NOT_MET))
+                return
         if candidate.is_complete and (best is None or candidate.relative_error < best.relative_error):
-            best = candidate
-    if candidate is not None:
-        candidate = candidate.completed(pair, budget, keep)
-        if best is not None and candidate.rounds_more_than(best):
-            return _answer(model, best, Outcome.TOLERANCE_NOT_MET)
-        return _beyond_tolerance(pair, candidate, complete)
-    return _unfinished(pair, done.runs)
+            self.best = candidate
+
+    def _end_with(self, answer: Refinement) -> None:
+        self.answer, self.has_ended = answer, True
+
+    def _complete(self, candidate: Candidate) -> Candidate:
+        """Return a candidate with the error that the contact's compliance leaves."""
+        return candidate.add_compliance_error(self.runs.pair, self.runs.budget, self.runs.keep)
+
+    def _forget_motions(self) -> None:
+        """Forget the motions of all runs but the last two and those of the best answer."""
+        needed = [] if self.best is None else [self.best.run, *(other for other, _ in self.best.coarser)]
+        for earlier in self.runs.runs[:-2]:
+            if not any(earlier is other for other in needed):
+                earlier.chunks.clear()
 
 
-def _beyond_tolerance(pair: PhasePair, finest: Candidate, complete: Candidate | None) -> Refinement:
-    """The finest answer, whose error misses the tolerance, or the last one whose error is known."""
+def _answer_beyond_tolerance(pair: PhasePair, finest: Candidate, complete: Candidate | None) -> Refinement:
+    """Return the finest answer, whose error misses the tolerance, or the last one whose error is known."""
     if np.isfinite(finest.errors).all():
-        return _answer(pair.model, finest, Outcome.TOLERANCE_NOT_MET)
+        return _make_answer(pair.model, finest, Outcome.TOLERANCE_NOT_MET)
     # the run that shows what the compliance leaves has no answer
     if complete is not None:
-        answer = _answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET)
+        answer = _make_answer(pair.model, complete, Outcome.TOLERANCE_NOT_MET)
         return replace(answer, finest=finest.run, coarser=finest.coarser[:-1], floor=finest.floor)
     why = next((run.outcome for run, _ in finest.coarser if run.outcome in UNFINISHED), Outcome.SOLVER_FAILED)
-    return _no_answer(pair.model, finest.run, why, pair.scene.duration)
+    return _make_no_answer(pair.model, finest.run, why, pair.scene.duration)
 
 
-def _unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
-    """No two levels agree, or both end alike: by how the first of the last two that has no answer ends."""
+def _refuse_unfinished(pair: PhasePair, runs: list[EngineRun]) -> Refinement:
+    """Say why no two levels agree or end alike: by the first of the last two runs that has no answer."""
     failed = next((run for run in runs[:-3:-1] if run.outcome != Outcome.OK), None)
     if failed is None:  # one level has an answer, and no steps are left for another that shows its error
-        return _no_answer(pair.model, runs[-1], Outcome.STEP_LIMIT, pair.scene.duration)
-    return _no_answer(pair.model, failed, failed.outcome, failed.instant * pair.model.units.time)
+        return _make_no_answer(pair.model, runs[-1], Outcome.STEP_LIMIT, pair.scene.duration)
+    return _make_no_answer(pair.model, failed, failed.outcome, failed.instant * pair.model.units.time)
 
 
-def _answer(model: EngineModel, candidate: Candidate, outcome: Outcome) -> Refinement:
-    """Peaks with their errors, and where the largest of them is if they miss the tolerance."""
+def _make_answer(model: EngineModel, candidate: Candidate, outcome: Outcome) -> Refinement:
+    """Return peaks with their errors, and the instant of the worst of them if they miss the tolerance."""
     peaks, errors, unit = candidate.run.peaks, candidate.errors, model.units.acceleration
     worst = float(peaks.instant[(errors / peaks.value).argmax()]) * model.units.time
     instant = math.nan if outcome == Outcome.OK else worst
-    answered = Refinement(peaks.value * unit, errors * unit, outcome, instant, candidate.run)
-    return replace(answered, coarser=candidate.coarser, floor=candidate.floor)
+    answer = Refinement(peaks.value * unit, errors * unit, outcome, instant, candidate.run)
+    return replace(answer, coarser=candidate.coarser, floor=candidate.floor)
 
 
-def _no_answer(model: EngineModel, run: EngineRun, outcome: Outcome, instant: float) -> Refinement:
+def _make_no_answer(model: EngineModel, run: EngineRun, outcome: Outcome, instant: float) -> Refinement:
     nothing = np.full(len(model.bodies), np.nan)
     return Refinement(nothing, nothing, outcome, instant, run)

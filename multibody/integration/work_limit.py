@@ -1,22 +1,25 @@
-"""Why a model is refused for a scene before any step is taken, and what would help: from the scene alone."""
+"""The refusal of a scene whose work exceeds the limit, before any step is taken, and what would help."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 
-from multibody.integration.adaptive import Budget
-from multibody.integration.constant_step import silence
-from multibody.integration.level import STEPS_PER_PERIOD, levels_of
+from multibody.defaults import DEFAULT_TOLERANCE, DEFAULT_V_REG
+from multibody.integration.constant_step import silence_engine
+from multibody.integration.engine_run import Budget
+from multibody.integration.level import plan_levels
 from multibody.integration.level_runs import MAX_WORK_GROWTH
-from multibody.integration.look_ahead import longest_steps
+from multibody.integration.look_ahead import level_of_longest_steps
 from multibody.integration.refine import MAX_WORK, WORK
-from multibody.models.assembly import assemble, required_model
+from multibody.integration.time_scales import STEPS_PER_PERIOD
+from multibody.models.assembly import assemble, choose_model
 from reference.problem import Scene, SceneError
 from reference.problem.ranges import TOLERANCE, checked_number
 from reference.problem.scene import takes_scene
 
-# work of two levels and of the compliance of the second over a first level in its largest steps: stops take as many
+# Work of two levels, and of the compliance of the second, over a first level in its largest steps. The factor of two is
+# for smaller steps at stops, which take as many again.
 WHOLE_POINT = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
 
 
@@ -24,8 +27,8 @@ WHOLE_POINT = 2.0 * (1.0 + 2.0 * MAX_WORK_GROWTH)
 def refusal(
     scene: Scene,
     model: str = "translational",
-    regularization: float | None = 1e-3,
-    tolerance: float = 1e-3,
+    regularization: float | None = DEFAULT_V_REG,
+    tolerance: float = DEFAULT_TOLERANCE,
     full: bool = False,
     max_work: float = MAX_WORK,
     softened: bool = False,
@@ -63,28 +66,28 @@ def refusal(
             scene = scene.softened()
         except SceneError as error:
             return f"refused before any step: {error}"
-    with silence():
-        built = assemble(scene, required_model(scene, model, full), regularization)
-    first = levels_of(scene, built, tolerance)[0]
-    longest = longest_steps(built, first, full)
+    with silence_engine():
+        built = assemble(scene, choose_model(scene, model, full), regularization)
+    first = plan_levels(scene, built, tolerance)[0]
+    longest = level_of_longest_steps(built, first, full)
     if Budget(max_work).allows(scene.duration / built.units.time, longest):
         return ""
     first_step, step = (level.step * built.units.time for level in (first, longest))
     needed, work = scene.duration / step, WHOLE_POINT * scene.duration / first_step
-    period = STEPS_PER_PERIOD * first_step / (1 + first.is_loose)
-    looser_helps = scene.recorded and not first.is_loose
+    period = STEPS_PER_PERIOD * first_step / (1 + first.precedes_level_0)
+    looser_helps = scene.recorded and not first.precedes_level_0
     tried, enough = max_work * step, max_work * first_step / WHOLE_POINT
     return (
         f"refused before any step: it needs {needed:.2g} steps of the engine or more, and a phase pair may take "
         f"{max_work:.2g} ({built.coordinates} coordinates in steps of {step:.2g} s over {scene.duration:g} s; the "
         f"fastest period is {period:.2g} s). Allow more work (max_work or "
-        f"--max-work, about {_two_digits(work, math.ceil):g} steps), shorten the duration to about "
-        f"{_two_digits(enough, math.floor):g} s (above {_two_digits(tried, math.ceil):g} s no step is taken), "
+        f"--max-work, about {_round_digits(work, math.ceil):g} steps), shorten the duration to about "
+        f"{_round_digits(enough, math.floor):g} s (above {_round_digits(tried, math.ceil):g} s no step is taken), "
         f"or take a longer period; a looser tolerance {'may help' if looser_helps else 'does not help'}"
     )
 
 
-def _two_digits(value: float, rounded: Callable[[float], int]) -> float:
-    """Two digits of a positive number, rounded by `math.floor` or `math.ceil`."""
+def _round_digits(value: float, rounded: Callable[[float], int]) -> float:
+    """Round a positive number to two digits by `math.floor` or `math.ceil`."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return float(f"{rounded(value / unit) * unit:.2g}")

@@ -1,23 +1,23 @@
-"""The engine's system of a scene: the model by its name, with its arguments checked."""
+"""Assembly of the engine's system of a scene: the model by its name, with its arguments checked."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
 
-from multibody.models.engine import reset_with
+from multibody.models.engine import reset_when_unused
 from multibody.models.plate import LOADINGS
-from multibody.models.spatial import spatial
+from multibody.models.spatial import assemble_spatial
 from multibody.models.system import EngineModel
-from multibody.models.translational import translational
+from multibody.models.translational import assemble_translational
 from reference.problem import Scene, untilted
 from reference.problem.ranges import REGULARIZATION, checked_choice, checked_number
 
-BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": translational, "spatial": spatial}
+BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": assemble_translational, "spatial": assemble_spatial}
 
 
-def required_model(scene: Scene, model: str, full: bool) -> str:
-    """The model that answers for `model`: a platform that does not tilt needs no rotations, unless `full`."""
+def choose_model(scene: Scene, model: str, full: bool) -> str:
+    """Choose the model that answers for `model`: a platform that cannot tilt needs no rotations, unless `full`."""
     return "translational" if model == "spatial" and not full and untilted(scene).allowed else model
 
 
@@ -42,5 +42,6 @@ def assemble(
     built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **options)
     if scene.isolator.travel is not None:
         built = replace(built, travel=scene.isolator.travel / built.units.length)
-    reset_with(built.recorders, built.container)  # a copy of the model with other settings shares them
+    # copies of the model with other settings share its recorders, so that these own the engine's memory
+    reset_when_unused(built.recorders, built.container)
     return built

@@ -1,10 +1,10 @@
-"""What the contact of every model has in common: the corner of the friction law, the start, a settled restart."""
+"""The contact of every model: the corner of the friction law, the start on the surface, a settled restart."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,22 +15,35 @@ from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
-DAMPING_RATIO = 1.0  # of the contact: its own motion dies out within a few of its periods and is not seen
-FORCE_ROUNDING = 1e-15  # of a position about rho away, in units of rho; over the penetration: of the force, in weights
-MAX_LINEAR_SPEED = 1e6  # v_reg of the lubricated contact in units of velocity, above any speed: mu = f_c |v| throughout
+# Damping ratio of the contact: its own motion dies out within a few of its periods and is not seen.
+DAMPING_RATIO = 1.0
+
+# Rounding of a position about rho away, in units of rho. Over the penetration it is that of the force, in weights.
+FORCE_ROUNDING = 1e-15
+
+# Threshold of the lubricated contact in units of velocity, above any speed, so that mu = f_c |v| throughout.
+MAX_LINEAR_SPEED = 1e6
 
 
-def contact_law(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:
+class ContactLaw(NamedTuple):
     """
-    Friction coefficient of the contact, and the speed in units of velocity under which it is reduced linearly.
+    Friction of the engine's contact: its coefficient, and the speed below which the contact reduces it linearly.
 
-    Where it depends on slip speed or load, the largest under the weight: `SpeedFriction` sets it before every step.
+    The threshold is in units of velocity. Where friction depends on slip speed or load, the coefficient is the largest
+    under the weight: `SpeedFriction` sets it before every step.
     """
+
+    friction: float
+    threshold: float
+
+
+def contact_law(scene: Scene, regularization: float | None, units: Units) -> ContactLaw:
+    """Friction of the contact for v_reg in m/s, or None where the contact is lubricated or frictionless."""
     if scene.lubricated:
-        return scene.friction_coefficient * units.velocity * MAX_LINEAR_SPEED, MAX_LINEAR_SPEED
+        return ContactLaw(scene.friction_coefficient * units.velocity * MAX_LINEAR_SPEED, MAX_LINEAR_SPEED)
     if regularization is None:
-        return scene.friction_coefficient, 1.0
-    return scene.friction_coefficient, regularization / units.velocity
+        return ContactLaw(scene.friction_coefficient, 1.0)
+    return ContactLaw(scene.friction_coefficient, regularization / units.velocity)
 
 
 def set_contact_parameters(
@@ -65,15 +78,15 @@ def viscous_relaxation(scene: Scene, units: Units) -> float:
     return float(scene.masses[0]) / scene.total_mass / friction if friction > 0.0 else math.inf
 
 
-def platform_on_sphere(
+def place_on_sphere(
     offset: Array, speed: Array, ground: Array, penetration: float
 ) -> tuple[Array, Array, float, float]:
     """
-    Platform on the sphere, moving along it, pressed in by as much as a single body would be; in units of the model.
+    Place the platform on the sphere, moving along it, pressed in by as much as a single body would be.
 
     offset, speed: horizontal (2,). ground: the plate's acceleration (3,). Returns displacement (3,), velocity (3,),
-    gap, slip speed. For several bodies off the vertical the penetration is not exact; the contact damps the difference
-    out within a few of its own time constants.
+    gap and slip speed, all in units of the model. For several bodies off the vertical the penetration is not exact; the
+    contact damps the difference out within a few of its own time constants.
     """
     height = float(np.sqrt(max(1.0 - float(offset @ offset), 0.0)))
     normal = np.array([-offset[0], -offset[1], height])
@@ -84,9 +97,9 @@ def platform_on_sphere(
     return place, np.array([*speed, vertical]), -pressed, slip
 
 
-def settled_contact(state: EngineState, gap_rate: float, penetration: float, normal: list[float]) -> EngineState:
+def settle_contact(state: EngineState, gap_rate: float, penetration: float, normal: list[float]) -> EngineState:
     """
-    The same state with the same contact force, carried by the gap alone and not by a leftover of normal velocity.
+    Return the state with the same contact force, carried by the gap alone and not by a leftover of normal velocity.
 
     At a given step the engine's position and velocity disagree along the normal by O(h^2), and the contact's damper
     turns that into a force which the gap makes up for. A smaller step would start with that balance upset and ring.

@@ -1,5 +1,5 @@
 """
-Where the spheres are in the depressions of a platform that turns, and how fast the platform moves against them.
+Kinematics of the spheres in the depressions of a platform that turns.
 
 A depression is the upper half of a hollow sphere. The engine's contact is a whole one: it would press from the other
 side once the platform has risen by twice rho. So the clearance between platform and spheres is computed here.
@@ -18,16 +18,21 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Depressions:
-    """The platform's depressions over spheres on the plate, in units of the model, where rho is one."""
+    """
+    The platform's depressions over spheres on the plate, in units of the model, where rho is one.
 
-    ring: Array  # (K, 2), places of the spheres
-    center: Array  # (3,), the platform's center of mass at rest, from the middle of the plane of the depressions
-    radius: float  # of the spheres
-    vertical: NDArray[np.int_]  # (K,) or (0,), index of each sphere's vertical coordinate
+    ring: places of the spheres, (K, 2). center: the platform's center of mass at rest, from the middle of the plane of
+    the depressions, (3,). radius: of the spheres. vertical: index of each sphere's vertical coordinate, (K,) or (0,).
+    """
 
-    def centers(self, coordinates: Array) -> tuple[Array, Array]:
-        """Centers (T, K, 3) of the spheres from those of the depressions, in axes of the plate and of the platform."""
-        turned = rotation(coordinates[:, 3:6])
+    ring: Array
+    center: Array
+    radius: float
+    vertical: NDArray[np.int_]
+
+    def sphere_positions(self, coordinates: Array) -> tuple[Array, Array]:
+        """Positions (T, K, 3) of the spheres in the depressions, in the axes of the plate and of the platform."""
+        turned = rotation_matrices(coordinates[:, 3:6])
         local = np.column_stack([self.ring, np.zeros(len(self.ring))]) - self.center
         place = coordinates[:, None, :3] + self.center + np.einsum("tij,kj->tki", turned, local)
         apart = self._spheres(coordinates) - place
@@ -35,38 +40,38 @@ class Depressions:
 
     def clearance(self, coordinates: Array) -> Array:
         """Distance (T, K) from platform to spheres for coordinates (T, n), without penetration; negative: pressed."""
-        _, inside = self.centers(coordinates)
+        _, inside = self.sphere_positions(coordinates)
         across, upward = np.hypot(inside[..., 0], inside[..., 1]), inside[..., 2]
-        # a sphere below the rim touches nothing until it is back inside, or has left (`beyond_rim`)
+        # a sphere below the rim touches nothing until it is back inside, or has left (`rows_beyond_rim`)
         clear: Array = 1.0 - np.where(upward > 0.0, np.hypot(across, upward), 0.0)
         return clear
 
-    def near_rest(self, coordinates: Array) -> bool:
+    def is_near_rest(self, coordinates: Array) -> bool:
         """
-        Whether bounds prove for all coordinates (T, n) that no sphere is `beyond_rim` and no tilt reaches 90 degrees.
+        Return whether bounds prove for all coordinates (T, n) that no sphere is out and no tilt reaches 90 degrees.
 
-        A platform that is displaced by u and turned by the angle t moves a depression at the distance l from its center
-        by |u| + t l at most, and lifts it by |u_z| + t l.
+        The proof spares `rows_beyond_rim`, which costs more. A platform that is displaced by u and turned by an angle t
+        moves a depression at the distance l from its center by |u| + t l at most, and lifts it by |u_z| + t l.
         """
         largest: list[float] = np.abs(coordinates).max(axis=0).tolist()
         shift, lift, turn = sum(largest[:3]), largest[2], sum(largest[3:6])
         sinking = max([largest[place] for place in self.vertical], default=0.0)
         moved = turn * self._farthest
-        above = 1.0 - sinking - lift - moved - turn * (1.0 + sinking + shift + moved)  # height of a sphere in the rim
-        return above > 0.0 and turn < 1.0
+        height_in_rim = 1.0 - sinking - lift - moved - turn * (1.0 + sinking + shift + moved)
+        return height_in_rim > 0.0 and turn < 1.0
 
     @cached_property
     def _farthest(self) -> float:
         """Largest distance of a depression from the platform's center of mass."""
         return float(np.hypot(np.hypot(*(self.ring - self.center[:2]).T), self.center[2]).max())
 
-    def beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:
-        """Whether a sphere has left its depression, (T,), for coordinates (T, n)."""
-        _, inside = self.centers(coordinates)
+    def rows_beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:
+        """Rows (T,) of coordinates (T, n) in which a sphere has left its depression, as a mask."""
+        _, inside = self.sphere_positions(coordinates)
         outside = (inside[..., 2] <= 0.0) & (np.hypot(inside[..., 0], inside[..., 1]) >= 1.0)
         return np.asarray(outside.any(axis=1))
 
-    def motion_at_contacts(self, coordinates: Array) -> tuple[Array, Array]:
+    def contact_normals_and_jacobian(self, coordinates: Array) -> tuple[Array, Array]:
         """Normals (K, 3) at the points of contact, and their Jacobian (K, 3, 6) over the platform's velocities."""
         normals = self._normals(coordinates)
         levers = self._spheres(coordinates) + self.radius * normals - coordinates[:3] - self.center
@@ -75,7 +80,7 @@ class Depressions:
 
     def _normals(self, coordinates: Array) -> Array:
         """Normals (K, 3) of the platform at its points of contact for coordinates (n,), out of the plate."""
-        apart, _ = self.centers(coordinates[None])
+        apart, _ = self.sphere_positions(coordinates[None])
         normals: Array = apart[0] / np.linalg.norm(apart[0], axis=1)[:, None]
         return normals
 
@@ -92,30 +97,30 @@ class FlatUnderside(Depressions):
     """The plane under the platform of a flat slider, as high above the middle as the tops of the spheres at rest."""
 
     def clearance(self, coordinates: Array) -> Array:
-        """See `Depressions`."""
-        _, inside = self.centers(coordinates)
+        """Distance (T, K) from the plane to spheres for coordinates (T, n), without penetration; negative: pressed."""
+        _, inside = self.sphere_positions(coordinates)
         clear: Array = 1.0 - inside[..., 2]
         return clear
 
-    def beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:
-        """A plane has no rim."""
+    def rows_beyond_rim(self, coordinates: Array) -> NDArray[np.bool_]:
+        """Return no row: a plane has no rim."""
         return np.zeros(len(coordinates), dtype=bool)
 
     def _normals(self, coordinates: Array) -> Array:
-        upright = rotation(coordinates[3:6])[:, 2]
+        upright = rotation_matrices(coordinates[3:6])[:, 2]
         return np.tile(upright, (len(self.ring), 1))
 
 
-def rotation(angles: Array) -> Array:
+def rotation_matrices(angles: Array) -> Array:
     """Matrices (..., 3, 3) of the rotations Rx(a) Ry(b) Rz(c) by angles (..., 3), rad."""
-    about_x, about_y, about_z = (_about(axis, angles[..., axis]) for axis in range(3))
+    about_x, about_y, about_z = (_axis_rotations(axis, angles[..., axis]) for axis in range(3))
     product: Array = about_x @ about_y @ about_z
     return product
 
 
 def angular_velocity_matrix(angles: Array) -> Array:
     """Matrix (3, 3) of the angular velocity over the rates of angles (3,), rad: columns are the axes turned about."""
-    about_x, about_y = _about(0, angles[0]), _about(1, angles[1])
+    about_x, about_y = _axis_rotations(0, angles[0]), _axis_rotations(1, angles[1])
     return np.column_stack([[1.0, 0.0, 0.0], about_x[:, 1], (about_x @ about_y)[:, 2]])
 
 
@@ -127,7 +132,7 @@ def cross_matrix(vectors: Array) -> Array:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-def _about(axis: int, angle: Array) -> Array:
+def _axis_rotations(axis: int, angle: Array) -> Array:
     """Matrices (..., 3, 3) of rotations by `angle` about one axis."""
     matrix = np.zeros((*np.shape(angle), 3, 3))
     first, second = (axis + 1) % 3, (axis + 2) % 3

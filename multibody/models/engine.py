@@ -7,7 +7,11 @@ import weakref
 from importlib import import_module
 from typing import Any
 
-MAX_DENSE_COORDINATES = 40  # beyond them a sparse solver takes less time a step (measured: a third at 360)
+# Number of coordinates beyond which a sparse solver takes less time a step (measured: a third at 360).
+MAX_DENSE_COORDINATES = 40
+
+# Number of coordinates of a rigid body: x, y, z of the center of mass and three rotations.
+BODY_COORDINATES = 6
 
 try:
     exudyn: Any = import_module("exudyn")
@@ -16,11 +20,12 @@ except ImportError as error:
     raise ImportError(
         f"the engine Exudyn cannot be loaded (on Debian and Ubuntu it needs the package libgl1): {reason}"
     ) from error
-MODULE = "fast" if "exudyn.exudynCPPfast" in sys.modules else "default"  # EXUDYN_MODULE=fast: no range checks
+# The engine's module: EXUDYN_MODULE=fast selects one without range checks.
+MODULE = "fast" if "exudyn.exudynCPPfast" in sys.modules else "default"
 items: Any = import_module("exudyn.itemInterface")
 symbolic_function: Any = import_module("exudyn.advancedUtilities").CreateSymbolicUserFunction
 
 
-def reset_with(owner: Any, container: Any) -> None:
+def reset_when_unused(owner: Any, container: Any) -> None:
     """Reset the system container when `owner` is no longer used: until then the engine keeps its memory allocated."""
     weakref.finalize(owner, container.Reset).atexit = False

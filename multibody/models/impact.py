@@ -2,10 +2,15 @@
 Velocities after an impact of the platform on spheres that had left it.
 
 An impact takes no time: positions stay, velocities jump. The impulses obey Newton's law of restitution along the
-normals and Coulomb's law across them, both stated with the velocities after the impact (Moreau). Spheres that carry
-load may push, too, and not pull. Bars are rigid in tension and bending, as they are beside the contacts' stiffness,
+normals and Coulomb's law across them, both stated with the velocities after the impact (Moreau 1988). Spheres that
+carry load may push, too, and not pull. Bars are rigid in tension and bending, as they are compared with the contacts,
 and give way in shear and twist. Bars with an axial stiffness of their own give way in every direction. The result does
 not depend on the stiffness of the contacts.
+
+References
+----------
+Moreau, J. J. (1988). Unilateral contact and dry friction in finite freedom dynamics. In: Nonsmooth Mechanics and
+Applications, CISM Courses and Lectures 302, 1-82.
 """
 
 from __future__ import annotations
@@ -16,94 +21,117 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import orth
 
-from multibody.models.depressions import Depressions, angular_velocity_matrix, rotation
+from multibody.models.depressions import Depressions, angular_velocity_matrix, rotation_matrices
+from multibody.models.engine import BODY_COORDINATES
 from reference.problem import DryFriction
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-PER_BODY = 6
-MAX_SWEEPS, SWEEP_TOLERANCE = 2000, 1e-11  # over the contacts; change of a velocity in one over the largest before
-OPENING_SPEED = 1e-5  # units of velocity: contacts that separate faster are open
+# Largest number of sweeps over the contacts, and the change of a velocity in one, over the largest before the impact,
+# at which they end.
+MAX_SWEEPS, SWEEP_TOLERANCE = 2000, 1e-11
+
+# Speed in units of velocity beyond which contacts that separate are open.
+OPENING_SPEED = 1e-5
 
 
 @dataclass(frozen=True)
 class ImpactLaw:
-    """What an impact depends on, in units of the model."""
+    """
+    Law of impact of a platform with bodies on links, in units of the model.
+
+    Attributes:
+    - masses: (N,) array.
+    - inertias, axes: Moments of inertia about the axes of each body, and these axes at rest, columns, (N, 3), (N, 3,
+      3).
+    - centers: Centers of mass at rest, from the axis on which the links stand, (N, 3).
+    - friction: Law of the slip speed before the impact.
+    - corner: Slip speed below which the coefficient is reduced linearly.
+    - rigid: Links that are rigid in tension and bending, (N - 1,).
+    """
 
     depressions: Depressions
-    masses: Array  # (N,)
-    inertias: Array  # (N, 3), about the axes of each body
-    axes: Array  # (N, 3, 3), these axes at rest, columns
-    centers: Array  # (N, 3), of mass, at rest, from the axis on which the links stand
+    masses: Array
+    inertias: Array
+    axes: Array
+    centers: Array
     restitution: float
-    friction: DryFriction  # of the slip speed before the impact, in units of the model
-    corner: float  # slip speed under which the coefficient is reduced linearly
-    rigid: Mask  # (N - 1,), links that are rigid in tension and bending
+    friction: DryFriction
+    corner: float
+    rigid: Mask
 
-    def after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
-        """Velocities (n,) after an impact, and which contacts (K,) are open then, from those closed and those hit."""
-        count = PER_BODY * len(self.masses)
-        turning = self._turning(coordinates)
+    def velocities_after(self, coordinates: Array, velocities: Array, closed: Mask, hit: Mask) -> tuple[Array, Mask]:
+        """Return velocities (n,) after an impact and the contacts (K,) that are open, from those closed and hit."""
+        # The impulses of all struck contacts act on the bodies at once, through the inverse of the mass matrix in which
+        # rigid links hold (Delassus' operator in the axes of the contacts). Contacts that are hit rebound by Newton's
+        # restitution, and closed ones may push without rebounding. Friction and unilateral contact are solved for the
+        # velocities after the impact, by sweeps over the contacts (`_solve_impulses`). The spheres are too light to
+        # matter: one that springs up does not push the platform, and one that is hit follows it.
+        count = BODY_COORDINATES * len(self.masses)
+        turning = self._velocity_matrix(coordinates)
         speeds = turning @ velocities[:count]
-        normals, jacobian = self.depressions.motion_at_contacts(coordinates)
+        normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         struck = np.flatnonzero(closed | hit)
-        axes = _in_contact_axes(normals[struck])
+        axes = _contact_axes(normals[struck])
         rows = np.zeros((len(struck), 3, count))
-        rows[:, :, :PER_BODY] = axes @ jacobian[struck]
+        rows[:, :, :BODY_COORDINATES] = axes @ jacobian[struck]
         before = rows @ speeds
         if len(self.depressions.vertical):
             upward = velocities[self.depressions.vertical[struck]]
-            # a sphere that springs up is too light to push the platform
             upward[hit[struck]] = np.minimum(upward[hit[struck]], 0.0)
             before -= axes[:, :, 2] * upward[:, None]
-        response = self._response(coordinates)
+        response = self._impulse_response(coordinates)
         flat = rows.reshape(-1, count)
         delassus = flat @ response @ flat.T
         rebound = np.where(hit[struck], -self.restitution * np.minimum(before[:, 0], 0.0), 0.0)
-        impulses = self._impulses(delassus, before, rebound)
+        impulses = self._solve_impulses(delassus, before, rebound)
         after = speeds + response @ flat.T @ impulses.ravel()
         normal_speed = before[:, 0] + (delassus @ impulses.ravel()).reshape(-1, 3)[:, 0]
         is_open = ~(closed | hit)
         is_open[struck] = normal_speed > OPENING_SPEED
         changed = velocities.copy()
         changed[:count] = np.linalg.solve(turning, after)
-        return self.with_spheres_along(coordinates, changed, hit & ~is_open), is_open
+        return self.carry_spheres_along(coordinates, changed, hit & ~is_open), is_open
 
-    def with_spheres_along(self, coordinates: Array, velocities: Array, hit: Mask) -> Array:
-        """Velocities (n,) with those of the spheres that the platform hits, (K,), which are light and follow it."""
+    def carry_spheres_along(self, coordinates: Array, velocities: Array, hit: Mask) -> Array:
+        """Return velocities (n,) with those of the light spheres that the platform hits, (K,): they follow it."""
         vertical = self.depressions.vertical
         if not len(vertical):
             return velocities
-        normals, _ = self.depressions.motion_at_contacts(coordinates)
+        normals, _ = self.depressions.contact_normals_and_jacobian(coordinates)
         _, leaving = self.normal_speeds(coordinates, velocities)
         followed = velocities.copy()
         followed[vertical[hit]] += (leaving / normals[:, 2])[hit]
         return followed
 
-    def with_bars_at_rest(self, coordinates: Array, before: Array, after: Array, lags: Array) -> Array:
+    def relax_bars(self, coordinates: Array, before: Array, after: Array, lags: Array) -> Array:
         """
-        Coordinates (n,) behind an impact that changed velocities (n,), at which no bar pushes for its damper's sake.
+        Return coordinates (n,) behind an impact that changed velocities (n,), at which no bar's damper pushes.
 
         The engine's damper of a link sees the speed of its two ends along the bars, and takes the turning of bars with
         an offset for stretching. A small stretch makes up for that; it jumps with the velocities. lags: (N - 1,),
         damping over stiffness along the bars.
         """
-        count = PER_BODY * len(self.masses)
-        turned = rotation(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
-        jump = (self._turning(coordinates) @ (after - before)[:count]).reshape(-1, 2, 3)
+        count = BODY_COORDINATES * len(self.masses)
+        turned = rotation_matrices(coordinates[:count].reshape(-1, BODY_COORDINATES)[:, 3:])
+        jump = (self._velocity_matrix(coordinates) @ (after - before)[:count]).reshape(-1, 2, 3)
         shifted = coordinates.copy()
         for link, lag in enumerate(lags):
             along, levers = turned[link][:, 2], self._levers(link, turned)
             ends = [jump[body, 0] + np.cross(jump[body, 1], lever) for body, lever in enumerate(levers, start=link)]
             for body in range(link + 1, len(self.masses)):
-                shifted[PER_BODY * body : PER_BODY * body + 3] -= lag * float(along @ (ends[1] - ends[0])) * along
+                shifted[BODY_COORDINATES * body : BODY_COORDINATES * body + 3] -= (
+                    lag * float(along @ (ends[1] - ends[0])) * along
+                )
         return shifted
 
     def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
         """Speeds (K,) at which the platform leaves spheres that hold still or give way, and spheres as they move."""
-        platform = (self._turning(coordinates) @ velocities[: PER_BODY * len(self.masses)])[:PER_BODY]
-        normals, jacobian = self.depressions.motion_at_contacts(coordinates)
+        platform = (self._velocity_matrix(coordinates) @ velocities[: BODY_COORDINATES * len(self.masses)])[
+            :BODY_COORDINATES
+        ]
+        normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         leaving: Array = np.einsum("ki,kij,j->k", normals, jacobian, platform)
         if not len(self.depressions.vertical):
             return leaving, leaving
@@ -112,57 +140,59 @@ class ImpactLaw:
 
     def gap_rates(self, coordinates: Array) -> Array:
         """Rates (K, n) of the gaps over the engine's velocities, at coordinates (n,)."""
-        normals, jacobian = self.depressions.motion_at_contacts(coordinates)
+        normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         rates = np.zeros((len(normals), len(coordinates)))
-        rates[:, :PER_BODY] = np.einsum("ki,kij->kj", normals, jacobian)
-        rates[:, :PER_BODY] = rates[:, :PER_BODY] @ self._turning(coordinates)[:PER_BODY, :PER_BODY]
+        rates[:, :BODY_COORDINATES] = np.einsum("ki,kij->kj", normals, jacobian)
+        rates[:, :BODY_COORDINATES] = (
+            rates[:, :BODY_COORDINATES] @ self._velocity_matrix(coordinates)[:BODY_COORDINATES, :BODY_COORDINATES]
+        )
         if len(self.depressions.vertical):
             rates[np.arange(len(normals)), self.depressions.vertical] = -normals[:, 2]
         return rates
 
     def stiff_rates(self, coordinates: Array, closed: Mask) -> Array:
         """Rates (s, 6 N) of heave and tilt on closed contacts and of rigid links, over the engine's velocities."""
-        count = PER_BODY * len(self.masses)
+        count = BODY_COORDINATES * len(self.masses)
         ring = self.depressions.ring[closed]
         heave_and_tilt = orth(np.column_stack([np.ones(len(ring)), ring])).T if len(ring) else np.empty((0, 0))
-        turned = rotation(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
-        bars = self._bars(coordinates, turned) @ self._turning(coordinates)
+        turned = rotation_matrices(coordinates[:count].reshape(-1, BODY_COORDINATES)[:, 3:])
+        bars = self._bar_rates(coordinates, turned) @ self._velocity_matrix(coordinates)
         return np.vstack([heave_and_tilt @ self.gap_rates(coordinates)[closed, :count], bars])
 
-    def _turning(self, coordinates: Array) -> Array:
+    def _velocity_matrix(self, coordinates: Array) -> Array:
         """Matrix (6 N, 6 N) that makes velocities and angular velocities of the bodies of the engine's velocities."""
-        count = PER_BODY * len(self.masses)
+        count = BODY_COORDINATES * len(self.masses)
         turning = np.eye(count)
-        for first in range(0, count, PER_BODY):
-            angles = slice(first + 3, first + PER_BODY)
+        for first in range(0, count, BODY_COORDINATES):
+            angles = slice(first + 3, first + BODY_COORDINATES)
             turning[angles, angles] = angular_velocity_matrix(coordinates[angles])
         return turning
 
-    def _response(self, coordinates: Array) -> Array:
+    def _impulse_response(self, coordinates: Array) -> Array:
         """Change of the velocities over an impulse on them, (6 N, 6 N), with bars that do not stretch or bend."""
-        count = PER_BODY * len(self.masses)
+        count = BODY_COORDINATES * len(self.masses)
         inverse = np.zeros((count, count))
-        turned = rotation(coordinates[:count].reshape(-1, PER_BODY)[:, 3:])
+        turned = rotation_matrices(coordinates[:count].reshape(-1, BODY_COORDINATES)[:, 3:])
         for body, (mass, inertia, axes) in enumerate(zip(self.masses, self.inertias, turned @ self.axes)):
-            place = slice(PER_BODY * body, PER_BODY * body + 3)
-            angles = slice(PER_BODY * body + 3, PER_BODY * (body + 1))
+            place = slice(BODY_COORDINATES * body, BODY_COORDINATES * body + 3)
+            angles = slice(BODY_COORDINATES * body + 3, BODY_COORDINATES * (body + 1))
             inverse[place, place] = np.eye(3) / mass
             inverse[angles, angles] = axes / inertia @ axes.T
-        bars = self._bars(coordinates, turned)
+        bars = self._bar_rates(coordinates, turned)
         if not len(bars):
             return inverse
         held = inverse @ bars.T
         response: Array = inverse - held @ np.linalg.solve(bars @ held, held.T)
         return response
 
-    def _bars(self, coordinates: Array, turned: Array) -> Array:
+    def _bar_rates(self, coordinates: Array, turned: Array) -> Array:
         """Rates of stretching and bending of the rigid links over the velocities of the bodies, three rows of each."""
         count = len(self.masses)
-        rows = np.zeros((3 * (count - 1), PER_BODY * count))
-        places = coordinates[: PER_BODY * count].reshape(-1, PER_BODY)[:, :3].copy()
+        rows = np.zeros((3 * (count - 1), BODY_COORDINATES * count))
+        places = coordinates[: BODY_COORDINATES * count].reshape(-1, BODY_COORDINATES)[:, :3].copy()
         places += self.centers
         for link in range(count - 1):
-            below, above = PER_BODY * link, PER_BODY * (link + 1)
+            below, above = BODY_COORDINATES * link, BODY_COORDINATES * (link + 1)
             levers = self._levers(link, turned)
             shift = places[link + 1] + levers[1] - places[link] - levers[0]
             across, along = turned[link][:, :2].T, turned[link][:, 2]
@@ -177,13 +207,17 @@ class ImpactLaw:
         return rows[np.repeat(self.rigid, 3)]
 
     def _levers(self, link: int, turned: Array) -> tuple[Array, Array]:
-        """From the centers of two neighbors, turned by (N, 3, 3), to the ends (3,) of the link between them."""
+        """Levers from the centers of two neighbors, turned by (N, 3, 3), to the ends (3,) of the link between them."""
         below, above = self.centers[link : link + 2]
         half = 0.5 * (above[2] - below[2])
         return turned[link] @ [-below[0], -below[1], half], turned[link + 1] @ [-above[0], -above[1], -half]
 
-    def _impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
-        """Impulses (K, 3), along the normal and across it, by sweeps; rebound: least normal speed afterwards."""
+    def _solve_impulses(self, delassus: Array, before: Array, rebound: Array) -> Array:
+        """Solve for impulses (K, 3), normal and across, by sweeps; rebound: least normal speed (K,) afterwards."""
+        # Projected Gauss-Seidel (Jean and Moreau 1992): each contact in turn takes the impulse that its own law asks
+        # for with all others as they are. Across the normal the block of the contact is replaced by its largest
+        # eigenvalue, so that Coulomb's law, linear below the corner, is solved in closed form and sweeps do not
+        # overshoot.
         impulses = np.zeros_like(before)
         scale = float(np.abs(before).max(initial=0.0))
         friction = self.friction.at(np.hypot(before[:, 1], before[:, 2])).tolist()
@@ -207,7 +241,7 @@ class ImpactLaw:
         return impulses
 
 
-def _in_contact_axes(normals: Array) -> Array:
+def _contact_axes(normals: Array) -> Array:
     """Matrices (K, 3, 3) whose rows are the normals (K, 3) and two directions across each."""
     helper = np.where(np.abs(normals[:, :1]) < 0.5, [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
     first = np.cross(normals, helper)

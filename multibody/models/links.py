@@ -17,47 +17,64 @@ away what that damps their sum. None of them resists a motion of both bodies as 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from multibody.models.engine import exudyn, items
+from multibody.models.engine import BODY_COORDINATES, exudyn, items
 from multibody.models.units import Units
 from reference.problem import Scene
 from reference.problem.bar_links import BarLink
 
 Array = NDArray[np.float64]
 
-PER_BODY = 6  # coordinates: x, y, z of the center of mass and three rotations
-MAX_BAR_STIFFNESS = 1e7  # of bars in tension, weights over rho, and in bending: as good as rigid
-ROD = 100.0  # length of the rods of dampers, in units of length; longer ones round, and mislead the Jacobian
-LINK_COMPLIANCE_RATIO = 10.0  # of a bar in tension (and, times rho^2, in bending) over the contact, under one force
+# Largest stiffness of bars in tension, weights over rho, and in bending: as good as rigid.
+MAX_BAR_STIFFNESS = 1e7
+
+# Length of the rods of dampers, in units of length; longer ones round, and mislead the Jacobian.
+ROD = 100.0
+
+# Compliance of a stiff link in tension (and, times rho^2, in bending) over that of the contact, under one force.
+LINK_COMPLIANCE_RATIO = 10.0
+
+
+class RigidBodies(NamedTuple):
+    """Bodies one above the other: the engine's numbers, masses (N,), centers of mass (N, 3) in units of the model."""
+
+    numbers: list[Any]
+    masses: Array
+    centers: Array
 
 
 @dataclass(frozen=True)
 class Link:
-    """A link between neighbors, in units of the model."""
+    """
+    A link between neighbors, in units of the model.
+
+    carried: mass above it, and that mass times the place x, y of its center, (3,). shear: stiffness, (2, 2). twist:
+    stiffness against twist. bars: those that give way in tension and bending; None where these are stiff.
+    """
 
     connector: Any
-    carried: Array  # (3,), mass above it, and that mass times the place x, y of its center
-    shear: Array  # (2, 2), stiffness
-    twist: float  # stiffness against twist
-    bars: BarLink | None = None  # that give way in tension and bending; None: these are stiff
+    carried: Array
+    shear: Array
+    twist: float
+    bars: BarLink | None = None
 
     def set_stiffness(self, mbs: Any, penetration: float) -> None:
-        """Stiffness of a link that is stiff beside contacts of this penetration; bars that give way have their own."""
+        """Set the stiffness of a stiff link for contacts of this penetration; bars that give way have their own."""
         if self.bars is None:
             stiff = 1.0 / (LINK_COMPLIANCE_RATIO * penetration)
             set_link_stiffness(mbs, self.connector, self.carried, self.shear, self.twist, stiff)
 
     def sinking(self, penetration: float) -> float:
-        """How far a stiff link gives way along its bars under the weight on it; 0 for bars that give way."""
+        """Shortening of a stiff link along its bars under the weight on it; 0 for bars that give way."""
         return LINK_COMPLIANCE_RATIO * penetration * float(self.carried[0]) if self.bars is None else 0.0
 
     def lag(self, penetration: float) -> float:
-        """Damping over stiffness along a link that is stiff; 0 for bars that give way."""
+        """Damping over stiffness along a stiff link, in units of time; 0 for bars that give way."""
         if self.bars is not None:
             return 0.0
         return float(2.0 * np.sqrt(self.carried[0] * LINK_COMPLIANCE_RATIO * penetration))
@@ -67,32 +84,34 @@ def add_links(
     mbs: Any,
     scene: Scene,
     units: Units,
-    bodies: list[Any],
-    masses: Array,
-    centers: Array,
+    bodies: RigidBodies,
     stiffness: Array,
     damping: Array,
     square_distance: float,
 ) -> list[Link]:
-    """Links between neighbors. stiffness, damping: in shear, (N - 1, 2, 2). Supports so far from the axis, squared."""
+    """
+    Add the links between neighbors.
+
+    stiffness, damping: in shear, (N - 1, 2, 2). square_distance: mean square of the supports' distance from the axis.
+    """
     links = []
     for number, (bars, shear, damper) in enumerate(zip(scene.bar_links, stiffness, damping)):
-        above = masses[number + 1 :]
-        carried = np.array([above.sum(), *(above @ centers[number + 1 :, :2])])
-        neighbors, places = bodies[number : number + 2], centers[number : number + 2]
+        above = bodies.masses[number + 1 :]
+        carried = np.array([above.sum(), *(above @ bodies.centers[number + 1 :, :2])])
+        neighbors, places = bodies.numbers[number : number + 2], bodies.centers[number : number + 2]
         connector = add_link(mbs, neighbors, places, damper)
         if bars is None:
-            twist = _twist(scene, number, units, shear, square_distance)
+            twist = _twist_stiffness(scene, number, units, shear, square_distance)
             links.append(Link(connector, carried, shear, twist))
             continue
-        own = _in_units(bars, units)
+        own = _bars_in_units(bars, units)
         lag = float(np.trace(damper) / np.trace(shear))
         _set_bars(mbs, connector, neighbors, places, carried, own, lag)
         links.append(Link(connector, carried, own.shear * np.eye(2), own.torsion, own))
     return links
 
 
-def _twist(scene: Scene, number: int, units: Units, shear: Array, square_distance: float) -> float:
+def _twist_stiffness(scene: Scene, number: int, units: Units, shear: Array, square_distance: float) -> float:
     """Stiffness against twist of a link that is stiff otherwise, of bars that stand where the supports do."""
     bars, swaying = scene.bodies[number + 1].bars, float(np.diag(shear).mean())
     if bars is None:
@@ -102,7 +121,8 @@ def _twist(scene: Scene, number: int, units: Units, shear: Array, square_distanc
     return square_spread * swaying + torsion / (units.force * units.length)
 
 
-def _in_units(bars: BarLink, units: Units) -> BarLink:
+def _bars_in_units(bars: BarLink, units: Units) -> BarLink:
+    """Return bars in units of the model, no stiffer than the engine resolves."""
     force, moment = units.force / units.length, units.force * units.length
     return replace(
         bars,
@@ -116,37 +136,38 @@ def _in_units(bars: BarLink, units: Units) -> BarLink:
 
 
 def add_link(mbs: Any, bodies: list[Any], centers: Array, damping: Array) -> Any:
-    """The link half-way between two centers of mass (2, 3), on the vertical axis; damping: in shear, (2, 2)."""
+    """Add a link half-way between two centers of mass (2, 3), on the vertical axis; damping: in shear, (2, 2)."""
     values, directions = np.linalg.eigh(damping)
     for value, direction in zip(values, directions.T):
         add_damper(mbs, bodies, centers, np.append(direction, 0.0), value)
     connector = items.ObjectConnectorRigidBodySpringDamper(
-        markerNumbers=_ends(mbs, bodies, centers, np.zeros(3), 0.0), useIntrinsicFormulation=True
+        markerNumbers=_add_end_markers(mbs, bodies, centers, np.zeros(3), 0.0), useIntrinsicFormulation=True
     )
     return mbs.AddObject(connector)
 
 
 def add_damper(mbs: Any, bodies: list[Any], centers: Array, direction: Array, damping: float) -> None:
-    """A damper along a `direction` (3,) between the ends of a link."""
+    """Add a damper along a `direction` (3,) between the ends of a link."""
     if damping <= 0.0:
         return
-    forth, back = (_ends(mbs, bodies, centers, sign * ROD * direction, 0.5) for sign in (1.0, -1.0))
+    forth, back = (_add_end_markers(mbs, bodies, centers, sign * ROD * direction, 0.5) for sign in (1.0, -1.0))
     for ends in (forth, back):
         rod = items.ObjectConnectorSpringDamper(markerNumbers=ends, referenceLength=ROD, damping=0.5 * damping)
         mbs.AddObject(rod)
+    # a reference length of -1 turns the sign of the rope's damping, and a regularization force below zero lets it push
     rope = items.ObjectConnectorReevingSystemSprings(
         markerNumbers=[*forth, *back[::-1]],
-        referenceLength=-1.0,  # takes the sign
+        referenceLength=-1.0,
         dampingPerLength=0.25 * damping,
-        regularizationForce=-1.0,  # it may push
+        regularizationForce=-1.0,
         sheavesAxes=exudyn.Vector3DList([[0.0, 0.0, 1.0]] * 4),
         sheavesRadii=[0.0] * 4,
     )
     mbs.AddObject(rope)
 
 
-def _ends(mbs: Any, bodies: list[Any], centers: Array, rod: Array, below: float) -> list[Any]:
-    """Markers on two neighbors at the ends of a rod (3,), of which this share lies below half-way up on the axis."""
+def _add_end_markers(mbs: Any, bodies: list[Any], centers: Array, rod: Array, below: float) -> list[Any]:
+    """Add markers on two neighbors at the ends of a rod (3,), of which a share lies below half-way up on the axis."""
     half = 0.5 * (centers[1, 2] - centers[0, 2]) * np.array([0.0, 0.0, 1.0])
     axis = [[-center[0], -center[1], 0.0] for center in centers]
     places = (axis[0] + half - below * rod, axis[1] - half + (1.0 - below) * rod)
@@ -186,7 +207,7 @@ def _set_bars(
     if bars.pendulum:
         stiffness[2] = offset[2] = 0.0
         rod = items.ObjectConnectorSpringDamper(
-            markerNumbers=_ends(mbs, bodies, centers, np.array([0.0, 0.0, bars.pendulum]), 0.5),
+            markerNumbers=_add_end_markers(mbs, bodies, centers, np.array([0.0, 0.0, bars.pendulum]), 0.5),
             referenceLength=bars.pendulum + bars.load / bars.tension,
             stiffness=bars.tension,
             damping=lag * bars.tension,
@@ -199,24 +220,24 @@ def _set_bars(
     mbs.SetObjectParameter(connector, "offset", offset)
 
 
-def fastest_of_bars(links: list[Link], masses: Array, tensors: Array, centers: Array) -> float:
+def fastest_bar_frequency(links: list[Link], masses: Array, tensors: Array, centers: Array) -> float:
     """Largest angular frequency that bars which give way make of bodies held by nothing else; 0 without bars."""
     if all(link.bars is None for link in links):
         return 0.0
-    size = PER_BODY * len(masses)
+    size = BODY_COORDINATES * len(masses)
     inertia, stiffness = np.zeros((2, size, size))
     for body, (mass, tensor) in enumerate(zip(masses, tensors)):
-        first = PER_BODY * body
+        first = BODY_COORDINATES * body
         inertia[first : first + 3, first : first + 3] = mass * np.eye(3)
         inertia[first + 3 : first + 6, first + 3 : first + 6] = tensor
     for number, link in enumerate(links):
         if link.bars is None:
             continue
         half = 0.5 * (centers[number + 1, 2] - centers[number, 2])
-        apart = np.zeros((PER_BODY, size))
+        apart = np.zeros((BODY_COORDINATES, size))
         for body, sign in ((number, -1.0), (number + 1, 1.0)):
-            lever, first = np.array([*-centers[body, :2], -sign * half]), PER_BODY * body
-            apart[:, first : first + PER_BODY] = sign * np.eye(PER_BODY)
+            lever, first = np.array([*-centers[body, :2], -sign * half]), BODY_COORDINATES * body
+            apart[:, first : first + BODY_COORDINATES] = sign * np.eye(BODY_COORDINATES)
             apart[:3, first + 3 : first + 6] = -sign * np.cross(lever, np.eye(3))
         bars = link.bars
         own = np.array([bars.shear, bars.shear, bars.tension, bars.bending, bars.bending, bars.torsion])

@@ -13,53 +13,53 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from multibody.models.contact import ContactLaw
 from multibody.models.engine import exudyn, items
 from multibody.models.units import Units
 from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
-MIN_EXTENT = 1e4  # of the triangle, in units of length: its normal is known to 1e-16 of that over the sphere's radius
-EXTENT_MARGIN = 2.0  # times the way that the loading and the start alone may take the platform
+# Least extent of the triangle, in units of length: its normal is known to 1e-16 of that over the sphere's radius.
+MIN_EXTENT = 1e4
+
+# Factor of the extent over the distance that the loading and the start alone may take the platform.
+EXTENT_MARGIN = 2.0
 
 
-def plane_contact(
-    sphere: Any, plane: Any, node: Any, radius: float, height: float, friction: float, threshold: float
-) -> Any:
-    """The contact of a sphere with the plane at `height` above the marker `plane`."""
+def make_plane_contact(sphere: Any, plane: Any, node: Any, radius: float, height: float, law: ContactLaw) -> Any:
+    """Make the contact of a sphere with the plane at `height` above the marker `plane`."""
     return items.ObjectContactSphereTriangle(
         markerNumbers=[sphere, plane],
         nodeNumber=node,
         sphereRadius=radius,
-        trianglePoints=_triangle(MIN_EXTENT, height),
+        trianglePoints=_make_triangle(MIN_EXTENT, height),
         includeEdges=0,
-        dynamicFriction=friction,
-        frictionProportionalZone=threshold,
+        dynamicFriction=law.friction,
+        frictionProportionalZone=law.threshold,
     )
 
 
-def set_extent(mbs: Any, contact: Any, way: float, height: float) -> None:
+def set_plane_extent(mbs: Any, contact: Any, way: float, height: float) -> None:
     """Make the triangle at `height` large enough for a platform that goes `way`, in units of length."""
-    mbs.SetObjectParameter(contact, "trianglePoints", _triangle(max(MIN_EXTENT, EXTENT_MARGIN * way), height))
+    mbs.SetObjectParameter(contact, "trianglePoints", _make_triangle(max(MIN_EXTENT, EXTENT_MARGIN * way), height))
 
 
-def farthest(scene: Scene, units: Units, coordinates: Array, velocities: Array) -> float:
-    """How far the start and the loading alone may take a body, in units of length."""
+def largest_distance_possible(scene: Scene, units: Units, coordinates: Array, velocities: Array) -> float:
+    """Bound of the distance that the start and the loading alone may take a body, in units of length."""
     end = scene.duration / units.time
     loading = 2.0 * scene.largest_acceleration / units.acceleration
     return float(np.abs(coordinates).max() + np.abs(velocities).max() * end + loading * end**2)
 
 
-def platform_on_plane(
-    offset: Array, speed: Array, ground: Array, penetration: float
-) -> tuple[Array, Array, float, float]:
-    """As `contact.platform_on_sphere`."""
+def place_on_plane(offset: Array, speed: Array, ground: Array, penetration: float) -> tuple[Array, Array, float, float]:
+    """Place the platform on the plane; arguments and results are those of `contact.place_on_sphere`."""
     pressed = penetration * float(1.0 + ground[2])
     place = np.array([*offset, penetration - pressed])
     return place, np.array([*speed, 0.0]), -pressed, float(np.hypot(*speed))
 
 
-def _triangle(extent: float, height: float) -> Any:
-    """A triangle whose center is above the origin."""
+def _make_triangle(extent: float, height: float) -> Any:
+    """Make a triangle whose center is above the origin."""
     points = [[-extent, -extent, height], [2.0 * extent, -extent, height], [-extent, 2.0 * extent, height]]
     return exudyn.Vector3DList(points)

@@ -19,7 +19,8 @@ from reference.problem import Scene
 
 Array = NDArray[np.float64]
 
-KNOT_TOLERANCE = 1e-6  # of the shortest interval: this close to a knot is on it
+# Distance from a knot, in shortest intervals, within which an instant is on it.
+KNOT_TOLERANCE = 1e-6
 
 
 class RecordedGround:
@@ -39,28 +40,28 @@ class RecordedGround:
         mbs.SetPreStepUserFunction(self.before_step)
 
     def set_phase(self, phase: Any) -> None:
-        """Nothing: a record has no phases."""
+        """Do nothing: a record has no phases."""
 
     def begin(self, time: float) -> None:
         """Make ready for a run that begins at this instant."""
         self._interval = -1
-        self._enter(int(np.searchsorted(self._time, time + self.near, side="right")))
+        self._enter_interval(int(np.searchsorted(self._time, time + self.near, side="right")))
 
     def shakes(self, axis: int) -> bool:
-        """Whether the plate is accelerated along `axis`."""
+        """Return whether the plate is accelerated along `axis`."""
         return bool(self._samples[:, axis].any())
 
-    def along(self, axis: int, time: Any) -> Any:
+    def acceleration_along(self, axis: int, time: Any) -> Any:
         """Expression of the acceleration along `axis` at the symbolic instant `time`, inside the step being made."""
         return self._value[axis] + self._rate[axis] * (time - self._origin)
 
     def before_step(self, mbs: Any, end: float) -> bool:
         """Enter the interval of the step that ends at this instant."""
-        self._enter(int(np.searchsorted(self._time, end - self.near)))
+        self._enter_interval(int(np.searchsorted(self._time, end - self.near)))
         return True
 
-    def _enter(self, interval: int) -> None:
-        """Interval k lies between knots k - 1 and k; 0 before the first knot, where the first sample holds."""
+    def _enter_interval(self, interval: int) -> None:
+        """Set the line of interval k between knots k - 1 and k, or 0 before the first knot, where its sample holds."""
         if interval == self._interval:
             return
         self._interval, knot = interval, max(interval - 1, 0)
@@ -71,7 +72,9 @@ class RecordedGround:
 
 
 def align_steps(knots: Array, near: float, time: float, step: float, count: int) -> tuple[float, int]:
-    """Step and number of steps from `time` on, at most `step` and `count`, that end at every knot passed."""
+    """Return step and number of steps from `time` on, at most `step` and `count`, that end at every knot passed."""
+    # The gap to the next knot is divided into equal steps. Intervals of the same length behind it can share the step
+    # and the call of the engine; a longer or shorter one ends the chunk.
     place = int(np.searchsorted(knots, time + near, side="right")) if len(knots) else 0
     if place == len(knots):
         return step, count

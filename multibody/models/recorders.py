@@ -1,4 +1,4 @@
-"""Sensors of a model: everything a run is judged by, kept in the engine's memory and read back after each chunk."""
+"""Sensors of a model: all that a run is judged by, kept in the engine's memory and read back after each chunk."""
 
 from __future__ import annotations
 
@@ -14,34 +14,36 @@ def add_recorders(
     linear: list[Any],
     contact_nodes: list[Any],
     contacts: list[Any],
-    plate: Any = None,
+    plate: Any,
 ) -> Recorders:
-    """One sensor of motion of nodes and coordinates, of gap, slip, force and normal of contacts, of the plate."""
+    """Add sensors: motion of nodes and linear bodies, gap, slip, force and normal of contacts, motion of the plate."""
     kind = exudyn.OutputVariableType
 
-    def at(node: Any, quantity: Any) -> Any:
+    def sense_node(node: Any, quantity: Any) -> Any:
         sensor = items.SensorNode(nodeNumber=node, outputVariableType=quantity, storeInternal=True, writeToFile=False)
         return mbs.AddSensor(sensor)
 
-    def of(contact: Any, quantity: Any) -> Any:
+    def sense_object(contact: Any, quantity: Any) -> Any:
         sensor = items.SensorObject(
             objectNumber=contact, outputVariableType=quantity, storeInternal=True, writeToFile=False
         )
         return mbs.AddSensor(sensor)
 
-    def across(body: Any, quantity: Any) -> Any:
+    def sense_body(body: Any, quantity: Any) -> Any:
         sensor = items.SensorBody(bodyNumber=body, outputVariableType=quantity, storeInternal=True, writeToFile=False)
         return mbs.AddSensor(sensor)
 
-    def motion_of(quantity: Any) -> list[Any]:
-        return [at(node, quantity) for node in nodes] + [across(body, quantity) for body in linear]
+    def add_motion_sensors(quantity: Any) -> list[Any]:
+        return [sense_node(node, quantity) for node in nodes] + [sense_body(body, quantity) for body in linear]
 
     motion = (kind.Coordinates, kind.Coordinates_t, kind.Coordinates_tt)
     return Recorders(
-        coordinates=motion_of(kind.Coordinates),
-        velocities=motion_of(kind.Coordinates_t),
-        accelerations=motion_of(kind.Coordinates_tt),
-        contact=[at(node, kind.Coordinates) for node in contact_nodes],
-        contact_force=[of(contact, quantity) for contact in contacts for quantity in (kind.Force, kind.Director1)],
-        plate=[] if plate is None else [at(plate, quantity) for quantity in motion],
+        coordinates=add_motion_sensors(kind.Coordinates),
+        velocities=add_motion_sensors(kind.Coordinates_t),
+        accelerations=add_motion_sensors(kind.Coordinates_tt),
+        contact=[sense_node(node, kind.Coordinates) for node in contact_nodes],
+        contact_force=[
+            sense_object(contact, quantity) for contact in contacts for quantity in (kind.Force, kind.Director1)
+        ],
+        plate=[] if plate is None else [sense_node(plate, quantity) for quantity in motion],
     )

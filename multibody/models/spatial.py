@@ -31,18 +31,19 @@ from scipy.spatial import ConvexHull
 from multibody.models.contact import (
     DAMPING_RATIO,
     FORCE_ROUNDING,
+    ContactLaw,
     contact_law,
     corner_and_relaxation,
-    platform_on_sphere,
+    place_on_sphere,
     set_contact_parameters,
 )
-from multibody.models.depressions import Depressions, FlatUnderside, rotation
-from multibody.models.engine import exudyn, items
+from multibody.models.depressions import Depressions, FlatUnderside, rotation_matrices
+from multibody.models.engine import BODY_COORDINATES, exudyn, items
 from multibody.models.impact import ImpactLaw
-from multibody.models.links import PER_BODY, Link, add_links, fastest_of_bars
-from multibody.models.loading import Push, ground_of, load_on_coordinate, push
-from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
-from multibody.models.plate import plate_for
+from multibody.models.links import Link, RigidBodies, add_links, fastest_bar_frequency
+from multibody.models.loading import Push, add_coordinate_load, load_coordinates, make_ground
+from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_plane_extent
+from multibody.models.plate import add_plate
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.state import EngineState
@@ -50,9 +51,9 @@ from multibody.models.supports import (
     DETERMINATE,
     MIN_WARPING_COMPLIANCE,
     Supports,
-    fixed_supports,
-    sharing_supports,
-    sphere_nodes,
+    add_fixed_supports,
+    add_sharing_supports,
+    add_sphere_nodes,
 )
 from multibody.models.system import EngineModel
 from multibody.models.units import Units, link_damping, link_stiffness, units_of
@@ -62,58 +63,65 @@ from reference.problem.supports import ring_places
 Array = NDArray[np.float64]
 
 
-def spatial(
+def assemble_spatial(
     scene: Scene, regularization: float | None, *, loading: str = "inertial", contact_force: bool = False
 ) -> EngineModel:
     """
-    Assemble the spatial model as `translational`. Raises ValueError if the scene lacks data of supports or bodies.
+    Assemble the spatial model; arguments are those of `assemble_translational`.
+
+    Raises ValueError if the scene has no data of supports or bodies.
     """
     units = units_of(scene)
     ring, radius, centers, sizes = _geometry(scene, units)
     masses = scene.masses / units.mass
-    inertias, axes = _inertias(masses, sizes), rotation(scene.yaws[:, None] * [0.0, 0.0, 1.0])
+    inertias, axes = _inertias(masses, sizes), rotation_matrices(scene.yaws[:, None] * [0.0, 0.0, 1.0])
     distances = np.hypot(*ring.T) if isinstance(scene.isolator.supports, list) else np.hypot(*ring[:1].T)
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
-    nodes, bodies = _boxes(mbs, masses, centers, inertias, axes)
-    along = axes[1:, :2, :2]  # of every link
+    nodes, numbers = _add_boxes(mbs, masses, centers, inertias, axes)
+    bodies = RigidBodies(numbers, masses, centers)
+    directions = axes[1:, :2, :2]
     shear, damping = (
-        along @ (values[:, :, None] * along.swapaxes(1, 2))
+        directions @ (values[:, :, None] * directions.swapaxes(1, 2))
         for values in (link_stiffness(scene, units), link_damping(scene, units))
     )
     square_distance = float((distances**2).mean())
-    links = add_links(mbs, scene, units, bodies, masses, centers, shear, damping, square_distance)
-    ground = ground_of(mbs, scene, units)
+    links = add_links(mbs, scene, units, bodies, shear, damping, square_distance)
+    ground = make_ground(mbs, scene, units)
     bearings = scene.isolator.support_stiffness
     bearing_penetration = 0.0 if bearings is None else units.force / (len(ring) * bearings * units.length)
     shared = not bearing_penetration and len(ring) > DETERMINATE
-    spheres = sphere_nodes(mbs, ring, loading == "plate") if shared else []
-    plate = plate_for(mbs, loading, ground)
-    supports = sharing_supports(mbs, plate, ring, spheres) if shared else fixed_supports(mbs, plate, ring)
-    friction, threshold = contact_law(scene, regularization, units)
+    spheres = add_sphere_nodes(mbs, ring, loading == "plate") if shared else []
+    plate = add_plate(mbs, loading, ground)
+    supports = add_sharing_supports(mbs, plate, ring, spheres) if shared else add_fixed_supports(mbs, plate, ring)
+    engine_law = contact_law(scene, regularization, units)
     depressions = np.column_stack([ring, np.zeros(len(ring))]) - centers[0]
-    contacts, contact_nodes = _contacts(
-        mbs, supports.markers, bodies[0], depressions, radius, friction, threshold, scene.flat
+    contacts, contact_nodes = _add_contacts(
+        mbs, supports.markers, numbers[0], depressions, radius, engine_law, scene.flat
     )
-    _weights(mbs, nodes, masses)
+    _add_weights(mbs, nodes, masses)
     pushed = [Push(node, axis, float(mass), axis) for node, mass in zip(nodes, masses) for axis in range(3)]
-    expressions = [*plate.expressions] if plate.moves else push(mbs, ground, pushed)
+    expressions = [*plate.expressions] if plate.moves else load_coordinates(mbs, ground, pushed)
     forces = contacts if contact_force or scene.dry_friction.by_load else []
     recorders = add_recorders(mbs, [*nodes, *supports.nodes], supports.springs, contact_nodes, forces, plate.node)
     mbs.Assemble()
 
-    index = PER_BODY * np.arange(len(masses))[:, None] + np.arange(3)
+    index = BODY_COORDINATES * np.arange(len(masses))[:, None] + np.arange(3)
     constant = scene.dry_friction.constant
-    varying = None if constant else SpeedFriction(mbs, scene, units, threshold, contacts, ground)
-    parts = _Parts(scene, mbs, units, index, contacts, links, supports, radius, bearing_penetration)
+    varying = None if constant else SpeedFriction(mbs, scene, units, engine_law.threshold, contacts, ground)
+    parts = _SpatialSystem(scene, mbs, units, index, contacts, links, supports, radius, bearing_penetration)
     vertical = parts.body_coordinates + supports.vertical
     under_platform = (FlatUnderside if scene.flat else Depressions)(ring, centers[0], radius, vertical)
     restitution = scene.isolator.restitution or 0.0
-    law = DryFriction(friction, friction, 0.0) if varying is None else varying.law
+    law = DryFriction(engine_law.friction, engine_law.friction, 0.0) if varying is None else varying.law
     rigid = np.array([link.bars is None for link in links], dtype=bool)
-    impact_law = ImpactLaw(under_platform, masses, inertias, axes, centers, restitution, law, threshold, rigid)
+    impact_law = ImpactLaw(
+        under_platform, masses, inertias, axes, centers, restitution, law, engine_law.threshold, rigid
+    )
     tensors = (axes * inertias[:, None, :]) @ axes.swapaxes(1, 2)
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
+    # positions round in proportion to the distance, and so do the moments of the forces that they make
+    farthest_place = max(1.0, float(distances.max()), float(centers[:, 2].max()))
     return EngineModel(
         mbs=mbs,
         units=units,
@@ -125,8 +133,7 @@ def spatial(
         settle=parts.settle,
         corner=corner,
         relaxation=relaxation,
-        # of places, and of their moments
-        rounding=FORCE_ROUNDING * max(1.0, float(distances.max()), float(centers[:, 2].max())) ** 2,
+        rounding=FORCE_ROUNDING * farthest_place**2,
         moving_plate=plate.moves,
         carried=np.vstack([index, parts.body_coordinates + supports.carried]),
         references=(container, expressions),
@@ -138,52 +145,57 @@ def spatial(
         critical_tilt=_critical_tilt(ring, radius, masses, centers),
         impact=None if bearing_penetration else impact_law,
         bar_lags=parts.bar_lags,
-        set_open=parts.set_open,
+        take_out_open_contacts=parts.take_out_open_contacts,
         friction=varying,
         rim=np.inf if scene.flat else 1.0,
-        fastest_of_bars=fastest_of_bars(links, masses, tensors, centers),
+        fastest_bar_frequency=fastest_bar_frequency(links, masses, tensors, centers),
     )
 
 
 @dataclass(frozen=True)
-class _Parts:
-    """What can be set in the assembled system, and how it starts; in units of the model."""
+class _SpatialSystem:
+    """
+    The parts of the assembled system that can be set, and its start; in units of the model.
+
+    index: of the coordinates that move the bodies, (N, 3). radius: of the spheres. bearing_penetration: under the
+    weight, as the scene's bearings state it, or 0.
+    """
 
     scene: Scene
     mbs: Any
     units: Units
-    index: NDArray[np.int_]  # (N, 3), of the coordinates that move the bodies
+    index: NDArray[np.int_]
     contacts: list[Any]
     links: list[Link]
     supports: Supports
-    radius: float  # of the spheres
-    bearing_penetration: float  # by the weight, as the scene's bearings state it, or 0
+    radius: float
+    bearing_penetration: float
 
     @property
     def body_coordinates(self) -> int:
         """Number of the coordinates of the bodies, which come before those of the spheres."""
-        return PER_BODY * len(self.index)
+        return BODY_COORDINATES * len(self.index)
 
     def set_contact(self, penetration: float, warping_compliance: float = MIN_WARPING_COMPLIANCE) -> None:
-        """See `EngineModel`."""
-        self._press(penetration)
+        """Set the penetration of the contacts under the weight and the compliance of the supports against warping."""
+        self._set_penetration(penetration)
         self.supports.set_stiffness(penetration, warping_compliance)
         for link in self.links:
             link.set_stiffness(self.mbs, penetration)
 
     def bar_lags(self, penetration: float) -> Array:
-        """See `EngineModel`."""
+        """Damping over stiffness of each link along its bars, (N - 1,), for a penetration of the contacts."""
         return np.array([link.lag(penetration) for link in self.links])
 
-    def set_open(self, is_open: NDArray[np.bool_], penetration: float) -> None:
-        """See `EngineModel`."""
-        self._press(penetration)
+    def take_out_open_contacts(self, is_open: NDArray[np.bool_], penetration: float) -> None:
+        """Take open contacts (K,) out of the engine, and put the others in with their penetration."""
+        self._set_penetration(penetration)
         for contact in compress(self.contacts, is_open):
             self.mbs.SetObjectParameter(contact, "contactStiffness", 0.0)
             self.mbs.SetObjectParameter(contact, "contactDamping", 0.0)
 
-    def _press(self, penetration: float) -> None:
-        """Stiffness, damping and radii of all contacts, for their penetration under the weight."""
+    def _set_penetration(self, penetration: float) -> None:
+        """Set stiffness, damping and radii of all contacts for their penetration under the weight."""
         pressed = self.bearing_penetration or penetration
         radii = self.radius + pressed if self.scene.flat else [self.radius + pressed, self.radius + 1.0]
         stated = self.scene.isolator.support_damping
@@ -192,7 +204,7 @@ class _Parts:
             set_contact_parameters(self.mbs, contact, radii, pressed, len(self.contacts), ratio)
 
     def start(self, initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        """See `EngineModel`."""
+        """Return the state for an initial state (None: at rest), the plate's acceleration, m/s^2, and a penetration."""
         units, index = self.units, self.index
         coordinates, velocities = np.zeros((2, self.body_coordinates + self.supports.coordinates))
         if initial is not None:
@@ -201,10 +213,10 @@ class _Parts:
         plate_acceleration = ground_acceleration / units.acceleration
         pressed = self.bearing_penetration or penetration
         if self.scene.flat:
-            way = farthest(self.scene, units, coordinates, velocities)
+            way = largest_distance_possible(self.scene, units, coordinates, velocities)
             for contact in self.contacts:
-                set_extent(self.mbs, contact, way, 1.0 + self.radius)
-        on_surface = platform_on_plane if self.scene.flat else platform_on_sphere
+                set_plane_extent(self.mbs, contact, way, 1.0 + self.radius)
+        on_surface = place_on_plane if self.scene.flat else place_on_sphere
         place, velocity, gap, slip = on_surface(coordinates[:2], velocities[:2], plate_acceleration, pressed)
         coordinates[:3], velocities[:3] = place, velocity
         coordinates[index[1:, 2]], velocities[index[1:, 2]] = place[2], velocity[2]
@@ -218,18 +230,18 @@ class _Parts:
         return EngineState(coordinates, velocities, data, load=load)
 
     def settle(self, state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
-        """See `EngineModel`: the bodies that turn settle by themselves."""
+        """Return the state as it is: bodies that turn settle by themselves."""
         return state
 
     def warping_displacement(self, coordinates: Array) -> Array:
-        """See `EngineModel`."""
+        """Largest distance of the supports from a plane, (T,), for coordinates (T, n)."""
         vertical = self.body_coordinates + self.supports.vertical
         largest: Array = np.abs(coordinates[:, vertical] @ self.supports.warping).max(axis=1, initial=0.0)
         return largest
 
 
-def _boxes(mbs: Any, masses: Array, centers: Array, inertias: Array, axes: Array) -> tuple[list[Any], list[Any]]:
-    """Nodes and bodies with moments of inertia (N, 3) about `axes` (N, 3, 3), columns."""
+def _add_boxes(mbs: Any, masses: Array, centers: Array, inertias: Array, axes: Array) -> tuple[list[Any], list[Any]]:
+    """Add nodes and bodies with moments of inertia (N, 3) about `axes` (N, 3, 3), columns."""
     nodes, bodies = [], []
     for mass, center, tensor in zip(masses, centers, (axes * inertias[:, None, :]) @ axes.swapaxes(1, 2)):
         nodes.append(mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[*center, 0.0, 0.0, 0.0])))
@@ -247,28 +259,27 @@ def _inertias(masses: Array, sizes: Array) -> Array:
 def _critical_tilt(ring: Array, radius: float, masses: Array, centers: Array) -> float:
     """Angle from the nearest edge of the supports to the center of mass over it, from the vertical, rad."""
     center = masses @ centers / masses.sum()
-    edges = ConvexHull(ring).equations  # outward normals, and distances from the origin, negative
-    inside = -float((edges[:, :2] @ center[:2] + edges[:, 2]).max())
+    outward_normals, distances = np.split(ConvexHull(ring).equations, [2], axis=1)
+    inside = -float((outward_normals @ center[:2] + distances[:, 0]).max())
     return float(np.arctan2(inside, center[2] - (1.0 + radius)))
 
 
-def _contacts(
+def _add_contacts(
     mbs: Any,
     supports: list[Any],
     platform: Any,
     depressions: Array,
     radius: float,
-    friction: float,
-    threshold: float,
+    law: ContactLaw,
     flat: bool,
 ) -> tuple[list[Any], list[Any]]:
-    """Contacts of the spheres in the platform's depressions (K, 3), or under its plane, and their data nodes."""
+    """Add contacts of the spheres in the platform's depressions (K, 3), or under its plane, and their data nodes."""
     contacts, nodes = [], []
     for place, support in zip(depressions, supports):
         nodes.append(mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4)))
         depression = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=platform, localPosition=[*place]))
         if flat:
-            contact = plane_contact(support, depression, nodes[-1], radius, 1.0 + radius, friction, threshold)
+            contact = make_plane_contact(support, depression, nodes[-1], radius, 1.0 + radius, law)
             contacts.append(mbs.AddObject(contact))
             continue
         contact = items.ObjectContactSphereSphere(
@@ -276,16 +287,17 @@ def _contacts(
             nodeNumber=nodes[-1],
             spheresRadii=[radius, radius + 1.0],
             isHollowSphere1=True,
-            dynamicFriction=friction,
-            frictionProportionalZone=threshold,
+            dynamicFriction=law.friction,
+            frictionProportionalZone=law.threshold,
         )
         contacts.append(mbs.AddObject(contact))
     return contacts, nodes
 
 
-def _weights(mbs: Any, nodes: list[Any], masses: Array) -> None:
+def _add_weights(mbs: Any, nodes: list[Any], masses: Array) -> None:
+    """Load every body by its weight."""
     for mass, node in zip(masses, nodes):
-        load_on_coordinate(mbs, node, 2, -float(mass))
+        add_coordinate_load(mbs, node, 2, -float(mass))
 
 
 def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
@@ -310,5 +322,6 @@ def _geometry(scene: Scene, units: Units) -> tuple[Array, float, Array, Array]:
     sizes = np.array([body.size for body in scene.bodies]) / units.length
     centers, radius = np.column_stack([scene.offsets, heights]) / units.length, isolator.sphere_radius / units.length
     if scene.flat:
-        centers[:, 2] += 1.0 + radius  # the plane is as high above the middle as the tops of the spheres
+        height_of_plane = 1.0 + radius
+        centers[:, 2] += height_of_plane
     return ring, radius, centers, sizes

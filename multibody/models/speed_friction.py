@@ -4,7 +4,7 @@ Friction that depends on slip speed, normal force or heat, for contacts of the e
 Before every step the coefficient of each contact is set to that at the slip speed and the normal force which the
 contact will have at the end of the step, by straight lines through the last two values of each, and at the temperature
 that follows from them (surface_heat.py). Within a step the engine solves for constant coefficients. So the error is of
-second order in the step, like that of the integrator, as long as a step is short beside the time in which the change of
+second order in the step, like that of the integrator, as long as a step is shorter than the time in which the change of
 friction acts back on the speed (`feedback`).
 """
 
@@ -26,11 +26,12 @@ from reference.problem.friction import LEAST_LOAD, Heat
 
 Array = NDArray[np.float64]
 
-DATA_PER_CONTACT, SLIP = 4, 1  # data coordinates of a contact, and which of them is the slip speed
+# Number of data coordinates of a contact, and the place of the slip speed among them.
+DATA_PER_CONTACT, SLIP = 4, 1
 
 
 class SpeedFriction:
-    """Sets the coefficients of `contacts`; in units of the model."""
+    """Law that sets the coefficients of `contacts` before every step; in units of the model."""
 
     def __init__(
         self, mbs: Any, scene: Scene, units: Units, threshold: float, contacts: list[Any], ground: Ground
@@ -40,27 +41,32 @@ class SpeedFriction:
         self._heat: SurfaceHeat | None = None
         if law.heat is not None:
             self._heat = SurfaceHeat(law.heat, len(contacts), scene.duration, units.time, units.length)
-            self._factor = np.ones(len(contacts))  # that heat leaves of the coefficients
+            self._factor_of_heat = np.ones(len(contacts))
             self._watt = scene.total_mass * GRAVITY * units.velocity / len(contacts)
-        self._contacts, self._ground, self._threshold = contacts, ground, threshold
+        self._add_contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
-        self._slip = self._rate = self._load_rate = [0.0] * len(contacts)  # at the start of the step
-        self._load = [1.0] * len(contacts)  # over the shares of the weight
-        self._start = self._end = 0.0  # of the step
+        # slip speeds, loads over the shares of the weight and their rates at the start of the step, from _start to _end
+        self._slip = self._rate = self._load_rate = [0.0] * len(contacts)
+        self._load = [1.0] * len(contacts)
+        self._start = self._end = 0.0
         mbs.SetPreStepUserFunction(self._before_step)
 
     def begin(self, mbs: Any, state: EngineState, time: float) -> None:
         """Make ready for a run from `state` at this instant."""
-        nothing = [0.0] * len(self._contacts)
+        nothing = [0.0] * len(self._add_contacts)
         self._slip = state.contact[SLIP::DATA_PER_CONTACT].tolist()
         self._rate = nothing if state.slip_rate is None else state.slip_rate.tolist()
         self._load = [1.0] * len(nothing) if state.load is None else state.load.tolist()
         self._load_rate = nothing if state.load is None or state.load_rate is None else state.load_rate.tolist()
         self._start = self._end = time
         if self._heat is not None and not self._heat.begin(time):
-            self._set(mbs, 0.0)  # k_T there
-            self._heat.step_to(time, self._power(self._cold(0.0), 0.0), math.hypot(*state.coordinates[:2]))
-        self._set(mbs, 0.0)
+            self._set_coefficients(mbs, 0.0)
+            self._heat.step_to(
+                time,
+                self._friction_power(self._coefficients_without_heat(0.0), 0.0),
+                math.hypot(*state.coordinates[:2]),
+            )
+        self._set_coefficients(mbs, 0.0)
 
     def feedback(self, slip: Array) -> Array:
         """Rate at which a change of the coefficients acts back on slip speeds (T, K), the largest of the contacts."""
@@ -70,42 +76,47 @@ class SpeedFriction:
         return rate
 
     def _before_step(self, mbs: Any, end: float) -> bool:
+        """Set the coefficients for the step that ends at this instant; the engine calls this before it."""
+        # The engine tries a step again with another length where it cannot solve it. The slip speeds of a step that was
+        # made differ from those before it: only then is the state of the contacts one step further.
         self._ground.before_step(mbs, end)
         slip = mbs.systemData.GetDataCoordinates()[SLIP::DATA_PER_CONTACT].tolist()
-        if slip != self._slip:  # the step before was made; otherwise the engine tries it again with another length
+        if slip != self._slip:
             span = self._end - self._start
             self._rate = [(new - old) / span for new, old in zip(slip, self._slip, strict=True)]
             if self.law.by_load:
-                load = self._loads(mbs)
+                load = self._read_loads(mbs)
                 self._load_rate = [(new - old) / span for new, old in zip(load, self._load, strict=True)]
                 self._load = load
             self._slip, self._start = slip, self._end
             if self._heat is not None:
                 place = mbs.systemData.GetODE2Coordinates()[:2]
-                self._heat.step_to(self._end, self._power(self._cold(0.0), 0.0), math.hypot(*place))
+                self._heat.step_to(
+                    self._end, self._friction_power(self._coefficients_without_heat(0.0), 0.0), math.hypot(*place)
+                )
         self._end = end
-        self._set(mbs, end - self._start)
+        self._set_coefficients(mbs, end - self._start)
         return True
 
-    def _loads(self, mbs: Any) -> list[float]:
-        """Normal forces of the contacts over their shares of the weight."""
-        kind, count = exudyn.OutputVariableType, len(self._contacts)
+    def _read_loads(self, mbs: Any) -> list[float]:
+        """Read the normal forces of the contacts over their shares of the weight."""
+        kind, count = exudyn.OutputVariableType, len(self._add_contacts)
         pairs = [(mbs.GetObjectOutput(each, kind.Force), mbs.GetObjectOutput(each, kind.Director1))
-                 for each in self._contacts]  # fmt: skip
+                 for each in self._add_contacts]  # fmt: skip
         return [count * abs(float(force @ normal)) for force, normal in pairs]
 
-    def _set(self, mbs: Any, span: float) -> None:
+    def _set_coefficients(self, mbs: Any, span: float) -> None:
         """Set the coefficients at the speeds and loads that the contacts have after `span`."""
-        coefficients = self._cold(span)
+        coefficients = self._coefficients_without_heat(span)
         if self._heat is not None:
             end = self._start + span
-            celsius = self._heat.temperature(end, self._power(coefficients, span), self._heat.distance(end))
-            self._factor = Heat.factor(celsius)
-            coefficients = list(self._factor * coefficients)
-        for contact, coefficient in zip(self._contacts, coefficients, strict=True):
+            celsius = self._heat.temperature(end, self._friction_power(coefficients, span), self._heat.distance(end))
+            self._factor_of_heat = Heat.factor(celsius)
+            coefficients = list(self._factor_of_heat * coefficients)
+        for contact, coefficient in zip(self._add_contacts, coefficients, strict=True):
             mbs.SetObjectParameter(contact, "dynamicFriction", coefficient)
 
-    def _cold(self, span: float) -> list[float]:
+    def _coefficients_without_heat(self, span: float) -> list[float]:
         """Coefficients of the contacts after `span`, without heat."""
         law, coefficients = self.law, []
         loads = zip(self._load, self._load_rate, strict=True)
@@ -117,10 +128,10 @@ class SpeedFriction:
             coefficients.append(coefficient)
         return coefficients
 
-    def _power(self, cold: list[float], span: float) -> Array:
+    def _friction_power(self, cold: list[float], span: float) -> Array:
         """Power of friction of each contact after `span`, W, from the coefficients then without heat."""
         slip, rate, load, load_rate = map(np.array, (self._slip, self._rate, self._load, self._load_rate))
         speed, pressed = np.maximum(slip + span * rate, 0.0), np.maximum(load + span * load_rate, 0.0)
         held = np.minimum(speed / self._threshold, 1.0)
-        power: Array = self._watt * (self._factor * cold) * pressed * held * speed
+        power: Array = self._watt * (self._factor_of_heat * cold) * pressed * held * speed
         return power

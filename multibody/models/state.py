@@ -14,12 +14,21 @@ AT_REST = np.zeros((3, 3))
 
 @dataclass(frozen=True)
 class EngineState:
-    """One state of the engine in its own units, relative to the plate."""
+    """
+    One state of the engine in its own units, relative to the plate.
 
-    coordinates: Array  # (n,)
-    velocities: Array  # (n,)
-    contact: Array  # (c,), contact data
-    plate: Array = field(default_factory=AT_REST.copy)  # (3, 3), its own displacement, velocity, acceleration
-    slip_rate: Array | None = None  # (K,), of the contacts' slip speeds over the last step, where there was one
-    load: Array | None = None  # (K,), of the contacts, over their shares of the weight, where friction depends on it
-    load_rate: Array | None = None  # (K,), over the last step, where there was one
+    Attributes:
+    - coordinates, velocities: (n,) arrays.
+    - contact: Contact data, (c,).
+    - plate: The plate's own displacement, velocity and acceleration.
+    - slip_rate, load, load_rate: Rates of the contacts' slip speeds over the last step, their loads over their shares
+      of the weight where friction depends on it, and the rates of these; None where there was no last step, (K,).
+    """
+
+    coordinates: Array
+    velocities: Array
+    contact: Array
+    plate: Array = field(default_factory=AT_REST.copy)
+    slip_rate: Array | None = None
+    load: Array | None = None
+    load_rate: Array | None = None

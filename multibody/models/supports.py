@@ -20,54 +20,78 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from multibody.models.engine import items
-from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate
+from multibody.models.engine import BODY_COORDINATES, items
+from multibody.models.plate import LOCKED_INERTIA, Plate
 
 Array = NDArray[np.float64]
 
-DETERMINATE = 3  # supports whose forces follow from statics
-SPHERE_STIFFNESS_RATIO = 10.0  # of the springs against heave and tilt over the contacts
-MIN_WARPING_COMPLIANCE = 2e-5  # of rho under the weight, against warping, where no level of accuracy says more
-SPHERES_MASS = 1e-2  # of all spheres together: much less than that of the bodies
-UPRIGHT = [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]  # turns the axis of a 1-D mass, x, upwards
+# Number of supports whose forces follow from statics.
+DETERMINATE = 3
+
+# Stiffness of the springs against heave and tilt over that of the contacts.
+SPHERE_STIFFNESS_RATIO = 10.0
+
+# Compliance against warping in units of rho under the weight, where no level of accuracy says more.
+MIN_WARPING_COMPLIANCE = 2e-5
+
+# Mass of all spheres together: much less than that of the bodies.
+SPHERES_MASS = 1e-2
+
+# Rotation that turns the axis of a 1-D mass, x, upwards.
+UPRIGHT = [[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]]
+
+# Function that sets the stiffness against heave and tilt and against warping, and the damping against these two.
+SetSprings = Callable[[float, float, float, float], None]
 
 
 @dataclass(frozen=True)
 class Supports:
-    """Spheres under the platform."""
+    """
+    Spheres under the platform.
 
-    markers: list[Any]  # of the spheres' centers
-    nodes: list[Any]  # of the spheres' own coordinates; empty where the spheres are fixed
-    springs: list[Any]  # in place of the nodes: an object on all of these coordinates and no others
-    coordinates: int  # how many these are
-    vertical: NDArray[np.int_]  # (K,) or (0,), index of each sphere's vertical coordinate
-    carried: NDArray[np.int_]  # (K, 3) or (0, 3), index of the coordinates that a moving plate carries along
-    warping: Array  # (K, K), see `warping`
-    # sets the springs under the spheres, for the contacts' penetration and the share of rho by which warping gives way
+    Attributes:
+    - markers: Markers at the spheres' centers.
+    - nodes: Nodes of the spheres' own coordinates; empty where the spheres are fixed.
+    - springs: An object on all of these coordinates and no others, in place of the nodes.
+    - coordinates: Number of these coordinates.
+    - vertical: Index of each sphere's vertical coordinate; empty where the spheres are fixed, (K,).
+    - carried: Index of the coordinates that a moving plate carries along; empty without such coordinates, (K, 3).
+    - warping: `warping_projection` of the supports, (K, K).
+    - set_stiffness: Sets the springs under the spheres for the contacts' penetration and the compliance against
+      warping.
+    """
+
+    markers: list[Any]
+    nodes: list[Any]
+    springs: list[Any]
+    coordinates: int
+    vertical: NDArray[np.int_]
+    carried: NDArray[np.int_]
+    warping: Array
     set_stiffness: Callable[[float, float], None]
 
     def sinking(self, penetration: float) -> float:
-        """How far the spheres sink under the weight, for the contacts' penetration; 0 for fixed ones."""
+        """Sinking of the spheres under the weight, for the contacts' penetration; 0 for fixed ones."""
         return penetration / SPHERE_STIFFNESS_RATIO if self.coordinates else 0.0
 
 
-def warping(ring: Array) -> Array:
+def warping_projection(ring: Array) -> Array:
     """Projection (K, K) of K forces at places (K, 2) onto the part that neither heave nor tilt contains."""
     patterns, _ = np.linalg.qr(np.column_stack([np.ones(len(ring)), ring]))
     projection: Array = np.eye(len(ring)) - patterns @ patterns.T
     return projection
 
 
-def sphere_nodes(mbs: Any, ring: Array, moving: bool) -> list[Any]:
-    """Nodes of spheres that share the load at places (K, 2): a vertical coordinate, or six on a plate that moves."""
+def add_sphere_nodes(mbs: Any, ring: Array, moving: bool) -> list[Any]:
+    """Add nodes of spheres that share the load at places (K, 2): one vertical coordinate, or six on a moving plate."""
     if moving:
         places = [[*place, 1.0, 0.0, 0.0, 0.0] for place in ring]
         return [mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=place)) for place in places]
     return [mbs.AddNode(items.Node1D(referenceCoordinates=[0.0])) for _ in ring]
 
 
-def fixed_supports(mbs: Any, plate: Plate, ring: Array) -> Supports:
-    """Spheres fixed to the plate at places (K, 2), a length of one above the plane of the depressions."""
+def add_fixed_supports(mbs: Any, plate: Plate, ring: Array) -> Supports:
+    """Add spheres fixed to the plate at places (K, 2), a length of one above the plane of the depressions."""
     markers = [
         mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[*place, 1.0])) for place in ring
     ]
@@ -75,16 +99,16 @@ def fixed_supports(mbs: Any, plate: Plate, ring: Array) -> Supports:
     return Supports(markers, [], [], 0, none, none.reshape(0, 3), np.zeros((0, count)), lambda penetration, share: None)
 
 
-def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> Supports:
-    """Spheres at places (K, 2) that share the load elastically; on a plate that moves, bodies too heavy to turn."""
+def add_sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> Supports:
+    """Add spheres at places (K, 2) that share the load elastically; on a plate that moves, bodies too heavy to turn."""
     count = len(ring)
-    warped = warping(ring)
+    warped = warping_projection(ring)
     if plate.moves:
         inertia = [LOCKED_INERTIA] * 3 + [0.0] * 3
         spheres = [items.ObjectRigidBody(nodeNumber=node, mass=SPHERES_MASS / count, inertia=inertia) for node in nodes]
-        _, springs = _springs_on_plate(mbs, plate, nodes, warped)
+        _, springs = _add_springs_on_plate(mbs, plate, nodes, warped)
         read: tuple[list[Any], list[Any]] = nodes, []
-        each, upright = COORDINATES, 2
+        each, upright = BODY_COORDINATES, 2
     else:
         spheres = [
             items.ObjectMass1D(
@@ -92,7 +116,7 @@ def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> S
             )
             for node, place in zip(nodes, ring)
         ]
-        linear, springs = _springs_on_ground(mbs, nodes, warped)
+        linear, springs = _add_springs_on_ground(mbs, nodes, warped)
         read = [], [linear]
         each, upright = 1, 0
     markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=mbs.AddObject(sphere))) for sphere in spheres]
@@ -107,26 +131,23 @@ def sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> S
     return Supports(markers, *read, each * count, first + upright, carried, warped, set_stiffness)
 
 
-Springs = Callable[[float, float, float, float], None]  # stiffness against heave and tilt, warping; damping likewise
-
-
-def _springs_on_ground(mbs: Any, nodes: list[Any], warped: Array) -> tuple[Any, Springs]:
-    """The springs as an object, and what sets them."""
+def _add_springs_on_ground(mbs: Any, nodes: list[Any], warped: Array) -> tuple[Any, SetSprings]:
+    """Add the springs as one object; return it and the function that sets them."""
     count = len(nodes)
     springs = mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=np.full(count, 1.0 / count)))
 
     def matrix(stiff: float, soft: float) -> Array:
         return stiff * (np.eye(count) - warped) + soft * warped
 
-    return springs, _setter(mbs, springs, matrix)
+    return springs, _matrix_setter(mbs, springs, matrix)
 
 
-def _springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Array) -> tuple[Any, Springs]:
-    """As `_springs_on_ground`, over a plate that moves."""
+def _add_springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Array) -> tuple[Any, SetSprings]:
+    """Add the springs over a plate that moves; return the object and the function that sets them."""
     count = len(nodes)
-    against = np.hstack([np.eye(count), -np.ones((count, 1))])  # of a sphere against the plate, along one axis
-    index = [COORDINATES * np.arange(count + 1) + axis for axis in range(3)]
-    size = COORDINATES * (count + 1)
+    sphere_against_plate = np.hstack([np.eye(count), -np.ones((count, 1))])
+    index = [BODY_COORDINATES * np.arange(count + 1) + axis for axis in range(3)]
+    size = BODY_COORDINATES * (count + 1)
     weight = np.zeros(size)
     weight[index[2]] = [*[1.0 / count] * count, -1.0]
     springs = mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[*nodes, plate.node], forceVector=weight))
@@ -134,15 +155,17 @@ def _springs_on_plate(mbs: Any, plate: Plate, nodes: list[Any], warped: Array) -
     def matrix(stiff: float, soft: float) -> Array:
         whole, level = np.zeros((size, size)), stiff * np.eye(count)
         for axis, part in zip(index, (level, level, level + (soft - stiff) * warped)):
-            whole[np.ix_(axis, axis)] = against.T @ part @ against
+            whole[np.ix_(axis, axis)] = sphere_against_plate.T @ part @ sphere_against_plate
         return whole
 
-    return springs, _setter(mbs, springs, matrix)
+    return springs, _matrix_setter(mbs, springs, matrix)
 
 
-def _setter(mbs: Any, springs: Any, matrix: Callable[[float, float], Array]) -> Springs:
-    def to(stiff: float, soft: float, stiff_damping: float, soft_damping: float) -> None:
+def _matrix_setter(mbs: Any, springs: Any, matrix: Callable[[float, float], Array]) -> SetSprings:
+    """Return the function that sets the matrices of `springs`; matrix: from values of heave and tilt, of warping."""
+
+    def set_matrices(stiff: float, soft: float, stiff_damping: float, soft_damping: float) -> None:
         mbs.SetObjectParameter(springs, "stiffnessMatrix", matrix(stiff, soft))
         mbs.SetObjectParameter(springs, "dampingMatrix", matrix(stiff_damping, soft_damping))
 
-    return to
+    return set_matrices

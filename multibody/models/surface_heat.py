@@ -17,18 +17,28 @@ from reference.problem.friction import Heat
 
 Array = NDArray[np.float64]
 
-SPACING = 0.3  # of ln x: the rule's error is exp(-pi^2 / (2 SPACING)) of the kernel, 7e-8
-SLOWEST = 1e-5  # x times the root of the duration
-FASTEST = 1e-6  # of the duration, over which the kernel is cut off: sqrt of it is missed
+# Spacing of ln x in the trapezoidal rule, whose error is exp(-pi^2 / (2 SPACING)) of the kernel, 7e-8.
+SPACING = 0.3
+
+# Least x, times the root of the duration.
+SLOWEST = 1e-5
+
+# Time over which the kernel is cut off, in durations: the square root of it is missed.
+FASTEST = 1e-6
 
 
-class _Memory(NamedTuple):
-    """The contacts at an instant."""
+class _HeatState(NamedTuple):
+    """
+    Heat of the contacts at an instant, in units of time.
 
-    time: float  # in units of time
-    shares: Array  # (K, X) of the decays, W s
-    power: Array  # (K,) of friction, W, covered or not
-    distance: float  # of the platform from the center, in units of length
+    shares: of the decays, W s, (K, X). power: of friction, W, covered or not, (K,). distance: of the platform from the
+    center, in units of length.
+    """
+
+    time: float
+    shares: Array
+    power: Array
+    distance: float
 
 
 class SurfaceHeat:
@@ -39,14 +49,14 @@ class SurfaceHeat:
         self._unit_time, self._count = unit_time, count
         low, high = math.log(SLOWEST), math.log(3.0 / math.sqrt(FASTEST * 1e-3))
         x = np.exp(np.arange(low, high, SPACING)) / math.sqrt(duration)
-        self._rates, self._weights = x * x, 2.0 / math.sqrt(math.pi) * SPACING * x
-        self._kept: list[_Memory] = []
+        self._rates, self._add_weights = x * x, 2.0 / math.sqrt(math.pi) * SPACING * x
+        self._kept: list[_HeatState] = []
 
     def begin(self, time: float) -> bool:
-        """Forget what came after `time`; whether the power there is known, too."""
+        """Forget what came after `time`; return whether the power there is known, too."""
         if time == 0.0:
             nothing = np.zeros((self._count, len(self._rates)))
-            self._kept = [_Memory(0.0, nothing, nothing[:, 0], 0.0)]
+            self._kept = [_HeatState(0.0, nothing, nothing[:, 0], 0.0)]
             return False
         near = time * (1.0 + 1e-12)
         while self._kept[-1].time > near:
@@ -57,12 +67,12 @@ class SurfaceHeat:
 
     def step_to(self, time: float, power: Array, distance: float) -> None:
         """Remember a step up to `time` with this power at its end."""
-        self._kept.append(self._after(time, power, distance))
+        self._kept.append(self._advance(time, power, distance))
 
     def temperature(self, time: float, power: Array, distance: float) -> Array:
         """Temperature (K,), degrees C, at the end of a step up to `time` with this power there."""
-        shares = self._after(time, power, distance).shares if time > self._kept[-1].time else self._kept[-1].shares
-        celsius: Array = self._initial + self._rise * (shares @ self._weights)
+        shares = self._advance(time, power, distance).shares if time > self._kept[-1].time else self._kept[-1].shares
+        celsius: Array = self._initial + self._rise * (shares @ self._add_weights)
         return celsius
 
     def distance(self, time: float) -> float:
@@ -72,7 +82,8 @@ class SurfaceHeat:
             return last.distance
         return last.distance + (time - last.time) * (last.distance - before[0].distance) / (last.time - before[0].time)
 
-    def _after(self, time: float, power: Array, distance: float) -> _Memory:
+    def _advance(self, time: float, power: Array, distance: float) -> _HeatState:
+        """Return the state after a step up to `time` in which power and distance change linearly."""
         last = self._kept[-1]
         span = (time - last.time) * self._unit_time
         nearest, way = min(last.distance, distance), abs(distance - last.distance)
@@ -81,4 +92,4 @@ class SurfaceHeat:
         whole = -np.expm1(-z) / np.maximum(z, 1e-300)
         rising = np.where(z < 1e-4, 0.5 - z / 6.0, (1.0 - whole) / np.maximum(z, 1e-300))
         added = np.outer(last.power, whole - rising) + np.outer(power, rising)
-        return _Memory(time, last.shares * np.exp(-z) + covered * span * added, power, distance)
+        return _HeatState(time, last.shares * np.exp(-z) + covered * span * added, power, distance)

@@ -1,4 +1,4 @@
-"""What every model of the engine has in common: coordinates, contacts, recorders, a way to start."""
+"""An assembled model of the engine: its coordinates, contacts and recorders, and how it starts."""
 
 from __future__ import annotations
 
@@ -23,54 +23,87 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Recorders:
-    """Sensors that are read after a run."""
+    """
+    Sensors that are read after a run.
 
-    coordinates: list[Any]  # per node
-    velocities: list[Any]  # per node
-    accelerations: list[Any]  # per node
-    contact: list[Any]  # gap, slip speed, and two unused entries, per contact
-    contact_force: list[Any]  # force vector and normal, per contact; empty unless asked for
-    plate: list[Any]  # displacement, velocity, acceleration of a plate that moves; else empty
+    coordinates, velocities, accelerations: one a node. contact: gap, slip speed and two unused entries of each contact.
+    contact_force: force vector and normal of each contact; empty unless asked for. plate: displacement, velocity and
+    acceleration of a plate that moves; else empty.
+    """
+
+    coordinates: list[Any]
+    velocities: list[Any]
+    accelerations: list[Any]
+    contact: list[Any]
+    contact_force: list[Any]
+    plate: list[Any]
 
 
 @dataclass(frozen=True)
 class EngineModel:
-    """An assembled engine system that can be run again and again, in units of `units`."""
+    """
+    An assembled engine system that can be run again and again, in units of `units`.
 
-    mbs: Any  # the engine's system
+    Attributes:
+    - mbs: The engine's system.
+    - ground: The loading.
+    - bodies: Index of the coordinate that moves each body along x, y, z, (N, 3).
+    - set_contact: Sets the contact's penetration under the weight and the compliance of the supports against warping.
+    - start: Returns the state for an initial state (None: at rest), the plate's acceleration then, m/s^2, and the
+      penetration.
+    - settle: Returns the state to go on from with a smaller step, for the last one, the rate of each gap (K,) and the
+      penetration.
+    - corner, relaxation: Slip speed below which the friction law is linear, and the time in which such a slip dies out;
+      inf if the law has no such corner.
+    - rounding: Rounding of a contact force times its penetration, in units of weight times length.
+    - moving_plate: Whether the loading moves the plate, whose coordinates are then the system's last.
+    - carried: Index of the coordinates that the plate carries along x, y, z, (C, 3).
+    - references: The engine's container of the system, and what the engine only points to.
+    - allows_liftoff: Whether the model goes on when every contact is open.
+    - depressions: Depressions of a platform that turns.
+    - travel: Largest displacement of the platform that the isolator permits.
+    - critical_tilt: Tilt of the platform, rad, beyond which its weight turns it over.
+    - impact: Law of contacts that close; None where their own stiffness decides.
+    - bar_lags: Returns damping over stiffness of each link along its bars, (N - 1,), in units of time, for a
+      penetration.
+    - take_out_open_contacts: Takes contacts (K,) out of the engine, whose penetration is given, and puts the others in.
+    - kinematics: Kinematics of bodies that turn, of their contacts and stiff links; None where the model starts in
+      balance by itself.
+    - warping_displacement: Returns the distance of the supports from a plane, (T,), for coordinates (T, n); None where
+      the supports do not share the load.
+    - bearing_penetration: Penetration under the weight as the scene's bearings state it, or 0.
+    - friction: Friction that depends on slip speed or load.
+    - rim: Displacement of the platform at which it reaches the rim; inf on a plane.
+    - fastest_bar_frequency: Largest angular frequency that bars make which give way; 0 without such bars.
+    """
+
+    mbs: Any
     units: Units
-    ground: Ground  # the loading
+    ground: Ground
     recorders: Recorders
-    bodies: NDArray[np.int_]  # (N, 3), index of the coordinate that moves body i along x, y, z
-    # sets the contact's penetration under the weight, of rho, and by how much of rho warping of the supports gives way
+    bodies: NDArray[np.int_]
     set_contact: Callable[..., None]
-    # state from an initial state (None: at rest), the plate's acceleration then, m/s^2, and the penetration
     start: Callable[[State | None, Array, float], EngineState]
-    # state to go on from with a smaller step, from the last one, the rate of each gap (K,) and the penetration
     settle: Callable[[EngineState, Array, float], EngineState]
-    corner: float  # slip speed under which the friction law is linear; inf if it has no such corner
-    relaxation: float  # time in which a slip below the corner dies out; inf likewise
-    rounding: float  # of a contact force times its penetration, in units of weight times length
-    moving_plate: bool  # whether the loading moves the plate, whose coordinates are then the system's last
-    carried: NDArray[np.int_]  # (C, 3), index of the coordinates that the plate carries along x, y, z
-    references: tuple[Any, ...]  # the engine's container of the system, and what the engine only points to
-    allows_liftoff: bool = False  # whether the model goes on when every contact is open
-    depressions: Depressions | None = None  # of a platform that turns
-    travel: float = math.inf  # largest displacement of the platform that the isolator permits, in units of length
-    critical_tilt: float = math.inf  # rad, of the platform, beyond which its weight turns it over
-    impact: ImpactLaw | None = None  # of contacts that close; None: their own stiffness decides
-    # damping over stiffness of each link along its bars, (N - 1,), in units of time, for a penetration of the contacts
+    corner: float
+    relaxation: float
+    rounding: float
+    moving_plate: bool
+    carried: NDArray[np.int_]
+    references: tuple[Any, ...]
+    allows_liftoff: bool = False
+    depressions: Depressions | None = None
+    travel: float = math.inf
+    critical_tilt: float = math.inf
+    impact: ImpactLaw | None = None
     bar_lags: Callable[[float], Array] | None = None
-    # takes contacts (K,) out of the engine, whose penetration is given, and puts the others in
-    set_open: Callable[[NDArray[np.bool_], float], None] | None = None
-    # of bodies that turn, and of their contacts and stiff links; None: the model starts in balance by itself
+    take_out_open_contacts: Callable[[NDArray[np.bool_], float], None] | None = None
     kinematics: ImpactLaw | None = None
-    # distance of the supports from a plane, (T,), for coordinates (T, n); None if the supports do not share the load
     warping_displacement: Callable[[Array], Array] | None = None
-    bearing_penetration: float = 0.0  # by the weight, as the scene's bearings state it, or 0
-    friction: SpeedFriction | None = None  # of contacts whose friction depends on slip speed or load
-    rim: float = 1.0  # displacement of the platform at which it reaches the rim; inf on a plane
-    fastest_of_bars: float = 0.0  # largest angular frequency that bars make which give way; 0 without such bars
+    bearing_penetration: float = 0.0
+    friction: SpeedFriction | None = None
+    rim: float = 1.0
+    fastest_bar_frequency: float = 0.0
 
     @property
     def container(self) -> Any:

@@ -19,16 +19,17 @@ from scipy.sparse import csr_matrix
 
 from multibody.models.contact import (
     FORCE_ROUNDING,
+    ContactLaw,
     contact_law,
     corner_and_relaxation,
-    platform_on_sphere,
+    place_on_sphere,
     set_contact_parameters,
-    settled_contact,
+    settle_contact,
 )
-from multibody.models.engine import MAX_DENSE_COORDINATES, exudyn, items
-from multibody.models.loading import Push, ground_of, push
-from multibody.models.plane import farthest, plane_contact, platform_on_plane, set_extent
-from multibody.models.plate import COORDINATES, LOCKED_INERTIA, Plate, plate_for
+from multibody.models.engine import BODY_COORDINATES, MAX_DENSE_COORDINATES, exudyn, items
+from multibody.models.loading import Push, load_coordinates, make_ground
+from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_plane_extent
+from multibody.models.plate import LOCKED_INERTIA, Plate, add_plate
 from multibody.models.recorders import add_recorders
 from multibody.models.speed_friction import SpeedFriction
 from multibody.models.state import EngineState
@@ -38,12 +39,17 @@ from reference.problem import Scene, State
 
 Array = NDArray[np.float64]
 
-BETWEEN_TWO = np.array([[1.0, -1.0], [-1.0, 1.0]])  # what acts between two coordinates
-HOLLOW_RADIUS = 2.0  # R in units of rho; in translation only R - r matters
-SPHERE_ON_PLANE = 1.0  # radius of the sphere under the platform of a flat slider, in units of length
+# Pattern of a spring between two coordinates.
+BETWEEN_TWO = np.array([[1.0, -1.0], [-1.0, 1.0]])
+
+# Radius R of the hollow sphere in units of rho; in translation only R - r matters.
+HOLLOW_RADIUS = 2.0
+
+# Radius of the sphere under the platform of a flat slider, in units of length.
+SPHERE_ON_PLANE = 1.0
 
 
-def translational(
+def assemble_translational(
     scene: Scene,
     regularization: float | None,
     *,
@@ -62,27 +68,29 @@ def translational(
     masses = scene.masses / units.mass
     container = exudyn.SystemContainer()
     mbs = container.AddSystem()
-    platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * COORDINATES))
+    platform_node = mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=[0.0] * BODY_COORDINATES))
     depression = mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=platform_node))
     links = (link_stiffness(scene, units)[:, :axes], link_damping(scene, units)[:, :axes])
-    nodes, chain = _chain(mbs, platform_node, masses, *links)
+    nodes, chain = _add_chain(mbs, platform_node, masses, *links)
 
-    ground = ground_of(mbs, scene, units)
-    plate = plate_for(mbs, loading, ground)
-    friction, threshold = contact_law(scene, regularization, units)
-    add_contact = _contact_on_plane if scene.flat else _contact
-    contact, contact_node = add_contact(mbs, plate, depression, friction, threshold)
-    expressions = [*plate.expressions] if plate.moves else push(mbs, ground, _pushed(masses, nodes, axes))
+    ground = make_ground(mbs, scene, units)
+    plate = add_plate(mbs, loading, ground)
+    law = contact_law(scene, regularization, units)
+    add_contact = _add_contact_on_plane if scene.flat else _add_contact
+    contact, contact_node = add_contact(mbs, plate, depression, law)
+    expressions = (
+        [*plate.expressions] if plate.moves else load_coordinates(mbs, ground, _list_pushes(masses, nodes, axes))
+    )
     recorders = add_recorders(
         mbs, [], [chain], [contact_node], [contact] if contact_force or scene.dry_friction.by_load else [], plate.node
     )
     mbs.Assemble()
 
     constant = scene.dry_friction.constant
-    varying = None if constant else SpeedFriction(mbs, scene, units, threshold, [contact], ground)
-    count = COORDINATES + axes * (len(masses) - 1)
+    varying = None if constant else SpeedFriction(mbs, scene, units, law.threshold, [contact], ground)
+    count = BODY_COORDINATES + axes * (len(masses) - 1)
     bodies = np.tile(np.arange(3), (len(masses), 1))
-    bodies[1:, :axes] = np.arange(COORDINATES, count).reshape(-1, axes)
+    bodies[1:, :axes] = np.arange(BODY_COORDINATES, count).reshape(-1, axes)
 
     def set_contact(penetration: float, warping_compliance: float = 0.0) -> None:
         # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
@@ -97,8 +105,10 @@ def translational(
             coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
             velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
         if scene.flat:
-            set_extent(mbs, contact, farthest(scene, units, coordinates, velocities), -SPHERE_ON_PLANE)
-        on_surface = platform_on_plane if scene.flat else platform_on_sphere
+            set_plane_extent(
+                mbs, contact, largest_distance_possible(scene, units, coordinates, velocities), -SPHERE_ON_PLANE
+            )
+        on_surface = place_on_plane if scene.flat else place_on_sphere
         coordinates[:3], velocities[:3], gap, slip = on_surface(
             coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
         )
@@ -107,9 +117,10 @@ def translational(
 
     def settle(state: EngineState, gap_rate: Array, penetration: float) -> EngineState:
         x, y, z = (0.0, 0.0, 0.0) if scene.flat else state.coordinates[:3].tolist()
-        inward = -x, -y, 1.0 - z  # from the middle of the hollow sphere
-        length = math.hypot(*inward)
-        return settled_contact(state, float(gap_rate[0]), penetration, [part / length for part in inward])
+        to_center_of_hollow_sphere = -x, -y, 1.0 - z
+        length = math.hypot(*to_center_of_hollow_sphere)
+        normal = [part / length for part in to_center_of_hollow_sphere]
+        return settle_contact(state, float(gap_rate[0]), penetration, normal)
 
     corner, relaxation = corner_and_relaxation(scene, regularization, units)
     return EngineModel(
@@ -132,8 +143,8 @@ def translational(
     )
 
 
-def _contact(mbs: Any, plate: Plate, depression: Any, friction: float, threshold: float) -> tuple[Any, Any]:
-    """A sphere on the plate inside the platform's hollow sphere, and its data node; `set_contact` completes it."""
+def _add_contact(mbs: Any, plate: Plate, depression: Any, law: ContactLaw) -> tuple[Any, Any]:
+    """Add a sphere on the plate inside the platform's hollow sphere, and its data node; `set_contact` completes it."""
     node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
     sphere = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[0.0, 0.0, 1.0]))
     contact = items.ObjectContactSphereSphere(
@@ -141,23 +152,23 @@ def _contact(mbs: Any, plate: Plate, depression: Any, friction: float, threshold
         nodeNumber=node,
         spheresRadii=[HOLLOW_RADIUS - 1.0, HOLLOW_RADIUS],
         isHollowSphere1=True,
-        dynamicFriction=friction,
-        frictionProportionalZone=threshold,
+        dynamicFriction=law.friction,
+        frictionProportionalZone=law.threshold,
     )
     return mbs.AddObject(contact), node
 
 
-def _contact_on_plane(mbs: Any, plate: Plate, platform: Any, friction: float, threshold: float) -> tuple[Any, Any]:
-    """As `_contact`, of a sphere under the platform on the plane of the plate: no moment turns either of them."""
+def _add_contact_on_plane(mbs: Any, plate: Plate, platform: Any, law: ContactLaw) -> tuple[Any, Any]:
+    """Add a sphere under the platform on the plane of the plate, and its data node: no moment turns either of them."""
     node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
     plane = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body))
-    contact = plane_contact(platform, plane, node, SPHERE_ON_PLANE, -SPHERE_ON_PLANE, friction, threshold)
+    contact = make_plane_contact(platform, plane, node, SPHERE_ON_PLANE, -SPHERE_ON_PLANE, law)
     return mbs.AddObject(contact), node
 
 
-def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> tuple[list[Any], Any]:
+def _add_chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> tuple[list[Any], Any]:
     """
-    All bodies and their weight as one linear object on the platform's coordinates and x, y (or x) of the others.
+    Add all bodies and their weight as one linear object on the platform's coordinates and x, y (or x) of the others.
 
     Returns the nodes and the object.
 
@@ -174,13 +185,13 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, dampin
             numberOfODE2Coordinates=count,
         )
         nodes.append(mbs.AddNode(above))
-    mass_matrix = np.zeros((COORDINATES + count, COORDINATES + count))
+    mass_matrix = np.zeros((BODY_COORDINATES + count, BODY_COORDINATES + count))
     stiffness_matrix, damping_matrix = np.zeros((2, *mass_matrix.shape))
-    np.fill_diagonal(mass_matrix[:COORDINATES], [masses[0]] * 3 + [LOCKED_INERTIA] * 3)
+    np.fill_diagonal(mass_matrix[:BODY_COORDINATES], [masses[0]] * 3 + [LOCKED_INERTIA] * 3)
     mass_matrix[2, 2] += masses[1:].sum()
     for link in range(len(masses) - 1):
         for axis in range(axes):
-            upper = COORDINATES + axes * link + axis
+            upper = BODY_COORDINATES + axes * link + axis
             lower = upper - axes if link > 0 else axis
             mass_matrix[upper, upper] = masses[link + 1]
             pair = np.ix_([lower, upper], [lower, upper])
@@ -188,14 +199,14 @@ def _chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, dampin
             damping_matrix[pair] += damping[link, axis] * BETWEEN_TWO
     weight = np.zeros(len(mass_matrix))
     weight[2] = -1.0
-    matrices = {"massMatrix": _container(mass_matrix), "stiffnessMatrix": _container(stiffness_matrix)}
+    matrices = {"massMatrix": _matrix_container(mass_matrix), "stiffnessMatrix": _matrix_container(stiffness_matrix)}
     if damping.any():
-        matrices["dampingMatrix"] = _container(damping_matrix)
+        matrices["dampingMatrix"] = _matrix_container(damping_matrix)
     return nodes, mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=nodes, forceVector=weight, **matrices))
 
 
-def _container(matrix: Array) -> Any:
-    """A matrix (n, n) as the engine takes it: only its entries, where the sparse solver is used."""
+def _matrix_container(matrix: Array) -> Any:
+    """Return a matrix (n, n) as the engine takes it: only its entries, where the sparse solver is used."""
     if len(matrix) <= MAX_DENSE_COORDINATES:
         return matrix
     entries = exudyn.MatrixContainer()
@@ -203,8 +214,8 @@ def _container(matrix: Array) -> Any:
     return entries
 
 
-def _pushed(masses: Array, nodes: list[Any], axes: int) -> list[Push]:
-    """What the loading accelerates: the bodies above share the platform's vertical motion, so all of the mass there."""
+def _list_pushes(masses: Array, nodes: list[Any], axes: int) -> list[Push]:
+    """List the coordinates that the loading accelerates: the bodies above share the platform's vertical motion."""
     platform = [Push(nodes[0], axis, float(masses[0]), axis) for axis in range(2)]
     above = [
         Push(nodes[1], axes * number + axis, float(mass), axis)

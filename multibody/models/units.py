@@ -2,7 +2,7 @@
 Units of the engine's model: total mass, rho and sqrt(rho / g).
 
 In them the contact carries 1, the pendulum has length 1 and gravity is 1, so that every tolerance and stiffness
-below is a pure number and a scene of 1 kg runs through the same arithmetic as the same scene of 1e6 kg. A flat slider
+is a pure number and a scene of 1 kg runs through the same arithmetic as the same scene of 1e6 kg. A flat slider
 has no length of its own. There the unit is the pendulum that swings with the loading.
 """
 
@@ -19,7 +19,7 @@ from reference.problem import GRAVITY, Scene, loading_period
 
 @dataclass(frozen=True)
 class Units:
-    """What one unit of the model is in SI: kg, m, s; derived ones below."""
+    """Units of the model in SI: kg, m, s, and those derived from them."""
 
     mass: float
     length: float
@@ -42,7 +42,7 @@ class Units:
 
 
 def units_of(scene: Scene) -> Units:
-    """The units in which `scene` has total mass, rho and g equal to one; on a plane those of the loading."""
+    """Return the units in which `scene` has total mass, rho and g equal to one; on a plane those of the loading."""
     if scene.flat:
         time = min(loading_period(scene), scene.duration) / (2.0 * math.pi)
         return Units(scene.total_mass, GRAVITY * time**2, time)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import multibody
-from multibody.integration.constant_step import MAX_CONTRACTIVITY, SPECTRAL_RADIUS, silence
+from multibody.integration.constant_step import MAX_CONTRACTIVITY, SPECTRAL_RADIUS, silence_engine
 from multibody.models.assembly import assemble
 from multibody.models.engine import exudyn
 from reference.problem import Scene, ground_acceleration, load_scene
@@ -34,7 +34,7 @@ def plain_run(scene: Scene, model: Any, phase: np.ndarray, kind: str) -> float:
     data.SetODE2Coordinates_t(state.velocities, configuration=initial)
     data.SetDataCoordinates(state.contact, configuration=initial)
     clock = time.process_time()
-    with silence():
+    with silence_engine():
         model.mbs.SolveDynamic(settings)
     return time.process_time() - clock
 

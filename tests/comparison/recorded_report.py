@@ -40,7 +40,7 @@ from comparison.analyses.errata.analysis import ERRATA, Effect
 from comparison.cli import reports, user_models
 from comparison.runner import progress
 from comparison.study import user_models as called
-from comparison.study.levels import Level, levels_of
+from comparison.study.levels import StudyLevel, levels_of
 from reference.measures.peak_demands import unit_of
 
 RECORD = Path(__file__).parent / "report" / "recorded_report.txt"
@@ -95,7 +95,7 @@ median = 0.001
 """
 
 
-class Early(Level):
+class Early(StudyLevel):
     """A level before the last whose report is as complete as that of the last."""
 
     last = True  # type: ignore[assignment]

@@ -1,4 +1,3 @@
-
 """
 Contradictions in what a report says of the surfaces: wrong sign, other reading, base, grid, model or verdict, largest for
 mean, a missing error. By function, so that this is also the list of these functions.

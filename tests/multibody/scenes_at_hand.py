@@ -7,7 +7,7 @@ from rigid_chain import spatial_motion
 
 import multibody
 import reference
-from multibody.integration.constant_step import set_initial_state, silence
+from multibody.integration.constant_step import set_initial_state, silence_engine
 from multibody.models.assembly import assemble
 from multibody.models.depressions import angular_velocity_matrix
 from multibody.models.engine import exudyn
@@ -45,7 +45,7 @@ def forces_of_links(scene: Scene, coordinates: Any, velocities: Any) -> tuple[An
     set_initial_state(model, EngineState(np.append(coordinates, rest), np.append(velocities, rest), contact))
     solver, settings = exudyn.MainSolverImplicitSecondOrder(), exudyn.SimulationSettings()
     settings.solution.file.write, settings.timeIntegration.verboseMode = False, 0
-    with silence():
+    with silence_engine():
         solver.InitializeSolver(model.mbs, settings)
         solver.ComputeODE2RHS(model.mbs)
     pushed = np.array(solver.GetSystemResidual())[:count].reshape(-1, 2, 3).copy()

@@ -16,7 +16,7 @@ from PIL import Image
 from multibody import animate
 from multibody import film as film_module
 from multibody.animate import main
-from multibody.film import Look, drawn_boxes, film, magnified
+from multibody.film import Look, arrange_boxes, choose_magnification, draw_film
 from reference.problem import load_scene
 
 SHORT = """
@@ -140,13 +140,13 @@ def test_wrong_options_end_with_one_line_before_anything_is_run(
     ("largest", "factor"), [(0.0, 1e4), (1e-9, 1e4), (9.4e-5, 2e3), (1.4e-3, 200.0), (0.3, 1.0), (1.0, 1.0)]
 )
 def test_turns_are_magnified_by_round_factors_and_never_reduced(largest: float, factor: float) -> None:
-    assert magnified(np.array([0.0, -largest]), 0.3) == factor
+    assert choose_magnification(np.array([0.0, -largest]), 0.3) == factor
 
 
 def test_boxes_without_stated_sizes_stand_half_a_width_apart(words: list[str]) -> None:
     """Their width is that of a ring of 1 m; centers of mass at one height are drawn apart likewise."""
     for scene in (load_scene(words[0]), load_scene("fig3-I").with_values({"bodies.1.height": 0.2})):
-        heights, sizes, factor = drawn_boxes(scene)
+        heights, sizes, factor = arrange_boxes(scene)
         assert (heights.tolist(), sizes.tolist(), factor) == ([0.0, 1.0], [[2.0, 2.0, 0.2]] * 2, 1.0)
 
 
@@ -172,8 +172,8 @@ def test_the_film_shows_a_motion_from_three_sides(monkeypatch: pytest.MonkeyPatc
         return b""
 
     monkeypatch.setattr(film_module, "FigureCanvasAgg", canvas)
-    monkeypatch.setattr(film_module, "_gif", gif)
-    film(scene, motion, "spatial", Look(stretch=3.0, speed=0.5, rate=5), 3)
+    monkeypatch.setattr(film_module, "_encode_gif", gif)
+    draw_film(scene, motion, "spatial", Look(stretch=3.0, speed=0.5, rate=5), 3)
     [figure] = made
     assert figure.get_suptitle().endswith(
         ": spatial model of the engine\ndisplacements x 3, contact paths x 50, tilt x 20, yaw x 50, heights x 2.3"

@@ -8,11 +8,11 @@ from beam_columns import Tower
 from scenes_at_hand import assert_agrees_with_newton_and_euler, assert_within, forces_of_links
 
 import multibody
-from multibody.integration.adaptive import Budget
+from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from multibody.models.engine import exudyn, items
-from multibody.models.links import LINK_COMPLIANCE_RATIO, add_links
+from multibody.models.links import LINK_COMPLIANCE_RATIO, RigidBodies, add_links
 from multibody.models.units import units_of
 from reference.problem import Outcome, Scene, load_scene
 
@@ -55,7 +55,7 @@ def on_the_ground(scene: Scene, force: float = 0.0) -> tuple[Any, Any, int]:
     marker = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body))
     mbs.AddLoad(items.LoadForceVector(markerNumber=marker, loadVector=[force * masses[1], 0.0, -masses[1]]))
     shear = scene.stiffness[:, :, None] * np.eye(2) * (units.time**2 / units.mass)
-    add_links(mbs, scene, units, [ground, body], masses, centers, shear, 0.0 * shear, 1.0)
+    add_links(mbs, scene, units, RigidBodies([ground, body], masses, centers), shear, 0.0 * shear, 1.0)
     mbs.Assemble()
     return container, mbs, node
 
@@ -102,7 +102,7 @@ def test_a_link_under_an_eccentric_weight_is_straight_at_rest(axial: dict[str, A
     scene = load_scene("fig3-I").with_values(values)
     model, level = assemble(scene, "spatial", 1e-3), multibody.levels(scene, "spatial")[0]
     moment = 0.5 * np.hypot(*offset) / scene.radius  # of half of the weight, in weights times rho
-    run = PhasePair(scene, model, np.full(2, 0.5 * np.pi)).at_level(level, Budget(1e5), stop=1e-6, keep=True)
+    run = PhasePair(scene, model, np.full(2, 0.5 * np.pi)).run_level(level, Budget(1e5), stop=1e-6, keep=True)
     turns = run.chunks[0].coordinates[0][model.bodies + 3]
     # as stiff as a link of rigid bars is in bending, it would lean by ten penetrations
     assert np.abs(turns[1] - turns[0]).max() < 0.01 * LINK_COMPLIANCE_RATIO * level.penetration * moment

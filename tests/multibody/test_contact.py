@@ -8,7 +8,7 @@ import pytest
 from scenes_at_hand import CONSTANT, one_body
 
 import multibody
-from multibody.integration.constant_step import Engine, silence
+from multibody.integration.constant_step import EngineSolver, silence_engine
 from multibody.models.assembly import assemble
 from multibody.models.state import EngineState
 from reference.problem import GRAVITY, Outcome, Scene, State, Trajectory
@@ -26,8 +26,10 @@ def test_the_weight_presses_the_contact_in(within: Callable[[float, float], None
     model.set_contact(penetration)
     begin = model.start(None, np.zeros(3), penetration)
     raised = begin.coordinates + np.array([0.0, 0.0, penetration, 0.0, 0.0, 0.0])  # touching, not yet pressed in
-    with silence():
-        motion = Engine(model, 1e-8, 1e-12).run(EngineState(raised, begin.velocities, np.zeros(4)), 0.0, 1e-3, 1000)
+    with silence_engine():
+        motion = EngineSolver(model, 1e-8, 1e-12).run(
+            EngineState(raised, begin.velocities, np.zeros(4)), 0.0, 1e-3, 1000
+        )
     assert motion.gap[0, 0] == pytest.approx(0.0, abs=1e-15)
     # settled after 100 of its own time constants, up to Newton's tolerance
     within(abs(motion.gap[-1, 0] / penetration + 1.0), 1e-6)
@@ -39,11 +41,11 @@ def test_a_settled_restart_with_a_smaller_step_does_not_ring() -> None:
     model = assemble(one_body(), "translational", 1e-3)
     model.set_contact(penetration)
     state = model.start(State(np.array([[0.05, 0.0]]), np.array([[0.3, 0.4]])), np.zeros(3), penetration)
-    engine, jitter = Engine(model, 1e-8, 1e-9), []
-    with silence():
+    engine, jitter = EngineSolver(model, 1e-8, 1e-9), []
+    with silence_engine():
         sliding = engine.run(state, 0.0, coarse, 40)
         rate = (sliding.gap[-1] - sliding.gap[-5]) / (sliding.time[-1] - sliding.time[-5])
-        for begin in (sliding.state(-1), model.settle(sliding.state(-1), rate, penetration)):
+        for begin in (sliding.state_at(-1), model.settle(sliding.state_at(-1), rate, penetration)):
             motion = engine.run(begin, float(sliding.time[-1]), coarse / 4.0, 12)
             jitter.append(np.abs(np.diff(motion.accelerations[:, 2], 2)).max())
     assert jitter[1] < 0.1 * jitter[0]

@@ -10,12 +10,13 @@ from random_buildings import random_building, under_a_record
 
 import multibody
 from multibody.integration import look_ahead
-from multibody.integration.adaptive import Budget, EngineRun, Place, go_on
-from multibody.integration.chunk import first_ends, largest_distance, last_near
+from multibody.integration.adaptive import Checkpoint, Integration, continue_run
+from multibody.integration.chunk import find_first_ends, find_last_near, largest_distance
+from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import Level
-from multibody.integration.level_runs import _settled
+from multibody.integration.level_runs import _choose_early_stop
 from multibody.integration.one_run import PhasePair
-from multibody.integration.peak import Peaks
+from multibody.integration.peak import PeakReader
 from multibody.integration.refine import refine
 from multibody.models.assembly import assemble
 from multibody.models.units import units_of
@@ -52,7 +53,8 @@ def test_no_peak_is_lost_by_stopping_early(model: str, seeds: range, longest: fl
     stopped = 0
     for scene, phase, v_reg in (random_scene(seed, longest) for seed in seeds):
         early, whole = (
-            refine(scene, assemble(scene, model, v_reg), phase, TOLERANCE, whole=full) for full in (False, True)
+            refine(PhasePair(scene, assemble(scene, model, v_reg), phase, whole=full), TOLERANCE)
+            for full in (False, True)
         )
         assert early.outcome == whole.outcome
         # a motion that settles has the same steps up to there; softer supports may follow from what warping took later
@@ -73,12 +75,12 @@ CONTACT = DRAW.normal(size=(STEPS, 12))  # of three
 def test_the_first_and_last_rows_of_what_ends_a_run_are_found(rim: float, share: float) -> None:
     at_rim, is_open = ACCELERATIONS[:, 2] >= rim, (CONTACT[:, 0::4] >= 0.0).all(axis=1)
     expected = tuple(int(np.append(holds, True).argmax()) for holds in (at_rim, is_open))
-    assert first_ends(ACCELERATIONS, 2, rim, CONTACT) == expected
-    assert first_ends(ACCELERATIONS, 2, rim, -np.abs(CONTACT))[1] == STEPS
+    assert find_first_ends(ACCELERATIONS, 2, rim, CONTACT) == expected
+    assert find_first_ends(ACCELERATIONS, 2, rim, -np.abs(CONTACT))[1] == STEPS
     size, distance = np.abs(ACCELERATIONS[:, :2]), np.abs(ACCELERATIONS[:, 3])
     sizes, far = share * size.max(axis=0), share * float(distance.max())
     near = np.flatnonzero((size >= sizes).any(axis=1) | (distance >= far))
-    assert last_near(size, sizes, distance, far) == (near[-1] if len(near) else -1)
+    assert find_last_near(size, sizes, distance, far) == (near[-1] if len(near) else -1)
 
 
 def test_the_largest_distance_is_that_between_the_instants_too() -> None:
@@ -93,13 +95,13 @@ def test_the_largest_distance_is_that_between_the_instants_too() -> None:
 
 def test_full_runs_go_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
     stops = []
-    at_level = PhasePair.at_level
+    run_level = PhasePair.run_level
 
     def noted(pair: PhasePair, level: Level, budget: Budget, stop: float = math.inf, **options: Any) -> EngineRun:
         stops.append(stop)
-        return at_level(pair, level, budget, stop, **options)
+        return run_level(pair, level, budget, stop, **options)
 
-    monkeypatch.setattr(PhasePair, "at_level", noted)
+    monkeypatch.setattr(PhasePair, "run_level", noted)
     scene = load_scene("fig3-I")
     multibody.amplification(scene, [(0.3, 1.1)], tolerance=TOLERANCE)
     assert math.isinf(stops[0])
@@ -112,19 +114,19 @@ def test_full_runs_go_to_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_motion_is_integrated_again_behind_a_look_ahead(monkeypatch: pytest.MonkeyPatch) -> None:
     ends: list[float] = []
 
-    def noted(result: EngineRun, place: Place, *rest: Any, **options: Any) -> Place:
-        reached = go_on(result, place, *rest, **options)
+    def noted(integration: Integration, *rest: Any, **options: Any) -> Checkpoint:
+        reached = continue_run(integration, *rest, **options)
         ends.append(reached.time)
         return reached
 
-    monkeypatch.setattr(look_ahead, "go_on", noted)
+    monkeypatch.setattr(look_ahead, "continue_run", noted)
     time = 0.02 * np.arange(400)
     bursts = np.exp(-(((time - 1.0) / 0.8) ** 2)) + 1.2 * np.exp(-(((time - 6.0) / 0.8) ** 2))
     samples = np.column_stack([time, bursts * np.sin(2.0 * np.pi * time), np.zeros((400, 2))])
     record = {"record": "two bursts.csv", "samples": samples.tolist()}
     scene = load_scene("fig4-viscous").with_values({"duration": 12.0, "excitation": record})
     model = assemble(scene, "translational", None)
-    early, whole = (refine(scene, model, np.zeros(2), TOLERANCE, whole=full) for full in (False, True))
+    early, whole = (refine(PhasePair(scene, model, np.zeros(2), whole=full), TOLERANCE) for full in (False, True))
     assert len(ends) == 4, "to the first quiet, ahead to the second burst, over it, ahead to the end"
     assert early.finest.peaks.instant.max() * units_of(scene).time > 5.0
     np.testing.assert_allclose(early.peaks, whole.peaks, rtol=1e-12)
@@ -135,16 +137,16 @@ def test_a_motion_is_integrated_again_behind_a_look_ahead(monkeypatch: pytest.Mo
 )
 def test_a_look_ahead_ends_at_all_that_is_asked_for(changes: dict[str, Any]) -> None:
     """Beyond 0.8 of a largest value, or with less than 0.2 of the weight on the contact."""
-    result = EngineRun(Peaks(2, math.inf), math.inf, max_displacement=0.5)
+    result = EngineRun(PeakReader(2, math.inf), math.inf, max_displacement=0.5)
     result.peaks.value[:] = 1.0, 2.0
     peak = changes.pop("peak", 1.6)
-    ahead = EngineRun(Peaks(2, math.inf), math.inf, **{"max_displacement": 0.4, **changes})
+    ahead = EngineRun(PeakReader(2, math.inf), math.inf, **{"max_displacement": 0.4, **changes})
     ahead.peaks.value[:] = 0.8, peak
-    assert look_ahead._large(ahead, result, 0.0) == (peak > 1.6 or bool(changes))
+    assert look_ahead._comes_near_largest(ahead, result, 0.0) == (peak > 1.6 or bool(changes))
 
 
 @pytest.mark.parametrize(("travel", "load", "stop"), [(1.0, 1.0, 2.02), (0.5, 1.0, math.inf), (1.0, 0.09, math.inf)])
 def test_a_run_close_to_its_travel_or_to_opening_goes_to_the_end(travel: float, load: float, stop: float) -> None:
-    run = EngineRun(Peaks(1, math.inf), math.inf, max_displacement=0.499, min_load=load, settled=2.0)
+    run = EngineRun(PeakReader(1, math.inf), math.inf, max_displacement=0.499, min_load=load, last_large=2.0)
     model: Any = SimpleNamespace(rim=1.0, travel=travel)
-    assert _settled(run, model, 1e-3) == pytest.approx(stop)
+    assert _choose_early_stop(run, model, 1e-3) == pytest.approx(stop)

@@ -11,16 +11,16 @@ from scenes_at_hand import assert_agree, one_body
 from scipy.optimize import brentq
 
 import multibody
-from multibody.integration.adaptive import Budget, EngineRun
-from multibody.integration.estimate import widened_by_impacts
+from multibody.integration.engine_run import Budget, EngineRun
+from multibody.integration.estimate import widen_by_impacts
 from multibody.integration.level import REAL_WARPING_COMPLIANCE
 from multibody.integration.one_run import PhasePair
 from multibody.integration.openings import IMPACT_TIME
-from multibody.integration.peak import Peaks
+from multibody.integration.peak import PeakReader
 from multibody.models.assembly import assemble
-from multibody.models.depressions import Depressions, rotation
+from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
-from multibody.motion import _attitude
+from multibody.motion import _measure_attitude
 from reference.problem import GRAVITY, DryFriction, Outcome, Scene, load_scene
 
 HALF_WIDTH, HEIGHT, RADIUS = 0.5, 3.0, 0.2  # of the square of supports, of the center of mass, of the spheres
@@ -43,7 +43,7 @@ def block(restitution: float = 0.0, friction: float | DryFriction = 0.0, corner:
 def test_a_rocking_block_slows_down_as_housner_says(grips: bool) -> None:
     """It turns about y by 0.3 about its left edge, on which it stands, and hits the right one; or it slides there."""
     before = 0.3 * np.array([ARM, 0.0, -HALF_WIDTH, 0.0, 1.0, 0.0])
-    after, is_open = block(friction=1e3 * grips).after(np.zeros(6), before, LEFT, RIGHT)
+    after, is_open = block(friction=1e3 * grips).velocities_after(np.zeros(6), before, LEFT, RIGHT)
     moment = MOMENTS[1] + HALF_WIDTH**2 + ARM**2 * grips  # about either edge
     assert after[4] / before[4] == pytest.approx((moment - 2.0 * HALF_WIDTH**2) / moment, rel=1e-8)
     np.testing.assert_array_equal(is_open, LEFT)
@@ -56,7 +56,7 @@ def test_spheres_that_are_hit_move_with_the_corners_of_the_block() -> None:
     """In the bottom of the depressions they meet the vertical velocity alone."""
     law = replace(block(), depressions=Depressions(CORNERS, CENTER, RADIUS, np.arange(6, 10)))
     before = np.array([0.1, 0.0, -0.7, 0.3, -0.2, 0.0, 0.01, 0.02, 0.03, 0.04])
-    after = law.with_spheres_along(np.zeros(10), before, RIGHT)
+    after = law.carry_spheres_along(np.zeros(10), before, RIGHT)
     of_corners = -0.7 + 0.3 * CORNERS[:, 1] + 0.2 * CORNERS[:, 0]
     np.testing.assert_allclose(after, [*before[:6], *np.where(RIGHT, of_corners, before[6:])], atol=1e-12)
 
@@ -64,7 +64,7 @@ def test_spheres_that_are_hit_move_with_the_corners_of_the_block() -> None:
 @pytest.mark.parametrize("restitution", [0.0, 0.4, 1.0])
 def test_a_level_block_rebounds_by_the_restitution(restitution: float) -> None:
     fall = np.array([0.0, 0.0, -0.7, 0.0, 0.0, 0.0])
-    after, is_open = block(restitution, friction=0.3).after(np.zeros(6), fall, NONE, ALL)
+    after, is_open = block(restitution, friction=0.3).velocities_after(np.zeros(6), fall, NONE, ALL)
     np.testing.assert_allclose(after, [0.0, 0.0, 0.7 * restitution, 0.0, 0.0, 0.0], atol=1e-8)
     assert is_open.all() == (restitution > 0.0)
 
@@ -73,7 +73,8 @@ def test_the_friction_of_an_impact_is_that_of_the_whole_speed() -> None:
     """Gripped by mu times its normal impulse of 0.7, over the height at which a block of this inertia is held."""
     law = block(0.0, DryFriction(0.02, 0.2, 1.0), 1e-3)
     along, across = (
-        law.after(np.zeros(6), np.array([x, y, -0.7, 0.0, 0.0, 0.0]), NONE, ALL)[0] for x, y in ((0.4, 0.0), (0.0, 0.4))
+        law.velocities_after(np.zeros(6), np.array([x, y, -0.7, 0.0, 0.0, 0.0]), NONE, ALL)[0]
+        for x, y in ((0.4, 0.0), (0.0, 0.4))
     )
     assert along[0] == pytest.approx(across[1], rel=1e-6)
     assert along[0] == pytest.approx(0.4 - (0.2 - 0.18 * math.exp(-0.4)) * 0.7, rel=1e-6)
@@ -88,11 +89,11 @@ def test_no_impact_adds_energy_or_breaks_the_laws_of_contact(seed: int) -> None:
     before = random.normal(size=6)
     hit = random.random(4) < 0.5
     closed = ~hit & (law.normal_speeds(coordinates, before)[0] > -1e-3) & (random.random(4) < 0.5)
-    after, is_open = law.after(coordinates, before, closed, hit)
+    after, is_open = law.velocities_after(coordinates, before, closed, hit)
     speeds, _ = law.normal_speeds(coordinates, after)
     assert (speeds[closed | hit] > -1e-9).all()
     np.testing.assert_array_equal(is_open[closed | hit], speeds[closed | hit] > 1e-5)
-    axes, turning = rotation(coordinates[3:]), law._turning(coordinates)
+    axes, turning = rotation_matrices(coordinates[3:]), law._velocity_matrix(coordinates)
     inertia = axes @ np.diag(MOMENTS) @ axes.T
     energies = [0.5 * v[:3] @ v[:3] + 0.5 * v[3:] @ inertia @ v[3:] for v in (turning @ before, turning @ after)]
     assert energies[1] <= energies[0] * (1.0 + 1e-9)
@@ -161,7 +162,7 @@ def test_the_largest_value_behind_an_impact_converges() -> None:
     counted = landing + IMPACT_TIME * math.sqrt(scene.radius / GRAVITY)
     model = assemble(scene, "spatial", 1e-3)
     pair = PhasePair(scene, model, np.array([phase, 0.0]), whole=True)
-    runs = [pair.at_level(level, Budget(1e6)) for level in multibody.levels(scene, "spatial")[:3]]
+    runs = [pair.run_level(level, Budget(1e6)) for level in multibody.levels(scene, "spatial")[:3]]
     peaks = np.array([run.peaks.value[0] for run in runs]) * model.units.acceleration
     errors = np.abs(peaks / (push * math.cos(PACE * counted + phase)) - 1.0)
     assert errors[0] < 1e-3
@@ -178,7 +179,7 @@ def one_level(scene: Scene, phase: tuple[float, float], number: int, work: float
     """The run of one level on springs of real bearings."""
     level = replace(multibody.levels(scene, "spatial")[number], warping_compliance=REAL_WARPING_COMPLIANCE)
     pair = PhasePair(scene, assemble(scene, "spatial", 1e-3), np.array(phase), whole=True)
-    return pair.at_level(level, Budget(work))
+    return pair.run_level(level, Budget(work))
 
 
 def test_a_contact_that_opens_again_does_not_end_the_run() -> None:
@@ -196,8 +197,8 @@ def test_tilt_and_liftoff_are_those_of_the_platform() -> None:
     coordinates = np.hstack([np.zeros((2, 3)), angles]).ravel()
     gap = np.array([[-1.0] * 5, [-1.0, -1.0, 1.0, 1.0, -1.0]]).T
     motion: Any = SimpleNamespace(coordinates=np.tile(coordinates, (5, 1)), gap=gap)
-    found = _attitude(model, motion, 0.1 * np.arange(5))
-    np.testing.assert_allclose(found["tilt"], np.arccos(rotation(angles[0])[2, 2]))
+    found = _measure_attitude(model, motion, 0.1 * np.arange(5))
+    np.testing.assert_allclose(found["tilt"], np.arccos(rotation_matrices(angles[0])[2, 2]))
     np.testing.assert_array_equal(found["yaw"], [0.9] * 5)
     np.testing.assert_array_equal(found["turns"][3], angles)
     np.testing.assert_allclose(found["liftoff"], [[1.0, 0.1, 0.4]])
@@ -226,15 +227,15 @@ def test_supports_that_open_leave_answers_that_agree() -> None:
 
 
 def test_levels_that_impacts_scatter_have_their_spread() -> None:
-    run = EngineRun(Peaks(3, math.inf), math.inf, impacts=50)
-    peaks = [Peaks(3, math.inf), Peaks(3, math.inf), run.peaks]
+    run = EngineRun(PeakReader(3, math.inf), math.inf, impacts=50)
+    peaks = [PeakReader(3, math.inf), PeakReader(3, math.inf), run.peaks]
     # to and fro, ever on by hardly less, and by a third of the change before
     for each, values in zip(peaks, ([3.4600, 2.5135, 1.0090], [3.4624, 2.5115, 1.0000], [3.4582, 2.5102, 0.9970])):
         each.value[:] = values
-    errors = widened_by_impacts(np.zeros(3), peaks, run, 2)
+    errors = widen_by_impacts(np.zeros(3), peaks, run, 2)
     np.testing.assert_allclose(errors, [0.0042, 0.0033, 1e-3 * 0.997], rtol=1e-9)
     run.impacts = 0
-    assert not widened_by_impacts(np.zeros(3), peaks, run, 2).any()
+    assert not widen_by_impacts(np.zeros(3), peaks, run, 2).any()
 
 
 @pytest.mark.parametrize(("height", "width"), [(0.0, 1.0), (5.0, 1.0), (0.2, 10.0)])
@@ -246,8 +247,8 @@ def test_a_platform_near_its_rest_has_all_spheres_in(height: float, width: float
     for size in np.geomspace(1e-3, 3.0, 400):
         moved = draw.random(10) < 0.5  # some of them alone come further before a sphere leaves
         coordinates = size * moved * draw.uniform(-1.0, 1.0, (20, 10))
-        if place.near_rest(coordinates):
+        if place.is_near_rest(coordinates):
             proved += 1
-            assert not place.beyond_rim(coordinates).any()
-            assert (rotation(coordinates[:, 3:6])[:, 2, 2] > 0.0).all()
+            assert not place.rows_beyond_rim(coordinates).any()
+            assert (rotation_matrices(coordinates[:, 3:6])[:, 2, 2] > 0.0).all()
     assert 100 < proved < 400

@@ -5,16 +5,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from multibody.integration.peak import Peaks, _alternating, _corner
+from multibody.integration.peak import PeakReader, _alternating_part, _read_corner
 
 TIME = np.arange(0.0, 1.0, 0.02)
 CHUNKS = pytest.mark.parametrize("chunks", [1, 2, 7, 16])
 CORNERS = pytest.mark.parametrize("corner", [0.503, 0.511, 0.519])
 
 
-def read(size: np.ndarray, slip: np.ndarray | float = 1.0, threshold: float = np.inf, chunks: int = 1) -> Peaks:
+def read(size: np.ndarray, slip: np.ndarray | float = 1.0, threshold: float = np.inf, chunks: int = 1) -> PeakReader:
     """Peaks of samples at TIME (T,), handed over in chunks; slip speeds (T,) or (T, K)."""
-    peaks = Peaks(1, threshold)
+    peaks = PeakReader(1, threshold)
     slip = np.broadcast_to(np.transpose(slip), (np.atleast_2d(np.transpose(slip)).shape[0], len(TIME))).T
     edges = np.linspace(0, len(TIME) - 1, chunks + 1).astype(int)
     for begin, end in pairwise(edges):
@@ -80,7 +80,7 @@ def test_two_instants_of_one_corner_are_part_of_its_error() -> None:
     """The slip speed passes 1 at 0.504 by the samples before the corner, and at 0.512 by those behind it."""
     time = np.arange(0.44, 0.58, 0.02)
     slip = 1.0 + np.where(time < 0.51, time - 0.504, 3.0 * (time - 0.512))
-    value, error, instant = _corner(time, np.where(time < 0.51, 1.0, 0.9), slip[:, None], 3, 1.0, [3])
+    value, error, instant = _read_corner(time, np.where(time < 0.51, 1.0, 0.9), slip[:, None], 3, 1.0, [3])
     assert (value, instant) == pytest.approx((0.95, 0.508))
     assert error == pytest.approx(0.5 * 0.1 + 0.5 * 0.008 * 0.1 / 0.02)
 
@@ -90,7 +90,7 @@ def test_a_rise_over_short_steps_is_not_taken_for_a_slope() -> None:
     time = np.concatenate([np.arange(0.0, 0.5, 0.02), 0.5 + 1e-6 * np.arange(8.0), np.arange(0.52, 1.0, 0.02)])
     since = np.maximum(time - 0.5, 0.0)
     size = np.where(time < 0.5, 0.99, 1.0 - 0.1 * since - 0.01 * np.exp(-since / 3e-6))
-    peaks = Peaks(1, np.inf)
+    peaks = PeakReader(1, np.inf)
     peaks.add(time, size[:, None], np.ones((len(time), 1)))
     assert peaks.value[0] == pytest.approx(size.max(), abs=1e-9)
     assert peaks.sampling[0] < 1e-3
@@ -131,4 +131,4 @@ def test_what_a_longer_last_step_misses_counts_in_full() -> None:
     for time, share in (([0.0, 1.0, 2.0, 3.0, 4.0], 1.0 / 16.0), ([0.0, 1.0, 2.0, 3.0, 7.0], 1.0)):
         at = np.array(time)
         size = 1.0 + 0.5 * at - 0.1 * at**2 + 0.02 * at**3 + [0.0, 0.0, 0.0, 0.0, 0.3]
-        assert _alternating(at, size) == pytest.approx(0.3 * share)
+        assert _alternating_part(at, size) == pytest.approx(0.3 * share)

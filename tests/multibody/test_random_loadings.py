@@ -9,7 +9,7 @@ from random_truths import LIKE_FOR_LIKE, beyond_and_ratios, case_of
 
 import multibody
 import reference
-from multibody.integration.level import for_small_peaks
+from multibody.integration.level import soften_for_small_peaks
 from multibody.integration.one_run import PhasePair
 from reference.problem import Outcome, load_scene
 
@@ -56,13 +56,13 @@ def test_a_loading_that_rounding_drowns_has_an_error_that_covers(weak: tuple[Any
 
 def test_levels_that_cannot_round_less_are_not_spent(monkeypatch: pytest.MonkeyPatch) -> None:
     """1e-11 m/s^2 is less than what a contact force rounds to."""
-    runs, at_level = [], PhasePair.at_level
+    runs, run_level = [], PhasePair.run_level
 
     def noted(*given: Any, **more: Any) -> Any:
-        runs.append(at_level(*given, **more))
+        runs.append(run_level(*given, **more))
         return runs[-1]
 
-    monkeypatch.setattr(PhasePair, "at_level", noted)
+    monkeypatch.setattr(PhasePair, "run_level", noted)
     weak = load_scene("fig3-I").with_values({"duration": 0.5}).with_amplitude(1e-11)
     assert multibody.amplification(weak, [(0.3, 1.1)]).status[0] == BEYOND
     assert len(runs) <= 3, "two levels, and the compliance of the second"
@@ -70,11 +70,13 @@ def test_levels_that_cannot_round_less_are_not_spent(monkeypatch: pytest.MonkeyP
 
 def test_only_a_small_peak_asks_for_a_softer_contact() -> None:
     levels = multibody.levels(load_scene("fig3-I"), tolerance=1e-3)
-    assert [for_small_peaks(level, 0.2, 1e-3) for level in levels] == levels
-    softer = for_small_peaks(levels[3], 1e-6, 1e-3)
+    assert [soften_for_small_peaks(level, 0.2, 1e-3) for level in levels] == levels
+    softer = soften_for_small_peaks(levels[3], 1e-6, 1e-3)
     assert softer.rounding == pytest.approx(0.25 * 1e-3 * 1e-6)
     assert softer.residual == pytest.approx(softer.rounding)
-    assert for_small_peaks(levels[3], 1e-20, 1e-3).penetration == pytest.approx(1e-4), "the softest that is tried"
+    assert soften_for_small_peaks(levels[3], 1e-20, 1e-3).penetration == pytest.approx(1e-4), (
+        "the softest that is tried"
+    )
     narrow, wide = (load_scene("fig3-I").with_values({"isolator.ring": ring}) for ring in (2.0, 6.0))
     rounding = [multibody.levels(scene, "spatial")[0].rounding_moment for scene in (narrow, wide)]
     assert rounding[1] / rounding[0] == pytest.approx(9.0), "a force rounds by a place, its moment by that squared"

@@ -9,12 +9,12 @@ from scenes_at_hand import assert_agree
 
 import multibody
 import reference
-from multibody.integration.adaptive import Budget
-from multibody.integration.constant_step import silence
-from multibody.integration.level import levels_of
+from multibody.integration.constant_step import silence_engine
+from multibody.integration.engine_run import Budget
+from multibody.integration.level import plan_levels
 from multibody.integration.level_runs import LevelRuns
 from multibody.integration.one_run import PhasePair
-from multibody.integration.peak import Peaks
+from multibody.integration.peak import PeakReader
 from multibody.integration.refine import refine
 from multibody.models.assembly import assemble
 from multibody.models.recorded import align_steps
@@ -30,7 +30,7 @@ def test_a_loose_tolerance_begins_a_level_earlier_under_a_record() -> None:
     """Twice the step of level 0, within its stated error; agreement behind impacts counts from level 0 on."""
     loose, usual = multibody.levels(EXAMPLE, tolerance=1e-2), multibody.levels(EXAMPLE, tolerance=9e-3)
     assert [level.step for level in loose] == [2.0 * usual[0].step, *(level.step for level in usual[:-1])]
-    assert (loose[1], [level.is_loose for level in loose[:2]]) == (usual[0], [True, False])
+    assert (loose[1], [level.precedes_level_0 for level in loose[:2]]) == (usual[0], [True, False])
     harmonic = reference.load_scene("fig3-I")
     assert multibody.levels(harmonic, tolerance=1e-2)[0].step == multibody.levels(harmonic)[0].step
     found = multibody.amplification(EXAMPLE, [ANY], tolerance=1e-2)
@@ -39,7 +39,7 @@ def test_a_loose_tolerance_begins_a_level_earlier_under_a_record() -> None:
     assert np.all(found.error >= 8e-4 * found.mu)
     for levels, before in ((loose, 0), (usual, 1)):
         runs = SimpleNamespace(levels=levels, runs=[None, None])
-        assert LevelRuns._levels_on_the_same_springs(runs) == before  # type: ignore[arg-type]
+        assert LevelRuns._count_levels_on_same_springs(runs) == before  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("push", "impacts"), [(-5.0, False), (-20.0, True)])
@@ -50,9 +50,9 @@ def test_behind_impacts_a_loose_tolerance_goes_on_to_level_1(push: float, impact
     body = {"mass": 1e3, "height": 0.1, "size": [1.0, 1.0, 0.1]}
     falls = {"excitation": {"record": "falls.csv", "samples": samples}}
     scene = Scene.model_validate({"title": "falls", "duration": 0.3, "isolator": on, "bodies": [body], **falls})
-    with silence():
+    with silence_engine():
         built = assemble(scene, "spatial", 1e-3, contact_force=True)
-        point = refine(scene, built, np.zeros(2), 1e-2)
+        point = refine(PhasePair(scene, built, np.zeros(2)), 1e-2)
     assert (point.outcome, point.finest.impacts > 0) == ("ok", impacts)
     low, high = (1e-3, 2e-3) if impacts else (8e-4, 8e-4)  # at level 0 4e-3 and 8e-4
     assert low <= point.floor <= high
@@ -90,10 +90,10 @@ def test_steps_end_at_every_knot_passed(time, step, count, expected):
 def test_knots_do_not_make_the_chunks_behind_them_short(parts: int) -> None:
     """Chunks of 1, 2, 4 and 8 steps up to each knot, of 15 between two, left a weak record 2.5 stated errors off."""
     scene = EXAMPLE.with_values({"excitation.scale": 0.16, "duration": 3.0})
-    with silence():
+    with silence_engine():
         model = assemble(scene, "translational", 1e-3)
-        interval, level = model.ground.knots[1], levels_of(scene, model, 1e-3)[0]
-        run = PhasePair(scene, model, np.array(ANY)).at_level(
+        interval, level = model.ground.knots[1], plan_levels(scene, model, 1e-3)[0]
+        run = PhasePair(scene, model, np.array(ANY)).run_level(
             replace(level, step=interval / (parts - 0.5)), Budget(1e5), keep=True
         )
     largest = [chunk for chunk in run.chunks if np.diff(chunk.time).max() > 0.9 * interval / parts]
@@ -105,6 +105,6 @@ def test_a_peak_at_a_kink_is_the_sample_there():
     roof = 1.0 - np.abs(time - 0.5)
     hump = np.where(time < 0.5, 1.0392 * time, 0.52 - (time - 0.52) ** 2)  # its highest sample is at the kink
     for size, top in ((roof, 1.0), (hump, 0.52)):
-        peaks = Peaks(1, np.inf, np.array([0.0, 0.5, 1.0]), 1e-9)
+        peaks = PeakReader(1, np.inf, np.array([0.0, 0.5, 1.0]), 1e-9)
         peaks.add(time, size[:, None], np.zeros((21, 1)))
         assert peaks.value[0] == pytest.approx(top, rel=1e-12)

@@ -12,11 +12,11 @@ from scenes_at_hand import forces_of_links
 import multibody
 import reference
 from multibody.integration.candidate import Candidate
-from multibody.integration.estimate import from_compliance, from_levels, lag
-from multibody.integration.peak import Peaks
-from multibody.integration.travel import travel_reached
+from multibody.integration.estimate import compliance_error, contact_lag, error_between_levels
+from multibody.integration.peak import PeakReader
+from multibody.integration.termination import find_travel_end
 from multibody.models.assembly import assemble
-from multibody.models.depressions import Depressions, rotation
+from multibody.models.depressions import Depressions, rotation_matrices
 from multibody.models.impact import ImpactLaw
 from multibody.models.spatial import _critical_tilt
 from reference.problem import GRAVITY, DryFriction, Outcome, ground_acceleration, load_scene
@@ -34,15 +34,15 @@ def test_a_travel_passed_within_a_step_is_passed_on_the_way_out() -> None:
     motion: Any = SimpleNamespace(time=time, coordinates=np.zeros((2, 6)), velocities=np.zeros((2, 6)))
     motion.coordinates[:, 0], motion.velocities[:, 0] = speed * time - 0.5 * braking * time**2, speed - braking * time
     model: Any = SimpleNamespace(bodies=np.arange(3)[None], travel=travel)
-    instant, row = travel_reached(motion, model)
+    instant, row = find_travel_end(motion, model)
     assert row == 0
     # the squared displacement is of fourth order in time, of which the cubic between two samples misses some
     assert instant == pytest.approx((speed - math.sqrt(speed**2 - 2.0 * braking * travel)) / braking, abs=0.05)
 
 
-def peaks_of(*values: Any) -> list[Peaks]:
+def peaks_of(*values: Any) -> list[PeakReader]:
     """Peaks of so many runs."""
-    peaks = [Peaks(np.size(value), 1.0) for value in values]
+    peaks = [PeakReader(np.size(value), 1.0) for value in values]
     for each, value in zip(peaks, values):
         each.value[:] = value
     return peaks
@@ -53,9 +53,9 @@ def test_a_softer_contact_leaves_at_least_its_share_of_rho_open() -> None:
     for change, outcome in ((0.0, Outcome.OK), (0.01, Outcome.OK), (0.01, Outcome.STEP_LIMIT)):
         stiff, soft = peaks_of((1.0, 2.0), (1.0 + change, 2.0 - change))
         run: Any = SimpleNamespace(outcome=outcome, peaks=soft)
-        expected = 1.5 * change * (1.0 + lag(LEVELS[0], MODEL)) + LEVELS[0].penetration * stiff.value
+        expected = 1.5 * change * (1.0 + contact_lag(LEVELS[0], MODEL)) + LEVELS[0].penetration * stiff.value
         expected += 0.0 if outcome == Outcome.OK else np.inf
-        np.testing.assert_allclose(from_compliance(stiff, run, LEVELS[0], MODEL), expected)
+        np.testing.assert_allclose(compliance_error(stiff, run, LEVELS[0], MODEL), expected)
 
 
 def test_the_error_of_levels_is_what_richardson_says() -> None:
@@ -64,9 +64,9 @@ def test_the_error_of_levels_is_what_richardson_says() -> None:
     is 2, and of 1.25 at three, whose r is seen, between 2 and 4. Changes of opposite sign show no rate; one that falls
     more than fivefold is accidental, and half of the one before counts. The error of reading adds.
     """
-    slow = 1.0 + lag(LEVELS[1], MODEL)
+    slow = 1.0 + contact_lag(LEVELS[1], MODEL)
     for values, expected in (
-        ((1.0, 1.01), 1.5 * 0.01 * (1.0 + lag(LEVELS[0], MODEL))),
+        ((1.0, 1.01), 1.5 * 0.01 * (1.0 + contact_lag(LEVELS[0], MODEL))),
         ((0.96, 1.0, 1.016), 1.25 * 0.016 * slow / (2.5 - 1.0)),
         ((0.99, 1.0, 1.02), 1.25 * 0.02 * slow),
         ((0.955, 1.0, 1.01), 1.25 * 0.01 * slow / (4.0 - 1.0)),
@@ -77,16 +77,16 @@ def test_the_error_of_levels_is_what_richardson_says() -> None:
         for reading in (0.0, 0.007):
             peaks = peaks_of(*values)
             peaks[-1].sampling[:] = reading
-            error = from_levels(peaks, LEVELS[: len(values)], MODEL)[0]
+            error = error_between_levels(peaks, LEVELS[: len(values)], MODEL)[0]
             assert error == pytest.approx(expected + reading + 1e-6 * values[-1], rel=1e-9)
 
 
 def test_what_newton_s_method_leaves_is_an_error() -> None:
     """On a plane it adds to what levels show, which all share it; elsewhere it is the least error."""
-    shown = 1.5 * 0.01 * (1.0 + lag(LEVELS[0], MODEL))
+    shown = 1.5 * 0.01 * (1.0 + contact_lag(LEVELS[0], MODEL))
     for flat, left, expected in ((True, 0.4, shown + 0.4), (False, 0.4, 0.4), (False, 1e-3, shown)):
         last = replace(LEVELS[1], newton=0.5 * left, load=2.0, flat=flat)
-        error = from_levels(peaks_of(1.0, 1.01), [LEVELS[0], last], MODEL)[0]
+        error = error_between_levels(peaks_of(1.0, 1.01), [LEVELS[0], last], MODEL)[0]
         assert error == pytest.approx(expected + 1e-6 * 1.01, rel=1e-9)
 
 
@@ -96,7 +96,7 @@ def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
     run: Any = SimpleNamespace(peaks=peaks)
     for shown, expected in ((1e-3, (7e-3, 7e-3)), (0.31, (1.004, 2.004))):
         parts = np.array([shown, 1e-3]), np.full(2, 2e-3), np.zeros(2)
-        answer = Candidate(run, LEVELS[0], True, *parts, (), compliance=np.full(2, 4e-3))
+        answer = Candidate(run, LEVELS[0], True, *parts, np.full(2, 4e-3), (), confirmed=True, floor=0.0)
         np.testing.assert_allclose(answer.errors, expected)
         assert answer.relative_error == pytest.approx(expected[0])
 
@@ -104,7 +104,7 @@ def test_the_error_of_an_answer_is_the_sum_of_its_parts() -> None:
 def test_a_motion_comes_with_the_accuracy_of_all_its_numbers() -> None:
     """At the lowest rate a whole change counts, with the safety of two levels and more where the contact is slow."""
     accuracy = multibody.trajectory(BRIEF, PHASE).accuracy
-    assert accuracy.share == pytest.approx([1.5 * (1.0 + lag(LEVELS[0], MODEL))])
+    assert accuracy.share == pytest.approx([1.5 * (1.0 + contact_lag(LEVELS[0], MODEL))])
     assert accuracy.floor == LEVELS[1].error_floor == 2e-4
 
 
@@ -176,18 +176,18 @@ def test_a_chain_that_moves_as_one_stretches_and_bends_no_link() -> None:
     """Whatever its links are stretched and twisted by."""
     law, coordinates = three_bodies_on_bars(), np.random.default_rng(2).uniform(-0.2, 0.2, 18)
     places = law.centers + coordinates.reshape(3, 6)[:, :3]
-    turned = rotation(coordinates.reshape(3, 6)[:, 3:])
+    turned = rotation_matrices(coordinates.reshape(3, 6)[:, 3:])
     for axis in np.eye(3):
         turn = np.concatenate([[np.cross(axis, place), axis] for place in places]).ravel()
         for velocity in (turn, np.tile([*axis, 0.0, 0.0, 0.0], 3)):
-            np.testing.assert_allclose(law._bars(coordinates, turned) @ velocity, 0.0, atol=1e-12)
+            np.testing.assert_allclose(law._bar_rates(coordinates, turned) @ velocity, 0.0, atol=1e-12)
 
 
 def test_behind_an_impact_stretched_bars_balance_their_dampers() -> None:
     """Stiffness times stretch and damping times its rate: the jump of one makes up for that of the other."""
     law, lags = three_bodies_on_bars(), np.array([0.03, 0.07])
     before, after = np.random.default_rng(3).normal(size=(2, 18))
-    stretched = law.with_bars_at_rest(np.zeros(18), before, after, lags).reshape(3, 6)[:, :3]
+    stretched = law.relax_bars(np.zeros(18), before, after, lags).reshape(3, 6)[:, :3]
     jump = (after - before).reshape(3, 2, 3)
     for link, lag_of_link in enumerate(lags):
         end = np.array([0.0, 0.0, law.centers[link : link + 2, 2].mean()])
@@ -204,6 +204,6 @@ def test_a_body_that_turns_about_its_link_s_end_bends_it(body: int) -> None:
         velocity = np.zeros((3, 2, 3))
         for above in range(body, 3):
             velocity[above] = np.cross(axis, law.centers[above] - end), axis
-        rates = (law._bars(np.zeros(18), UPRIGHT) @ velocity.ravel()).reshape(2, 3)
+        rates = (law._bar_rates(np.zeros(18), UPRIGHT) @ velocity.ravel()).reshape(2, 3)
         np.testing.assert_allclose(rates[body - 1], [0.0, axis[0], axis[1]], atol=1e-12)
         np.testing.assert_allclose(rates[2 - body], 0.0, atol=1e-12)

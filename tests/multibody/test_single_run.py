@@ -9,7 +9,7 @@ import pytest
 
 import multibody
 from multibody.models import assembly
-from multibody.models.engine import reset_with
+from multibody.models.engine import reset_when_unused
 from reference.problem import GRAVITY, Outcome, State, ground_peak, load_scene
 
 PHASE = (0.3, 1.1)
@@ -78,7 +78,7 @@ def test_the_engine_is_reset_with_the_last_copy_of_a_model(model: str, monkeypat
     """It keeps its memory allocated until then."""
     freed: list[bool] = []
     container = SimpleNamespace(Reset=lambda: freed.append(True))
-    monkeypatch.setattr(assembly, "reset_with", lambda owner, _: reset_with(owner, container))
+    monkeypatch.setattr(assembly, "reset_when_unused", lambda owner, _: reset_when_unused(owner, container))
     copied = replace(assembly.assemble(SCENE, model, 1e-3), allows_liftoff=True)
     gc.collect()
     assert (len(freed), copied.coordinates > 0) == (0, True)

@@ -9,7 +9,7 @@ from scenes_at_hand import assert_agrees_with_newton_and_euler
 
 import multibody
 import reference
-from multibody.integration.adaptive import Budget
+from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from reference.problem import GRAVITY, State, ground_acceleration, load_scene
@@ -63,7 +63,7 @@ def test_a_start_without_weight_is_in_balance_at_every_level(supports: int) -> N
     model = assemble(scene, "spatial", 1e-3)
     for level in multibody.levels(scene, "spatial"):
         pair = PhasePair(scene, model, np.zeros(2))
-        run = pair.at_level(level, Budget(1e5), stop=1e-3 * math.sqrt(level.penetration), keep=True)
+        run = pair.run_level(level, Budget(1e5), stop=1e-3 * math.sqrt(level.penetration), keep=True)
         assert np.abs(run.chunks[0].accelerations[0]).max() < 1e-2
 
 

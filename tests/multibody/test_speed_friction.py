@@ -6,7 +6,7 @@ from scenes_at_hand import one_body
 
 import multibody
 import reference
-from multibody.integration.constant_step import silence
+from multibody.integration.constant_step import silence_engine
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from reference.problem import GRAVITY, DryFriction, State, load_scene
@@ -49,8 +49,8 @@ def test_a_slide_has_its_closed_form_and_second_order(slow: float, fast: float, 
     built = assemble(scene, "translational", V_REG, contact_force=True)
     pair = PhasePair(scene, built, np.zeros(2), State(np.zeros((1, 2)), np.array([[speed, 0.0]])))
     errors = []
-    with silence():
+    with silence_engine():
         for count in 25 * 2 ** np.arange(halvings + 1):
-            run = pair.at_constant_step(int(count), 1e-8, 1e-7, 1e-11, "generalized alpha", None)
+            run = pair.run_constant_step(int(count), 1e-8, 1e-7, 1e-11, "generalized alpha", None)
             errors.append(float(run.chunks[-1].velocities[-1, 0]) * built.units.velocity - exact)
     np.testing.assert_allclose(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.1)

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 import multibody
-from multibody.integration.adaptive import Budget, EngineRun
+from multibody.integration.engine_run import Budget, EngineRun
 from multibody.integration.level import COMPLIANCE_OF_CLOSED, COMPLIANCE_RATIO, REAL_WARPING_COMPLIANCE, Level
 from multibody.integration.level_runs import MAX_FIRST_SHARE
 from multibody.integration.one_run import PhasePair
-from multibody.integration.peak import Peaks
+from multibody.integration.peak import PeakReader
 from multibody.integration.refine import refine
 from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from reference.problem import Outcome, load_scene
@@ -48,11 +48,11 @@ Runs = Callable[[int, float], EngineRun]  # of the number of the level, and how 
 
 def result(platform: float, *, opens: bool = True, outcome: Outcome = Outcome.OK, **more: Any) -> EngineRun:
     """A run with this peak of the platform; that of the other body is always 2."""
-    run = EngineRun(Peaks(2, math.inf), math.inf, **{"work": STEPS, **more})
+    run = EngineRun(PeakReader(2, math.inf), math.inf, **{"work": STEPS, **more})
     run.peaks.value[:] = platform, 2.0
     run.peaks.instant[:] = 0.2, 0.3
     run.last_open = 0.5 if opens else -math.inf
-    return run if outcome == Outcome.OK else run.terminated(outcome, 0.7)
+    return run if outcome == Outcome.OK else run.terminate(outcome, 0.7)
 
 
 @pytest.fixture
@@ -64,7 +64,7 @@ def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
         contacts = [LEVELS[min(number, stiffenings)].penetration for number in range(levels)]
         planned = [replace(level, penetration=contact) for level, contact in zip(LEVELS, contacts)]
 
-        def at_level(pair: PhasePair, level: Level, budget: Budget, *given: Any, **more: Any) -> EngineRun:
+        def run_level(pair: PhasePair, level: Level, budget: Budget, *given: Any, **more: Any) -> EngineRun:
             number = [other.step for other in LEVELS].index(level.step)
             springs = SOFTER if level.penetration > 1.01 * contacts[number] else level.warping_compliance
             done.asked += f" {number}{NAMES.get(springs, '')}"
@@ -74,8 +74,9 @@ def refined(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
             budget.left -= run.work
             return run
 
-        monkeypatch.setattr(PhasePair, "at_level", at_level)
-        done.answer = refine(SCENE, MODEL, np.zeros(2), TOLERANCE, whole=True, levels=planned, max_work=max_work)
+        monkeypatch.setattr(PhasePair, "run_level", run_level)
+        pair = PhasePair(SCENE, MODEL, np.zeros(2), whole=True)
+        done.answer = refine(pair, TOLERANCE, levels=planned, max_work=max_work)
         done.asked = done.asked.strip()
         return done
 

@@ -11,8 +11,9 @@ import multibody
 import reference
 from multibody import surface
 from multibody.integration import refine
-from multibody.integration.constant_step import Engine
-from multibody.integration.level import levels_of
+from multibody.integration.constant_step import EngineSolver
+from multibody.integration.level import plan_levels
+from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
 from reference.problem import GRAVITY, Outcome, Scene, load_scene
 
@@ -101,20 +102,20 @@ def test_an_answer_without_another_level_says_nothing_of_its_error() -> None:
     assert np.isnan(result.mu).all()
     scene = load_scene("fig3-I").with_values({"duration": 0.5})
     model = assemble(scene, "translational", 1e-3)
-    one = refine.refine(scene, model, np.array(PHASE), 1e-3, levels=levels_of(scene, model, 1e-3)[:1])
+    one = refine.refine(PhasePair(scene, model, np.array(PHASE)), 1e-3, levels=plan_levels(scene, model, 1e-3)[:1])
     assert (one.outcome, one.instant) == (Outcome.STEP_LIMIT, 0.5)
     assert np.isnan(one.peaks).all()
 
 
 def test_iterations_in_vain_are_work_as_well(monkeypatch: pytest.MonkeyPatch) -> None:
-    ran = Engine.run
+    ran = EngineSolver.run
 
-    def vain(self: Engine, *given: Any) -> Any:
+    def vain(self: EngineSolver, *given: Any) -> Any:
         motion = ran(self, *given)
-        self.iterations = 10**6
+        self.newton_iterations = 10**6
         return motion
 
-    monkeypatch.setattr(Engine, "run", vain)
+    monkeypatch.setattr(EngineSolver, "run", vain)
     result = multibody.amplification(load_scene("fig3-I").with_values({"duration": 0.5}), [PHASE])
     assert result.status[0] == Outcome.STEP_LIMIT
 
@@ -180,7 +181,7 @@ def test_a_refusal_says_what_is_needed_and_what_helps() -> None:
 
 def test_a_refusal_depends_on_the_model_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """40 coordinates: six of each of six bodies, and one of each of four supports that share the load."""
-    monkeypatch.setattr(Engine, "run", lambda *given: pytest.fail("a step was spent"))
+    monkeypatch.setattr(EngineSolver, "run", lambda *given: pytest.fail("a step was spent"))
     for tolerance in (1e-5, 1e-3, 1e-1):
         options: dict[str, Any] = {"model": "spatial", "tolerance": tolerance, "max_work": 5e3}
         refused = multibody.refusal(frame(20.0), **options)

@@ -10,10 +10,10 @@ from random_buildings import Building, random_building, under_a_record
 from scenes_at_hand import assert_agree, assert_agrees_with_newton_and_euler, assert_demands, assert_within
 
 import multibody
-from multibody.integration.adaptive import Budget
+from multibody.integration.engine_run import Budget
 from multibody.integration.one_run import PhasePair
 from multibody.models.assembly import assemble
-from multibody.models.depressions import rotation
+from multibody.models.depressions import rotation_matrices
 from reference.problem import GRAVITY, Outcome, Scene, SceneError, load_scene
 
 PHASE = (2.0, 0.7)
@@ -76,7 +76,7 @@ def test_supports_of_a_building_at_rest_carry_what_statics_say(name: str) -> Non
 @pytest.mark.parametrize(("name", "angle"), [("all off the axis", 0.5), ("everything", -2.0)])
 def test_a_scene_turned_as_a_whole_has_the_turned_motion(name: str, angle: float) -> None:
     scene = uneven(name, **{"bodies.1.damping": [0.3, 1.5]})
-    matrix = rotation(np.array([0.0, 0.0, angle]))[:2, :2]
+    matrix = rotation_matrices(np.array([0.0, 0.0, angle]))[:2, :2]
     values = {**at(scene.support_places @ matrix.T), "excitation.amplitudes": matrix @ scene.amplitudes[:2]}
     for number, (offset, yaw) in enumerate(zip(scene.offsets, scene.yaws)):
         values |= {f"bodies.{number}.offset": matrix @ offset, f"bodies.{number}.yaw": float(yaw + angle)}
@@ -112,7 +112,7 @@ def test_nothing_moves_until_the_loading_does(name: str) -> None:
     model = assemble(scene, "spatial", 5e-3)
     for level in multibody.levels(scene, "spatial")[:4]:
         pair = PhasePair(scene, model, np.array(STILL_AT_FIRST))
-        run = pair.at_level(level, Budget(1e5), stop=1e-3, keep=True)
+        run = pair.run_level(level, Budget(1e5), stop=1e-3, keep=True)
         # forces round to 1e-15 over the penetration, and a sphere has a hundredth of the mass
         assert np.abs(run.chunks[0].accelerations[0]).max() < 1e-6 + 1e3 * level.rounding
 

@@ -17,7 +17,7 @@ from comparison.analyses.motions.analysis import SHARE, Motions, Place, StoredMo
 from comparison.analyses.motions.page_data import contact_geometry, packed_motions, places, starts_of
 from comparison.study.models import SMALL, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import Study
-from multibody.film import contact_paths
+from multibody.film import trace_contact_paths
 from reference.problem import Scene, Trajectory, load_scene
 
 PHASE = (2.0, 0.7)
@@ -64,7 +64,7 @@ def test_the_path_of_the_contact_follows_from_the_layout(scene) -> None:
     motion = multibody.trajectory(scene, PHASE, "spatial")
     geometry = contact_geometry(scene)
     (x, y), yaw = motion.position[:, 0, :2].T, motion.extra["yaw"]
-    paths = contact_paths(scene, motion.position[:, 0], motion.extra["turns"][:, 0])
+    paths = trace_contact_paths(scene, motion.position[:, 0], motion.extra["turns"][:, 0])
     for number, (across, along) in enumerate(geometry["supports"]):
         path = -geometry["lever"] * np.stack([x - yaw * along, y + yaw * across], axis=1)
         # what is left out is tilt times the height of the platform's center

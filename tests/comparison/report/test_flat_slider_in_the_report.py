@@ -7,7 +7,7 @@ import pytest
 from comparison.analyses.effective_values.analysis import read_back
 from comparison.analyses.errata.analysis import MEASURES, measured
 from comparison.study.models import MODEL_HIERARCHY, models_of
-from multibody.film import drawing
+from multibody.film import make_drawing
 from reference import demands, trajectory
 from reference.problem import load_scene
 
@@ -32,6 +32,6 @@ def test_errata_that_are_infinite_on_a_plane_are_left_out():
 
 def test_a_film_of_a_flat_slider_draws_a_straight_line():
     motion = trajectory(FLAT, (0.3, 1.1))
-    drawn = drawing(FLAT, motion, 10.0, 4)
+    drawn = make_drawing(FLAT, motion, 10.0, 4)
     assert (drawn.swing[:, 1] == 0.0).all()
     assert drawn.swing[:, 0].max() > 10.0 * demands(motion).displacement.value, "it is as long as the way of the bodies"

@@ -161,7 +161,9 @@ def test_the_cells_of_the_first_screen_say_what_the_sentence_says() -> None:
     assert CELLS.range(KNOWN) == "from −17 % at (45°, 90°) to +5.3 % at (135°, 180°)"
     assert CELLS.range(replace(KNOWN, phases_per_axis=1)) == CELLS.range(replace(KNOWN, points=0)) == ""
     assert f"Causes: {CELLS.causes(KNOWN)}." == CAUSES
-    assert CELLS.causes(replace(KNOWN, main_cause="")).endswith("; which effect is the largest 16 × 16 phases do not tell")
+    assert CELLS.causes(replace(KNOWN, main_cause="")).endswith(
+        "; which effect is the largest 16 × 16 phases do not tell"
+    )
     assert CELLS.causes(replace(KNOWN, resolved=False)) == "the mean is not beyond its error"
     assert CELLS.causes(replace(KNOWN, causes=())) == "Which effect causes it 16 × 16 phases do not tell"
 

@@ -1,0 +1,80 @@
+"""The times within which the motion of a scene changes, in units of its model: periods, decays, relaxation."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from multibody.models.contact import viscous_relaxation
+from multibody.models.system import EngineModel
+from multibody.models.units import Units, link_stiffness
+from reference.problem import Scene, exponents
+
+# Number of steps at level 0 in a period of the fastest motion that matters.
+STEPS_PER_PERIOD = 150
+
+# Number of steps in a period of the fastest motion that bars make which give way, a small part of the accelerations,
+# and the largest division of the step for that motion: faster ones hardly move the bodies and are not resolved.
+STEPS_PER_BAR_PERIOD = 40
+MAX_BAR_DIVISION = 20.0
+
+# Number of steps at level 0 in the time in which a harmonic falls by e, while it lasts, and the number of such times
+# after which it has fallen by 1e12.
+STEPS_PER_DECAY = 24
+DECAY_TIMES = 28.0
+
+
+def largest_step(period: float, model: EngineModel) -> float:
+    """Step of level 0 in units of the model, from the shortest `period` and from that of bars that give way."""
+    step = period / STEPS_PER_PERIOD
+    if model.fastest_bar_frequency > 0.0:
+        of_bars = 2.0 * math.pi / model.fastest_bar_frequency / STEPS_PER_BAR_PERIOD
+        step = min(step, max(of_bars, step / MAX_BAR_DIVISION))
+    return step
+
+
+def shortest_period(scene: Scene, model: EngineModel) -> float:
+    """
+    Shortest period of the loading, the pendulum and every mode of the chain, in units: all swing from the start.
+
+    A record has no period: it is linear within every step.
+    """
+    periods = [2.0 * math.pi]
+    if not scene.recorded:
+        periods += [2.0 * math.pi / (pace * model.units.time) for pace in exponents(scene).imag]
+    masses = scene.masses / model.units.mass
+    fastest = math.inf
+    for axis in range(2):
+        stiffness = np.zeros((len(masses), len(masses)))
+        pendulum_of_all_bodies = 0.0 if scene.flat else 1.0
+        stiffness[0, 0] = pendulum_of_all_bodies
+        for link, k in enumerate(link_stiffness(scene, model.units)[:, axis]):
+            stiffness[link : link + 2, link : link + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
+        scaled = stiffness / np.sqrt(np.outer(masses, masses))
+        highest = float(np.linalg.eigvalsh(scaled)[-1])
+        fastest = min(fastest, 2.0 * math.pi / math.sqrt(highest) if highest > 0.0 else math.inf)
+    return min(fastest, *periods)
+
+
+def fastest_damper_rate(scene: Scene, units: Units) -> float:
+    """Bound of the rates at which dampers of the links settle, per unit of time (Gershgorin's theorem)."""
+    per_mass = scene.damping.max(axis=1)
+    below, above = per_mass / scene.masses[1:], per_mass / scene.masses[:-1]
+    return float(2.0 * (np.append(above, 0.0) + np.append(0.0, below)).max() * units.time)
+
+
+def list_brief_motions(scene: Scene, model: EngineModel, step: float) -> list[tuple[float, float]]:
+    """
+    List the brief motions that `step` does not resolve: until when each lasts, and the step it needs at level 0.
+
+    They are harmonics that decay, the start of a lubricated platform, and that of strongly damped links. From rest the
+    platform takes on the speed that balances the loading within its relaxation time. Over much longer steps the
+    integrator's acceleration would overshoot by as much again.
+    """
+    rates: list[float] = [] if scene.recorded else list(-exponents(scene).real * model.units.time)
+    rates.append(1.0 / viscous_relaxation(scene, model.units))
+    if scene.damping.any():
+        rates.append(fastest_damper_rate(scene, model.units))
+    times = [1.0 / rate for rate in rates if rate > 0.0]
+    return [(DECAY_TIMES * time, time / STEPS_PER_DECAY) for time in times if time / STEPS_PER_DECAY < step]
