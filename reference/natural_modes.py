@@ -128,7 +128,7 @@ def modes(scene: Scene) -> Modes:
     >>> round(float(natural.effective_mass[0].sum()), 12)  # kg, the mass of both bodies
     2.0
     """
-    per_axis = [_axis(scene.masses, stiffness) for stiffness in linear_stiffness(scene).T]
+    per_axis = [_solve_axis(scene.masses, stiffness) for stiffness in linear_stiffness(scene).T]
     frequency, shape, participation = (np.stack(parts) for parts in zip(*per_axis))
     return Modes(frequency, shape, participation)
 
@@ -160,12 +160,12 @@ def damped_modes(scene: Scene) -> DampedModes:
     [0.0335, 0.0335, 0.0294, 0.0294]
     """
     dampers = np.vstack([np.zeros((1, 2)), scene.damping])
-    per_axis = [_damped_axis(scene.masses, k, c) for k, c in zip(linear_stiffness(scene).T, dampers.T)]
+    per_axis = [_solve_damped_axis(scene.masses, k, c) for k, c in zip(linear_stiffness(scene).T, dampers.T)]
     eigenvalue, shape = (np.stack(parts) for parts in zip(*per_axis))
     return DampedModes(eigenvalue, shape)
 
 
-def _damped_axis(
+def _solve_damped_axis(
     masses: Array, stiffness: Array, damping: Array
 ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
     """Eigenvalues (2 N,) and shapes (N, 2 N) along one axis."""
@@ -189,7 +189,7 @@ def _damped_axis(
     return values, shape / shape[largest, np.arange(2 * count)]
 
 
-def _axis(masses: Array, stiffness: Array) -> tuple[Array, Array, Array]:
+def _solve_axis(masses: Array, stiffness: Array) -> tuple[Array, Array, Array]:
     """Frequencies (N,), shapes (N, N) and participation factors (N,) along one axis."""
     count = len(masses)
     beside = np.empty(2 * count - 1)

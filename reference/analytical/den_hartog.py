@@ -31,7 +31,7 @@ class SteadyOscillation:
 
     def position(self, angle: ArrayLike) -> Array:
         """x/a at loading angle omega t (T,), rad, counted from a positive turning point."""
-        turn, sign = _folded(angle)
+        turn, sign = _fold_angle(angle)
         tangent = np.tan(0.5 * np.pi / self.ratio)
         natural = 1.0 - np.cos(turn / self.ratio) - tangent * np.sin(turn / self.ratio)
         forced = np.cos(turn + self.phase) / (1.0 - self.ratio**2)
@@ -40,7 +40,7 @@ class SteadyOscillation:
 
     def acceleration(self, angle: ArrayLike) -> Array:
         """x''/(a omega_n^2) at loading angle omega t (T,), rad; one-sided (after) at turning points."""
-        turn, sign = _folded(angle)
+        turn, sign = _fold_angle(angle)
         tangent = np.tan(0.5 * np.pi / self.ratio)
         natural = np.cos(turn / self.ratio) + tangent * np.sin(turn / self.ratio)
         forced = -(self.ratio**2) * np.cos(turn + self.phase) / (1.0 - self.ratio**2)
@@ -89,7 +89,7 @@ def no_stop_bound(ratio: float) -> float:
     return float(abs(v) / np.sqrt(u * u + largest * largest))
 
 
-def _folded(angle: ArrayLike) -> tuple[Array, Array]:
+def _fold_angle(angle: ArrayLike) -> tuple[Array, Array]:
     """Angle within the current half period, and the sign of that half period."""
     angle = np.asarray(angle, dtype=float)
     half = np.floor(angle / np.pi)

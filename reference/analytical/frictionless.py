@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.analytical.phase_peaks import Series, largest, reached
+from reference.analytical.phase_peaks import PhaseSeries, largest_lengths, may_reach_bound
 from reference.natural_modes import Modes, modes
 from reference.problem import Scene, checked_phases, exponents, ground_peak, linear, loading_period
 
@@ -36,7 +36,7 @@ def frictionless_motion(scene: Scene, phase: ArrayLike, time: ArrayLike) -> tupl
     (T, N, 2) each, m, m/s, m/s^2; displacement and velocity relative to the plate. Raises ValueError for a scene with
     friction or with vertical loading, under which the pendulum's stiffness varies in time.
     """
-    _check(scene)
+    _check_closed_form(scene)
     turn = np.exp(1j * np.asarray(phase, dtype=float))
     natural, instants = modes(scene), np.asarray(time, dtype=float)
     position, velocity = ((part @ turn).real for part in _responses(scene, natural, instants, 2, absolute=False))
@@ -58,22 +58,27 @@ def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array
 
     Raises as `frictionless_motion`. A motion to the rim has left the small equations: its peaks mean nothing.
     """
-    _check(scene)
+    _check_closed_form(scene)
     natural = modes(scene)
     fastest = max(float(natural.frequency.max()), float(-exponents(scene).real.min()))
     shortest = min(loading_period(scene), 2.0 * np.pi / fastest if fastest > 0.0 else np.inf)
     count = int(np.ceil(scene.duration / shortest * INTERVALS_PER_PERIOD))
     half = 0.5 * scene.duration / count
     centers: Array = half * (2.0 * np.arange(count, dtype=float) + 1.0)
-    series = Series.of(_responses(scene, natural, centers, SERIES_TERMS, absolute=True), half)
-    path = Series.of(_responses(scene, natural, centers, SERIES_TERMS, absolute=False, bodies=1), half)
-    peaks, search_error = largest(series, phases)
+    series = PhaseSeries.of(_responses(scene, natural, centers, SERIES_TERMS, absolute=True), half)
+    path = PhaseSeries.of(_responses(scene, natural, centers, SERIES_TERMS, absolute=False, bodies=1), half)
+    peaks, search_error = largest_lengths(series, phases)
     rounding = ROUNDING_ERROR * (10.0 + float(natural.frequency.max()) * scene.duration)
-    reach = largest(path, phases)[0][:, 0]
-    return peaks, search_error + rounding * series.envelope, reach, reached(path, phases, scene.displacement_limit)
+    reach = largest_lengths(path, phases)[0][:, 0]
+    return (
+        peaks,
+        search_error + rounding * series.envelope,
+        reach,
+        may_reach_bound(path, phases, scene.displacement_limit),
+    )
 
 
-def _check(scene: Scene) -> None:
+def _check_closed_form(scene: Scene) -> None:
     if not (allowed := linear(scene)):
         raise ValueError(f"{scene.name}: {allowed.reason}: no closed form")
 
@@ -93,7 +98,7 @@ def _responses(
             if scene.amplitudes[axis, k] == 0.0:
                 continue
             forced = np.exp(s * time)[:, None]
-            rising, falling = (_divided(s, root, time) for root in (1j * omega, -1j * omega))
+            rising, falling = (_difference_quotient(s, root, time) for root in (1j * omega, -1j * omega))
             for order, part in enumerate(parts):
                 part[:, :, axis, k] = (weight * (rising - falling)) @ swinging.T * scene.amplitudes[axis, k]
                 if not absolute and not swings.all():
@@ -119,7 +124,7 @@ def _drift(s: complex, time: Array, order: int) -> Complex:
     return np.where(small, series * time**2, direct)
 
 
-def _divided(s: complex, roots: Complex, time: Array) -> Complex:
+def _difference_quotient(s: complex, roots: Complex, time: Array) -> Complex:
     """D(s, z) for the roots z (N,), (T, N), s: t exp(z t) where s meets z."""
     gap = s - roots
     same = gap == 0.0

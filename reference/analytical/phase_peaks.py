@@ -27,7 +27,7 @@ SERIES_REMAINDER = 1e-14  # relative: what the series leaves out
 
 
 @dataclass(frozen=True)
-class Series:
+class PhaseSeries:
     """
     terms: (P, N, axes, 4, T), on interval T the coefficients of x^p, x from -1 to 1, of Re A_1, Im A_1, Re A_2, Im A_2.
     rest: (N, axes, T), largest that the terms from p = 2 on can add up to at any phases. envelope: (N,), largest |v|
@@ -39,7 +39,7 @@ class Series:
     envelope: Array
 
     @classmethod
-    def of(cls, derivatives: Sequence[Complex], half: float) -> Series:
+    def of(cls, derivatives: Sequence[Complex], half: float) -> PhaseSeries:
         """From the derivatives (T, N, axes, 2) of A in the middle of intervals of length 2 `half`, s."""
         scaled = np.stack([part * (half**order / factorial(order)) for order, part in enumerate(derivatives)])
         sizes = np.abs(scaled).sum(axis=-1)  # the phases at their worst
@@ -49,26 +49,26 @@ class Series:
         return cls(np.ascontiguousarray(np.moveaxis(terms, 1, -1)), np.ascontiguousarray(rest), envelope)
 
 
-def largest(series: Series, phases: Array) -> tuple[Array, Array]:
+def largest_lengths(series: PhaseSeries, phases: Array) -> tuple[Array, Array]:
     """max_t |v| of every body for phase pairs (M, 2), rad, and the error of finding it: (M, N) each."""
     peaks, errors = np.empty((2, len(phases), len(series.envelope)))
-    _largest(series.terms, series.rest, _turns(phases), peaks, errors)
+    _maximize_over_time(series.terms, series.rest, _phase_factors(phases), peaks, errors)
     return peaks, errors + SERIES_REMAINDER * series.envelope
 
 
-def reached(series: Series, phases: Array, bound: float) -> NDArray[np.bool_]:
+def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray[np.bool_]:
     """At which phase pairs (M, 2), rad, the first body's |v| may reach `bound`: (M,)."""
     if series.envelope[0] < bound:
         return np.zeros(len(phases), dtype=bool)
     least, most = np.empty((2, series.terms.shape[-1]))
     may_reach = np.empty(len(phases), dtype=bool)
-    for m, turn in enumerate(_turns(phases)):
+    for m, turn in enumerate(_phase_factors(phases)):
         _bounds(series.terms, series.rest, turn, 0, least, most)
         may_reach[m] = most.max() >= bound * bound
     return may_reach
 
 
-def _turns(phases: Array) -> Array:
+def _phase_factors(phases: Array) -> Array:
     """What multiplies the four coefficients, (M, 4)."""
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
@@ -96,7 +96,7 @@ def _coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n:
 
 
 @cached_on_disk(__file__, nogil=True)
-def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
+def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
     orders, bodies, axes, _, intervals = terms.shape
     least, most = np.empty(intervals), np.empty(intervals)
     series = np.empty((axes, orders))
@@ -113,7 +113,7 @@ def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Arra
                 for axis in range(axes):
                     for order in range(orders):
                         series[axis, order] = _coefficient(terms, turns[m], order, body, axis, n)
-                value, error = _searched(series)
+                value, error = _maximize_on_interval(series)
                 best = max(best, value)
                 possible = max(possible, value + error)
             peaks[m, body] = sqrt(best)
@@ -121,29 +121,29 @@ def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Arra
 
 
 @njit(nogil=True)
-def _searched(series: Array) -> tuple[float, float]:
+def _maximize_on_interval(series: Array) -> tuple[float, float]:
     """Largest |v|^2 on an interval with these coefficients (axes, P), and what Newton's method leaves."""
     best, place = -1.0, 0.0
     for x in STARTING_POINTS:
-        value, _, _ = _squares(series, x)
+        value, _, _ = _squared_length(series, x)
         if value > best:
             best, place = value, x
     left = 0.0
     for _ in range(NEWTON_STEPS):
-        _, slope, curvature = _squares(series, place)
+        _, slope, curvature = _squared_length(series, place)
         step = -slope / curvature if curvature < 0.0 else np.sign(slope)
         target = min(max(place + step, -1.0), 1.0)
         left = abs(slope * (target - place))
         if target == place:
             break
         place = target
-        value, _, _ = _squares(series, place)
+        value, _, _ = _squared_length(series, place)
         best = max(best, value)
     return best, left
 
 
 @njit(nogil=True)
-def _squares(series: Array, x: float) -> tuple[float, float, float]:
+def _squared_length(series: Array, x: float) -> tuple[float, float, float]:
     """|v|^2 at x and its first two derivatives."""
     total = first = second = 0.0
     for axis in range(series.shape[0]):

@@ -16,7 +16,7 @@ from reference.problem.result import Array, Trajectory, takes_motion
 from reference.problem.scene import Scene
 
 ANSWERED = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
-ROUNDING = 1e-9  # of the duration: the last instant of a motion may miss its end by it
+END_TOLERANCE = 1e-9  # of the duration: the last instant of a motion may miss its end by it
 DECIMATION = 5  # the sampling error is the largest change if only one of so many samples is taken
 
 
@@ -41,7 +41,7 @@ class Estimate:
 
 
 NEVER_RESTS = "never at rest: no dry friction"
-MOVING = "moving at the end: take a longer duration"
+MOVING_AT_END = "moving at the end: take a longer duration"
 NOT_SAMPLED = "no samples of the last rest"
 
 UNKNOWN = Estimate(math.nan, math.nan)
@@ -153,7 +153,7 @@ def demands(trajectory: Trajectory) -> Demands:
     >>> round(numbers.displacement.value, 4), numbers.displacement.error < 1e-5
     (0.0267, True)
     """
-    read = _Reading(trajectory)
+    read = DemandReader(trajectory)
     scene, bodies = trajectory.scene, range(len(trajectory.scene.bodies))
     displacement = read.extreme(lambda samples: samples.largest(samples.place[:, 0], samples.velocity[:, 0]))
     supported, turning = read.samples.support.shape[1] > 0, "turns" in trajectory.extra
@@ -161,8 +161,8 @@ def demands(trajectory: Trajectory) -> Demands:
         status=str(trajectory.status),
         displacement=displacement,
         residual=read.residual(),
-        cap_share=_share(displacement, scene.radius),
-        travel_share=None if scene.isolator.travel is None else _share(displacement, scene.isolator.travel),
+        cap_share=_ratio_to_limit(displacement, scene.radius),
+        travel_share=None if scene.isolator.travel is None else _ratio_to_limit(displacement, scene.isolator.travel),
         acceleration=read.peaks(),
         base_shear=read.extreme(lambda samples: float(np.linalg.norm(samples.isolator, axis=1).max())),
         drift=tuple(read.extreme(_drift_of(link)) for link in bodies[:-1]),
@@ -180,7 +180,7 @@ def demands(trajectory: Trajectory) -> Demands:
     )
 
 
-def _share(displacement: Estimate, limit: float) -> Estimate:
+def _ratio_to_limit(displacement: Estimate, limit: float) -> Estimate:
     """A displacement over its limit, m."""
     return Estimate(displacement.value / limit, displacement.error / limit)
 
@@ -200,7 +200,7 @@ def squares_and_summits(time: Array, place: Array, velocity: Array) -> tuple[Arr
     return square, np.where(turns, square[:-1] + rise, square[1:])
 
 
-class _Samples(NamedTuple):
+class DemandSamples(NamedTuple):
     """What extremes are read from, at T instants."""
 
     time: Array  # (T,)
@@ -213,16 +213,18 @@ class _Samples(NamedTuple):
     uplift: Array  # (T, K)
 
     @staticmethod
-    def of(motion: Trajectory) -> _Samples:
+    def of(motion: Trajectory) -> DemandSamples:
         moving = motion.time, motion.position[:, :, :2], motion.velocity[:, :, :2]
         support = motion.support_force
         uplift = motion.extra.get("uplift", np.zeros_like(support))
-        return _Samples(*moving, motion.isolator_force, motion.contact_force, support, motion.vertical_rotation, uplift)
+        return DemandSamples(
+            *moving, motion.isolator_force, motion.contact_force, support, motion.vertical_rotation, uplift
+        )
 
-    def decimated(self) -> list[_Samples]:
+    def decimated(self) -> list[DemandSamples]:
         """One of DECIMATION samples, from the first, the second, ... on."""
         firsts = range(min(DECIMATION, len(self.time)))
-        return [_Samples(*(part[first::DECIMATION] for part in self)) for first in firsts]
+        return [DemandSamples(*(part[first::DECIMATION] for part in self)) for first in firsts]
 
     def largest(self, place: Array, velocity: Array) -> float:
         """Largest length of a displacement (T, 2)."""
@@ -238,21 +240,21 @@ class _Samples(NamedTuple):
         return float(np.hypot(*place[min(first, len(place) - 1)])), creep
 
 
-Read = Callable[[_Samples], float]
+ReadNumber = Callable[[DemandSamples], float]
 
 
-class _Reading:
+class DemandReader:
     """Reads numbers from a motion, and their errors from its decimated samples and from the runs beside it."""
 
     def __init__(self, motion: Trajectory) -> None:
         self.motion, self.accuracy = motion, motion.accuracy
         self.answered = motion.status in ANSWERED and len(motion.time) > 0
-        self.samples = _Samples.of(motion)
+        self.samples = DemandSamples.of(motion)
         self.decimated = self.samples.decimated()
         self.others = self.accuracy.coarser if self.accuracy else ()
-        self.coarser = [_Samples.of(other) for other in self.others]
+        self.coarser = [DemandSamples.of(other) for other in self.others]
 
-    def extreme(self, read: Read) -> Estimate:
+    def extreme(self, read: ReadNumber) -> Estimate:
         """A number that is read from samples."""
         if not self.answered:
             return UNKNOWN
@@ -265,9 +267,9 @@ class _Reading:
         if not self.answered:
             return UNKNOWN
         scene, stick = self.motion.scene, self.motion.stick
-        if not stick or stick[-1][1] < (1.0 - ROUNDING) * scene.duration:
+        if not stick or stick[-1][1] < (1.0 - END_TOLERANCE) * scene.duration:
             dry = scene.friction_coefficient > 0.0 and not scene.lubricated
-            return Estimate(math.nan, math.nan, MOVING if dry else NEVER_RESTS)
+            return Estimate(math.nan, math.nan, MOVING_AT_END if dry else NEVER_RESTS)
         if stick[-1][0] > self.samples.time[-1]:
             return Estimate(math.nan, math.nan, NOT_SAMPLED)
         value, creep = self.samples.at_rest(stick)
@@ -311,24 +313,24 @@ class _Reading:
         return math.nan if self.accuracy is None else self.accuracy.error_of(value, others, scale)
 
 
-def _drift_of(link: int) -> Read:
+def _drift_of(link: int) -> ReadNumber:
     """Largest displacement of the body above a link relative to the one below."""
     return lambda samples: samples.largest(
         samples.place[:, link + 1] - samples.place[:, link], samples.velocity[:, link + 1] - samples.velocity[:, link]
     )
 
 
-def _torsion_of(body: int) -> Read:
+def _torsion_of(body: int) -> ReadNumber:
     """Largest rotation of a body about the vertical."""
     return lambda samples: float(np.abs(samples.rotation[:, body]).max())
 
 
-def _support_displacement_of(scene: Scene) -> Read:
+def _support_displacement_of(scene: Scene) -> ReadNumber:
     """Largest displacement of a support, which turns about the platform's center of mass."""
     assert scene.support_places is not None
     arms = (scene.support_places - scene.offsets[0]) @ [1.0, 1.0j]  # x + i y
 
-    def largest(samples: _Samples) -> float:
+    def largest(samples: DemandSamples) -> float:
         place, turn = samples.place[:, :1] @ [1.0, 1.0j], np.exp(1.0j * samples.rotation[:, :1])
         return float(np.abs(place + (turn - 1.0) * arms).max())
 

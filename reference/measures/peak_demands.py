@@ -157,17 +157,17 @@ def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], 
         status[number], instant[number], answers[number] = motion.status, motion.instant, demands(motion)
     cost = time.process_time() - clock
     stacked = {}
-    for name, table in _stacked(answers).items():
+    for name, table in _stack_answers(answers).items():
         values, errors = np.moveaxis(table.reshape((*shape, *table.shape[1:])), -1, 0)
         stacked[name] = Estimates(values, errors)
     return PeakDemands(stacked, status.reshape(shape), instant.reshape(shape), cost, pairs.reshape(*shape, 2))
 
 
-def _stacked(answers: list[Demands | None]) -> dict[str, Array]:
+def _stack_answers(answers: list[Demands | None]) -> dict[str, Array]:
     """Value and error, the last axis, of every field that any answer has; NaN where an answer is lacking."""
     stacked: dict[str, Array] = {}
     for name in (field.name for field in fields(Demands) if field.name != "status"):
-        tables = [None if answer is None else _table(getattr(answer, name)) for answer in answers]
+        tables = [None if answer is None else _estimate_table(getattr(answer, name)) for answer in answers]
         present = next((table for table in tables if table is not None), None)
         if present is not None:
             nothing = np.full_like(present, np.nan)
@@ -175,7 +175,7 @@ def _stacked(answers: list[Demands | None]) -> dict[str, Array]:
     return stacked
 
 
-def _table(estimates: Estimate | tuple[Estimate, ...] | None) -> Array | None:
+def _estimate_table(estimates: Estimate | tuple[Estimate, ...] | None) -> Array | None:
     """Value and error, (2,) or (K, 2); None for a demand that the model does not have."""
     if estimates is None:
         return None

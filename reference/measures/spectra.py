@@ -20,8 +20,8 @@ from reference.problem.ranges import Range, checked_array, checked_number
 from reference.problem.result import Array, Trajectory, takes_motion
 
 PERIODS = np.geomspace(0.02, 5.0, 49)  # s, where no others are asked for
-DAMPING = Range(0.0, 1.0, "of critical")
-TERMS = 8  # of the power series of a step
+DAMPING_RANGE = Range(0.0, 1.0, "of critical")
+SERIES_TERMS = 8  # of the power series of a step
 MAX_ANGLE = 0.25  # rad, that the oscillator goes through in a step: the series then has an error of 1e-12
 # The sampling error is so many times the largest change if only one of so many samples is taken. Measured on the
 # built-in scenes against ten times as many samples: 0.6 of that at most.
@@ -91,8 +91,8 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     >>> spectra.acceleration.shape, bool((spectra.error < 1e-2 * spectra.acceleration).all())
     ((2, 2, 2), True)
     """
-    damping = checked_number("damping", damping, DAMPING)
-    period = PERIODS if periods is None else _checked_periods(periods)
+    damping = checked_number("damping", damping, DAMPING_RANGE)
+    period = PERIODS if periods is None else _check_periods(periods)
     if trajectory.status not in ANSWERED or len(trajectory.time) < 2:
         nothing = np.full((trajectory.position.shape[1], 2, len(period)), np.nan)
         return FloorSpectra(period, damping, nothing, nothing.copy())
@@ -205,8 +205,8 @@ def response_spectrum(
     >>> reference.response_spectrum(time, 2.0 * np.sin(6.0 * time), [0.01]).round(2)
     array([2.])
     """
-    damping = checked_number("damping", damping, DAMPING)
-    period = _checked_periods(periods)
+    damping = checked_number("damping", damping, DAMPING_RANGE)
+    period = _check_periods(periods)
     rule = "must be rising instants (K,), s, and as many accelerations (K,) or (K, 2), m/s^2"
     instants, ground = checked_array("time", time, rule), checked_array("acceleration", acceleration, rule)
     ground = ground[:, None] if ground.ndim == 1 else ground
@@ -221,7 +221,7 @@ def response_spectrum(
     return mean
 
 
-def _checked_periods(periods: ArrayLike) -> Array:
+def _check_periods(periods: ArrayLike) -> Array:
     rule = "must be positive numbers (P,), s"
     period = checked_array("periods", periods, rule)
     if period.ndim != 1 or not len(period) or not (period > 0.0).all():
@@ -248,7 +248,7 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
             steps_of[n] = steps = max(1.0, np.ceil(angle / MAX_ANGLE))
             angle /= steps
             b = f = r = 0.0
-            for k in range(TERMS - 1, -1, -1):
+            for k in range(SERIES_TERMS - 1, -1, -1):
                 b, f, r = b * angle + series[k, 0], f * angle + series[k, 1], r * angle + series[k, 2]
             b, f, r = b * angle, f * angle, r * angle**2
             s = f * angle
@@ -284,9 +284,9 @@ def _power_series(damping: float) -> Array:
     constant, the ramp its integral over the angle.
     """
     derivatives = [0.0, 1.0]
-    for _ in range(TERMS - 1):
+    for _ in range(SERIES_TERMS - 1):
         derivatives.append(-2.0 * damping * derivatives[-1] - derivatives[-2])
-    power = np.arange(1.0, TERMS + 1.0)
+    power = np.arange(1.0, SERIES_TERMS + 1.0)
     impulse = np.array(derivatives[1:]) / np.cumprod(power)
     constant = impulse / (power + 1.0)
     return np.column_stack([impulse, constant, constant / (power + 2.0)])

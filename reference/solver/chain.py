@@ -25,9 +25,9 @@ from reference.solver.collocation import (
 )
 from reference.solver.compiled import compiled
 from reference.solver.polynomial import NODES_ROW
-from reference.solver.rows import Row, combined, put, row
+from reference.solver.rows import Row, combine_columns, put, row
 from reference.solver.system import PLATFORM, Ground, System
-from reference.solver.work import Work
+from reference.solver.work import Workspace
 
 # a number in every channel as a row: the real parts of all channels, the imaginary parts behind them
 TO_CHANNELS_COLUMNS = columns(np.vstack([TO_CHANNELS.real, TO_CHANNELS.imag]))
@@ -63,7 +63,7 @@ def reciprocal(number: complex) -> complex:
 
 
 @compiled
-def eliminate_chain(system: System, work: Work, h: float) -> None:
+def eliminate_chain(system: System, work: Workspace, h: float) -> None:
     """For step length h: the inverse pivots."""
     bodies = work.x.shape[0]
     for axis in range(system.axes):
@@ -79,7 +79,7 @@ def eliminate_chain(system: System, work: Work, h: float) -> None:
 
 
 @compiled
-def feed_back(system: System, work: Work, h: float) -> None:
+def set_feedback(system: System, work: Workspace, h: float) -> None:
     """What the platform's stage accelerations do to its own drive through the eliminated chain."""
     feedback = work.feedback
     for axis in range(system.axes):
@@ -95,19 +95,19 @@ def feed_back(system: System, work: Work, h: float) -> None:
 
 
 @compiled
-def to_channels(values: Row) -> Row:
+def transform_to_channels(values: Row) -> Row:
     """The numbers at the stages in the eigenbasis."""
-    return combined(TO_CHANNELS_COLUMNS, values)
+    return combine_columns(TO_CHANNELS_COLUMNS, values)
 
 
 @compiled
-def from_channels(values: Row) -> Row:
+def transform_from_channels(values: Row) -> Row:
     """The numbers at the stages, from those in the channels and their conjugates."""
-    return combined(FROM_CHANNELS_COLUMNS, values)
+    return combine_columns(FROM_CHANNELS_COLUMNS, values)
 
 
 @compiled
-def load_chain(system: System, work: Work, h: float) -> None:
+def load_chain(system: System, work: Workspace, h: float) -> None:
     """The loads of the eliminated chain from the state and the ground; fills `free`."""
     x, v, loads, inverse, channels = work.x, work.v, work.load, work.inverse, work.channels
     bodies = work.x.shape[0]
@@ -116,7 +116,7 @@ def load_chain(system: System, work: Work, h: float) -> None:
         if bodies == 1:
             put(work.free, axis, -ground)
             continue
-        drives = to_channels(-ground)
+        drives = transform_to_channels(-ground)
         for j in range(CHANNELS):
             root = h * EIGENVALUES[j]
             drive = complex(drives[j], drives[CHANNELS + j])
@@ -139,25 +139,25 @@ def load_chain(system: System, work: Work, h: float) -> None:
         stretch = x[1, axis] - x[0, axis]
         rate = v[1, axis] - v[0, axis]
         spring = system.above[0, axis] * (stretch + row(NODES_ROW, ()) * (h * rate))
-        carried_down = from_channels(row(channels, ()))
+        carried_down = transform_from_channels(row(channels, ()))
         put(work.free, axis, spring + system.damping_above[0, axis] * rate - ground + carried_down)
 
 
 @compiled
-def move_chain(system: System, work: Work, h: float) -> None:
+def move_chain(system: System, work: Workspace, h: float) -> None:
     """Stage accelerations of the bodies from those of the platform; the state at the end of the step in x1, v1."""
     x, v, a, load, inverse, channels = work.x, work.v, work.a, work.load, work.inverse, work.channels
     bodies = work.x.shape[0]
     for axis in range(system.axes):
         if bodies > 1:
-            put(channels, (), to_channels(row(a, (0, axis))))
+            put(channels, (), transform_to_channels(row(a, (0, axis))))
         for i in range(1, bodies):
             for j in range(CHANNELS):
                 root = h * EIGENVALUES[j]
                 under = complex(channels[j], channels[CHANNELS + j])
                 moved = (load[i, axis, j] + coupling_below(system, i, axis, root) * under) * inverse[i, axis, j]
                 channels[j], channels[CHANNELS + j] = moved.real, moved.imag
-            put(a, (i, axis), from_channels(row(channels, ())))
+            put(a, (i, axis), transform_from_channels(row(channels, ())))
         for i in range(bodies):
             velocity = 0.0
             position = 0.0
@@ -169,7 +169,7 @@ def move_chain(system: System, work: Work, h: float) -> None:
 
 
 @compiled
-def chain_acceleration(system: System, work: Work, ground: Ground) -> None:
+def set_chain_acceleration(system: System, work: Workspace, ground: Ground) -> None:
     """Accelerations a0 of the bodies above the platform in the state x, v."""
     bodies = work.x.shape[0]
     for i in range(1, bodies):

@@ -18,13 +18,13 @@ import numpy as np
 from numpy.polynomial import legendre
 
 STAGES = 7
-LANES = STAGES + 1  # of a row (rows.py)
+ROW_LENGTH = STAGES + 1  # of a row (rows.py)
 CHANNELS = (STAGES + 1) // 2  # one real eigenvalue and one of each conjugate pair
 GUESSED_DIGITS = 3
 ITERATIONS = 12  # from such a guess to rounding
 
 
-def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
     """X of matrix X = right, by elimination with row pivoting."""
     rows = [[*left, *rest] for left, rest in zip(matrix.tolist(), right.tolist())]
     size = len(rows)
@@ -52,13 +52,13 @@ def _dot(row: list[complex], column: list[complex]) -> complex:
     return complex(real, math.fsum([*(a.real * b.imag for a, b in pairs), *(a.imag * b.real for a, b in pairs)]))
 
 
-def _shifted_legendre(order: int) -> legendre.Legendre:
+def _legendre_basis(order: int) -> legendre.Legendre:
     return legendre.Legendre.basis(order, domain=[0.0, 1.0])
 
 
 def _nodes(stages: int) -> np.ndarray:
     """Right Radau points on (0, 1]: the roots of P_s - P_{s-1}."""
-    polynomial = _shifted_legendre(stages) - _shifted_legendre(stages - 1)
+    polynomial = _legendre_basis(stages) - _legendre_basis(stages - 1)
     roots = np.round(np.sort(polynomial.roots().real), GUESSED_DIGITS)
     for _ in range(ITERATIONS):
         roots -= polynomial(roots) / polynomial.deriv()(roots)
@@ -68,10 +68,10 @@ def _nodes(stages: int) -> np.ndarray:
 
 def _weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
     """Weights of the interpolating polynomial at theta, or of its integral from 0 to theta: (len(theta), STAGES)."""
-    basis = [_shifted_legendre(k) for k in range(STAGES)]
+    basis = [_legendre_basis(k) for k in range(STAGES)]
     values = np.stack([p(NODES) for p in basis], axis=1)
     raised = np.stack([(p.integ(lbnd=0.0) if integrated else p)(theta) for p in basis], axis=1)
-    return np.ascontiguousarray(_solved(values.T, raised.T).T)
+    return np.ascontiguousarray(_solve(values.T, raised.T).T)
 
 
 NODES = _nodes(STAGES)
@@ -80,10 +80,10 @@ A2 = product(A, A)
 # values of the interpolating polynomial at theta = 0: the defect there against the true acceleration is the error
 AT_START = _weights(np.zeros(1), False)[0]
 # coefficients of theta^k of the interpolating polynomial
-MONOMIALS = _solved(np.vander(NODES, increasing=True), np.eye(STAGES))
+MONOMIALS = _solve(np.vander(NODES, increasing=True), np.eye(STAGES))
 
 
-def _missed() -> np.ndarray:
+def _defect_polynomial() -> np.ndarray:
     """Coefficients of theta^k, highest first, of the polynomial that is 1 at the start of a step, 0 at the stages."""
     coefficients = [1.0]
     for node in NODES.tolist():
@@ -92,10 +92,10 @@ def _missed() -> np.ndarray:
 
 
 # what the polynomial through the stages misses, over that at the start of the step, and its integral
-MISSED = _missed()
+DEFECT_POLYNOMIAL = _defect_polynomial()
 # from the accelerations: what the polynomial through the velocities at the stages misses at theta = 0, over h
 VELOCITY_AT_START = product(AT_START[None, :], A)[0]
-MISSED_INTEGRAL = np.append(MISSED / np.arange(len(MISSED), 0, -1), 0.0)
+DEFECT_INTEGRAL = np.append(DEFECT_POLYNOMIAL / np.arange(len(DEFECT_POLYNOMIAL), 0, -1), 0.0)
 
 
 def _channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -105,7 +105,7 @@ def _channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     doubled = [1.0 if value.imag == 0.0 else 2.0 for value in values]  # the conjugate's share
     others = [vector.conj() for vector, factor in zip(vectors, doubled) if factor == 2.0]
     every = np.stack([*vectors, *others], axis=1)
-    inverse = _solved(every, np.eye(STAGES))
+    inverse = _solve(every, np.eye(STAGES))
     inverse = 2.0 * inverse - product(inverse, product(every, inverse))
     return np.array(values), inverse[:CHANNELS], np.stack(vectors, axis=1) * doubled
 
@@ -113,7 +113,7 @@ def _channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def _eigenpair(guess: complex) -> tuple[complex, np.ndarray]:
     """Eigenvalue of A next to a guess, and its eigenvector with one entry 1: inverse iteration, by its corrections."""
     shifted = A - guess * np.eye(STAGES)
-    vector = _solved(shifted, np.ones((STAGES, 1), complex))
+    vector = _solve(shifted, np.ones((STAGES, 1), complex))
     unit = int(np.abs(vector).argmax())
     value = guess
     for _ in range(ITERATIONS):
@@ -121,18 +121,18 @@ def _eigenpair(guess: complex) -> tuple[complex, np.ndarray]:
         image = product(A, vector)
         value = image[unit, 0].item()
         missed = [[a - value * b] for a, b in zip(image[:, 0].tolist(), vector[:, 0].tolist())]
-        vector = vector - _solved(shifted, np.array(missed))
+        vector = vector - _solve(shifted, np.array(missed))
     return value, vector[:, 0]
 
 
 EIGENVALUES, TO_CHANNELS, FROM_CHANNELS = (np.ascontiguousarray(part) for part in _channels())
 
 # where peaks and events are looked for inside a step
-DENSE = np.linspace(0.0, 1.0, 15)
+SEARCH_POINTS = np.linspace(0.0, 1.0, 15)
 
 
 def columns(matrix: np.ndarray) -> np.ndarray:
     """The columns of a matrix with at most LANES rows, as rows (rows.py) with zeros behind."""
-    filled = np.zeros((matrix.shape[1], LANES))
+    filled = np.zeros((matrix.shape[1], ROW_LENGTH))
     filled[:, : len(matrix)] = matrix.T
     return filled

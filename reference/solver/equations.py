@@ -17,7 +17,7 @@ from __future__ import annotations
 from math import sqrt
 
 from reference.solver.compiled import compiled
-from reference.solver.rows import Number, as_many
+from reference.solver.rows import Number, broadcast_like
 
 
 @compiled
@@ -78,12 +78,12 @@ def small_acceleration(
         fx - reaction * (px / radius + sx) + ux * lever,
         fy - reaction * (py / radius + sy) + uy * lever,
         reaction,
-        as_many(1.0, reaction),
+        broadcast_like(1.0, reaction),
     )
 
 
 @compiled
-def vertical_acceleration(
+def vertical_motion(
     px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number, radius: float
 ) -> tuple[Number, Number, Number]:
     """Height above the lowest point z1, vertical velocity and acceleration on the sphere (2.1), (3.4)-(3.5)."""

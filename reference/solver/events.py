@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.solver.collocation import DENSE, STAGES
+from reference.solver.collocation import SEARCH_POINTS, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.load import loaded
+from reference.solver.contact.load import scale_by_load
 from reference.solver.contact.platform import load_at_stages, rest_excess
 from reference.solver.ground import k_t_at
 from reference.solver.polynomial import expand, value_at
-from reference.solver.rows import Row, as_many, highest, put, row, where_positive
+from reference.solver.rows import Row, broadcast_like, highest, put, row, where_positive
 from reference.solver.system import Load, System
-from reference.solver.work import MAX_PARTS, REACTION, SPEED2, VELOCITY, Work
+from reference.solver.work import MAX_PARTS, REACTION, SPEED2, VELOCITY, Workspace
 
 # What is passed: a level by the polynomial in powers[0], the friction limit at rest, a sliding speed.
 # No literals (system.py).
@@ -27,35 +27,35 @@ NEAR_LIMIT = 0.5  # of the squared friction limit: between two stages of a step 
 
 
 @compiled
-def first_crossing(system: System, work: Work, values: Row, start: float, target: float) -> float:
+def locate_level_crossing(system: System, work: Workspace, values: Row, start: float, target: float) -> float:
     """First theta at which the polynomial through `values` has passed `target`, seen from `start` at theta = 0."""
     expand_level(work, values, target)
-    return first_passage(system, work, LEVEL, 1.0 if start < target else -1.0, 0.0, start - target)
+    return locate_first_event(system, work, LEVEL, 1.0 if start < target else -1.0, 0.0, start - target)
 
 
 @compiled
-def expand_level(work: Work, values: Row, target: float) -> None:
+def expand_level(work: Workspace, values: Row, target: float) -> None:
     """Powers of theta of the polynomial through `values` less `target`, in powers[0]."""
     expand(values, work.powers[0])
     work.powers[0, 0] -= target
 
 
 @compiled
-def first_onset(system: System, work: Work) -> float:
+def locate_onset(system: System, work: Workspace) -> float:
     """First theta of a step at rest at which friction can no longer hold the platform; fills the reaction."""
     load = load_at_stages(work)
     excess, reaction = rest_excess(system, load)
     put(work.stage, REACTION, reaction)
-    limit = loaded(system, load.k_t, reaction, system.friction * reaction)
+    limit = scale_by_load(system, load.k_t, reaction, system.friction * reaction)
     most = highest(excess + NEAR_LIMIT * (limit * limit))
     if most < 0.0:  # only a step that comes near the limit is looked at closely
         return NEVER
     expand_drive(work)
-    return first_passage(system, work, ONSET, 1.0, 0.0, excess_at(system, work, 0.0))
+    return locate_first_event(system, work, ONSET, 1.0, 0.0, excess_at(system, work, 0.0))
 
 
 @compiled
-def expand_drive(work: Work) -> None:
+def expand_drive(work: Workspace) -> None:
     """Powers of theta of the drive and the ground acceleration of a step at rest, in `powers`."""
     for axis in range(2):
         expand(row(work.free, axis), work.powers[axis])
@@ -64,7 +64,7 @@ def expand_drive(work: Work) -> None:
 
 
 @compiled
-def excess_at(system: System, work: Work, theta: float) -> float:
+def excess_at(system: System, work: Workspace, theta: float) -> float:
     """Excess over the condition for rest at theta of a step at rest, after `expand_drive`."""
     powers = work.powers
     fx = fy = ux = uy = uz = 0.0
@@ -80,7 +80,7 @@ def excess_at(system: System, work: Work, theta: float) -> float:
 
 
 @compiled
-def expand_speed(work: Work, h: float, target: float) -> None:
+def expand_speed(work: Workspace, h: float, target: float) -> None:
     """
     Prepare `speed_excess` over the squared sliding speed `target` in a step of length h, s.
 
@@ -91,12 +91,15 @@ def expand_speed(work: Work, h: float, target: float) -> None:
         expand_velocity(work, h, axis)
     vx, vy = row(work.stage, VELOCITY), row(work.stage, VELOCITY + 1)
     horizontal = vx * vx + vy * vy
-    expand(where_positive(horizontal, row(work.stage, SPEED2) / horizontal, as_many(1.0, horizontal)), work.powers[2])
+    expand(
+        where_positive(horizontal, row(work.stage, SPEED2) / horizontal, broadcast_like(1.0, horizontal)),
+        work.powers[2],
+    )
     work.powers[3, 0] = target
 
 
 @compiled
-def expand_velocity(work: Work, h: float, axis: int) -> None:
+def expand_velocity(work: Workspace, h: float, axis: int) -> None:
     """Powers of theta of the platform's velocity: the integral of its acceleration."""
     powers = work.powers[axis]
     expand(row(work.a, (0, axis)), powers)
@@ -106,7 +109,7 @@ def expand_velocity(work: Work, h: float, axis: int) -> None:
 
 
 @compiled
-def speed_excess(work: Work, theta: float) -> float:
+def speed_excess(work: Workspace, theta: float) -> float:
     """Squared sliding speed at theta less the one looked for, after `expand_speed`, m^2/s^2."""
     powers = work.powers
     vx = vy = 0.0
@@ -117,7 +120,7 @@ def speed_excess(work: Work, theta: float) -> float:
 
 
 @compiled
-def beyond(system: System, work: Work, event: int, way: float, theta: float) -> float:
+def event_value(system: System, work: Workspace, event: int, way: float, theta: float) -> float:
     """How far the step is past an event at theta, upward if `way` is 1, downward if it is -1."""
     if event == ONSET:
         return way * excess_at(system, work, theta)
@@ -125,29 +128,29 @@ def beyond(system: System, work: Work, event: int, way: float, theta: float) -> 
 
 
 @compiled
-def first_passage(system: System, work: Work, event: int, way: float, begin: float, start: float) -> float:
-    """First theta after `begin` at which `beyond` is positive; `start` is the value that passes zero, at `begin`."""
+def locate_first_event(system: System, work: Workspace, event: int, way: float, begin: float, start: float) -> float:
+    """First theta after `begin` at which `event_value` is positive; `start` is the value that passes zero, at `begin`."""
     top, place, change, low, before = -1.0e300, begin, 0.0, begin, way * start
-    for n in range(1, DENSE.shape[0]):
-        if DENSE[n] <= begin:
+    for n in range(1, SEARCH_POINTS.shape[0]):
+        if SEARCH_POINTS[n] <= begin:
             continue
-        here = beyond(system, work, event, way, DENSE[n])
+        here = event_value(system, work, event, way, SEARCH_POINTS[n])
         if here > 0.0:
-            return passed(system, work, event, way, low, DENSE[n])
+            return locate_crossing(system, work, event, way, low, SEARCH_POINTS[n])
         change = max(change, abs(here - before))
         if here > top:
-            top, place = here, DENSE[n]
-        before, low = here, DENSE[n]
+            top, place = here, SEARCH_POINTS[n]
+        before, low = here, SEARCH_POINTS[n]
     if top + change < 0.0:
         return NEVER
     # it may pass and return between two of these instants
-    low, high = max(begin, place - DENSE[1]), min(1.0, place + DENSE[1])
+    low, high = max(begin, place - SEARCH_POINTS[1]), min(1.0, place + SEARCH_POINTS[1])
     first = low
     for _ in range(GOLDEN_SECTIONS):
         left, right = low + GOLDEN_SHARE * (high - low), high - GOLDEN_SHARE * (high - low)
-        at_left, at_right = beyond(system, work, event, way, left), beyond(system, work, event, way, right)
+        at_left, at_right = event_value(system, work, event, way, left), event_value(system, work, event, way, right)
         if max(at_left, at_right) > 0.0:
-            return passed(system, work, event, way, first, left if at_left > 0.0 else right)
+            return locate_crossing(system, work, event, way, first, left if at_left > 0.0 else right)
         if at_left > at_right:
             high = right
         else:
@@ -156,9 +159,9 @@ def first_passage(system: System, work: Work, event: int, way: float, begin: flo
 
 
 @compiled
-def passed(system: System, work: Work, event: int, way: float, low: float, high: float) -> float:
-    """Where `beyond` becomes positive between low and high, by regula falsi (Illinois) or, if slow, bisection."""
-    at_low, at_high = beyond(system, work, event, way, low), beyond(system, work, event, way, high)
+def locate_crossing(system: System, work: Workspace, event: int, way: float, low: float, high: float) -> float:
+    """Where `event_value` becomes positive between low and high, by regula falsi (Illinois) or, if slow, bisection."""
+    at_low, at_high = event_value(system, work, event, way, low), event_value(system, work, event, way, high)
     rose = fell = False
     width, secants = high - low, 0
     for _ in range(MAX_SECANTS):
@@ -171,7 +174,7 @@ def passed(system: System, work: Work, event: int, way: float, low: float, high:
             middle, secants = 0.5 * (low + high), 0
         middle = min(max(middle, low + 0.5 * LOCATION_TOLERANCE), high - 0.5 * LOCATION_TOLERANCE)
         secants += 1
-        here = beyond(system, work, event, way, middle)
+        here = event_value(system, work, event, way, middle)
         if here > 0.0:
             high, at_high = middle, here
             at_low = 0.5 * at_low if fell else at_low
@@ -183,7 +186,7 @@ def passed(system: System, work: Work, event: int, way: float, low: float, high:
 
 
 @compiled
-def parts_beyond(system: System, work: Work, event: int, way: float, start: float) -> int:
+def mark_parts(system: System, work: Workspace, event: int, way: float, start: float) -> int:
     """
     Number of parts of the step in which the value of `event`, `start` at theta = 0, is not below zero.
 
@@ -191,7 +194,7 @@ def parts_beyond(system: System, work: Work, event: int, way: float, start: floa
     """
     parts, theta, counts, value = 0, 0.0, way * start >= 0.0, start
     while theta < 1.0 and parts < MAX_PARTS:
-        end = min(1.0, first_passage(system, work, event, -way if counts else way, theta, value))
+        end = min(1.0, locate_first_event(system, work, event, -way if counts else way, theta, value))
         if counts:
             work.edges[2 * parts], work.edges[2 * parts + 1] = theta, end
             parts += 1

@@ -11,25 +11,25 @@ from __future__ import annotations
 
 from math import cos, inf, sin, sqrt
 
-from reference.solver.chain import chain_acceleration
+from reference.solver.chain import set_chain_acceleration
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import coefficient, sliding_speed2
-from reference.solver.contact.load import loaded
+from reference.solver.contact.friction import coefficient, squared_sliding_speed
+from reference.solver.contact.load import scale_by_load
 from reference.solver.contact.platform import acceleration, load_in_state, rest_excess, slip_factor
-from reference.solver.ground import next_ground, start_turns, start_waves
-from reference.solver.steps import lifted
+from reference.solver.ground import next_ground, set_turns, set_waves
+from reference.solver.steps import vertical_acceleration
 from reference.solver.system import (
     CREEPING,
     LUBRICATED,
     LUBRICATED_SLIDING,
     SET_VALUED,
     SLIDING,
-    Demand,
     Ground,
     Load,
+    RunSettings,
     System,
 )
-from reference.solver.work import Work
+from reference.solver.work import Workspace
 
 STEPS_PER_PERIOD = 25.0  # of Demand.period
 MAX_STEPS_PER_STEP = 50.0  # steps of a rough run over the accurate ones so far, each of which costs about as much as 50
@@ -41,45 +41,45 @@ MAX_SLOW_STEPS = 2.0  # in which friction would stop the slide: so slow a slide 
 DIRECTION_MARGIN = 0.35  # rad, by which the direction of a slide near its stop is uncertain
 MIN_SURE_DRIVE = 0.5  # of the friction limit: the direction of a smaller drive changes too much until the stop
 MAX_HELD_DRIVE = 0.8  # of the squared friction limit: a larger drive may move a platform that rests in a rough run
-WAIT = 0.25  # of the period, from the last large value until the run looks ahead
+LOOK_AHEAD_DELAY = 0.25  # of the period, from the last large value until the run looks ahead
 
 
 @compiled
-def end_early(system: System, work: Work, demand: Demand) -> None:
+def end_early(system: System, work: Workspace, settings: RunSettings) -> None:
     """End the run, at a step whose end is in x, v, where nothing large can come any more; set when to look again."""
-    if not demand.early:  # told when to end
+    if not settings.early:  # told when to end
         work.end = work.time
         return
-    work.look = work.settled + WAIT * demand.period
-    h = rough_length(system, demand)
-    if work.time > work.look and system.duration - work.time <= MAX_STEPS_PER_STEP * h * work.steps:
-        comes = next_large(system, work, h)
-        work.look = comes + WAIT * demand.period
+    work.look_time = work.last_large + LOOK_AHEAD_DELAY * settings.period
+    h = rough_step_length(system, settings)
+    if work.time > work.look_time and system.duration - work.time <= MAX_STEPS_PER_STEP * h * work.steps:
+        comes = instant_of_next_large(system, work, h)
+        work.look_time = comes + LOOK_AHEAD_DELAY * settings.period
         if comes == inf:
             work.end = work.time
 
 
 @compiled
-def rough_length(system: System, demand: Demand) -> float:
+def rough_step_length(system: System, settings: RunSettings) -> float:
     """Length of the steps of a rough run, s."""
-    h = demand.period / STEPS_PER_PERIOD
+    h = settings.period / STEPS_PER_PERIOD
     if system.fastest > 0.0:
         h = min(h, MAX_CHAIN_ANGLE / system.fastest)
     return h
 
 
 @compiled
-def next_large(system: System, work: Work, h: float) -> float:
+def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
     """When something large may come after the state x, v, s, in steps of h; infinity if nothing can."""
     bodies = work.x.shape[0]
     for i in range(bodies):  # the next step writes x1, v1 anew
         for axis in range(2):
             work.x1[i, axis], work.v1[i, axis] = work.x[i, axis], work.v[i, axis]
     time, large = work.time, False
-    start_waves(system, work, time + 0.5 * h)
-    start_turns(system, work, h)
+    set_waves(system, work, time + 0.5 * h)
+    set_turns(system, work, h)
     while time < system.duration and not large:
-        large = rough_step(system, work, time, h)
+        large = make_rough_step(system, work, time, h)
         time += h
     for i in range(bodies):
         for axis in range(2):
@@ -88,15 +88,15 @@ def next_large(system: System, work: Work, h: float) -> float:
 
 
 @compiled
-def rough_step(system: System, work: Work, time: float, h: float) -> bool:
+def make_rough_step(system: System, work: Workspace, time: float, h: float) -> bool:
     """Move x, v by h; whether something large may come meanwhile. Uses a0 of the bodies above the platform."""
-    drift(work, 0.5 * h)
+    move_at_velocity(work, 0.5 * h)
     ground = next_ground(system, work, time + 0.5 * h)
-    chain_acceleration(system, work, ground)
+    set_chain_acceleration(system, work, ground)
     vx, vy = work.v[0, 0], work.v[0, 1]
     largest, far = push_platform(system, work, load_in_state(system, work, ground), ground, h)
     ax, ay = (work.v[0, 0] - vx) / h, (work.v[0, 1] - vy) / h
-    vertical = ground.z + lifted(system, work.x[0, 0], work.x[0, 1], vx, vy, ax, ay)
+    vertical = ground.z + vertical_acceleration(system, work.x[0, 0], work.x[0, 1], vx, vy, ax, ay)
     level = LARGE_FRACTION * LARGE_FRACTION
     # a number that is none is large, too
     small = not far and largest * largest + vertical * vertical < level * work.best[0]
@@ -105,12 +105,12 @@ def rough_step(system: System, work: Work, time: float, h: float) -> bool:
         small = small and tx * tx + ty * ty + vertical * vertical < level * work.best[i]
         for axis in range(2):
             work.v[i, axis] += h * work.a0[i, axis]
-    drift(work, 0.5 * h)
+    move_at_velocity(work, 0.5 * h)
     return not small
 
 
 @compiled
-def drift(work: Work, h: float) -> None:
+def move_at_velocity(work: Workspace, h: float) -> None:
     """Move every body at its velocity."""
     for i in range(work.x.shape[0]):
         for axis in range(2):
@@ -118,7 +118,7 @@ def drift(work: Work, h: float) -> None:
 
 
 @compiled
-def push_platform(system: System, work: Work, load: Load, ground: Ground, h: float) -> tuple[float, bool]:
+def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h: float) -> tuple[float, bool]:
     """
     Change the platform's velocity by a step.
 
@@ -130,12 +130,12 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
     bound = (1.0 - MIN_MARGIN) * min(system.radius, system.travel)
     if not place2 < bound * bound:
         return inf, True
-    far = place2 >= LARGE_FRACTION * LARGE_FRACTION * work.reach2
+    far = place2 >= LARGE_FRACTION * LARGE_FRACTION * work.squared_reach
     least = MIN_MARGIN * system.mass_ratio * system.gravity
-    speed2 = sliding_speed2(system, load.px, load.py, vx, vy)
+    speed2 = squared_sliding_speed(system, load.px, load.py, vx, vy)
     if system.law == SET_VALUED and speed2 == 0.0:
         excess, reaction = rest_excess(system, load)
-        limit = loaded(system, load.k_t, reaction, system.friction * reaction)
+        limit = scale_by_load(system, load.k_t, reaction, system.friction * reaction)
         if excess <= 0.0:
             largest = sqrt(ground.x * ground.x + ground.y * ground.y)
             nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
@@ -143,11 +143,11 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
                 gx, gy = load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
                 largest = max(largest, largest_near_stop(gx, gy, gx, gy, ground, limit))
             return largest, (nearly and far) or not reaction >= least
-    sx, sy = slip(system, vx, vy, speed2)
+    sx, sy = slip_in_state(system, vx, vy, speed2)
     ax, ay, reaction, determinant = acceleration(system, load, speed2, sx, sy)
     if not (reaction >= least and determinant >= MIN_MARGIN):
         return inf, True
-    held = loaded(system, load.k_t, reaction, reaction)
+    held = scale_by_load(system, load.k_t, reaction, reaction)
     gx, gy = ax + held * sx, ay + held * sy  # without friction
     free_x, free_y = vx + h * gx, vy + h * gy
     free = sqrt(free_x * free_x + free_y * free_y)
@@ -157,7 +157,7 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
     if system.law == LUBRICATED:
         share = 1.0 / (1.0 + h * reaction * system.friction)
     else:
-        ratio = sqrt(sliding_speed2(system, load.px, load.py, free_x / free, free_y / free))
+        ratio = sqrt(squared_sliding_speed(system, load.px, load.py, free_x / free, free_y / free))
         limit = held * coefficient(system, sqrt(speed2)) / ratio
         share = max(0.0, 1.0 - h * limit / free)
         if share * free * ratio < system.v_reg:
@@ -173,7 +173,7 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
 
 
 @compiled
-def slip(system: System, vx: float, vy: float, speed2: float) -> tuple[float, float]:
+def slip_in_state(system: System, vx: float, vy: float, speed2: float) -> tuple[float, float]:
     """Slip vector (friction.py) at the velocity before the step, for the reaction; none where a slide begins."""
     if speed2 == 0.0:
         return 0.0, 0.0

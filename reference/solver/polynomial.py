@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from reference.solver.collocation import A2, MONOMIALS, NODES, STAGES, A, columns
 from reference.solver.compiled import compiled
-from reference.solver.rows import Row, combined, put
+from reference.solver.rows import Row, combine_columns, put
 from reference.solver.system import Array
 
 A_COLUMNS, A2_COLUMNS, MONOMIALS_COLUMNS = columns(A), columns(A2), columns(MONOMIALS)
@@ -13,15 +13,15 @@ POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second in
 
 
 @compiled
-def integral(values: Row) -> Row:
+def integrate_to_stages(values: Row) -> Row:
     """From the start of the step to every stage, over its length."""
-    return combined(A_COLUMNS, values)
+    return combine_columns(A_COLUMNS, values)
 
 
 @compiled
 def expand(values: Row, coefficients: Array) -> None:
     """Coefficients (POWERS,) of the powers of theta."""
-    put(coefficients, (), combined(MONOMIALS_COLUMNS, values))
+    put(coefficients, (), combine_columns(MONOMIALS_COLUMNS, values))
     for k in range(STAGES, POWERS):
         coefficients[k] = 0.0
 

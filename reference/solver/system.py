@@ -79,7 +79,7 @@ class Load(NamedTuple):
     k_t: Number  # temperature factor of friction (contact/load.py)
 
 
-class Record(NamedTuple):
+class StepRecord(NamedTuple):
     """The steps of one motion for `trajectory` (samples.py); of capacity 0 when only the peaks are wanted."""
 
     start: Array  # (T,) s, time at the start of each step
@@ -89,15 +89,15 @@ class Record(NamedTuple):
     v: Array  # (T, N, 2)
     a: Array  # (T, N, 2, S) acceleration at the stages
     position: Array  # (T, N, 2, S) near a stop
-    velocity: Array  # (T, N, 2, S) near a stop
+    velocities: Array  # (T, N, 2, S) near a stop
     clock: Array  # (T, S) time at the stages near a stop
     total: Array  # (T, N, 3, S)
     reaction: Array  # (T, S) over m1
     sticks: Array  # (T, 2) intervals of rest, or of creep below v_reg
-    made: NDArray[np.int64]  # (2,) steps and intervals made, which may be more than there is room for
+    counts: NDArray[np.int64]  # (2,) steps and intervals made, which may be more than there is room for
 
 
-class Demand(NamedTuple):
+class RunSettings(NamedTuple):
     """What is asked of one run."""
 
     tolerance: float  # of accelerations, relative
@@ -113,7 +113,7 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
     """The scene in compiled form. `v_reg`, m/s, selects the regularized law; None the set-valued one."""
     masses = scene.masses
     (below, above), (damping_below, damping_above) = (
-        _per_mass(masses, links) for links in (scene.stiffness, scene.damping)
+        _link_coefficients(masses, links) for links in (scene.stiffness, scene.damping)
     )
     damping_rate = float(2.0 * (damping_below + damping_above).max())
     # without friction the lubricated law with f_c = 0 says the same and has no corner
@@ -150,7 +150,7 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
     )
 
 
-def _per_mass(masses: Array, links: Array) -> tuple[Array, Array]:
+def _link_coefficients(masses: Array, links: Array) -> tuple[Array, Array]:
     """Coefficients of the links, (N - 1, 2), over the mass of the body above and of the one below, (N, 2) each."""
     below, above = np.zeros((len(masses), 2)), np.zeros((len(masses), 2))
     below[1:] = links / masses[1:, None]
@@ -158,10 +158,10 @@ def _per_mass(masses: Array, links: Array) -> tuple[Array, Array]:
     return below, above
 
 
-def record_of(capacity: int, bodies: int) -> Record:
+def allocate_record(capacity: int, bodies: int) -> StepRecord:
     """Room for so many steps."""
     t, n, s = capacity, bodies, STAGES
-    return Record(
+    return StepRecord(
         start=np.zeros(t),
         length=np.zeros(t),
         contact=np.zeros(t),
@@ -169,10 +169,10 @@ def record_of(capacity: int, bodies: int) -> Record:
         v=np.zeros((t, n, 2)),
         a=np.zeros((t, n, 2, s)),
         position=np.zeros((t, n, 2, s)),
-        velocity=np.zeros((t, n, 2, s)),
+        velocities=np.zeros((t, n, 2, s)),
         clock=np.zeros((t, s)),
         total=np.zeros((t, n, 3, s)),
         reaction=np.zeros((t, s)),
         sticks=np.zeros((t, 2)),
-        made=np.zeros(2, np.int64),
+        counts=np.zeros(2, np.int64),
     )

@@ -11,9 +11,9 @@ from types import SimpleNamespace
 import numpy as np
 from numba import njit
 
-from reference.solver.collocation import CHANNELS, LANES, STAGES
+from reference.solver.collocation import CHANNELS, ROW_LENGTH, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.compiled.by_reference import ByReference, by_reference, empty
+from reference.solver.compiled.by_reference import ByReference, empty_structure, structure_from_tuple
 from reference.solver.polynomial import POWERS
 from reference.solver.system import Array, Complex
 
@@ -33,15 +33,15 @@ class _SystemType(ByReference):
     """Numba's type of a System, passed by reference."""
 
 
-class _RecordType(ByReference):
+class _StepRecordType(ByReference):
     """Numba's type of a Record, passed by reference."""
 
 
-class _WorkType(ByReference):
+class _WorkspaceType(ByReference):
     """Numba's type of Work."""
 
 
-class Work:
+class Workspace:
     """One run: nothing is allocated while it goes on, and nothing grows with its duration."""
 
     phase: Array  # (2,) rad, of the loading
@@ -54,16 +54,18 @@ class Work:
     angle: float  # rad, direction of a slide that begins or stops
     log_speed: float  # logarithm of the horizontal speed near a stop
     log_ratio: float  # logarithm of the full speed over the horizontal one near a stop
-    start2: float  # squared speed of a slide, m^2/s^2
+    squared_start_speed: float  # squared speed of a slide, m^2/s^2
     # the next step
     length: float  # s
-    stretched: float  # length near a stop, in stretched time
-    fitting: float  # length near a stop with which the step before would have met the tolerance, in stretched time
-    growth: float  # bound on the growth of the length
-    held: float  # s, for which rest or creep is held whatever the force; 0 where nothing holds it
+    stretched_length: float  # length near a stop, in stretched time
+    fitting_length: (
+        float  # length near a stop with which the step before would have met the tolerance, in stretched time
+    )
+    max_growth: float  # bound on the growth of the length
+    hold_time: float  # s, for which rest or creep is held whatever the force; 0 where nothing holds it
     # the phase of the contact
     first_log_speed: float  # logarithm of the speed at which stretched time began
-    left: float  # s, by which rest is entered early
+    early_rest: float  # s, by which rest is entered early
     # the step
     x1: Array  # (N, 2) at its end
     v1: Array
@@ -82,8 +84,8 @@ class Work:
     residual: Array  # (2, L)
     turn_matrix: Array  # (S, 1, L) of the directions near a stop
     pivots: Array  # (2 S,) of the factorized matrix
-    chain: Array  # (N, 2, L) position of the bodies at the stages of a step near a stop
-    velocity: Array  # (N, 2, L)
+    positions: Array  # (N, 2, L) position of the bodies at the stages of a step near a stop
+    velocities: Array  # (N, 2, L)
     turning: Array  # (12, L) direction, speed and time there
     levels: Array  # (L,) a quantity at the stages whose passage of a level ends the step
     edges: Array  # (2 MAX_PARTS,) theta where the parts of the step that count for the peaks begin and end
@@ -92,7 +94,7 @@ class Work:
     scale: Array  # (N,) m/s^2, what errors are measured against
     defect: Array  # (N,) m/s^2, interpolation error of the step at its start
     # the step before
-    old_length: float  # s; 0 where its polynomial is no guess for the next step
+    last_length: float  # s; 0 where its polynomial is no guess for the next step
     guess: Array  # (2, POWERS) coefficients of the platform's acceleration in it
     waves: Complex  # (2,) the harmonics of the ground at the start of the step
     turns: Complex  # (2,) by what they change in a step of a rough run
@@ -104,15 +106,15 @@ class Work:
     best: Array  # (N,) largest squared absolute acceleration so far
     reading_error: Array  # (N,) m/s^2, error of reading it inside its step, with the drift before
     drift: Array  # (N,) m/s^2, what the steps have missed of the chain's fastest vibration
-    reach2: float  # m^2, largest squared displacement of the platform
-    peaked: float  # s, end of the last step with a large acceleration
-    settled: float  # s, end of the last step with a large value of anything that is asked for
-    look: float  # s, after which the run looks ahead, or ends if it may not end early by itself
+    squared_reach: float  # m^2, largest squared displacement of the platform
+    last_peak: float  # s, end of the last step with a large acceleration
+    last_large: float  # s, end of the last step with a large value of anything that is asked for
+    look_time: float  # s, after which the run looks ahead, or ends if it may not end early by itself
 
 
-def _fill(work: Work, bodies: int) -> None:
+def _allocate_fields(work: Workspace, bodies: int) -> None:
     """Zeros in every field, for so many bodies."""
-    n, s, c, lanes = bodies, STAGES, CHANNELS, LANES
+    n, s, c, lanes = bodies, STAGES, CHANNELS, ROW_LENGTH
     work.phase = np.zeros(2)
     work.x = np.zeros((n, 2))
     work.v = np.zeros((n, 2))
@@ -136,8 +138,8 @@ def _fill(work: Work, bodies: int) -> None:
     work.residual = np.zeros((2, lanes))
     work.turn_matrix = np.zeros((s, 1, lanes))
     work.pivots = np.zeros(2 * s)
-    work.chain = np.zeros((n, 2, lanes))
-    work.velocity = np.zeros((n, 2, lanes))
+    work.positions = np.zeros((n, 2, lanes))
+    work.velocities = np.zeros((n, 2, lanes))
     work.turning = np.zeros((12, lanes))
     work.levels = np.zeros(lanes)
     work.edges = np.zeros(2 * MAX_PARTS)
@@ -153,32 +155,35 @@ def _fill(work: Work, bodies: int) -> None:
     work.best = np.zeros(n)
     work.reading_error = np.zeros(n)
     work.drift = np.zeros(n)
-    work.time = work.angle = work.log_speed = work.log_ratio = work.start2 = 0.0
-    work.length = work.stretched = work.fitting = work.growth = work.held = 0.0
-    work.first_log_speed = work.left = work.old_length = work.end = work.steps = 0.0
-    work.reach2 = work.peaked = work.settled = work.look = 0.0
+    work.time = work.angle = work.log_speed = work.log_ratio = work.squared_start_speed = 0.0
+    work.length = work.stretched_length = work.fitting_length = work.max_growth = work.hold_time = 0.0
+    work.first_log_speed = work.early_rest = work.last_length = work.end = work.steps = 0.0
+    work.squared_reach = work.last_peak = work.last_large = work.look_time = 0.0
 
 
-system_by_reference, record_by_reference = by_reference(_SystemType), by_reference(_RecordType)
+system_by_reference, record_by_reference = structure_from_tuple(_SystemType), structure_from_tuple(_StepRecordType)
 _fields = SimpleNamespace()
-_fill(_fields, 2)  # type: ignore[arg-type]
-_empty, _compiled_fill = empty(_WorkType, vars(_fields)), njit(nogil=True)(_fill)
+_allocate_fields(_fields, 2)  # type: ignore[arg-type]
+_empty_workspace, _compiled_allocation = (
+    empty_structure(_WorkspaceType, vars(_fields)),
+    njit(nogil=True)(_allocate_fields),
+)
 
 
 @njit(nogil=True)
-def workspace(bodies: int) -> Work:
+def allocate_workspace(bodies: int) -> Workspace:
     """For runs with this many bodies."""
-    work = _empty()
-    _compiled_fill(work, bodies)
+    work = _empty_workspace()
+    _compiled_allocation(work, bodies)
     return work
 
 
 @compiled
-def start_anew(work: Work, length: float, end: float) -> None:
+def reset_workspace(work: Workspace, length: float, end: float) -> None:
     """Forget the run before; `length` of the first step and end of the run, s."""
-    work.time = work.angle = work.log_speed = work.log_ratio = work.start2 = 0.0
-    work.length, work.stretched, work.growth, work.old_length = length, 0.0, 0.0, 0.0
-    work.end, work.peaked, work.settled = end, 0.0, 0.0
-    work.held = work.first_log_speed = work.left = work.steps = work.reach2 = 0.0
+    work.time = work.angle = work.log_speed = work.log_ratio = work.squared_start_speed = 0.0
+    work.length, work.stretched_length, work.max_growth, work.last_length = length, 0.0, 0.0, 0.0
+    work.end, work.last_peak, work.last_large = end, 0.0, 0.0
+    work.hold_time = work.first_log_speed = work.early_rest = work.steps = work.squared_reach = 0.0
     for i in range(work.x.shape[0]):
         work.best[i] = work.reading_error[i] = work.drift[i] = 0.0

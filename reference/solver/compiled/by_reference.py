@@ -86,21 +86,21 @@ def _write(context: Any, builder: Any, signature: Any, arguments: Any, name: str
     builder.store(new, pointer)
 
 
-def _new(context: Any, builder: Any, kind: ByReference) -> Any:
+def _allocate(context: Any, builder: Any, kind: ByReference) -> Any:
     """Write code for a structure without values."""
     _, lower = structref.new._defn(context.typing_context, types.TypeRef(kind))
     return lower(context, builder, None, None)
 
 
-def by_reference(kind: type[ByReference]) -> Any:
+def structure_from_tuple(kind: type[ByReference]) -> Any:
     """A function of compiled code that makes such a structure from a named tuple."""
 
     @intrinsic
-    def made(context: Any, values: Any) -> Any:
+    def construct(context: Any, values: Any) -> Any:
         structure = kind(list(zip(values.fields, values.types)))
 
         def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            reference = _new(context, builder, structure)
+            reference = _allocate(context, builder, structure)
             for k, (name, field) in enumerate(structure._fields):
                 value = builder.extract_value(arguments[0], k)
                 context.nrt.incref(builder, field, value)
@@ -109,18 +109,18 @@ def by_reference(kind: type[ByReference]) -> Any:
 
         return structure(values), lower
 
-    return made
+    return construct
 
 
-def empty(kind: type[ByReference], fields: Mapping[str, Any]) -> Any:
+def empty_structure(kind: type[ByReference], fields: Mapping[str, Any]) -> Any:
     """A function of compiled code that makes such a structure with fields of the types of `fields`, all bits zero."""
     structure = kind([(name, typeof(value)) for name, value in fields.items()])
 
     @intrinsic
-    def made(context: Any) -> Any:
+    def construct(context: Any) -> Any:
         def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            return _new(context, builder, structure)
+            return _allocate(context, builder, structure)
 
         return structure(), lower
 
-    return made
+    return construct

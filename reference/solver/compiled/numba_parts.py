@@ -33,7 +33,7 @@ class _NoEnvironment:
         """A part has no wrapper."""
 
 
-class _Part(JITCodeLibrary):  # type: ignore[misc]
+class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
     """The code of one part as numba writes it; entry points link, optimize and translate it."""
 
     codegen = _NoEnvironment()
@@ -53,12 +53,12 @@ class _Part(JITCodeLibrary):  # type: ignore[misc]
             whole = self._final_module.clone()
             libraries = [self]
             for library in libraries:
-                called = library._linking_libraries if isinstance(library, _Part) else ()
+                called = library._linking_libraries if isinstance(library, _PartLibrary) else ()
                 libraries += [each for each in dict.fromkeys(called) if each not in libraries]
                 if hasattr(self, "_reload_init"):  # since numba 0.62
                     self._reload_init.update(library._reload_init)
             for library in libraries[1:]:
-                part = isinstance(library, _Part)
+                part = isinstance(library, _PartLibrary)
                 whole.link_in(library._final_module if part else library._get_module_for_linking(), preserve=True)
             self._whole = whole
         return self._whole
@@ -70,7 +70,7 @@ class _Part(JITCodeLibrary):  # type: ignore[misc]
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _AsPart(LoweringPass):  # type: ignore[misc]
-    """Just before the lowering: the code goes into a `_Part` and counts no references."""
+    """Just before the lowering: the code goes into a `_PartLibrary` and counts no references."""
 
     _name = "as_part"
 
@@ -79,7 +79,7 @@ class _AsPart(LoweringPass):  # type: ignore[misc]
 
     def run_pass(self, state: Any) -> bool:
         context = state.targetctx  # of this function alone
-        state.library = _Part(context.codegen(), state.func_id.func_qualname)
+        state.library = _PartLibrary(context.codegen(), state.func_id.func_qualname)
         context.nrt = NRTContext(context, True)  # fields of structures are still read through it
         context.enable_nrt = False
         return False

@@ -16,8 +16,8 @@ from __future__ import annotations
 from math import cos, exp, expm1, sin, sqrt
 
 from reference.solver.compiled import compiled
-from reference.solver.contact.load import loaded
-from reference.solver.rows import Number, as_many, where_positive
+from reference.solver.contact.load import scale_by_load
+from reference.solver.rows import Number, broadcast_like, where_positive
 from reference.solver.system import CREEPING, Load, System
 
 SMALLEST_SPEED = 1e-200  # m/s
@@ -27,7 +27,7 @@ SMALLEST_SPEED = 1e-200  # m/s
 def coefficient(system: System, speed: Number) -> Number:
     """Dry friction coefficient mu at the sliding speed (3.8), m/s."""
     if system.rate == 0.0:
-        return as_many(system.friction, speed)
+        return broadcast_like(system.friction, speed)
     return system.friction - system.rise * expm1(-system.rate * speed)
 
 
@@ -44,7 +44,7 @@ def rising_rate(system: System, speed: float) -> float:
 
 
 @compiled
-def sliding_speed2(system: System, px: Number, py: Number, vx: Number, vy: Number) -> Number:
+def squared_sliding_speed(system: System, px: Number, py: Number, vx: Number, vy: Number) -> Number:
     """Squared sliding speed: v-bar^2 of (3.8), or the horizontal one in the small equations (4.3)."""
     planar = vx * vx + vy * vy
     if system.small:
@@ -69,7 +69,7 @@ def rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     tx = -load.fx - normal * nx
     ty = -load.fy - normal * ny
     tz = rz - normal * nz
-    limit = loaded(system, load.k_t, normal, system.friction * normal)
+    limit = scale_by_load(system, load.k_t, normal, system.friction * normal)
     return tx * tx + ty * ty + tz * tz - limit * limit, normal
 
 
@@ -83,7 +83,7 @@ def rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     """
     px, py, radius = load.px, load.py, system.radius
     reaction = system.mass_ratio * (system.gravity + load.uz)
-    friction = loaded(system, load.k_t, reaction, system.friction)
+    friction = scale_by_load(system, load.k_t, reaction, system.friction)
     gx = load.fx - reaction * px / radius
     gy = load.fy - reaction * py / radius
     a = friction * (reaction - load.ux * px / radius)
@@ -104,7 +104,7 @@ def rest_excess_printed(system: System, load: Load) -> Number:
     origin, and F_3 carries gravity and spring with the printed signs. Kept to measure what the slip costs.
     """
     reaction = system.mass_ratio * (system.gravity + load.uz)
-    friction = loaded(system, load.k_t, reaction, system.friction)
+    friction = scale_by_load(system, load.k_t, reaction, system.friction)
     lx = friction * (reaction - load.ux * (load.px + load.py) / system.radius)
     ly = friction * (reaction - load.uy * (load.px + load.py) / system.radius)
     gx = -(2.0 * load.ux + load.fx) + reaction * load.px / system.radius  # spring force f + u with its sign turned
@@ -130,7 +130,7 @@ def slip_vector(
 
     speed: the horizontal one, m/s.
     """
-    ratio = sqrt(sliding_speed2(system, px, py, ex, ey))
+    ratio = sqrt(squared_sliding_speed(system, px, py, ex, ey))
     friction = coefficient(system, speed * ratio) / ratio
     return friction * ex, friction * ey, ratio
 

@@ -10,20 +10,20 @@ from reference.solver.contact.friction import (
     rest_excess_exact,
     rest_excess_printed,
     rest_excess_small,
-    sliding_speed2,
     slip_vector,
+    squared_sliding_speed,
 )
-from reference.solver.contact.load import exact, loaded
+from reference.solver.contact.load import exact_equations, scale_by_load
 from reference.solver.equations import small_acceleration
-from reference.solver.rows import Number, as_many, row
+from reference.solver.rows import Number, broadcast_like, row
 from reference.solver.system import CREEPING, PRINTED, SLIDING, Ground, Load, System
-from reference.solver.work import DRIVE, POSITION, Work
+from reference.solver.work import DRIVE, POSITION, Workspace
 
 ROUNDING_EXCESS = 1e-12  # of the squared friction limit: a drive that exceeds it by no more than rounding is held
 
 
 @compiled
-def load_in_state(system: System, work: Work, ground: Ground) -> Load:
+def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
     """What acts on the platform in the state x, v at the start of the step."""
     fx, fy = -ground.x, -ground.y
     if work.x.shape[0] > 1:
@@ -35,7 +35,7 @@ def load_in_state(system: System, work: Work, ground: Ground) -> Load:
 
 
 @compiled
-def load_at_stages(work: Work) -> Load:
+def load_at_stages(work: Workspace) -> Load:
     """What acts on the platform at the stages, in rows, from `stage` and `ground`."""
     stage, ground = work.stage, work.ground
     return Load(
@@ -52,7 +52,7 @@ def slip_factor(system: System, contact: int, speed2: Number) -> Number:
         return coefficient(system, speed) / speed
     if contact == CREEPING:
         return coefficient(system, sqrt(speed2)) / system.v_reg
-    return as_many(system.friction, speed2)
+    return broadcast_like(system.friction, speed2)
 
 
 @compiled
@@ -65,25 +65,25 @@ def acceleration(
         reaction = system.mass_ratio * pressure
         return small_acceleration(
             load.px, load.py, load.fx, load.fy, load.ux, load.uy, pressure,
-            loaded(system, load.k_t, reaction, sx), loaded(system, load.k_t, reaction, sy),
+            scale_by_load(system, load.k_t, reaction, sx), scale_by_load(system, load.k_t, reaction, sy),
             system.mass_ratio, system.radius,
         )  # fmt: skip
-    return exact(system, load, speed2, sx, sy)
+    return exact_equations(system, load, speed2, sx, sy)
 
 
 @compiled
-def moving(
+def moving_acceleration(
     system: System, contact: int, load: Load, vx: Number, vy: Number
 ) -> tuple[Number, Number, Number, Number, Number]:
     """(ax, ay, reaction / m1, inertia determinant, speed2) at a velocity that is not zero while sliding."""
-    speed2 = sliding_speed2(system, load.px, load.py, vx, vy)
+    speed2 = squared_sliding_speed(system, load.px, load.py, vx, vy)
     factor = slip_factor(system, contact, speed2)
     ax, ay, reaction, determinant = acceleration(system, load, speed2, factor * vx, factor * vy)
     return ax, ay, reaction, determinant, speed2
 
 
 @compiled
-def directed(
+def acceleration_along(
     system: System, load: Load, speed: Number, ex: Number, ey: Number
 ) -> tuple[Number, Number, Number, Number]:
     """(ax, ay, reaction / m1, full over horizontal speed) when sliding in the direction (ex, ey) at any speed >= 0."""
@@ -102,5 +102,5 @@ def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
     if system.rest_condition == PRINTED:
         # where (4.6) lets go of a platform that friction can hold, no motion begins all the same
         excess = min(excess, rest_excess_printed(system, load))
-    limit = loaded(system, load.k_t, reaction, system.friction * reaction)
+    limit = scale_by_load(system, load.k_t, reaction, system.friction * reaction)
     return excess - ROUNDING_EXCESS * (limit * limit), reaction

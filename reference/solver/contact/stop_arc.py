@@ -12,7 +12,7 @@ from math import cos, pi, sin, sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import slip_vector
-from reference.solver.contact.platform import acceleration, directed
+from reference.solver.contact.platform import acceleration, acceleration_along
 from reference.solver.system import Load, System
 
 SAMPLES_PER_TURN = 48
@@ -24,17 +24,17 @@ MAX_ROUNDING_BRAKING = 1e-6  # of friction: deceleration of a slide that begins 
 
 
 @compiled
-def sideways(system: System, load: Load, angle: float) -> float:
+def turning_acceleration(system: System, load: Load, angle: float) -> float:
     """a . e_perp: positive when the direction turns counter-clockwise."""
     ex, ey = cos(angle), sin(angle)
-    ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
+    ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)
     return ay * ex - ax * ey
 
 
 @compiled
-def squared_total(system: System, load: Load, angle: float, horizontal: float) -> float:
+def squared_absolute_acceleration(system: System, load: Load, angle: float, horizontal: float) -> float:
     """Squared absolute acceleration, or its vertical part for horizontal = 0, sliding at vanishing speed, m^2/s^4."""
-    ax, ay, _, _ = directed(system, load, 0.0, cos(angle), sin(angle))
+    ax, ay, _, _ = acceleration_along(system, load, 0.0, cos(angle), sin(angle))
     az = load.uz
     if not system.small:
         az += (load.px * ax + load.py * ay) / sqrt(system.radius**2 - load.px * load.px - load.py * load.py)
@@ -42,9 +42,9 @@ def squared_total(system: System, load: Load, angle: float, horizontal: float) -
 
 
 @compiled
-def settled_direction(system: System, load: Load, angle: float, no_turn: float) -> float:
+def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) -> float:
     """The direction at which the turning from `angle` ends; `angle` itself if it turns by less than no_turn."""
-    here = sideways(system, load, angle)
+    here = turning_acceleration(system, load, angle)
     drive = sqrt(load.fx * load.fx + load.fy * load.fy) + system.friction * abs(system.gravity + load.uz)
     if abs(here) <= no_turn * drive:
         return angle
@@ -52,15 +52,15 @@ def settled_direction(system: System, load: Load, angle: float, no_turn: float) 
     inside, outside, stride = angle, angle, FIRST_STRIDE
     while abs(outside - angle) < 2.0 * pi:
         outside = inside + sense * stride
-        if sense * sideways(system, load, outside) <= 0.0:
+        if sense * turning_acceleration(system, load, outside) <= 0.0:
             break
         inside = outside
         stride = min(2.0 * stride, 2.0 * pi / SAMPLES_PER_TURN)
-    return turning_ends(system, load, inside, outside)
+    return locate_direction_at_stop(system, load, inside, outside)
 
 
 @compiled
-def can_begin(system: System, load: Load, angle: float) -> bool:
+def can_begin_slide(system: System, load: Load, angle: float) -> bool:
     """Whether a slide from rest has an acceleration in this direction (Painleve), and is not braked by it."""
     ex, ey = cos(angle), sin(angle)
     sx, sy, _ = slip_vector(system, load.px, load.py, 0.0, ex, ey)
@@ -70,16 +70,16 @@ def can_begin(system: System, load: Load, angle: float) -> bool:
 
 
 @compiled
-def turning_ends(system: System, load: Load, inside: float, outside: float) -> float:
+def locate_direction_at_stop(system: System, load: Load, inside: float, outside: float) -> float:
     """The direction between the two that does not turn, by the Illinois variant of regula falsi."""
     low, high = inside, outside
-    at_low = sideways(system, load, low)
-    at_high = sideways(system, load, high)
+    at_low = turning_acceleration(system, load, low)
+    at_high = turning_acceleration(system, load, high)
     for _ in range(60):
         if at_low == at_high or abs(high - low) < 1e-15:
             break
         angle = (low * at_high - high * at_low) / (at_high - at_low)
-        here = sideways(system, load, angle)
+        here = turning_acceleration(system, load, angle)
         if here == 0.0:
             return angle
         if (here > 0.0) == (at_high > 0.0):
@@ -95,12 +95,12 @@ def turning_ends(system: System, load: Load, inside: float, outside: float) -> f
 
 @compiled
 def arc_peak(system: System, load: Load, angle: float, end: float, floor: float, horizontal: float) -> float:
-    """Largest `squared_total` over the arc from `angle` to `end`, m^2/s^4; below `floor`, the largest sample."""
+    """Largest `squared_absolute_acceleration` over the arc from `angle` to `end`, m^2/s^4; below `floor`, the largest sample."""
     samples = 4 + int(abs(end - angle) * SAMPLES_PER_TURN / (2.0 * pi))
     stride = (end - angle) / samples
     best, top = -1.0, 0
     for n in range(samples + 1):
-        value = squared_total(system, load, angle + n * stride, horizontal)
+        value = squared_absolute_acceleration(system, load, angle + n * stride, horizontal)
         if value > best:
             best, top = value, n
     if (1.0 + MAX_RISE_BETWEEN_SAMPLES) * best < floor:
@@ -109,16 +109,16 @@ def arc_peak(system: System, load: Load, angle: float, end: float, floor: float,
     high = angle + min(top + 1, samples) * stride
     golden = 0.5 * (sqrt(5.0) - 1.0)
     left, right = high - golden * (high - low), low + golden * (high - low)
-    at_left = squared_total(system, load, left, horizontal)
-    at_right = squared_total(system, load, right, horizontal)
+    at_left = squared_absolute_acceleration(system, load, left, horizontal)
+    at_right = squared_absolute_acceleration(system, load, right, horizontal)
     for _ in range(GOLDEN_SECTIONS):
         best = max(best, max(at_left, at_right))
         if at_left > at_right:
             high, right, at_right = right, left, at_left
             left = high - golden * (high - low)
-            at_left = squared_total(system, load, left, horizontal)
+            at_left = squared_absolute_acceleration(system, load, left, horizontal)
         else:
             low, left, at_left = left, right, at_right
             right = low + golden * (high - low)
-            at_right = squared_total(system, load, right, horizontal)
+            at_right = squared_absolute_acceleration(system, load, right, horizontal)
     return best
