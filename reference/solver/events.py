@@ -1,4 +1,4 @@
-"""Where inside a step something happens, from the polynomials through its stages."""
+"""Events inside a step, located on the polynomials through its stages."""
 
 from __future__ import annotations
 
@@ -14,41 +14,41 @@ from reference.solver.rows import Row, broadcast_like, highest, put, row, where_
 from reference.solver.system import Load, System
 from reference.solver.work import MAX_PARTS, REACTION, SPEED2, VELOCITY, Workspace
 
-# What is passed: a level by the polynomial in powers[0], the friction limit at rest, a sliding speed.
+# Kinds of events: the polynomial in powers[0] passes zero, friction at rest its limit, the sliding speed a given one.
 # No literals (system.py).
 LEVEL, ONSET, SPEED = np.int64(0), np.int64(1), np.int64(2)
 NEVER = 2.0  # theta of an event that is not within the step
-GOLDEN_SECTIONS = 30  # of two instants: an event shorter than a millionth of the step moves nothing
-GOLDEN_SHARE = 0.382
-MAX_SECANTS = 200
-SECANTS_PER_HALVING = 3  # that do not halve the interval: a bisection follows
-LOCATION_TOLERANCE = 1e-15  # of the step
-NEAR_LIMIT = 0.5  # of the squared friction limit: between two stages of a step at rest the excess changes by less
+GOLDEN_SECTIONS = 30  # sections of an interval that may hide an event: one shorter than 1e-6 of a step moves nothing
+GOLDEN_SHARE = 0.382  # share of the interval that a golden section cuts off, (3 - sqrt(5)) / 2
+MAX_SECANTS = 200  # steps of regula falsi
+SECANTS_PER_HALVING = 3  # steps that do not halve the interval, before a bisection follows
+LOCATION_TOLERANCE = 1e-15  # share of the step to which an event is located
+NEAR_LIMIT = 0.5  # share of the squared friction limit by which the excess at rest changes less between two stages
 
 
 @compiled
 def locate_level_crossing(system: System, work: Workspace, values: Row, start: float, target: float) -> float:
-    """First theta at which the polynomial through `values` has passed `target`, seen from `start` at theta = 0."""
+    """Return the first theta at which the polynomial through `values` passes `target`, coming from `start`."""
     expand_level(work, values, target)
     return locate_first_event(system, work, LEVEL, 1.0 if start < target else -1.0, 0.0, start - target)
 
 
 @compiled
 def expand_level(work: Workspace, values: Row, target: float) -> None:
-    """Powers of theta of the polynomial through `values` less `target`, in powers[0]."""
+    """Set powers[0] to the powers of theta of the polynomial through `values` less `target`."""
     expand(values, work.powers[0])
     work.powers[0, 0] -= target
 
 
 @compiled
 def locate_onset(system: System, work: Workspace) -> float:
-    """First theta of a step at rest at which friction can no longer hold the platform; fills the reaction."""
+    """Return the first theta at which friction can no longer hold the platform; set the reaction at the stages."""
     load = load_at_stages(work)
     excess, reaction = rest_excess(system, load)
     put(work.stage, REACTION, reaction)
     limit = scale_by_load(system, load.k_t, reaction, system.friction * reaction)
     most = highest(excess + NEAR_LIMIT * (limit * limit))
-    if most < 0.0:  # only a step that comes near the limit is looked at closely
+    if most < 0.0:  # the step does not come near the limit
         return NEVER
     expand_drive(work)
     return locate_first_event(system, work, ONSET, 1.0, 0.0, excess_at(system, work, 0.0))
@@ -56,7 +56,7 @@ def locate_onset(system: System, work: Workspace) -> float:
 
 @compiled
 def expand_drive(work: Workspace) -> None:
-    """Powers of theta of the drive and the ground acceleration of a step at rest, in `powers`."""
+    """Set the powers of theta of the drive and the ground acceleration of a step at rest."""
     for axis in range(2):
         expand(row(work.free, axis), work.powers[axis])
     for axis in range(3):
@@ -65,7 +65,7 @@ def expand_drive(work: Workspace) -> None:
 
 @compiled
 def excess_at(system: System, work: Workspace, theta: float) -> float:
-    """Excess over the condition for rest at theta of a step at rest, after `expand_drive`."""
+    """Return the excess over the condition for rest at theta of a step at rest, after `expand_drive`."""
     powers = work.powers
     fx = fy = ux = uy = uz = 0.0
     for k in range(STAGES - 1, -1, -1):
@@ -84,8 +84,8 @@ def expand_speed(work: Workspace, h: float, target: float) -> None:
     """
     Prepare `speed_excess` over the squared sliding speed `target` in a step of length h, s.
 
-    The velocity is the integral of the polynomial through the accelerations. A polynomial through the squared speeds
-    would miss a small speed in a step whose speed becomes large.
+    The velocity is the integral of the polynomial through the accelerations. A polynomial through the squared speeds at
+    the stages would miss a small speed in a step whose speed becomes large.
     """
     for axis in range(2):
         expand_velocity(work, h, axis)
@@ -100,7 +100,7 @@ def expand_speed(work: Workspace, h: float, target: float) -> None:
 
 @compiled
 def expand_velocity(work: Workspace, h: float, axis: int) -> None:
-    """Powers of theta of the platform's velocity: the integral of its acceleration."""
+    """Set the powers of theta of the platform's velocity: the integral of its acceleration."""
     powers = work.powers[axis]
     expand(row(work.a, (0, axis)), powers)
     for k in range(STAGES - 1, -1, -1):
@@ -110,7 +110,7 @@ def expand_velocity(work: Workspace, h: float, axis: int) -> None:
 
 @compiled
 def speed_excess(work: Workspace, theta: float) -> float:
-    """Squared sliding speed at theta less the one looked for, after `expand_speed`, m^2/s^2."""
+    """Return the squared sliding speed at theta less the target of `expand_speed`, m^2/s^2."""
     powers = work.powers
     vx = vy = 0.0
     for k in range(STAGES, -1, -1):
@@ -121,7 +121,7 @@ def speed_excess(work: Workspace, theta: float) -> float:
 
 @compiled
 def event_value(system: System, work: Workspace, event: int, way: float, theta: float) -> float:
-    """How far the step is past an event at theta, upward if `way` is 1, downward if it is -1."""
+    """Return a value that is positive past an event at theta: `way` is 1 if it is passed upward, -1 downward."""
     if event == ONSET:
         return way * excess_at(system, work, theta)
     return way * (speed_excess(work, theta) if event == SPEED else value_at(work.powers[0], theta))
@@ -129,7 +129,11 @@ def event_value(system: System, work: Workspace, event: int, way: float, theta: 
 
 @compiled
 def locate_first_event(system: System, work: Workspace, event: int, way: float, begin: float, start: float) -> float:
-    """First theta after `begin` at which `event_value` is positive; `start` is the value that passes zero, at `begin`."""
+    """Return the first theta after `begin` at which `event_value` is positive; `start` is the value at `begin`."""
+    # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter one may hide: the
+    # value passes zero and returns between two points. That is possible only if the largest value seen lies below zero
+    # by no more than the largest change from point to point. Then golden sections look for a positive value around it.
+    # Once a positive value is found, `locate_crossing` locates the passage before it.
     top, place, change, low, before = -1.0e300, begin, 0.0, begin, way * start
     for n in range(1, SEARCH_POINTS.shape[0]):
         if SEARCH_POINTS[n] <= begin:
@@ -143,7 +147,6 @@ def locate_first_event(system: System, work: Workspace, event: int, way: float, 
         before, low = here, SEARCH_POINTS[n]
     if top + change < 0.0:
         return NEVER
-    # it may pass and return between two of these instants
     low, high = max(begin, place - SEARCH_POINTS[1]), min(1.0, place + SEARCH_POINTS[1])
     first = low
     for _ in range(GOLDEN_SECTIONS):
@@ -160,7 +163,11 @@ def locate_first_event(system: System, work: Workspace, event: int, way: float, 
 
 @compiled
 def locate_crossing(system: System, work: Workspace, event: int, way: float, low: float, high: float) -> float:
-    """Where `event_value` becomes positive between low and high, by regula falsi (Illinois) or, if slow, bisection."""
+    """Return the theta between low and high at which `event_value` becomes positive."""
+    # Regula falsi in the variant "Illinois" (Dowell and Jarratt, BIT 11, 1971): the value at an end that stays twice is
+    # halved. Where the values at the ends differ by orders of magnitude the secants creep; after SECANTS_PER_HALVING
+    # of them that have not halved the interval a bisection follows. The end with the positive value is returned, so
+    # that the event has happened there.
     at_low, at_high = event_value(system, work, event, way, low), event_value(system, work, event, way, high)
     rose = fell = False
     width, secants = high - low, 0
@@ -188,9 +195,9 @@ def locate_crossing(system: System, work: Workspace, event: int, way: float, low
 @compiled
 def mark_parts(system: System, work: Workspace, event: int, way: float, start: float) -> int:
     """
-    Number of parts of the step in which the value of `event`, `start` at theta = 0, is not below zero.
+    Mark the parts of the step in which the value of `event`, `start` at theta = 0, is not below zero.
 
-    way: -1 for not above zero. The ends of the parts, in theta, are in work.edges (2 MAX_PARTS,).
+    With `way` = -1, those in which it is not above zero. Return their number; their ends, in theta, are in work.edges.
     """
     parts, theta, counts, value = 0, 0.0, way * start >= 0.0, start
     while theta < 1.0 and parts < MAX_PARTS:

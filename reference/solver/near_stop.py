@@ -1,10 +1,12 @@
 """
 Sliding close to a stop, in the stretched time tau with dt = S dtau, S the horizontal speed.
 
-There the direction theta and the logarithm of the speed, sigma = ln S, obey smooth equations however small S is,
+There the direction theta and the logarithm of the speed, sigma = ln S, obey smooth equations however small S is
+(T7 of docs/theory.md),
     theta' = a . e_perp(theta),   sigma' = a . e(theta),   t' = S,   p' = S^2 e(theta),
 so the turning of the slip direction on the way into a stop, or past one, is resolved at a constant cost per decade of
-speed. The chain above the platform, slow on this time scale, follows by iteration.
+speed (docs/decisions/0001-stretched-time.md). The chain above the platform is slow on this time scale and is solved by
+iteration.
 """
 
 from __future__ import annotations
@@ -42,18 +44,24 @@ from reference.solver.work import (
     Workspace,
 )
 
-MAX_ITERATIONS = 40  # of Newton's method
-SLOW_CONVERGENCE = 0.01  # of the change before: a larger change asks for new slopes
-ROUNDING_ANGLE = 1e-13  # rad: change of the angles by rounding alone
-DIRECTION_DIFFERENCE = 1e-6  # rad: step of the difference quotient by the direction, needed to a few digits only
-SPEED_DIFFERENCE = 1e-6  # of the speed: step of the difference quotient by its logarithm
-MAX_GUESSED_TURN = 0.5  # rad: a turn is at most towards the force, which the guess must not overshoot
-DIVERGED = 1e3  # change of angle or logarithm of the speed that ends the iteration
+MAX_ITERATIONS = 40  # iterations of Newton's method before a step counts as unsolved
+SLOW_CONVERGENCE = 0.01  # ratio of two successive changes above which the slopes are computed anew
+ROUNDING_ANGLE = 1e-13  # rad, change of the angles by rounding alone
+DIRECTION_DIFFERENCE = 1e-6  # rad, step of the difference quotient by the direction, needed to a few digits only
+SPEED_DIFFERENCE = 1e-6  # relative step of the speed in the difference quotient by its logarithm
+MAX_GUESSED_TURN = 0.5  # rad: the direction turns towards the force, and the guess must not turn beyond it
+DIVERGED = 1e3  # change of angle, rad, or logarithm of the speed that ends the iteration
 
 
 @compiled
 def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: float) -> int:
-    """One step of length h in tau: the stages and the end; `tolerance` bounds the last change of the angle."""
+    """Solve one step of length h in tau; `tolerance` bounds the last change of the angle. Return its outcome."""
+    # One iteration has three parts. Speeds and directions at the stages give time and positions by integration
+    # (`move_bodies`). These give ground, springs and dampers (`pull_bodies`): a fixed-point iteration for the chain,
+    # which converges because the chain hardly moves within the step. The forces give the platform's acceleration along
+    # and across its direction (`turn_platform`), and Newton's method corrects the directions, which turn fast; ln S
+    # follows from them (`correct_turning`). Slopes are kept while the changes fall fast. Two iterations are always
+    # fresh: the guess is a straight line.
     guess_near_stop(system, work, h)
     set_waves(system, work, work.time)
     before, slow = 0.0, True
@@ -82,7 +90,7 @@ def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: f
 
 @compiled
 def guess_near_stop(system: System, work: Workspace, h: float) -> None:
-    """Direction and speed at the stages, and the chain's accelerations, from those at the start of the step."""
+    """Set the first guess of directions, speeds and the chain's accelerations from those at the start of the step."""
     ex, ey = heading(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     across = work.a0[0, 1] * ex - work.a0[0, 0] * ey
@@ -97,7 +105,7 @@ def guess_near_stop(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def move_bodies(system: System, work: Workspace, h: float) -> None:
-    """Speed, time, velocities and positions at the stages."""
+    """Set speed, time, velocities and positions at the stages."""
     x, v, a, turning = work.x, work.v, work.a, work.turning
     for k in range(STAGES):
         turning[COSINE, k], turning[SINE, k] = heading(turning[DIRECTION, k], system.axes)
@@ -118,7 +126,7 @@ def move_bodies(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def pull_bodies(system: System, work: Workspace, h: float) -> float:
-    """Ground, chain and drive at the stages; the largest change of the chain's, as one of velocity over the speed."""
+    """Set ground, chain and drive at the stages; return the largest change of the chain's velocity over the speed."""
     place, velocity, stage = work.positions, work.velocities, work.stage
     bodies = work.x.shape[0]
     change = 0.0
@@ -147,7 +155,7 @@ def pull_bodies(system: System, work: Workspace, h: float) -> float:
 
 @compiled
 def is_inside_rim(system: System, work: Workspace) -> bool:
-    """Whether the platform is within the cap at every stage (4.1)."""
+    """Return True if the platform is within the cap at every stage (4.1)."""
     x, y = row(work.stage, POSITION), row(work.stage, POSITION + 1)
     inside: bool = highest(x * x + y * y) < system.radius**2
     return inside
@@ -155,7 +163,7 @@ def is_inside_rim(system: System, work: Workspace) -> bool:
 
 @compiled
 def turn_platform(system: System, work: Workspace, fresh: bool) -> None:
-    """Acceleration of the platform at the stages, along and across its direction; `fresh`: and its slopes."""
+    """Set the platform's acceleration at the stages, along and across its direction; if `fresh`, its slopes, too."""
     turning, stage, load = work.turning, work.stage, load_at_stages(work)
     speed, ex, ey = row(turning, SPEED), row(turning, COSINE), row(turning, SINE)
     ax, ay, reaction, ratio = acceleration_along(system, load, speed, ex, ey)
@@ -180,7 +188,12 @@ def turn_platform(system: System, work: Workspace, fresh: bool) -> None:
 
 @compiled
 def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> float:
-    """One iteration of Newton's method, with slopes that are `fresh` or kept; the largest change, or infinity."""
+    """Correct directions and speeds by Newton's method, with `fresh` or kept slopes; return the largest change."""
+    # The unknowns are the directions at the stages: theta_0 + h A (a . e_perp) - theta = 0, with the derivative of the
+    # sideways acceleration by the direction alone. The logarithms of the speed follow explicitly from the corrected
+    # directions, for constant friction hardly depends on the speed. Where friction depends on the speed that iteration
+    # converges slowly or not at all, and Newton's method takes its place (`correct_levels`). Infinity means no
+    # solution of the linear equations.
     turning, residual = work.turning, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     put(residual, 0, work.angle - row(turning, DIRECTION) + h * integrate_to_stages(row(turning, ACROSS)))
@@ -209,7 +222,7 @@ def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> f
 
 @compiled
 def correct_levels(work: Workspace, h: float) -> bool:
-    """Newton's method in place of iteration for the logarithms of the speed in `levels`; False if it has no step."""
+    """Correct the logarithms of the speed in `levels` by Newton's method; return False if it has no step."""
     turning, levels, residual = work.turning, work.levels, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     turn = row(residual, 0)

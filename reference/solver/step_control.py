@@ -1,4 +1,4 @@
-"""What every phase of a run does with a step: begin, judge its length, commit it."""
+"""Control of the steps in every phase of a run: their begin, their lengths, their end."""
 
 from __future__ import annotations
 
@@ -17,21 +17,25 @@ from reference.solver.steps import vertical_acceleration
 from reference.solver.system import REST, SLIDING, STOPPING, UNSOLVED, Ground, RunSettings, StepRecord, System
 from reference.solver.work import CLOCK, Workspace
 
-MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85
-MAX_SHORTENING = 0.7  # factor of the length of a step that misses the tolerance, at most
-FAILURE_SHORTENING = 0.3  # factor of the length of a step whose equations have no solution
+MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85  # controller in `length_factor`
+MAX_SHORTENING = 0.7  # largest factor from the length of a step that misses the tolerance to the next
+FAILURE_SHORTENING = 0.3  # factor from the length of a step whose equations have no solution to the next
 ERROR_ORDER = 7.0  # order of the error estimate in the step length
-MIN_SCALE_FRACTION = 0.02  # of the loading: lower bound on the acceleration that the error of a body is relative to
-FATAL_STEP = 1e-9  # of the period (Demand.period): a step this short that still fails has located the instant
-MIN_STEP = 1e-16  # of the period: shortest step
-NEGLIGIBLE_TIME = 1e-11  # of the shorter of period and duration: no acceleration changes within it
-NEWTON_FRACTION = 0.01  # of the tolerance: change of the accelerations at which Newton's method ends
-MAX_EXTRAPOLATION = 1.1  # of the step before: a longer step does not start from its polynomial
+# Lower bound on the acceleration that the error of a body is relative to, as a share of the loading
+MIN_SCALE_FRACTION = 0.02
+# The shortest steps, in units of RunSettings.period. An outcome such as the rim is located by the steps that fail
+# before it, down to FATAL_STEP; a step whose equations have no solution is shortened down to MIN_STEP.
+FATAL_STEP = 1e-9
+MIN_STEP = 1e-16
+# Time within which no acceleration changes, as a share of the shorter of RunSettings.period and the duration
+NEGLIGIBLE_TIME = 1e-11
+NEWTON_FRACTION = 0.01  # share of the tolerance at which the change of the accelerations ends Newton's method
+MAX_EXTRAPOLATION = 1.1  # ratio of two step lengths up to which the last polynomial is a guess for the next step
 
 
 @compiled
 def begin_from_state(system: System, work: Workspace, contact: int) -> None:
-    """Accelerations of the state; a slide that has no direction yet is begun by begin_sliding. No guess for a step."""
+    """Set the accelerations at the start of a phase; those of a slide from rest follow in begin_sliding."""
     ground = ground_at(system, work, work.time)
     set_chain_acceleration(system, work, ground)
     ax = ay = 0.0
@@ -46,7 +50,7 @@ def begin_from_state(system: System, work: Workspace, contact: int) -> None:
 def begin_with_acceleration(
     system: System, work: Workspace, ground: Ground, ax: float, ay: float, contact: int
 ) -> None:
-    """The platform's acceleration at the start of a phase, and with it the absolute accelerations there."""
+    """Set the platform's acceleration and all absolute accelerations at the start of a phase."""
     work.a0[0, 0], work.a0[0, 1] = ax, ay
     vertical = ground.z
     if contact != REST:
@@ -60,7 +64,7 @@ def begin_with_acceleration(
 
 @compiled
 def count_step(work: Workspace, settings: RunSettings) -> bool:
-    """Count one more step and set what its error is measured against; False past the limit of steps."""
+    """Count one more step and set the scale of its error; return False past the limit of steps."""
     for i in range(work.x.shape[0]):
         work.scale[i] = max(sqrt(work.best[i]), MIN_SCALE_FRACTION * settings.unit)
     work.steps += 1.0
@@ -69,20 +73,20 @@ def count_step(work: Workspace, settings: RunSettings) -> bool:
 
 @compiled
 def negligible_time(system: System, settings: RunSettings) -> float:
-    """Time, s, in which nothing changes."""
+    """Return the time within which no acceleration changes, s."""
     return NEGLIGIBLE_TIME * min(settings.period, system.duration)
 
 
 @compiled
 def remaining_time(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Time left, s; 0 when it is so little that nothing changes."""
+    """Return the time to the end of the run, s; 0 if no acceleration changes within it."""
     left = work.end - work.time
     return left if left > negligible_time(system, settings) else 0.0
 
 
 @compiled
 def next_kink(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Where loading or k_T has its next kink, s, or the run ends: a step beyond it would lose its order."""
+    """Return the next kink of loading or k_T, or the end of the run, s: a step beyond it would lose its order."""
     after, end = work.time + negligible_time(system, settings), work.end
     for kinks in (system.record, system.kinks):
         k = next_knot(kinks, after)
@@ -93,13 +97,13 @@ def next_kink(system: System, work: Workspace, settings: RunSettings) -> float:
 
 @compiled
 def propose_plain_length(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Length of the next step in time, s: at most to the loading's next kink."""
+    """Return the length of the next step in time, s: at most to the loading's next kink."""
     return min(min(work.length, remaining_time(system, work, settings)), next_kink(system, work, settings) - work.time)
 
 
 @compiled
 def guess_from_last_step(work: Workspace, h: float) -> None:
-    """Stage accelerations of the platform to start Newton's method: the last step's polynomial where it reaches."""
+    """Set the first guess of the platform's stage accelerations: the last step's polynomial, where it reaches."""
     old = work.last_length
     theta = row(NODES_ROW, ())
     near = 0.0 < h <= MAX_EXTRAPOLATION * old
@@ -115,7 +119,10 @@ def guess_from_last_step(work: Workspace, h: float) -> None:
 
 @compiled
 def length_factor(error: float, tolerance: float) -> float:
-    """By what to multiply the step length so that the next error meets the tolerance."""
+    """Return the factor of the step length with which the next error meets the tolerance."""
+    # The error falls like h^7, so the length that just meets the tolerance is the present one times
+    # (tolerance / error)^(1/7) (Hairer and Wanner, IV.8). SAFETY_FACTOR makes the next step likely to pass, and the
+    # bounds limit what a single estimate can change.
     if error <= 0.0:
         return MAX_LENGTH_FACTOR
     return min(MAX_LENGTH_FACTOR, max(MIN_LENGTH_FACTOR, SAFETY_FACTOR * (tolerance / error) ** (1.0 / ERROR_ORDER)))
@@ -123,13 +130,13 @@ def length_factor(error: float, tolerance: float) -> float:
 
 @compiled
 def step_duration(work: Workspace, contact: int, h: float) -> float:
-    """About how long a step of length h lasts, s."""
+    """Return about how long a step of length h lasts, s: near a stop h is a length in stretched time."""
     return h * exp(work.log_speed) if contact == STOPPING else h
 
 
 @compiled
 def is_too_short(work: Workspace, contact: int, settings: RunSettings, h: float, code: int) -> bool:
-    """Whether a step of length h need not be tried after one that failed with `code`."""
+    """Return True if a step of length h need not be tried after one that failed with `code`."""
     shortest = (MIN_STEP if code == UNSOLVED else FATAL_STEP) * settings.period
     if contact == STOPPING and code == UNSOLVED:
         shortest *= 1e-3 * exp(min(0.0, work.log_speed))
@@ -138,7 +145,7 @@ def is_too_short(work: Workspace, contact: int, settings: RunSettings, h: float,
 
 @compiled
 def set_length(work: Workspace, contact: int, h: float) -> None:
-    """The length of the next step, in the time of the phase."""
+    """Set the length of the next step, in the time of the phase."""
     if contact == STOPPING:
         work.stretched_length = h
     else:
@@ -147,7 +154,7 @@ def set_length(work: Workspace, contact: int, h: float) -> None:
 
 @compiled
 def adapt_length(work: Workspace, h: float, factor: float) -> None:
-    """The length after a step that was made; one cut short for another reason does not shorten the next."""
+    """Set the length after a step that met the tolerance; one cut short for another reason shortens nothing."""
     if h * factor > work.length or h == work.length:
         work.length = h * factor
 

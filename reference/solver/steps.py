@@ -1,9 +1,8 @@
 """
 One collocation step in time: at rest, or moving under a friction law.
 
-A step reads the state x, v of `Workspace`, leaves the stage accelerations in `a`, the platform at the stages in `stage`, the
-absolute accelerations in `total` and the end of the step in x1, v1. A moving step returns SOLVED or what stood in the
-way.
+A step reads the state x, v of `Workspace`. It leaves the stage accelerations in `a`, the platform at the stages in
+`stage`, the absolute accelerations in `total` and the end of the step in x1, v1. A moving step returns its outcome.
 """
 
 from __future__ import annotations
@@ -36,18 +35,18 @@ from reference.solver.work import (
     Workspace,
 )
 
-MAX_ITERATIONS = 14  # of Newton's method
-SLOW_CONVERGENCE = 0.1  # of the change before: a larger change asks for a new derivative
-FORCE_ROUNDING = 1e-13  # of the forces: what rounding leaves of the defect at the start of a step
-ROUNDING_CHANGE = 4e-15  # of the accelerations: change by rounding alone from one iteration to the next
-# of the squared speed of a slide: beyond it a derivative understates tenfold how far the direction turns
+MAX_ITERATIONS = 14  # iterations of Newton's method before a step counts as unsolved
+SLOW_CONVERGENCE = 0.1  # ratio of two successive changes above which the derivative is computed anew
+FORCE_ROUNDING = 1e-13  # part of the forces that rounding leaves in the defect at the start of a step
+ROUNDING_CHANGE = 4e-15  # relative change of the accelerations that rounding alone makes from iteration to iteration
+# Growth of the squared speed of a slide beyond which a derivative understates tenfold how far the direction turns
 MAX_SPEED2_GROWTH = 100.0
-RIM_SQUARED_FRACTION = 0.99  # of the squared radius: an iteration that starts beyond it and strays has reached the rim
+RIM_SQUARED_FRACTION = 0.99  # share of rho^2 beyond which a step whose iteration leaves the cap has reached the rim
 
 
 @compiled
 def load_step(system: System, work: Workspace, h: float) -> None:
-    """The ground at the stages, and what it and the state do to the platform through the eliminated chain."""
+    """Set the ground at the stages and the load that it and the state put on the platform through the chain."""
     put(work.elapsed, (), h * row(NODES_ROW, ()))
     set_waves(system, work, work.time)
     set_ground_at_stages(system, work)
@@ -57,7 +56,7 @@ def load_step(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def solve_rest_step(system: System, work: Workspace, h: float) -> None:
-    """The platform stays; the chain above it vibrates (4.4)."""
+    """Solve a step in which the platform stays and the chain above it vibrates (4.4)."""
     load_step(system, work, h)
     for axis in range(system.axes):
         put(work.a, (0, axis), 0.0)
@@ -71,15 +70,17 @@ def solve_rest_step(system: System, work: Workspace, h: float) -> None:
 @compiled
 def solve_moving_step(system: System, work: Workspace, contact: int, h: float, tolerance: float) -> int:
     """
-    Newton's method for the stage accelerations of the platform, the chain eliminated exactly.
+    Solve for the stage accelerations of the platform by Newton's method, the chain eliminated exactly.
 
-    `load_step` comes before; `a[0]` holds the first guess on entry. `tolerance`, m/s^2: the iteration ends when the
-    change is below it. A derivative serves several iterations while these converge fast, so what is left is far
-    smaller. A tolerance below what rounding does to the accelerations is met at that level.
-
-    The slower a slide, the less acceleration turns it, so a derivative at a guess that is far too slow leaves a wrong
-    direction as it is and calls that settled. It serves no iteration at a much higher speed.
+    `load_step` comes before; `a[0]` holds the first guess. The iteration ends when its change is below `tolerance`,
+    m/s^2, or at the level of rounding.
     """
+    # A derivative serves several iterations while these converge fast. The error that remains is then far smaller than
+    # the last change, which is what `tolerance` bounds.
+    # In a slide the derivative of friction by the velocity is mu N / v across the direction of slip. Computed at a
+    # guess that is far too slow it is far too large: Newton's method then hardly corrects a wrong direction, and its
+    # small change looks like convergence. So a derivative serves no iteration at a much higher speed
+    # (MAX_SPEED2_GROWTH).
     set_feedback(system, work, h)
     pivots = work.pivots[: system.axes * STAGES]
     known = row(work.stage, SPEED2)
@@ -112,7 +113,7 @@ def solve_moving_step(system: System, work: Workspace, contact: int, h: float, t
 
 @compiled
 def set_residual(system: System, work: Workspace, contact: int) -> tuple[int, float]:
-    """What the accelerations of the platform miss at the stages; (what stands in the way, their size in m/s^2)."""
+    """Set the residual at the stages from the platform's equations; return the outcome and their size, m/s^2."""
     a, stage, residual = work.a, work.stage, work.residual
     load = load_at_stages(work)
     if highest(load.px * load.px + load.py * load.py) >= system.radius**2:
@@ -125,14 +126,15 @@ def set_residual(system: System, work: Workspace, contact: int) -> tuple[int, fl
     put(stage, SPEED2, speed2)
     put(residual, 0, ax - row(a, (0, 0)))
     put(residual, 1, ay - row(a, (0, 1)))
-    # creep answers within a time that may be shorter than the one to which an instant is located: its steps fall on
+    # Painleve's paradox is located to FATAL_STEP (step_control.py). Creep may respond within a shorter time: there a
+    # determinant that is not positive counts as UNSOLVED, so that the steps may become shorter still.
     code = UNSOLVED if contact == CREEPING else PAINLEVE
     return (SOLVED if lowest(determinant) > 0.0 else code), highest(abs(ax) + abs(ay))
 
 
 @compiled
 def correct_accelerations(work: Workspace, axes: int) -> float:
-    """Add Newton's correction, in `residual`, to the stage accelerations; its largest entry, or infinity."""
+    """Add Newton's correction, in `residual`, to the stage accelerations; return its largest entry, or infinity."""
     change = 0.0
     for axis in range(axes):
         correction = row(work.residual, axis)
@@ -143,7 +145,7 @@ def correct_accelerations(work: Workspace, axes: int) -> float:
 
 @compiled
 def place_platform(work: Workspace, h: float, axes: int) -> None:
-    """Position, velocity and drive of the platform at the stages, from its stage accelerations."""
+    """Set position, velocity and drive of the platform at the stages from its stage accelerations."""
     a, stage, feedback, x, v = work.a, work.stage, work.feedback, work.x, work.v
     for axis in range(axes):
         velocity = position = broadcast_like(0.0, row(NODES_ROW, ()))
@@ -160,7 +162,7 @@ def place_platform(work: Workspace, h: float, axes: int) -> None:
 
 @compiled
 def set_matrix(work: Workspace, h: float, axes: int) -> None:
-    """Derivative of the stage equations a - acceleration(a) = 0 by the stage accelerations of the platform."""
+    """Set the derivative of the stage equations a - acceleration(a) = 0 by the platform's stage accelerations."""
     matrix, feedback, slope = work.matrix, work.feedback, work.slopes
     for axis in range(axes):
         for column in range(axes):
@@ -176,7 +178,7 @@ def set_matrix(work: Workspace, h: float, axes: int) -> None:
 
 @compiled
 def rim_or_unsolved(system: System, work: Workspace) -> int:
-    """RIM (4.1) if the step began close to it; otherwise the iteration strayed there."""
+    """Return RIM (4.1) if the step began close to it, or UNSOLVED: the iteration strayed there."""
     return RIM if work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2 else UNSOLVED
 
 
@@ -184,7 +186,7 @@ def rim_or_unsolved(system: System, work: Workspace) -> int:
 def vertical_acceleration(
     system: System, px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number
 ) -> Number:
-    """Vertical acceleration of all bodies relative to the plate (2.2); none in the small equations."""
+    """Return the vertical acceleration of all bodies relative to the plate (2.2); zero in the small equations."""
     if system.small:
         return broadcast_like(0.0, px)
     _, _, az = vertical_motion(px, py, vx, vy, ax, ay, system.radius)
@@ -193,7 +195,7 @@ def vertical_acceleration(
 
 @compiled
 def set_absolute_accelerations(system: System, work: Workspace, contact: int) -> None:
-    """Relative plus ground acceleration at the stages."""
+    """Set the absolute accelerations at the stages: relative plus ground acceleration."""
     a, ground, stage, total = work.a, work.ground, work.stage, work.total
     vertical = row(ground, 2)
     if contact != REST:
@@ -210,17 +212,21 @@ def set_absolute_accelerations(system: System, work: Workspace, contact: int) ->
 @compiled
 def step_error(system: System, work: Workspace, tolerance: float, weight: float) -> float:
     """
-    Error of the absolute accelerations inside the step, times `weight`, over `scale` (N,), the largest over the bodies.
+    Return the error of the absolute accelerations inside the step over `scale`, the largest of all bodies.
 
-    The interpolating polynomial, evaluated at the start of the step, misses the acceleration known there by the
-    interpolation error of the step, which falls like h^7. What rounding in the chain's channels may do is at most
-    `tolerance`: it falls with no step. On a plane the platform's acceleration relative to the plate counts as well:
-    without a restoring force no absolute acceleration shows a wrong way.
+    `weight` multiplies the error; `tolerance` is the error that the step may have.
     """
+    # The acceleration at the start of the step is known. The polynomial through the stages, evaluated there, misses it
+    # by the interpolation error of the step, which falls like h^7: Radau IIA has no stage at theta = 0. This defect is
+    # the error of the step.
+    # Rounding limits it from below: FORCE_ROUNDING of the forces always, CHANNEL_ROUNDING where the chain is solved in
+    # the eigenbasis. No shorter step would reduce an error of that size, so it counts as the tolerance at most.
+    # On a plane the platform's acceleration relative to the plate counts as well: without a restoring force no absolute
+    # acceleration shows an error of the position.
     total, total0, stage, a = work.total, work.total0, work.stage, work.a
     load = abs(total0[0, 2])
     load = max(load, highest(abs(row(stage, DRIVE)) + abs(row(stage, DRIVE + 1))))
-    # friction may decelerate a platform that nothing drives
+    # Friction may decelerate a platform without any drive, so its own acceleration is a measure of the forces, too.
     load = max(load, highest(abs(row(a, (0, 0))) + abs(row(a, (0, 1)))))
     noise = FORCE_ROUNDING * load
     channels = noise + (CHANNEL_ROUNDING * load if work.x.shape[0] > 1 else 0.0)
@@ -243,7 +249,7 @@ def step_error(system: System, work: Workspace, tolerance: float, weight: float)
 
 @compiled
 def relative_defect(work: Workspace) -> float:
-    """Interpolation error of the platform's acceleration relative to the plate, m/s^2."""
+    """Return the interpolation error of the platform's acceleration relative to the plate, m/s^2."""
     squared = 0.0
     for axis in range(2):
         defect = -work.a0[0, axis]

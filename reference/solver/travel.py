@@ -1,4 +1,4 @@
-"""Where a motion ends because the platform needs a larger displacement than the isolator permits."""
+"""End of a motion in which the platform needs a larger displacement than the isolator permits."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from reference.solver.rows import row
 from reference.solver.system import REST, STOPPING, System
 from reference.solver.work import CLOCK, Workspace
 
-BISECTIONS = 50  # of a step, to its rounding
+BISECTIONS = 50  # bisections that locate the displacement in a step, to rounding
 
 
 @compiled
 def instant_of_travel(system: System, work: Workspace, contact: int, h: float) -> float:
-    """When the platform's displacement passes the travel within the step just made, s; infinite if it does not."""
+    """Return when the displacement passes the travel within the step just solved, s; infinity if it does not."""
     if contact == REST or system.travel == inf:
         return inf
     for axis in range(2):
@@ -38,7 +38,7 @@ def instant_of_travel(system: System, work: Workspace, contact: int, h: float) -
 
 @compiled
 def locate_displacement(work: Workspace, limit: float, place: float) -> float:
-    """First theta up to `place` at which the squared displacement, from its `powers`, is above `limit`."""
+    """Return the first theta up to `place` at which the squared displacement, by its `powers`, exceeds `limit`."""
     low, high = 0.0, place
     for n in range(1, SEARCH_POINTS.shape[0]):
         if SEARCH_POINTS[n] >= place:

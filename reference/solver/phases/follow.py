@@ -1,4 +1,4 @@
-"""The steps of one phase of the contact: each is proposed, made, judged, cut where something happens, committed."""
+"""The steps of one phase of the contact: each is proposed, solved, checked, cut at an event and committed."""
 
 from __future__ import annotations
 
@@ -65,20 +65,28 @@ from reference.solver.system import (
 from reference.solver.travel import instant_of_travel
 from reference.solver.work import REACTION, SPEED2, Workspace
 
-FRICTION_ROUNDING = 1e-14  # of the friction limit: no acceleration is closer, a difference of such forces
-MAX_VIBRATION_ANGLE = 5.0  # rad, by which the chain's fastest vibration turns in a step that follows it
-# What the end of a step misses of a free vibration, over the step's defect and the seventh power of the angle by which
-# it turns. The vibration is the defect over twice that.
+# Rounding of an acceleration, which is a difference of forces, as a share of the friction limit
+FRICTION_ROUNDING = 1e-14
+MAX_VIBRATION_ANGLE = 5.0  # rad, largest turn of the chain's fastest vibration in a step that follows it
+# Error that a step leaves in a free vibration, over the step's defect and the seventh power of the angle by which the
+# vibration turns. The vibration itself is the defect over twice that (docs/decisions/0002).
 DRIFT_SHARE = 6e-8
-MIN_DRIFT_ANGLE = 2.0  # rad: a hundred steps with smaller angles miss less than a thousandth of their tolerance
-VARYING_NEWTON_FRACTION = 1e-3  # of that change otherwise, where friction depends on the speed
+MIN_DRIFT_ANGLE = 2.0  # rad: a hundred steps with smaller angles leave less than a thousandth of their tolerance
+# Factor of Newton's tolerance where friction depends on the speed
+VARYING_NEWTON_FRACTION = 1e-3
 
 
 @compiled
 def follow_phase(
     system: System, work: Workspace, contact: int, settings: RunSettings, record: StepRecord
 ) -> tuple[int, int]:
-    """Until the contact changes or the motion ends: (how it went, what the contact does next). See run.py."""
+    """Follow the motion until the contact changes or the run ends: (outcome, next state of the contact). See run.py."""
+    # A step goes through five gates. (1) The phase proposes its length; a slide about to stop proposes none and hands
+    # over to stretched time. (2) Its equations are solved; if they are not, it is tried again and shorter, down to the
+    # length at which the outcome counts as located. (3) Its error must meet the tolerance. (4) The first event inside
+    # it cuts it: the shorter step is solved again, by `cut_at_onset` in rest and by the next pass in every other phase,
+    # so that a step always ends at the event. (5) Peaks, displacement and drift are read off it before its end becomes
+    # the new state.
     since = begin_phase(system, work, contact, settings)
     following = contact
     while following == contact and remaining_time(system, work, settings) > 0.0:
@@ -132,13 +140,13 @@ def follow_phase(
 
 @compiled
 def vibration_angle(system: System, contact: int, h: float) -> float:
-    """By what the chain's fastest vibration turns in a step, rad: little near a stop."""
+    """Return the angle by which the chain's fastest vibration turns in a step, rad; 0 near a stop, in short steps."""
     return 0.0 if contact == STOPPING else system.fastest * h
 
 
 @compiled
 def add_drift(system: System, work: Workspace, h: float, angle: float) -> None:
-    """Add what a step misses of the fastest vibration to what those before it missed: together at most all of it."""
+    """Add to work.drift the error that a step leaves in the fastest vibration: together at most the vibration itself."""
     share = min(DRIFT_SHARE * angle**7, 1.0)
     for i in range(work.x.shape[0]):
         defect = sqrt(work.defect[i] ** 2 + (link_error_rate(system, work, h, i) / system.fastest) ** 2)
@@ -148,7 +156,7 @@ def add_drift(system: System, work: Workspace, h: float, angle: float) -> None:
 
 @compiled
 def begin_phase(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
-    """Prepare the first step of a phase; since when it lasts, s."""
+    """Prepare the first step of a phase; return when the phase begins, s."""
     since: float = work.time
     if contact == REST:
         since = begin_rest(system, work)
@@ -163,7 +171,7 @@ def begin_phase(system: System, work: Workspace, contact: int, settings: RunSett
 
 @compiled
 def propose_length(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
-    """Length of the next step in the time of the phase; 0 where stretched time begins instead."""
+    """Return the length of the next step in the time of the phase; 0 where stretched time begins instead."""
     if contact == SLIDING:
         return propose_sliding_length(system, work, settings)
     if contact == STOPPING:
@@ -174,7 +182,7 @@ def propose_length(system: System, work: Workspace, contact: int, settings: RunS
 
 @compiled
 def solve_step(system: System, work: Workspace, contact: int, settings: RunSettings, h: float) -> int:
-    """Make the step; SOLVED or what stood in the way."""
+    """Solve the equations of one step of the phase; return their outcome."""
     if contact == STOPPING:
         code: int = solve_near_stop_step(system, work, h, NEAR_STOP_NEWTON_FRACTION * settings.tolerance)
         return code
@@ -187,13 +195,14 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
     if contact == SLIDING:
         guess_slide(system, work, h)
         if system.rate > 0.0:
-            # slow growth and decay of the speed pass small errors on to the next step, whose direction they turn
+            # Where friction depends on the speed, small errors of the speed grow or decay slowly: they reach the next
+            # step and turn its direction.
             rounding = FRICTION_ROUNDING * system.friction * system.mass_ratio * system.gravity
             enough = max(VARYING_NEWTON_FRACTION * enough, rounding)
             enough /= 1.0 + h * rising_rate(system, sqrt(work.squared_start_speed))
     else:
         guess_from_last_step(work, h)
-        # where friction is stiff a small error of the acceleration is a large one of the velocity, and so of the force
+        # Stiff friction turns a small error of the acceleration into a large one of velocity and force.
         enough /= 1.0 + h * decay_rate(system, contact)
     code = solve_moving_step(system, work, contact, h, enough)
     if code == UNSOLVED and contact == SLIDING and system.axes == 2 and is_slow(system, work, h):
@@ -204,7 +213,7 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
 
 @compiled
 def cut_at_event(system: System, work: Workspace, contact: int, settings: RunSettings, h: float) -> tuple[float, int]:
-    """Length of the step up to the first event inside it, 0 for one at its begin, and what the contact does then."""
+    """Return the length of the step up to the first event inside it, 0 for one at its start, and the next contact."""
     if contact == REST:
         return cut_at_onset(system, work, h)
     if contact == SLIDING:
@@ -219,12 +228,13 @@ def mark_counted_parts(
     system: System, work: Workspace, contact: int, settings: RunSettings, h: float, since: float
 ) -> int:
     """
-    Number of parts of the step that count for the peaks, with their ends in work.edges.
+    Mark the parts of the step that count for the peaks: their ends in work.edges; return their number.
 
-    These are rest, which is entered a little early, from `since` on, creep below v_reg, and sliding faster than the
-    cutoff. A creep that begins or ends a little above v_reg, as far as events are located, would have more friction
-    than a slide.
+    Rest counts from `since` on, creep below v_reg, sliding above the cutoff, and all other motion in full.
     """
+    # A phase of rest begins a little before the platform has stopped (`contact_after_stop`); that time is none of rest.
+    # A creep may begin or end above v_reg by the accuracy of an event, where its linear law has more friction than any
+    # slide. Both would add an acceleration to the peaks that the motion does not have.
     if contact == CREEPING:
         level, start2 = system.v_reg * system.v_reg, squared_speed_in_state(system, work)
         if max(start2, highest(row(work.stage, SPEED2))) > level:
@@ -247,7 +257,7 @@ def mark_counted_parts(
 def prepare_next_step(
     system: System, work: Workspace, contact: int, following: int, settings: RunSettings, h: float, factor: float
 ) -> int:
-    """The length of the next step after one that was made, and what the contact does next."""
+    """Set the length of the next step after one that was committed; return the next state of the contact."""
     if contact == STOPPING:
         after = commit_stopping_step(system, work, settings, h, factor)
         return following if following == CREEPING else after

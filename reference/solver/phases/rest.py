@@ -13,15 +13,17 @@ from reference.solver.steps import solve_rest_step
 from reference.solver.system import REST, SLIDING, System
 from reference.solver.work import REACTION, Workspace
 
-ONSET_EXCESS = 1e-12  # of the squared friction limit: how far past it the onset is located
-MIN_ONSET_EXCESS = 0.1 * ONSET_EXCESS  # a slide with less has no direction beyond rounding
-ONSET_DIFFERENCE = 1e-4  # of the onset: step of the difference quotient of the excess
-ONSET_ITERATIONS = 8
+# Excess over the condition for rest at an onset, as shares of the squared friction limit: a slide that begins with less
+# has no direction beyond rounding
+ONSET_EXCESS = 1e-12
+MIN_ONSET_EXCESS = 0.1 * ONSET_EXCESS
+ONSET_DIFFERENCE = 1e-4  # step of the difference quotient of the excess, as a share of the time to the onset
+ONSET_ITERATIONS = 8  # Newton's iterations for the onset
 
 
 @compiled
 def begin_rest(system: System, work: Workspace) -> float:
-    """Since when the platform is at rest, s."""
+    """Prepare a phase of rest; return since when the platform is at rest, s."""
     work.v[0, 0] = work.v[0, 1] = 0.0
     begin_from_state(system, work, REST)
     since = work.time + work.early_rest
@@ -31,7 +33,11 @@ def begin_rest(system: System, work: Workspace) -> float:
 
 @compiled
 def cut_at_onset(system: System, work: Workspace, h: float) -> tuple[float, int]:
-    """Length of the step, made again up to just past the onset of slip inside it; what the contact does then."""
+    """Solve a step of rest again up to just past the onset inside it; return its length and the next contact."""
+    # The slide that follows begins in the direction in which its acceleration does not turn it, which the excess over
+    # the friction limit decides. At the limit itself that direction is undefined, so the onset is located between
+    # MIN_ONSET_EXCESS and ONSET_EXCESS. The onset found on the polynomials of the long step is off by their error.
+    # Newton's method with a slope taken from them locates it on steps that end there.
     onset = locate_onset(system, work)
     if onset > 1.0 or work.hold_time > 0.0:
         return h, REST
@@ -57,6 +63,6 @@ def cut_at_onset(system: System, work: Workspace, h: float) -> tuple[float, int]
 
 @compiled
 def set_reaction(system: System, work: Workspace) -> None:
-    """The reaction at the stages of a step at rest."""
+    """Set the reaction at the stages of a step at rest."""
     _, reaction = rest_excess(system, load_at_stages(work))
     put(work.stage, REACTION, reaction)

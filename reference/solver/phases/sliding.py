@@ -38,36 +38,43 @@ from reference.solver.system import (
 )
 from reference.solver.work import SPEED2, VELOCITY, Workspace
 
-MAX_FIRST_STEP = 0.57  # of the period (Demand.period): longest first step of a slide at a tolerance of 1 in a step
-CAUTIOUS_GROWTH = 2.0  # largest growth of a step that had to be shortened
-STOP_WITHIN_STEPS = 1.5  # steps: a slide that would stop within them is followed in stretched time,
-STOP_WITHIN_TIME = 0.05  # of the period: or within this time
-MAX_WAY_TO_STOP = 0.55  # of the time to the stop: a longer step comes too close to where the direction turns fast
-MAX_CHAIN_ANGLE = 0.5  # rad: most that the chain's fastest vibration may turn in the time that is left then
+# "Period" below is RunSettings.period, the time in which forces change.
+# Longest first step of a slide from rest, in periods, over the seventh root of the tolerance (ERROR_ORDER)
+MAX_FIRST_STEP = 0.57
+CAUTIOUS_GROWTH = 2.0  # largest growth of the step after one that had to be shortened
+# Stretched time begins where the slide would stop within so many steps, or within this share of the period, and the
+# chain's fastest vibration turns by no more than this angle, rad, until the stop.
+STOP_WITHIN_STEPS = 1.5
+STOP_WITHIN_TIME = 0.05
+MAX_CHAIN_ANGLE = 0.5
+# Longest step as a share of the time to the stop: a longer one comes too close to where the direction turns fast
+MAX_WAY_TO_STOP = 0.55
 MIN_TURN_COSINE = 0.3  # cosine of the largest turn of the velocity between two stages
-LEVEL_TOLERANCE = 1e-9  # of the squared speed: a slide this close to v_reg has come down to it
-NEAR_LEVEL_FACTOR = 1.25  # of the squared v_reg: a slide below it may pass v_reg between two stages
-# of the friction limit times the step: at a lower speed the direction follows the force
+LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from that of v_reg at which a slide has reached it
+NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2 below which a slide may pass v_reg between two stages
+# Share of the friction limit times the step below which the direction of a slide follows the force within the step
 STIFF_SPEED_FRACTION = 0.03
-MIN_ACCELERATION_FRACTION = 1e-12  # of the drive: a slide that begins has a direction
-BARELY_SLIPPING_EXCESS = 1e-4  # of the squared friction limit: a slide with less excess need not begin yet
-NEGLIGIBLE_STEP = 1e-6  # of the period, or of a step: sliding that cannot begin with a step this long moves nothing
-# likewise, of the time in which friction that depends on the speed answers to it
+MIN_ACCELERATION_FRACTION = 1e-12  # share of the drive that accelerates a slide at least, so that it has a direction
+BARELY_SLIPPING_EXCESS = 1e-4  # share of the squared friction limit below which a slide need not begin yet
+# A slide that cannot begin with a step of this share of the period, or of the time in which friction responds to the
+# speed, moves nothing: it is replaced by rest for NEGLIGIBLE_HOLD periods. A crossing this early in a step (share of
+# the step) means that the phase begins on the level.
+NEGLIGIBLE_STEP = 1e-6
 NEGLIGIBLE_RESPONSE = 1e-3
-NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # of the period: rest in place of such sliding
-MAX_LENGTH_RATIO = 3.0  # of the step before over one that failed: beyond it the former's polynomial is no guess
+NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP
+MAX_LENGTH_RATIO = 3.0  # ratio of the last length over one that failed above which the last polynomial is no guess
 
 
 @compiled
 def squared_speed_in_state(system: System, work: Workspace) -> float:
-    """Squared sliding speed in the state x, v."""
+    """Return the squared sliding speed in the state x, v, m^2/s^2."""
     square: float = squared_sliding_speed(system, work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1])
     return square
 
 
 @compiled
 def begin_sliding(system: System, work: Workspace, settings: RunSettings) -> None:
-    """The accelerations of the state; at rest the direction of the slide, and its share in the peak."""
+    """Prepare a phase of sliding; from rest, find its direction and the acceleration just after the onset."""
     begin_from_state(system, work, SLIDING)
     work.max_growth = MAX_LENGTH_FACTOR
     work.squared_start_speed = squared_speed_in_state(system, work)
@@ -88,7 +95,12 @@ def begin_sliding(system: System, work: Workspace, settings: RunSettings) -> Non
 
 @compiled
 def propose_sliding_length(system: System, work: Workspace, settings: RunSettings) -> float:
-    """Length of the next step, s; 0 where the slide is so near its stop that stretched time begins."""
+    """Return the length of the next step, s; 0 where the slide is so near its stop that stretched time begins."""
+    # Close to a stop the direction of slip turns like a power of the speed (T6 of docs/theory.md), which no polynomial
+    # in time resolves. So a slide that would stop within a step or two goes on in stretched time (near_stop.py), unless
+    # the chain would vibrate in what is left: the chain is solved by iteration there. A step of a slide that stops
+    # later ends well before its stop; without MAX_WAY_TO_STOP a third of the plain steps of fig3-I missed the
+    # tolerance, up to 300 times over (docs/decisions/0001-stretched-time.md).
     h: float = propose_plain_length(system, work, settings)
     vx, vy = work.v[0, 0], work.v[0, 1]
     speed = sqrt(vx * vx + vy * vy)
@@ -105,7 +117,7 @@ def propose_sliding_length(system: System, work: Workspace, settings: RunSetting
 
 @compiled
 def time_to_stop(work: Workspace, speed: float, braking: float) -> float:
-    """Time to the stop, s, if the deceleration, m/s^2, goes on changing as at the end of the step before."""
+    """Return the time to the stop, s, if the deceleration, m/s^2, goes on changing as at the end of the last step."""
     change = 0.0
     if work.last_length > 0.0:
         for k in range(1, STAGES):
@@ -118,14 +130,14 @@ def time_to_stop(work: Workspace, speed: float, braking: float) -> float:
 
 @compiled
 def is_slow(system: System, work: Workspace, h: float) -> bool:
-    """Whether the direction of the slide follows the force within the step."""
+    """Return True if the direction of the slide follows the force within the step."""
     speed = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2)
     return speed < STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity
 
 
 @compiled
 def guess_slide(system: System, work: Workspace, h: float) -> None:
-    """Stage accelerations to start with; of a slow slide, what the drive leaves along the direction of its start."""
+    """Set the first guess of the stage accelerations; that of a slow slide along its direction at the start."""
     if not is_slow(system, work, h):
         guess_from_last_step(work, h)
         return
@@ -137,9 +149,9 @@ def guess_slide(system: System, work: Workspace, h: float) -> None:
 @compiled
 def guess_turning_slide(system: System, work: Workspace, h: float) -> None:
     """
-    Stage accelerations to start with, along the directions in which the drive at the stages does not turn a slow slide.
+    Set the first guess along the directions in which the drive at each stage does not turn a slow slide.
 
-    A light platform under a tower turns by hundreds of rad/s.
+    A light platform under a tower turns by hundreds of rad/s where it begins to slide.
     """
     free, ground, angle = work.free, work.ground, work.angle
     for k in range(STAGES):
@@ -153,12 +165,10 @@ def guess_turning_slide(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def guess_along(system: System, work: Workspace, h: float, ex: Row, ey: Row) -> None:
-    """
-    Stage accelerations of a slow slide in the directions (ex, ey): what the drive leaves along them.
-
-    Where friction rises steeply with the speed, that is what a step of the linearized law makes of it: an iteration
-    that begins at a lower speed than the step's does not leave the steep part.
-    """
+    """Set the stage accelerations of a slow slide in the directions (ex, ey) to those of the drive less friction."""
+    # Where friction rises steeply with the speed, an iteration that begins at a lower speed than the step's does not
+    # leave the steep part. Linearized about the start, friction damps the speed at the rate `damping`. An implicit
+    # Euler step of length nodes * h then has the acceleration at the start over 1 + nodes * h * damping.
     nodes, ground = row(NODES_ROW, ()), work.ground
     start = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2) if system.rate > 0.0 else 0.0
     damping = rising_rate(system, start)
@@ -174,7 +184,7 @@ def guess_along(system: System, work: Workspace, h: float, ex: Row, ey: Row) -> 
 
 @compiled
 def turns_too_far(work: Workspace) -> bool:
-    """Whether the velocity turns too far between two stages to be a smooth slide."""
+    """Return True if the velocity turns too far between two stages to be a smooth slide."""
     bx, by = work.v[0, 0], work.v[0, 1]
     for k in range(STAGES):
         vx, vy = work.stage[VELOCITY, k], work.stage[VELOCITY + 1, k]
@@ -186,7 +196,7 @@ def turns_too_far(work: Workspace) -> bool:
 
 @compiled
 def barely_slips(system: System, work: Workspace) -> bool:
-    """Whether the drive exceeds the friction limit by so little that a slide need not begin yet."""
+    """Return True if the drive exceeds the friction limit by so little that a slide need not begin yet."""
     load = load_in_state(system, work, ground_at(system, work, work.time))
     excess, reaction = rest_excess(system, load)
     return excess <= BARELY_SLIPPING_EXCESS * scale_by_load(system, load.k_t, reaction, system.friction * reaction) ** 2
@@ -194,7 +204,7 @@ def barely_slips(system: System, work: Workspace) -> bool:
 
 @compiled
 def recover_failed_slide(system: System, work: Workspace, settings: RunSettings, h: float) -> tuple[int, int]:
-    """(SOLVED to go on, or UNSOLVED; what the contact does then) after a step that failed."""
+    """Return (SOLVED to go on, or UNSOLVED; next state of the contact) after a step that failed."""
     shortest = NEGLIGIBLE_STEP * settings.period
     if system.rate > 0.0:
         shortest = min(
@@ -212,7 +222,7 @@ def recover_failed_slide(system: System, work: Workspace, settings: RunSettings,
 
 @compiled
 def cut_at_creep(system: System, work: Workspace, h: float) -> tuple[float, int]:
-    """Length of the step up to where the slide comes down to v_reg, 0 at its start; what the contact does then."""
+    """Return the length of the step up to where the slide slows down to v_reg, 0 at its start, and the next contact."""
     if system.law != REGULARIZED:
         return h, SLIDING
     floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2
@@ -228,7 +238,7 @@ def cut_at_creep(system: System, work: Workspace, h: float) -> tuple[float, int]
 
 @compiled
 def adapt_sliding_length(work: Workspace, h: float, factor: float) -> None:
-    """The length of the next step after one that was made."""
+    """Set the length of the next step after one that was committed."""
     if h * factor > work.length or h == work.length:
         work.length = h * min(factor, work.max_growth)
     work.max_growth = MAX_LENGTH_FACTOR

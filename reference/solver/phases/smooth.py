@@ -12,15 +12,15 @@ from reference.solver.step_control import begin_from_state
 from reference.solver.system import CREEPING, SLIDING, System
 from reference.solver.work import SPEED2, Workspace
 
-LEVEL_TOLERANCE = 1e-9  # of the squared speed: creep this close to v_reg has reached it
-EARLY_CROSSING = 1e-6  # of a step: a crossing this early means that the phase begins on the level
-NEAR_LEVEL_FRACTION = 0.8  # of the squared v_reg: creep above it may pass v_reg between two stages
-MAX_FIRST_DECAY = 2.0  # of the velocity's times of decay: longest first step of creep
+LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from that of v_reg at which creep has reached it
+EARLY_CROSSING = 1e-6  # share of a step before which a crossing means that the phase begins at v_reg
+NEAR_LEVEL_FRACTION = 0.8  # share of v_reg^2 above which creep may pass v_reg between two stages
+MAX_FIRST_DECAY = 2.0  # longest first step of creep, in times of decay of the velocity
 
 
 @compiled
 def begin_smooth(system: System, work: Workspace, contact: int) -> None:
-    """Creep begins with a step that its friction allows."""
+    """Prepare a phase without a corner of friction; creep begins with a step that its friction allows."""
     begin_from_state(system, work, contact)
     if contact == CREEPING:
         work.length = min(work.length, MAX_FIRST_DECAY / decay_rate(system, contact))
@@ -28,7 +28,7 @@ def begin_smooth(system: System, work: Workspace, contact: int) -> None:
 
 @compiled
 def cut_at_slide(system: System, work: Workspace, contact: int, h: float) -> tuple[float, int]:
-    """Length of the step up to where creep reaches v_reg, 0 if it begins there; what the contact does then."""
+    """Return the length of the step up to where creep reaches v_reg, 0 if it begins there, and the next contact."""
     level = system.v_reg * system.v_reg
     if contact != CREEPING:
         return h, contact
