@@ -1,4 +1,4 @@
-"""Ground acceleration inside compiled code, (5.3) or a record; both as reference.problem.excitation has them."""
+"""Ground acceleration in compiled code, (5.3) or a record; both as in reference.problem.excitation."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from reference.solver.rows import broadcast_like, put, row
 from reference.solver.system import Array, Ground, System
 from reference.solver.work import SERIES_TERMS, Workspace
 
-MAX_SERIES_ANGLE = 2.0  # by which a harmonic turns and decays in a step: beyond it its series would lose digits
-SERIES_ROUNDING = 1e-17  # of the harmonic: a term this small ends its series
+MAX_SERIES_ANGLE = 2.0  # turn and decay of a harmonic in a step beyond which its Taylor series would lose digits
+SERIES_ROUNDING = 1e-17  # term over harmonic that ends its series
 
 
 @compiled
 def next_knot(record: Array, t: float) -> int:
-    """The first knot later than t; their number behind the last."""
+    """Return the index of the first knot later than t; the number of knots if none is."""
     low, high = 0, record.shape[0]
     while low < high:
         middle = (low + high) // 2
@@ -29,7 +29,7 @@ def next_knot(record: Array, t: float) -> int:
 
 @compiled
 def k_t_at(system: System, t: float) -> float:
-    """k_T (load.py) at time t: the polynomial of its piece; after the last piece, its end value."""
+    """Return k_T (contact/load.py) at time t: the polynomial of its piece; after the last piece, its end value."""
     table = system.k_t
     if table.shape[0] == 0:
         return 1.0
@@ -42,7 +42,7 @@ def k_t_at(system: System, t: float) -> float:
 
 @compiled
 def record_at(system: System, t: float) -> Ground:
-    """The acceleration of a record, linear between its knots and zero behind them."""
+    """Return the acceleration of a record, linear between its knots and zero behind them, and k_T."""
     record, k_t = system.record, k_t_at(system, t)
     k = next_knot(record, t)
     if k == 0:
@@ -56,7 +56,7 @@ def record_at(system: System, t: float) -> Ground:
 
 @compiled
 def ground_at(system: System, work: Workspace, t: float) -> Ground:
-    """(xi'', eta'', zeta''), m/s^2, and k_T at time t."""
+    """Return (xi'', eta'', zeta''), m/s^2, and k_T at time t."""
     if system.record.shape[0] > 0:
         return record_at(system, t)
     e0, e1 = system.exponents[0], system.exponents[1]
@@ -70,7 +70,7 @@ def ground_at(system: System, work: Workspace, t: float) -> Ground:
 
 @compiled
 def set_waves(system: System, work: Workspace, t: float) -> None:
-    """Prepare `set_ground_at_stages`, or `next_ground` from t on: the harmonics at t."""
+    """Prepare `set_ground_at_stages`, or `next_ground` from t on: set the harmonics at t."""
     for m in range(2):
         e = system.exponents[m]
         angle, size = e.imag * t + work.phase[m], exp(e.real * t)
@@ -79,7 +79,7 @@ def set_waves(system: System, work: Workspace, t: float) -> None:
 
 @compiled
 def set_turns(system: System, work: Workspace, h: float) -> None:
-    """Prepare `next_ground` for steps of h: by what the harmonics turn and decay."""
+    """Prepare `next_ground` for steps of h: set the factors by which the harmonics turn and decay."""
     for m in range(2):
         e = system.exponents[m]
         angle, growth = e.imag * h, exp(e.real * h)
@@ -88,7 +88,7 @@ def set_turns(system: System, work: Workspace, h: float) -> None:
 
 @compiled
 def next_ground(system: System, work: Workspace, t: float) -> Ground:
-    """The ground at t, that of `set_waves` or a step of `set_turns` after the last call."""
+    """Return the ground at t: the time of `set_waves`, or a step of `set_turns` after the last call."""
     if system.record.shape[0] > 0:
         return record_at(system, t)
     z0, z1, a = work.waves[0], work.waves[1], system.amplitudes
@@ -103,7 +103,7 @@ def next_ground(system: System, work: Workspace, t: float) -> Ground:
 
 @compiled
 def set_ground_at_stages(system: System, work: Workspace) -> None:
-    """Fill work.ground after `set_waves`: harmonics from their Taylor series, quicker than sines at every stage."""
+    """Set work.ground after `set_waves`; Taylor series of the harmonics are quicker than sines at every stage."""
     elapsed = work.elapsed
     longest = elapsed[STAGES - 1]
     e0, e1 = system.exponents[0] * longest, system.exponents[1] * longest
@@ -129,7 +129,7 @@ def set_ground_at_stages(system: System, work: Workspace) -> None:
 
 @compiled
 def expand_waves(work: Workspace, e0: complex, e1: complex) -> int:
-    """Fill work.series for a time in which the harmonics change by exp(e0) and exp(e1); how many terms count."""
+    """Set work.series for a time in which the harmonics change by exp(e0), exp(e1); return the number of terms."""
     series, z0, z1 = work.series, work.waves[0], work.waves[1]
     enough = SERIES_ROUNDING * SERIES_ROUNDING * min(squared_modulus(z0), squared_modulus(z1))
     for n in range(SERIES_TERMS):
@@ -144,5 +144,5 @@ def expand_waves(work: Workspace, e0: complex, e1: complex) -> int:
 
 @compiled
 def squared_modulus(z: complex) -> float:
-    """|z|^2."""
+    """Return |z|^2."""
     return z.real * z.real + z.imag * z.imag

@@ -1,9 +1,10 @@
 """
 The temperature factor k_T of friction as a function of time, from the heat that the steps of a run produce.
 
-The temperature is T0 + rise * integral of P(t - s) / sqrt(s), P the power of friction while the slider covers the
-center. In pieces of the time, which the run's steps and the instants of covering bound, P is a polynomial and the
-kernel is integrated exactly. P itself has the factor k_T: both are found together, piece by piece.
+The temperature is T0 + rise * integral of P(t - s) / sqrt(s), the conduction into a half-space (Carslaw and Jaeger,
+Conduction of Heat in Solids), with P the power of friction while the slider covers the center of the cap. Time is cut
+into pieces at the run's steps and at the instants at which covering begins or ends. On a piece P is a polynomial and
+the kernel is integrated exactly. P itself has the factor k_T: both are found together, piece by piece.
 """
 
 from __future__ import annotations
@@ -21,29 +22,33 @@ from reference.solver.compiled import OPTIONS
 from reference.solver.samples import SampledMotion, sample_motion
 from reference.solver.system import REST, Array, StepRecord, System
 
-NEWTON_STEPS = 8  # to the instant between two nodes at which covering changes
-GRADED_FRACTIONS = np.append(
-    0.25 ** np.arange(8), 0.0
-)  # of a step: pieces behind a kink of the power, where T is not smooth
-MIN_PIECE = 1e-10  # of the duration: pieces are no shorter
-FAR_DISTANCE = 4.0  # of its length: from the start of a piece so far away its own nodes serve as those of a quadrature,
-BLOCK_DISTANCE = 30.0  # and so far away, for blocks of pieces in lengths of the block, the moments of the heat
-MAX_LAST_CHANGE, MAX_ITERATIONS = (
-    1e-14,
-    50,
-)  # change of k_T, at which the iteration within a piece ends; at most so many
-WEIGHTS = A[-1].copy()
+NEWTON_STEPS = 8  # iterations to the instant between two nodes at which covering begins or ends
+# Ends of the pieces behind a kink of the power, as shares of the step: T is not smooth there, like the root of time
+GRADED_FRACTIONS = np.append(0.25 ** np.arange(8), 0.0)
+MIN_PIECE = 1e-10  # length of the shortest piece, as a share of the duration
+# Distances in time, in lengths of the piece: beyond the first the kernel is integrated by quadrature at the nodes,
+# beyond the second by the moments of the heat, also for whole blocks of pieces in lengths of the block.
+FAR_DISTANCE = 4.0
+BLOCK_DISTANCE = 30.0
+MAX_LAST_CHANGE = 1e-14  # change of k_T that ends the iteration within a piece
+MAX_ITERATIONS = 50  # iterations within a piece at most
+WEIGHTS = A[-1].copy()  # quadrature weights of the nodes, over the length of a piece
 
 
 def set_uniform_factor(system: System) -> System:
-    """The system with k_T at the initial temperature throughout."""
+    """Return the system with k_T at the initial temperature throughout."""
     k_t = np.zeros((1, 3 + STAGES))
     k_t[0, 1:3] = system.duration, Heat.factor(system.heat[0])
     return system._replace(k_t=k_t)
 
 
 def set_factor_by_heat(system: System, record: StepRecord, end: float) -> System:
-    """The system with k_T by the heat of a run that ends at `end`, s."""
+    """Return the system with k_T by the heat of a run that ends at `end`, s."""
+    # The power of friction has a kink where a slide begins, and a jump where the slider leaves or enters the center
+    # of the cap: there k_T changes like a root of time. So pieces are graded behind these instants, which
+    # Newton's method locates on the recorded motion. k_T jumps slightly from piece to piece, by what the integration
+    # misses. A jump would cost the next run its order, so each piece gets a multiple of DEFECT_POLYNOMIAL, which is 0
+    # at the nodes and 1 at the start: the table is continuous.
     start = record.start[: record.counts[0]]
     bounds = np.append(start, end)
     times = _nodes_of_pieces(bounds)
@@ -68,15 +73,13 @@ def set_factor_by_heat(system: System, record: StepRecord, end: float) -> System
     fill_temperature_factors(bounds[:-1], length, power * system.heat[1], system.heat[0], k_t)
     powers = k_t @ MONOMIALS.T
     jump = np.append(Heat.factor(system.heat[0]), k_t[:-1, -1]) - powers[:, 0]
-    powers = (
-        np.column_stack([powers, np.zeros(len(powers))]) + jump[:, None] * DEFECT_POLYNOMIAL[::-1]
-    )  # so that none is left
+    powers = np.column_stack([powers, np.zeros(len(powers))]) + jump[:, None] * DEFECT_POLYNOMIAL[::-1]
     table = np.column_stack([bounds[:-1], length, powers])
     return system._replace(k_t=table, kinks=np.sort(instants)[:, None])
 
 
 def mean_factor(system: System) -> float:
-    """Mean k_T over the time."""
+    """Return the mean of k_T over time."""
     lengths, coefficients = system.k_t[:, 1], system.k_t[:, 2:]
     return float(lengths @ coefficients @ (1.0 / np.arange(1, STAGES + 2)) / lengths.sum())
 
@@ -86,13 +89,13 @@ def _nodes_of_pieces(bounds: Array) -> Array:
 
 
 def _squared_excess_of_cover(system: System, motion: SampledMotion) -> Array:
-    """Squared displacement less that up to which the slider covers the center, m^2."""
+    """Return the squared displacement less that up to which the slider covers the center, m^2."""
     outside: Array = (motion.x[:, 0] ** 2).sum(axis=1) - system.heat[2] ** 2
     return outside
 
 
 def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
-    """Power of friction over m1 where k_T is one, m^2/s^3."""
+    """Return the power of friction over m1 at k_T = 1, m^2/s^3."""
     x, v = motion.x[:, 0], motion.v[:, 0]
     speed2 = (v**2).sum(axis=1)
     if not system.small:
@@ -105,7 +108,7 @@ def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
 
 @njit(**OPTIONS)
 def conduction_integral(theta: float, coefficients: Array) -> float:
-    """Integral of the polynomial in u with these coefficients over sqrt(theta - u), u from 0 to theta or to 1."""
+    """Return the integral of the polynomial in u with these coefficients over sqrt(theta - u), u up to theta or 1."""
     beyond = np.sqrt(max(theta - 1.0, 0.0))
     moment = 2.0 * (np.sqrt(theta) - beyond)
     total = moment * coefficients[0]
@@ -117,7 +120,7 @@ def conduction_integral(theta: float, coefficients: Array) -> float:
 
 @njit(**OPTIONS)
 def far_conduction_integral(theta: float, power: Array) -> float:
-    """The same, far from the piece, of the polynomial through `power` at the nodes."""
+    """Return the integral of the polynomial through `power` at the nodes over sqrt(theta - u), far from the piece."""
     total = 0.0
     for k in range(STAGES):
         total += WEIGHTS[k] * power[k] / np.sqrt(theta - NODES[k])
@@ -127,10 +130,14 @@ def far_conduction_integral(theta: float, power: Array) -> float:
 @cached_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
 def fill_temperature_factors(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
     """
-    Fill k_T at the nodes of pieces (K, S). power: where k_T is one, times the rise of the temperature.
-
-    Row l of the moments is of blocks of 2^l pieces each, of which a few serve for all that is long past.
+    Fill k_T at the nodes of pieces (K, S). `power` is that at k_T = 1, times the rise of the temperature.
     """
+    # The temperature at a node sums the heat of all pieces before it: K^2 terms. Long past, only the sum, mean time and
+    # variance of a block's heat count: with d the distance in time, 1 / sqrt(d - x) = (1 + x / 2 d + 3 x^2 / 8 d^2 ...)
+    # / sqrt(d), whose linear term vanishes about the mean. Row l of the moments holds blocks of 2^l pieces; walking
+    # back in time the blocks grow with the distance, which leaves of the order of log K terms a node. Near pieces are
+    # integrated exactly, those at a middle distance by quadrature. Within its own piece power and k_T depend on each
+    # other: a fixed-point iteration, which contracts by the heat of one short piece.
     count = start.shape[0]
     past, heat, coefficients = np.zeros(STAGES), power.copy(), np.zeros_like(power)
     moments = np.zeros((int(np.log2(count)) + 1, count, 3))
@@ -183,7 +190,7 @@ def fill_temperature_factors(start: Array, length: Array, power: Array, initial:
 
 @njit(**OPTIONS)
 def join_blocks(a: Array, b: Array, both: Array) -> None:
-    """Fill heat, its mean time and variance of the two together."""
+    """Fill heat, mean time and variance of two blocks together."""
     heat = a[0] + b[0]
     if heat > 0.0:
         center = (a[0] * a[1] + b[0] * b[1]) / heat
@@ -193,5 +200,5 @@ def join_blocks(a: Array, b: Array, both: Array) -> None:
 
 @njit(**OPTIONS)
 def temperature_factor(temperature: float) -> float:
-    """As `Heat.factor`."""
+    """Return k_T at a temperature in degrees C, as `Heat.factor`."""
     return 0.79 * (0.7 ** (0.02 * temperature) + 0.4)

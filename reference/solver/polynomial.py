@@ -1,4 +1,4 @@
-"""The polynomial through the numbers at the stages of a step: its integrals, its coefficients, its values."""
+"""Polynomial through the numbers at the stages of a step: its integrals, coefficients and values."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from reference.solver.system import Array
 
 A_COLUMNS, A2_COLUMNS, MONOMIALS_COLUMNS = columns(A), columns(A2), columns(MONOMIALS)
 NODES_ROW = columns(NODES[:, None])[0]
-POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second integral of one through the stages
+POWERS = STAGES + 2  # number of coefficients: a position is the second integral of a polynomial through the stages
 
 
 @compiled
 def integrate_to_stages(values: Row) -> Row:
-    """From the start of the step to every stage, over its length."""
+    """Return the integrals from the start of the step to every stage, over the length of the step."""
     return combine_columns(A_COLUMNS, values)
 
 
 @compiled
 def expand(values: Row, coefficients: Array) -> None:
-    """Coefficients (POWERS,) of the powers of theta."""
+    """Set the coefficients (POWERS,) of the powers of theta."""
     put(coefficients, (), combine_columns(MONOMIALS_COLUMNS, values))
     for k in range(STAGES, POWERS):
         coefficients[k] = 0.0
@@ -28,7 +28,7 @@ def expand(values: Row, coefficients: Array) -> None:
 
 @compiled
 def value_at(coefficients: Array, theta: float) -> float:
-    """The polynomial at theta."""
+    """Return the polynomial at theta."""
     value = 0.0
     for k in range(STAGES - 1, -1, -1):
         value = value * theta + coefficients[k]

@@ -47,7 +47,7 @@ from reference.solver.work import (
     system_by_reference,
 )
 
-# Times below are in units of RunSettings.period, the time in which forces change.
+# Lengths of time below are in units of RunSettings.period, the time in which forces change.
 FIRST_STEP = 0.02  # length of the first step of a run
 NEGLIGIBLE_REMAINDER = 1e-8  # time before its end at which a run that fails counts as finished
 HOLDING_TIME = 1e-6  # time for which a state on the border of two phases keeps rest or creep

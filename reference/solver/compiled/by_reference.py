@@ -93,7 +93,7 @@ def _allocate(context: Any, builder: Any, kind: ByReference) -> Any:
 
 
 def structure_from_tuple(kind: type[ByReference]) -> Any:
-    """A function of compiled code that makes such a structure from a named tuple."""
+    """Return a function of compiled code that makes such a structure from a named tuple."""
 
     @intrinsic
     def construct(context: Any, values: Any) -> Any:
@@ -113,7 +113,7 @@ def structure_from_tuple(kind: type[ByReference]) -> Any:
 
 
 def empty_structure(kind: type[ByReference], fields: Mapping[str, Any]) -> Any:
-    """A function of compiled code that makes such a structure with fields of the types of `fields`, all bits zero."""
+    """Return a function of compiled code that makes such a structure with the types of `fields`, all bits zero."""
     structure = kind([(name, typeof(value)) for name, value in fields.items()])
 
     @intrinsic

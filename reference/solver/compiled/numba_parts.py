@@ -1,7 +1,7 @@
 """
-How numba is made to build parts (parts.py): by its own passes, with another library for what they write.
+Compilation of parts (parts.py) by numba's own passes, with another library for the code that they write.
 
-All of this is numba's inside, which may change with any version.
+All of this uses numba's internals, which may change with any version.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from numba.core.typed_passes import AnnotateTypes, InlineOverloads, IRLegalizati
 from numba.core.typing import Context
 from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
 
-# Passes that change nothing in a part: it has no expressions of whole arrays, functions within, branches on None
-# or functions that numba inlines before their types are known, and needs no end of a variable's life to be marked.
+# Passes that change nothing in a part: it has no expressions of whole arrays, inner functions, branches on None or
+# functions that numba inlines before their types are known, and no variable whose end must be marked.
 UNNEEDED = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
 OPERATORS = {each for each in vars(operator).values() if callable(each)}
 
@@ -78,7 +78,7 @@ class _AsPart(LoweringPass):  # type: ignore[misc]
         super().__init__()
 
     def run_pass(self, state: Any) -> bool:
-        context = state.targetctx  # of this function alone
+        context = state.targetctx  # numba makes one for every function
         state.library = _PartLibrary(context.codegen(), state.func_id.func_qualname)
         context.nrt = NRTContext(context, True)  # fields of structures are still read through it
         context.enable_nrt = False

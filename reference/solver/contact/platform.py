@@ -19,12 +19,12 @@ from reference.solver.rows import Number, broadcast_like, row
 from reference.solver.system import CREEPING, PRINTED, SLIDING, Ground, Load, System
 from reference.solver.work import DRIVE, POSITION, Workspace
 
-ROUNDING_EXCESS = 1e-12  # of the squared friction limit: a drive that exceeds it by no more than rounding is held
+ROUNDING_EXCESS = 1e-12  # share of the squared friction limit by which rounding may make a drive exceed it
 
 
 @compiled
 def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
-    """What acts on the platform in the state x, v at the start of the step."""
+    """Return all that acts on the platform in the state x, v at the start of the step."""
     fx, fy = -ground.x, -ground.y
     if work.x.shape[0] > 1:
         fx += system.above[0, 0] * (work.x[1, 0] - work.x[0, 0])
@@ -36,7 +36,7 @@ def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
 
 @compiled
 def load_at_stages(work: Workspace) -> Load:
-    """What acts on the platform at the stages, in rows, from `stage` and `ground`."""
+    """Return all that acts on the platform at the stages, in rows, from `stage` and `ground`."""
     stage, ground = work.stage, work.ground
     return Load(
         row(stage, POSITION), row(stage, POSITION + 1), row(stage, DRIVE), row(stage, DRIVE + 1),
@@ -46,7 +46,7 @@ def load_at_stages(work: Workspace) -> Load:
 
 @compiled
 def slip_factor(system: System, contact: int, speed2: Number) -> Number:
-    """Slip vector over horizontal velocity (friction.py), s/m."""
+    """Return the slip vector over the horizontal velocity (friction.py), s/m."""
     if contact == SLIDING:
         speed = sqrt(speed2)
         return coefficient(system, speed) / speed
@@ -59,7 +59,7 @@ def slip_factor(system: System, contact: int, speed2: Number) -> Number:
 def acceleration(
     system: System, load: Load, speed2: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """(ax, ay, reaction / m1, inertia determinant) by the system's own equations (equations.py)."""
+    """Return (ax, ay, reaction / m1, inertia determinant) by the exact or the small equations (equations.py)."""
     if system.small:
         pressure = system.gravity + load.uz
         reaction = system.mass_ratio * pressure
@@ -75,7 +75,7 @@ def acceleration(
 def moving_acceleration(
     system: System, contact: int, load: Load, vx: Number, vy: Number
 ) -> tuple[Number, Number, Number, Number, Number]:
-    """(ax, ay, reaction / m1, inertia determinant, speed2) at a velocity that is not zero while sliding."""
+    """Return (ax, ay, reaction / m1, inertia determinant, speed2); the velocity of a slide must not be zero."""
     speed2 = squared_sliding_speed(system, load.px, load.py, vx, vy)
     factor = slip_factor(system, contact, speed2)
     ax, ay, reaction, determinant = acceleration(system, load, speed2, factor * vx, factor * vy)
@@ -86,7 +86,7 @@ def moving_acceleration(
 def acceleration_along(
     system: System, load: Load, speed: Number, ex: Number, ey: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """(ax, ay, reaction / m1, full over horizontal speed) when sliding in the direction (ex, ey) at any speed >= 0."""
+    """Return (ax, ay, reaction / m1, full over horizontal speed) of a slide along (ex, ey) at any speed >= 0."""
     sx, sy, ratio = slip_vector(system, load.px, load.py, speed, ex, ey)
     ax, ay, reaction, _ = acceleration(system, load, (speed * ratio) * (speed * ratio), sx, sy)
     return ax, ay, reaction, ratio
@@ -94,13 +94,13 @@ def acceleration_along(
 
 @compiled
 def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
-    """(excess, reaction / m1): rest is possible while the excess is not positive (friction.py)."""
+    """Return (excess, reaction / m1): rest is possible while the excess is not positive (friction.py)."""
     if system.small:
         excess, reaction = rest_excess_small(system, load)
     else:
         excess, reaction = rest_excess_exact(system, load)
     if system.rest_condition == PRINTED:
-        # where (4.6) lets go of a platform that friction can hold, no motion begins all the same
+        # Where (4.6) as printed lets go of a platform that friction can hold, no motion begins.
         excess = min(excess, rest_excess_printed(system, load))
     limit = scale_by_load(system, load.k_t, reaction, system.friction * reaction)
     return excess - ROUNDING_EXCESS * (limit * limit), reaction

@@ -27,9 +27,10 @@ from reference.solver.work import (
 @compiled
 def set_slopes(system: System, contact: int, work: Workspace) -> None:
     """
-    Derivative of the platform's (ax, ay) by position, velocity and drive at the stages, where it was asked before.
+    Set the derivatives of the platform's (ax, ay) by position, velocity and drive at the stages.
 
-    Rows of work.slopes: behind BY_POSITION, BY_VELOCITY and BY_DRIVE (ax, ay) by x, then by y.
+    `stage` holds the reaction, determinant and speed there. Rows of work.slopes: from BY_POSITION, BY_VELOCITY and
+    BY_DRIVE on (ax, ay) by x, then by y.
     """
     speed2 = row(work.stage, SPEED2)
     factor = slip_factor(system, contact, speed2)
@@ -44,7 +45,7 @@ def set_slopes(system: System, contact: int, work: Workspace) -> None:
 
 @compiled
 def factor_slope(system: System, contact: int, factor: Row, speed2: Row) -> Row:
-    """Derivative of the slip factor (platform.py) by the squared sliding speed, s^3/m^3."""
+    """Return the derivative of the slip factor (platform.py) by the squared sliding speed, s^3/m^3."""
     bend = -0.5 * factor / speed2 if contact == SLIDING else broadcast_like(0.0, speed2)
     if system.rate > 0.0 and contact != LUBRICATED_SLIDING:
         speed = sqrt(speed2)
@@ -62,7 +63,7 @@ def put_pair(slopes: Array, place: int, x: Row, y: Row) -> None:
 
 @compiled
 def set_small_slopes(system: System, work: Workspace, factor: Row, bend: Row) -> None:
-    """Of (4.3)."""
+    """Set the derivatives of (4.3)."""
     stage, out, radius = work.stage, work.slopes, system.radius
     px, py, vx, vy = row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1)
     reaction, ux, uy = row(stage, REACTION), row(work.ground, 0), row(work.ground, 1)
@@ -80,7 +81,12 @@ def set_small_slopes(system: System, work: Workspace, factor: Row, bend: Row) ->
 
 @compiled
 def set_exact_slopes(system: System, work: Workspace, factor: Row, bend: Row) -> None:
-    """Of (3.9)-(3.13)."""
+    """Set the derivatives of (3.9)-(3.13)."""
+    # With a = f + R (n - s), R = M (v^2 / rho - n . f + n_z q) / D and D = 1 + (M - 1) (n^2 - n . s) (equations.py)
+    # every derivative is  f' + R' (n - t) + R (n' - s'),  where t is s times the relative change of the friction force
+    # over that of the reaction (load.py), and
+    #     R' = (M / D) (v^2 / rho - n . f + n_z q)' - R (M - 1) / D (n^2 - n . s)',  `share` and `turn` below.
+    # The slip vector changes as s' = factor v' + bend (v^2)' v.
     stage, out, radius, ratio = work.stage, work.slopes, system.radius, system.mass_ratio
     px, py, vx, vy = row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1)
     reaction, determinant = row(stage, REACTION), row(stage, DETERMINANT)
@@ -88,7 +94,7 @@ def set_exact_slopes(system: System, work: Workspace, factor: Row, bend: Row) ->
     radial = (px * vx + py * vy) / (radius * radius - px * px - py * py)
     rise = (system.gravity + row(work.ground, 2)) / sqrt(1.0 - nx * nx - ny * ny)
     lean = nx * vx + ny * vy
-    share = ratio / determinant  # of the reaction in a load along the normal
+    share = ratio / determinant  # change of the reaction per load along the normal
     turn = reaction * (ratio - 1.0) / determinant
     dn = -1.0 / radius
     tx, ty = scale_by_response(system, reaction, sx), scale_by_response(system, reaction, sy)

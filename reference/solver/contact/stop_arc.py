@@ -1,9 +1,9 @@
 """
-The one-sided limits at a stop, closed: every acceleration the platform takes on the way into rest.
+The one-sided limits at a stop: all accelerations that the platform takes while its speed goes to zero.
 
-As |v| goes to zero forces are frozen, but the slip direction still turns, theta' = a . e_perp(theta), until its
-acceleration points along it. The supremum of (5.1) runs over that whole arc of directions. The bodies above the
-platform share its vertical acceleration.
+The forces are constant then, but the slip direction still turns, theta' = a . e_perp(theta) (T7 of docs/theory.md),
+until the acceleration points along it. The supremum of (5.1) is taken over that whole arc of directions. The bodies
+above the platform share its vertical acceleration. docs/decisions/0001-stretched-time.md has the measurements.
 """
 
 from __future__ import annotations
@@ -15,17 +15,19 @@ from reference.solver.contact.friction import slip_vector
 from reference.solver.contact.platform import acceleration, acceleration_along
 from reference.solver.system import Load, System
 
-SAMPLES_PER_TURN = 48
-FIRST_STRIDE = 1e-3  # rad: of the search for the direction that does not turn, which may be close
-GOLDEN_SECTIONS = 20  # they leave 1e-5 of a sample, and an error of the order of its square
-MAX_RISE_BETWEEN_SAMPLES = 0.1  # of the largest squared sample: a peak between two samples is taken to be less above it
-MAX_ROUNDING_TURN = 1e-9  # of the drive: sideways acceleration that rounding may make
-MAX_ROUNDING_BRAKING = 1e-6  # of friction: deceleration of a slide that begins which rounding of its instant may make
+SAMPLES_PER_TURN = 48  # directions per full turn at which an arc is sampled
+FIRST_STRIDE = 1e-3  # rad, first stride of the search for the direction that does not turn, which may be close
+GOLDEN_SECTIONS = 20  # golden sections around the best sample: they leave 1e-5 of the distance of two samples
+# Share of the largest squared sample by which a peak between two samples exceeds it at most
+MAX_RISE_BETWEEN_SAMPLES = 0.1
+MAX_ROUNDING_TURN = 1e-9  # sideways acceleration that rounding may make, as a share of the drive
+# Deceleration of a slide that begins which rounding of its instant may make, as a share of friction
+MAX_ROUNDING_BRAKING = 1e-6
 
 
 @compiled
 def turning_acceleration(system: System, load: Load, angle: float) -> float:
-    """a . e_perp: positive when the direction turns counter-clockwise."""
+    """Return a . e_perp, which is positive when the direction turns counter-clockwise."""
     ex, ey = cos(angle), sin(angle)
     ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)
     return ay * ex - ax * ey
@@ -33,7 +35,7 @@ def turning_acceleration(system: System, load: Load, angle: float) -> float:
 
 @compiled
 def squared_absolute_acceleration(system: System, load: Load, angle: float, horizontal: float) -> float:
-    """Squared absolute acceleration, or its vertical part for horizontal = 0, sliding at vanishing speed, m^2/s^4."""
+    """Return the squared absolute acceleration at vanishing speed, m^2/s^4; for horizontal = 0 its vertical part."""
     ax, ay, _, _ = acceleration_along(system, load, 0.0, cos(angle), sin(angle))
     az = load.uz
     if not system.small:
@@ -43,7 +45,10 @@ def squared_absolute_acceleration(system: System, load: Load, angle: float, hori
 
 @compiled
 def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) -> float:
-    """The direction at which the turning from `angle` ends; `angle` itself if it turns by less than no_turn."""
+    """Return the direction at which the turning from `angle` ends; `angle` itself if a . e_perp is below no_turn."""
+    # theta' keeps its sign until it vanishes, so the first zero of a . e_perp in the sense of the turning is the end.
+    # It may be close by, or there may be several: the search goes in strides that double from FIRST_STRIDE up to the
+    # distance of two samples, and ends at the first change of sign, or after a full turn.
     here = turning_acceleration(system, load, angle)
     drive = sqrt(load.fx * load.fx + load.fy * load.fy) + system.friction * abs(system.gravity + load.uz)
     if abs(here) <= no_turn * drive:
@@ -61,7 +66,7 @@ def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) 
 
 @compiled
 def can_begin_slide(system: System, load: Load, angle: float) -> bool:
-    """Whether a slide from rest has an acceleration in this direction (Painleve), and is not braked by it."""
+    """Return True if a slide from rest has an acceleration in this direction (Painleve) that does not brake it."""
     ex, ey = cos(angle), sin(angle)
     sx, sy, _ = slip_vector(system, load.px, load.py, 0.0, ex, ey)
     ax, ay, reaction, determinant = acceleration(system, load, 0.0, sx, sy)
@@ -71,7 +76,7 @@ def can_begin_slide(system: System, load: Load, angle: float) -> bool:
 
 @compiled
 def locate_direction_at_stop(system: System, load: Load, inside: float, outside: float) -> float:
-    """The direction between the two that does not turn, by the Illinois variant of regula falsi."""
+    """Return the direction between the two that does not turn, by regula falsi (Illinois; Dowell and Jarratt 1971)."""
     low, high = inside, outside
     at_low = turning_acceleration(system, load, low)
     at_high = turning_acceleration(system, load, high)
@@ -95,7 +100,11 @@ def locate_direction_at_stop(system: System, load: Load, inside: float, outside:
 
 @compiled
 def arc_peak(system: System, load: Load, angle: float, end: float, floor: float, horizontal: float) -> float:
-    """Largest `squared_absolute_acceleration` over the arc from `angle` to `end`, m^2/s^4; below `floor`, the largest sample."""
+    """
+    Return the largest `squared_absolute_acceleration` over the arc from `angle` to `end`, m^2/s^4.
+
+    Where it is sure to lie below `floor`, the largest sample is returned.
+    """
     samples = 4 + int(abs(end - angle) * SAMPLES_PER_TURN / (2.0 * pi))
     stride = (end - angle) / samples
     best, top = -1.0, 0

@@ -146,7 +146,7 @@ def vibration_angle(system: System, contact: int, h: float) -> float:
 
 @compiled
 def add_drift(system: System, work: Workspace, h: float, angle: float) -> None:
-    """Add to work.drift the error that a step leaves in the fastest vibration: together at most the vibration itself."""
+    """Add to work.drift the error that a step leaves in the fastest vibration: in all at most the vibration itself."""
     share = min(DRIFT_SHARE * angle**7, 1.0)
     for i in range(work.x.shape[0]):
         defect = sqrt(work.defect[i] ** 2 + (link_error_rate(system, work, h, i) / system.fastest) ** 2)
@@ -213,7 +213,7 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
 
 @compiled
 def cut_at_event(system: System, work: Workspace, contact: int, settings: RunSettings, h: float) -> tuple[float, int]:
-    """Return the length of the step up to the first event inside it, 0 for one at its start, and the next contact."""
+    """Return the length of the step up to its first event, 0 for one at its start, and the next contact."""
     if contact == REST:
         return cut_at_onset(system, work, h)
     if contact == SLIDING:
