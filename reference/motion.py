@@ -1,4 +1,4 @@
-"""One motion by the paper's equations, sampled for plots and tests."""
+"""One motion by the paper's equations, sampled in time."""
 
 from __future__ import annotations
 
@@ -33,10 +33,12 @@ from reference.solver.samples import SampledMotion, sample_motion, step_instants
 from reference.solver.system import Array, RunSettings, StepRecord, System, allocate_record
 from reference.surface import OUTCOMES, checked_demand, loads_are_finite
 
-SAMPLES_PER_PERIOD = 64  # of the shorter loading period, when no times are given
-STEP_SAMPLES = 8000  # of the steps, if these are few
-MAX_SAMPLES = 200_000
-MIN_ERROR_FRACTION = 1.0  # of the tolerance: closer agreement of two runs is accidental (measured: errors up to 0.2)
+SAMPLES_PER_PERIOD = 64  # default samples per shorter loading period
+STEP_SAMPLES = 8000  # default samples in the steps, where these are few
+MAX_SAMPLES = 200_000  # limit of either kind of samples
+# Lower bound on the error of a peak, as a share of the tolerance: closer agreement of two runs is accidental
+# (measured: errors up to 0.2)
+MIN_ERROR_FRACTION = 1.0
 
 
 @takes_scene
@@ -51,7 +53,7 @@ def trajectory(
     initial: State | None = None,
 ) -> Trajectory:
     """
-    One motion for one phase pair by the paper's equations, sampled in time.
+    Return one motion for one phase pair by the paper's equations, sampled in time.
 
     Parameters
     ----------
@@ -103,7 +105,7 @@ def trajectory(
     if run.outcome != Outcome.OK:
         return motion
     other = _record_run(run.system, pair, x, v, settings._replace(tolerance=TOLERANCE_RATIO * settings.tolerance))
-    if other.outcome != Outcome.OK:  # as close to the rim: a tighter run has the last word, and shows the error
+    if other.outcome != Outcome.OK:  # such as a motion close to the rim: a tighter run decides, and shows the error
         tighter = max(settings.tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
         run, other = _record_run(run.system, pair, x, v, settings._replace(tolerance=tighter)), run
         motion = _sample_trajectory(scene, pair, system, run, asked)
@@ -119,15 +121,15 @@ class _RecordedRun(NamedTuple):
     """One run with all its steps."""
 
     outcome: Outcome
-    instant: float  # s, when it ended
+    instant: float  # s, end of the run
     record: StepRecord
-    peak: Array  # (N,), m/s^2
-    reading_error: Array  # (N,), m/s^2, of the peaks inside their steps
-    system: System  # with the k_T that the run leaves
+    peak: Array  # (N,) m/s^2
+    reading_error: Array  # (N,) m/s^2, errors of the peaks inside their steps
+    system: System  # the system with k_T of this run
 
 
 def _record_run(system: System, phase: Array, x: Array, v: Array, settings: RunSettings) -> _RecordedRun:
-    """The run from x, v with all its steps."""
+    """Return the run from x, v with all its steps."""
     run, record, system = record_run(x, v, system, phase, settings)
     return _RecordedRun(OUTCOMES[int(run.code[0])], float(run.instant[0]), record, run.value[0], run.error[0], system)
 
@@ -135,7 +137,7 @@ def _record_run(system: System, phase: Array, x: Array, v: Array, settings: RunS
 def _sample_trajectory(
     scene: Scene, phase: Array, system: System, run: _RecordedRun, asked: Array | None
 ) -> Trajectory:
-    """The run at the instants `asked`, or at those of `_default_instants`."""
+    """Return the run at the instants `asked`, or at those of `_default_instants`."""
     record, early = run.record, run.outcome != Outcome.OK
     steps, sticks = (int(number) for number in record.counts)
     instants = _default_instants(scene, record) if asked is None else asked
@@ -162,7 +164,7 @@ def _sample_trajectory(
 
 
 def _friction_power(scene: Scene, place: Array, velocity: Array, motion: SampledMotion) -> Array:
-    """Power that friction dissipates, (T,), W: what the normal force leaves of the force on all bodies."""
+    """Return the power that friction dissipates, (T,), W: friction is the force on all bodies less the normal force."""
     force = np.einsum("i,tia->ta", scene.masses, motion.total)
     force[:, 2] += scene.total_mass * GRAVITY
     normal = np.array([0.0, 0.0, 1.0]) - place / scene.radius
@@ -172,7 +174,7 @@ def _friction_power(scene: Scene, place: Array, velocity: Array, motion: Sampled
 
 
 def _initial_acceleration_bound(system: System, x: Array, v: Array) -> float:
-    """An upper bound of the accelerations that a state brings with it, m/s^2."""
+    """Return an upper bound of the accelerations that an initial state causes, m/s^2."""
     gravity = system.mass_ratio * system.gravity
     links = 2.0 * ((system.below + system.above) * np.abs(x).max()).max()
     links += 2.0 * ((system.damping_below + system.damping_above) * np.abs(v).max()).max()
@@ -180,7 +182,7 @@ def _initial_acceleration_bound(system: System, x: Array, v: Array) -> float:
 
 
 def _default_instants(scene: Scene, record: StepRecord) -> Array:
-    """SAMPLES_PER_PERIOD, and those of the steps."""
+    """Return SAMPLES_PER_PERIOD even instants and those of the steps, s."""
     samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
     even = np.linspace(0.0, scene.duration, min(samples, MAX_SAMPLES))
     return np.union1d(even, step_instants(record, STEP_SAMPLES, MAX_SAMPLES))
@@ -196,7 +198,7 @@ def _check_times(scene: Scene, times: ArrayLike) -> Array:
 
 
 def _vertical_motion(x: Array, v: Array, system: System) -> tuple[Array, Array]:
-    """Height above the lowest point and vertical velocity (2.1), (3.4); none in the small equations."""
+    """Return height above the lowest point and vertical velocity (2.1), (3.4); zero in the small equations."""
     if system.small:
         return np.zeros(len(x)), np.zeros(len(x))
     squared = (x**2).sum(axis=-1)

@@ -127,8 +127,8 @@ def worst_phases(
     surface = Surface(scene, amplification, {**law, "tolerance": tolerance}, body - 1, quantity)
     if starts is None:
         phases, taken = distinct(scene, GRID)
-        starts = local_maxima(surface.at(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
-    points = surface.at(checked_phases(starts))
+        starts = local_maxima(surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
+    points = surface.compute(checked_phases(starts))
     searches = [
         LocalSearch(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
         for n in np.flatnonzero(np.isfinite(points.value))

@@ -114,6 +114,11 @@ def transform_from_channels(values: Row) -> Row:
 @compiled
 def load_chain(system: System, work: Workspace, h: float) -> None:
     """Set the loads of the eliminated chain from the state and the ground, and the platform's drive `free`."""
+    # A body's load is its acceleration at the stages if all bodies kept their velocities: minus the ground's
+    # acceleration, plus the link forces of the state, which change by `slope` per unit of time. In the
+    # channels a constant is ONES_IN_CHANNELS and the elapsed time h NODES_IN_CHANNELS. `carried` is the part that
+    # elimination passes down from the body above. The link to body 1 brings it to the platform: together with the
+    # link's force in the state it is the drive `free`, to which `feedback` adds the response to the platform itself.
     x, v, loads, inverse, channels = work.x, work.v, work.load, work.inverse, work.channels
     bodies = work.x.shape[0]
     for axis in range(system.axes):

@@ -165,8 +165,8 @@ def locate_first_event(system: System, work: Workspace, event: int, way: float, 
 def locate_crossing(system: System, work: Workspace, event: int, way: float, low: float, high: float) -> float:
     """Return the theta between low and high at which `event_value` becomes positive."""
     # Regula falsi in the variant "Illinois" (Dowell and Jarratt, BIT 11, 1971): the value at an end that stays twice is
-    # halved. Where the values at the ends differ by orders of magnitude the secants creep; after SECANTS_PER_HALVING
-    # of them that have not halved the interval a bisection follows. The end with the positive value is returned, so
+    # halved. Where the values at the ends differ by orders of magnitude the secants creep; a bisection follows after
+    # SECANTS_PER_HALVING secants that have not halved the interval. The end with the positive value is returned, so
     # that the event has happened there.
     at_low, at_high = event_value(system, work, event, way, low), event_value(system, work, event, way, high)
     rose = fell = False

@@ -41,7 +41,7 @@ def factorize(columns: Array, pivots: Array) -> bool:
 
 @compiled
 def factorize_blocks(columns: Array, pivots: Array, blocks: int) -> bool:
-    """Factorize a matrix of this number of blocks."""
+    """Overwrite a matrix of this number of blocks by its factors; return False if it is singular or not finite."""
     # Right-looking LU by columns (Golub and Van Loan, Matrix Computations, 3.2): a column lies in one or two rows of
     # rows.py, so an elimination takes one multiplication and one subtraction for all its entries at once. Masks leave
     # the entries above and on the diagonal alone. The diagonal keeps the inverse pivots. Rows are exchanged only where

@@ -161,7 +161,7 @@ def adapt_length(work: Workspace, h: float, factor: float) -> None:
 
 @compiled
 def commit_step(system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int) -> None:
-    """Make the step's end the new state; `parts` of it count for the peaks, between pairs of work.edges."""
+    """Make the end of the step the new state; `parts` of it, between pairs of work.edges, count for the peaks."""
     if record.start.shape[0] > 0:
         record_step(work, record, h, contact)
     peaking = False

@@ -96,9 +96,13 @@ def test_the_error_of_a_peak_counts_the_other_run() -> None:
 def test_bodies_above_have_the_arc_s_vertical_part(monkeypatch: pytest.MonkeyPatch) -> None:
     """At a stop: the horizontal part of each stays, and all share the vertical acceleration of the platform."""
     taken: dict[int, float] = {}
+
+    def take(work: object, body: int, squared: float) -> None:
+        taken[int(body)] = squared
+
     monkeypatch.setattr(stopping, "direction_at_stop", lambda *rest: 1.0)
     monkeypatch.setattr(stopping, "arc_peak", lambda system, load, a, b, floor, horizontal: 9.0 if horizontal else 4.0)
-    monkeypatch.setattr(stopping, "update_peak_by_limit", lambda work, body, squared: taken.update({int(body): squared}))
+    monkeypatch.setattr(stopping, "update_peak_by_limit", take)
     total = np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 0.1], [3.0, 0.5, 0.1]])
     work: Any = SimpleNamespace(x=np.zeros((3, 2)), total0=total, best=np.ones(3), angle=0.0)
     assert stopping.update_peaks_by_arc.py_func(SimpleNamespace(small=False), work, None, False)

@@ -144,14 +144,14 @@ class WorstPhases(MappedAnalysis[list[Worst]]):
 def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolerance: float) -> Worst:
     """The engine at the worst phases of the equations `like` it, and its largest value in a square around them."""
     engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
-    start = engine.at(np.array([worst.phases]))
+    start = engine.compute(np.array([worst.phases]))
     search = LocalSearch(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
     (corners, _), (square, _) = square_nodes(2), square_nodes(3)
-    computed = engine.at(search.phases + ENGINE_HALF_WIDTH * corners)
-    equations = _surface(scene, like, TOLERANCE, worst.body).at(search.phases + ENGINE_HALF_WIDTH * square)
+    computed = engine.compute(search.phases + ENGINE_HALF_WIDTH * corners)
+    equations = _surface(scene, like, TOLERANCE, worst.body).compute(search.phases + ENGINE_HALF_WIDTH * square)
     highest, _ = predict_best(engine, search, _estimated(start, computed, equations))
-    search.take(computed)
-    search.take(engine.at(highest[None]))
+    search.move_to_best(computed)
+    search.move_to_best(engine.compute(highest[None]))
     if not math.isfinite(search.value):
         return Worst(scene.name, model.key, worst.quantity, worst.body, reason=engine.outcome)
     alpha1, alpha2 = (search.phases % (2.0 * np.pi)).tolist()

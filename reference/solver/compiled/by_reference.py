@@ -31,17 +31,17 @@ class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
 
     @property
     def mangling_args(self) -> tuple[str, tuple[()]]:
-        """The type in the names of functions: those of another variant (variants.py) have others."""
+        """Name of the type in the names of compiled functions, with its variant (variants.py)."""
         return "_".join([self._typename, *(name for name, kind in self._fields if kind == types.none)]), ()
 
     @cached_property
     def field_dict(self) -> dict[str, Any]:
-        """The type of every field."""
+        """Types of all fields."""
         return dict(self._fields)
 
     @cached_property
     def places(self) -> dict[str, tuple[int, Any]]:
-        """Bytes before every field, and the type of a pointer to it; filled by `pointer`."""
+        """Offset of every field, in bytes, and the type of a pointer to it; filled by `pointer`."""
         return {}
 
     def pointer(self, context: Any, builder: Any, reference: Any, name: str) -> Any:

@@ -27,20 +27,20 @@ OPERATORS = {each for each in vars(operator).values() if callable(each)}
 
 
 class _NoEnvironment:
-    """Stands for numba's code generator where it hands a function the Python objects that its wrapper needs."""
+    """Substitute for numba's code generator, which hands a function the Python objects that its wrapper needs."""
 
     def set_env(self, name: str, environment: object) -> None:
-        """A part has no wrapper."""
+        """Do nothing: a part has no wrapper."""
 
 
 class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
-    """The code of one part as numba writes it; entry points link, optimize and translate it."""
+    """Code of one part as numba writes it; entry points link, optimize and translate it."""
 
     codegen = _NoEnvironment()
     _whole: Any = None
 
     def finalize(self) -> None:
-        """Neither link what this part calls, nor optimize, nor translate."""
+        """Finish the part without linking what it calls, without optimizing and without translating it."""
         self._raise_if_finalized()
         for function in self._final_module.functions:
             if not function.is_declaration and function.linkage == Linkage.external:
@@ -48,7 +48,7 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
         self._finalized = True
 
     def _get_module_for_linking(self) -> Any:
-        """The code with that of all parts that it calls, each once: asked for by an entry point."""
+        """Return the code of this part and of all parts that it calls, each once; entry points call this."""
         if self._whole is None:
             whole = self._final_module.clone()
             libraries = [self]
@@ -64,13 +64,13 @@ class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
         return self._whole
 
     def get_pointer_to_function(self, name: str) -> int:
-        """None: there is no machine code."""
+        """Return 0: there is no machine code."""
         return 0
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _AsPart(LoweringPass):  # type: ignore[misc]
-    """Just before the lowering: the code goes into a `_PartLibrary` and counts no references."""
+    """Pass before the lowering: its code goes into a `_PartLibrary` and counts no references."""
 
     _name = "as_part"
 

@@ -93,7 +93,7 @@ def rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     hx = d * gx - b * gy
     hy = a * gy - c * gx
     det = a * d - b * c
-    scale = friction * friction * reaction * reaction  # the unit of the exact excess
+    scale = friction * friction * reaction * reaction  # makes the unit that of the exact excess
     return where_positive(scale, (hx * hx + hy * hy - det * det) / scale, gx * gx + gy * gy), reaction
 
 
@@ -118,7 +118,7 @@ def rest_excess_printed(system: System, load: Load) -> Number:
 @compiled
 def heading(angle: float, axes: int) -> tuple[float, float]:
     """Return cosine and sine of a slip direction; along x exactly where the motion stays in that plane."""
-    cosine, sine = cos(angle), sin(angle)  # one call of the library
+    cosine, sine = cos(angle), sin(angle)  # side by side: LLVM makes one call of them
     if axes == 1:
         return (1.0 if cosine > 0.0 else -1.0), 0.0
     return cosine, sine

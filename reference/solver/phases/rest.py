@@ -47,9 +47,8 @@ def cut_at_onset(system: System, work: Workspace, h: float) -> tuple[float, int]
     slope = (excess_at(system, work, onset) - excess_at(system, work, onset - width)) / (width * h)
     end = h * onset
     reaction: float = work.stage[REACTION, STAGES - 1]
-    limit = (
-        scale_by_load(system, work.ground[3, STAGES - 1], reaction, system.friction * reaction) ** 2
-    )  # hardly changes
+    # The limit hardly changes in the iteration.
+    limit = scale_by_load(system, work.ground[3, STAGES - 1], reaction, system.friction * reaction) ** 2
     for _ in range(ONSET_ITERATIONS):
         solve_rest_step(system, work, end)
         expand_drive(work)

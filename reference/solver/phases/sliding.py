@@ -42,8 +42,8 @@ from reference.solver.work import SPEED2, VELOCITY, Workspace
 # Longest first step of a slide from rest, in periods, over the seventh root of the tolerance (ERROR_ORDER)
 MAX_FIRST_STEP = 0.57
 CAUTIOUS_GROWTH = 2.0  # largest growth of the step after one that had to be shortened
-# Stretched time begins where the slide would stop within so many steps, or within this share of the period, and the
-# chain's fastest vibration turns by no more than this angle, rad, until the stop.
+# Stretched time begins where the slide would stop within STOP_WITHIN_STEPS steps or STOP_WITHIN_TIME periods, and the
+# chain's fastest vibration turns by no more than MAX_CHAIN_ANGLE, rad, until the stop.
 STOP_WITHIN_STEPS = 1.5
 STOP_WITHIN_TIME = 0.05
 MAX_CHAIN_ANGLE = 0.5
@@ -118,6 +118,8 @@ def propose_sliding_length(system: System, work: Workspace, settings: RunSetting
 @compiled
 def time_to_stop(work: Workspace, speed: float, braking: float) -> float:
     """Return the time to the stop, s, if the deceleration, m/s^2, goes on changing as at the end of the last step."""
+    # With the deceleration b and its rate b', v - b t - b' t^2 / 2 = 0 at the stop. Its first root is
+    # 2 v / (b + sqrt(b^2 + 2 v b')), in the form without cancellation; `change` is v b' = -v . a'.
     change = 0.0
     if work.last_length > 0.0:
         for k in range(1, STAGES):

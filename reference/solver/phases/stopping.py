@@ -79,7 +79,7 @@ def propose_stretched_length(system: System, work: Workspace) -> float:
     ex, ey = heading(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     change = MAX_FIRST_LOG_SPEED_CHANGE + LOG_SPEED_CHANGE_GROWTH * max(0.0, work.first_log_speed - work.log_speed)
-    if along > 0.0:  # of a slide that gathers speed the end of the step counts, not its start
+    if along > 0.0:  # a slide that gathers speed: the end of the step decides, not its start
         change /= 1.0 + LOG_SPEED_CHANGE_GROWTH
     h = min(work.stretched_length, change / max(abs(along), 1e-300))
     return min(h, MAX_CHAIN_ANGLE / (system.fastest * exp(work.log_speed))) if system.fastest > 0.0 else h
