@@ -125,7 +125,7 @@ class _RecordedRun(NamedTuple):
     record: StepRecord
     peak: Array  # (N,) m/s^2
     reading_error: Array  # (N,) m/s^2, errors of the peaks inside their steps
-    system: System  # the system with k_T of this run
+    system: System  # the system with k_T by the heat of this run
 
 
 def _record_run(system: System, phase: Array, x: Array, v: Array, settings: RunSettings) -> _RecordedRun:

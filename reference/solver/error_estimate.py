@@ -93,11 +93,8 @@ def peaks_from(
 ) -> RunPeaks:
     """Return the peaks of one run from x and v (N, 2) for every phase pair (M, 2), rad; `record` keeps the steps."""
     count, bodies = len(phases), len(x)
-    value, error, ends = (
-        np.empty((count, bodies)),
-        np.empty((count, bodies)),
-        np.empty((len(RunPeaks._fields) - 2, count)),
-    )
+    value, error = np.empty((count, bodies)), np.empty((count, bodies))
+    ends = np.empty((len(RunPeaks._fields) - 2, count))
     until = np.full(count, system.duration) if until is None else until
     integrate_runs(system, phases, x, v, settings, record, until, value, error, ends)
     return RunPeaks(value, error, *ends)
@@ -107,7 +104,7 @@ def record_run(
     x: Array, v: Array, system: System, phase: Array, settings: RunSettings
 ) -> tuple[RunPeaks, StepRecord, System]:
     """
-    Return the peaks of one run with all its steps, however many, and the system with the k_T of the last run.
+    Return the peaks of one run with all its steps, however many, and the system with k_T by the heat of the last run.
 
     With heating, the run is repeated until its k_T no longer changes; the last change counts as error.
     """

@@ -44,9 +44,9 @@ def set_uniform_factor(system: System) -> System:
 
 def set_factor_by_heat(system: System, record: StepRecord, end: float) -> System:
     """Return the system with k_T by the heat of a run that ends at `end`, s."""
-    # The power of friction has a kink where a slide begins, and a jump where the slider leaves or enters the cap's
-    # center: there k_T changes like a root of time. So pieces are graded behind these instants, which Newton's method
-    # locates on the recorded motion. By the error of the integration k_T jumps slightly from piece to piece, and a jump
+    # The power of friction has a kink where a slide begins or ends, and a jump where the slider leaves or enters the
+    # cap's center: there k_T changes like a root of time. So pieces are graded behind these instants, the latter of
+    # which are located by Newton's method. By the error of the integration k_T jumps from piece to piece, and a jump
     # inside a step of the next run would cost its order. So each piece gets a multiple of DEFECT_POLYNOMIAL, which is 0
     # at the nodes and 1 at the start: the table is continuous.
     start = record.start[: record.counts[0]]

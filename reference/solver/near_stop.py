@@ -204,11 +204,8 @@ def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> f
             return inf
     solve(matrix, pivots, residual)
     turn = row(residual, 0)
-    put(
-        work.levels,
-        (),
-        work.log_speed + h * integrate_to_stages(row(turning, ALONG) + row(turning, ALONG_SLOPE) * turn),
-    )
+    along = row(turning, ALONG) + row(turning, ALONG_SLOPE) * turn
+    put(work.levels, (), work.log_speed + h * integrate_to_stages(along))
     if system.rate > 0.0 and not correct_levels(work, h):
         return inf
     rise = row(work.levels, ()) - row(turning, SIGMA)
