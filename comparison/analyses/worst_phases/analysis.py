@@ -181,7 +181,7 @@ def _larger_of_grid_and_worst(worst: Worst, scene: Scene, on_grid: OnGrid, toler
     """The larger of an engine's values at the worst phases of the equations and on its own grid."""
     model, value, error, phases = on_grid
     engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
-    there = engine.at(np.array([worst.phases]))
+    there = engine.compute(np.array([worst.phases]))
     start, start_error = float(there.value[0]), float(there.error[0])
     about = {"at_start": start, "start_error": start_error, "evaluations": engine.evaluations}
     name = worst.scene, model.key, worst.quantity, worst.body
