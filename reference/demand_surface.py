@@ -1,4 +1,4 @@
-"""Demands of every phase pair of a surface by the paper's equations."""
+"""Demands at all phase pairs of a surface by the paper's equations."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def peak_demands(
     rest_condition: str = "consistent",
 ) -> PeakDemands:
     """
-    What the motion at every phase pair demands of isolator and structure, with errors.
+    Return the demands on isolator and structure at every phase pair, with errors.
 
     Parameters
     ----------
@@ -44,8 +44,8 @@ def peak_demands(
 
     Notes
     -----
-    Every motion goes to its end: a demand may settle later than the accelerations. So a pair takes some thirty times
-    what `amplification` takes.
+    Every motion goes to its end, since a demand may reach its largest value later than the accelerations. So a pair
+    takes about thirty times as long as with `amplification`.
 
     Examples
     --------

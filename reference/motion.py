@@ -1,4 +1,4 @@
-"""One motion by the paper's equations, sampled for plots and tests."""
+"""One motion by the paper's equations, sampled in time."""
 
 from __future__ import annotations
 
@@ -27,16 +27,18 @@ from reference.solver.error_estimate import (
     READING_ERROR_FACTOR,
     ROUNDING_ERROR,
     TOLERANCE_RATIO,
-    recorded,
+    record_run,
 )
-from reference.solver.samples import Samples, sampled, step_instants
-from reference.solver.system import Array, Demand, Record, System, record_of
+from reference.solver.samples import SampledMotion, sample_motion, step_instants
+from reference.solver.system import Array, RunSettings, StepRecord, System, allocate_record
 from reference.surface import OUTCOMES, checked_demand, loads_are_finite
 
-SAMPLES_PER_PERIOD = 64  # of the shorter loading period, when no times are given
-STEP_SAMPLES = 8000  # of the steps, if these are few
-MAX_SAMPLES = 200_000
-MIN_ERROR_FRACTION = 1.0  # of the tolerance: closer agreement of two runs is accidental (measured: errors up to 0.2)
+SAMPLES_PER_PERIOD = 64  # default samples per shorter loading period
+STEP_SAMPLES = 8000  # default samples in the steps, where these are few
+MAX_SAMPLES = 200_000  # limit of either kind of samples
+# Lower bound on the error of a peak, as a share of the tolerance: closer agreement of two runs is accidental
+# (measured: errors up to 0.2)
+MIN_ERROR_FRACTION = 1.0
 
 
 @takes_scene
@@ -51,7 +53,7 @@ def trajectory(
     initial: State | None = None,
 ) -> Trajectory:
     """
-    One motion for one phase pair by the paper's equations, sampled in time.
+    Return one motion for one phase pair by the paper's equations, sampled in time.
 
     Parameters
     ----------
@@ -87,59 +89,61 @@ def trajectory(
     ((2, 2, 3), 'ok')
     """
     pair = checked_phase(phase)
-    system, demand = checked_demand(scene, equations, regularization, tolerance, None, rest_condition)
-    asked = None if times is None else _checked_times(scene, times)
+    system, settings = checked_demand(scene, equations, regularization, tolerance, None, rest_condition)
+    asked = None if times is None else _check_times(scene, times)
     bodies = len(scene.bodies)
     x, v = np.zeros((bodies, 2)), np.zeros((bodies, 2))
     if initial is not None:
         x, v = checked_state(initial, bodies, system.radius, scene.isolator.travel)
-        demand = demand._replace(unit=demand.unit + _acceleration(system, x, v))
+        settings = settings._replace(unit=settings.unit + _initial_acceleration_bound(system, x, v))
     if not loads_are_finite(system):
         nothing = np.full(bodies, np.nan)
-        no_run = _Run(Outcome.NON_FINITE_LOAD, 0.0, record_of(0, bodies), nothing, nothing, system)
-        return _motion(scene, pair, system, no_run, asked)
-    run = _recorded(system, pair, x, v, demand)
-    motion = _motion(scene, pair, system, run, asked)
+        no_run = _RecordedRun(Outcome.NON_FINITE_LOAD, 0.0, allocate_record(0, bodies), nothing, nothing, system)
+        return _sample_trajectory(scene, pair, system, no_run, asked)
+    run = _record_run(system, pair, x, v, settings)
+    motion = _sample_trajectory(scene, pair, system, run, asked)
     if run.outcome != Outcome.OK:
         return motion
-    other = _recorded(run.system, pair, x, v, demand._replace(tolerance=TOLERANCE_RATIO * demand.tolerance))
-    if other.outcome != Outcome.OK:  # as close to the rim: a tighter run has the last word, and shows the error
-        tighter = max(demand.tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
-        run, other = _recorded(run.system, pair, x, v, demand._replace(tolerance=tighter)), run
-        motion = _motion(scene, pair, system, run, asked)
+    other = _record_run(run.system, pair, x, v, settings._replace(tolerance=TOLERANCE_RATIO * settings.tolerance))
+    if other.outcome != Outcome.OK:  # such as a motion close to the rim: a tighter run decides, and shows the error
+        tighter = max(settings.tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
+        run, other = _record_run(run.system, pair, x, v, settings._replace(tolerance=tighter)), run
+        motion = _sample_trajectory(scene, pair, system, run, asked)
         if run.outcome != Outcome.OK:
             return motion
-    floor = MIN_ERROR_FRACTION * demand.tolerance + ROUNDING_ERROR
+    floor = MIN_ERROR_FRACTION * settings.tolerance + ROUNDING_ERROR
     error = READING_ERROR_FACTOR * run.reading_error + DIFFERENCE_FRACTION * np.abs(run.peak - other.peak)
-    coarser = _motion(scene, pair, system, other, asked)
+    coarser = _sample_trajectory(scene, pair, system, other, asked)
     return replace(motion, accuracy=Accuracy(error + floor * run.peak, (coarser,), (DIFFERENCE_FRACTION,), floor))
 
 
-class _Run(NamedTuple):
+class _RecordedRun(NamedTuple):
     """One run with all its steps."""
 
     outcome: Outcome
-    instant: float  # s, when it ended
-    record: Record
-    peak: Array  # (N,), m/s^2
-    reading_error: Array  # (N,), m/s^2, of the peaks inside their steps
-    system: System  # with the k_T that the run leaves
+    instant: float  # s, end of the run
+    record: StepRecord
+    peak: Array  # (N,) m/s^2
+    reading_error: Array  # (N,) m/s^2, errors of the peaks inside their steps
+    system: System  # the system with k_T by the heat of this run
 
 
-def _recorded(system: System, phase: Array, x: Array, v: Array, demand: Demand) -> _Run:
-    """The run from x, v with all its steps."""
-    run, record, system = recorded(x, v, system, phase, demand)
-    return _Run(OUTCOMES[int(run.code[0])], float(run.instant[0]), record, run.value[0], run.error[0], system)
+def _record_run(system: System, phase: Array, x: Array, v: Array, settings: RunSettings) -> _RecordedRun:
+    """Return the run from x, v with all its steps."""
+    run, record, system = record_run(x, v, system, phase, settings)
+    return _RecordedRun(OUTCOMES[int(run.code[0])], float(run.instant[0]), record, run.value[0], run.error[0], system)
 
 
-def _motion(scene: Scene, phase: Array, system: System, run: _Run, asked: Array | None) -> Trajectory:
-    """The run at the instants `asked`, or at those of `_instants`."""
+def _sample_trajectory(
+    scene: Scene, phase: Array, system: System, run: _RecordedRun, asked: Array | None
+) -> Trajectory:
+    """Return the run at the instants `asked`, or at those of `_default_instants`."""
     record, early = run.record, run.outcome != Outcome.OK
-    steps, sticks = (int(number) for number in record.made)
-    instants = _instants(scene, record) if asked is None else asked
+    steps, sticks = (int(number) for number in record.counts)
+    instants = _default_instants(scene, record) if asked is None else asked
     instants = instants[instants <= (run.instant if early else scene.duration)] if steps else instants[:0]
-    motion = sampled(record, instants)
-    height, vz = _vertical(motion.x[:, 0], motion.v[:, 0], system)
+    motion = sample_motion(record, instants)
+    height, vz = _vertical_motion(motion.x[:, 0], motion.v[:, 0], system)
     shape = (len(instants), len(scene.bodies), 1)
     position = np.concatenate([motion.x, np.broadcast_to(height[:, None, None], shape)], axis=-1)
     velocity = np.concatenate([motion.v, np.broadcast_to(vz[:, None, None], shape)], axis=-1)
@@ -159,8 +163,8 @@ def _motion(scene: Scene, phase: Array, system: System, run: _Run, asked: Array 
     )
 
 
-def _friction_power(scene: Scene, place: Array, velocity: Array, motion: Samples) -> Array:
-    """Power that friction dissipates, (T,), W: what the normal force leaves of the force on all bodies."""
+def _friction_power(scene: Scene, place: Array, velocity: Array, motion: SampledMotion) -> Array:
+    """Return the power that friction dissipates, (T,), W: friction is the force on all bodies less the normal force."""
     force = np.einsum("i,tia->ta", scene.masses, motion.total)
     force[:, 2] += scene.total_mass * GRAVITY
     normal = np.array([0.0, 0.0, 1.0]) - place / scene.radius
@@ -169,22 +173,22 @@ def _friction_power(scene: Scene, place: Array, velocity: Array, motion: Samples
     return power
 
 
-def _acceleration(system: System, x: Array, v: Array) -> float:
-    """An upper bound of the accelerations that a state brings with it, m/s^2."""
+def _initial_acceleration_bound(system: System, x: Array, v: Array) -> float:
+    """Return an upper bound of the accelerations that an initial state causes, m/s^2."""
     gravity = system.mass_ratio * system.gravity
     links = 2.0 * ((system.below + system.above) * np.abs(x).max()).max()
     links += 2.0 * ((system.damping_below + system.damping_above) * np.abs(v).max()).max()
     return float(gravity * float(np.hypot(*x[0])) / system.radius + (v[0] ** 2).sum() / system.radius + links)
 
 
-def _instants(scene: Scene, record: Record) -> Array:
-    """SAMPLES_PER_PERIOD, and those of the steps."""
+def _default_instants(scene: Scene, record: StepRecord) -> Array:
+    """Return SAMPLES_PER_PERIOD even instants and those of the steps, s."""
     samples = int(np.ceil(scene.duration / loading_period(scene) * SAMPLES_PER_PERIOD)) + 1
     even = np.linspace(0.0, scene.duration, min(samples, MAX_SAMPLES))
     return np.union1d(even, step_instants(record, STEP_SAMPLES, MAX_SAMPLES))
 
 
-def _checked_times(scene: Scene, times: ArrayLike) -> Array:
+def _check_times(scene: Scene, times: ArrayLike) -> Array:
     rule = f"must be rising instants (T,) from 0 to the duration, {scene.duration} s"
     instants = checked_array("times", times, rule)
     inside = instants.ndim == 1 and np.all((instants >= 0.0) & (instants <= scene.duration))
@@ -193,8 +197,8 @@ def _checked_times(scene: Scene, times: ArrayLike) -> Array:
     return instants
 
 
-def _vertical(x: Array, v: Array, system: System) -> tuple[Array, Array]:
-    """Height above the lowest point and vertical velocity (2.1), (3.4); none in the small equations."""
+def _vertical_motion(x: Array, v: Array, system: System) -> tuple[Array, Array]:
+    """Return height above the lowest point and vertical velocity (2.1), (3.4); zero in the small equations."""
     if system.small:
         return np.zeros(len(x)), np.zeros(len(x))
     squared = (x**2).sum(axis=-1)

@@ -6,9 +6,9 @@ of the isolator. A general eigensolver gets the low frequencies of a long or sti
 the chain is kept as its factor: C0 = D^T diag(k) D with D the elongation of each link, hence
 M0^-1/2 C0 M0^-1/2 = L^T L with L = diag(k)^1/2 D M0^-1/2 bidiagonal, its entries free of subtraction. The frequencies
 are the singular values of L, and the entries of a bidiagonal matrix determine every one of them to full relative
-precision (Demmel and Kahan 1990). They are found by bisection on the Golub-Kahan matrix, which couples link, mass,
-link, mass, ... along the chain: zero diagonal, the entries of L beside it. Without the first link, of a flat slider,
-the chain is free: its first mode is the motion of all bodies as one, of frequency zero.
+precision (Demmel and Kahan, SIAM J. Sci. Stat. Comput. 11, 1990). They are found by bisection on the Golub-Kahan
+matrix, which couples link, mass, link, mass, ... along the chain: zero diagonal, the entries of L next to it. A flat
+slider has no first link, so the chain is free: its first mode is the motion of all bodies as one, of frequency zero.
 
 With dampers M0 q'' + D0 q' + C0 q = 0 has complex modes q = X exp(lambda t), also where D0 is not proportional to C0.
 With y = M0^1/2 q' and s = L M0^1/2 q, one entry per link, they are the eigenvectors of
@@ -83,20 +83,20 @@ class DampedModes:
 
     @property
     def frequency(self) -> Array:
-        """|lambda|, (2, 2 N), rad/s: the natural frequency where dampers are weak."""
+        """Size |lambda|, (2, 2 N), rad/s: the natural frequency where dampers are weak."""
         result: Array = np.abs(self.eigenvalue)
         return result
 
     @property
     def damping_ratio(self) -> Array:
-        """-Re lambda / |lambda|, (2, 2 N): 0 without damping, 1 of a motion that does not swing, 0 of the rigid one."""
+        """Ratio -Re lambda / |lambda|, (2, 2 N): 0 undamped or rigid, 1 for a motion that does not swing."""
         size = self.frequency
         result: Array = np.divide(-self.eigenvalue.real, size, where=size > 0.0, out=np.zeros_like(size))
         return result
 
 
 def linear_stiffness(scene: Scene) -> Array:
-    """Stiffness below each body, (N, 2), N/m: m_sum g / rho of (4.3) under the platform, then C0 of (4.8)."""
+    """Return the stiffness below each body, (N, 2), N/m: m_sum g / rho of (4.3) under the platform, then the links."""
     pendulum = scene.total_mass * GRAVITY / scene.radius
     return np.vstack([np.full((1, 2), pendulum), scene.stiffness])
 
@@ -104,12 +104,12 @@ def linear_stiffness(scene: Scene) -> Array:
 @takes_scene
 def modes(scene: Scene) -> Modes:
     """
-    Natural frequencies, shapes and participation factors of the frictionless linearized chain.
+    Return natural frequencies, shapes and participation factors of the frictionless linearized chain.
 
     Parameters
     ----------
     scene : Scene
-        Its friction and its loading do not enter.
+        Its friction and its loading have no effect.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def modes(scene: Scene) -> Modes:
     >>> round(float(natural.effective_mass[0].sum()), 12)  # kg, the mass of both bodies
     2.0
     """
-    per_axis = [_axis(scene.masses, stiffness) for stiffness in linear_stiffness(scene).T]
+    per_axis = [_solve_axis(scene.masses, stiffness) for stiffness in linear_stiffness(scene).T]
     frequency, shape, participation = (np.stack(parts) for parts in zip(*per_axis))
     return Modes(frequency, shape, participation)
 
@@ -136,12 +136,12 @@ def modes(scene: Scene) -> Modes:
 @takes_scene
 def damped_modes(scene: Scene) -> DampedModes:
     """
-    Complex modes of the frictionless linearized chain with the dampers of its links.
+    Return complex modes of the frictionless linearized chain with the dampers of its links.
 
     Parameters
     ----------
     scene : Scene
-        Its friction and its loading do not enter.
+        Its friction and its loading have no effect.
 
     Returns
     -------
@@ -160,18 +160,21 @@ def damped_modes(scene: Scene) -> DampedModes:
     [0.0335, 0.0335, 0.0294, 0.0294]
     """
     dampers = np.vstack([np.zeros((1, 2)), scene.damping])
-    per_axis = [_damped_axis(scene.masses, k, c) for k, c in zip(linear_stiffness(scene).T, dampers.T)]
+    per_axis = [_solve_damped_axis(scene.masses, k, c) for k, c in zip(linear_stiffness(scene).T, dampers.T)]
     eigenvalue, shape = (np.stack(parts) for parts in zip(*per_axis))
     return DampedModes(eigenvalue, shape)
 
 
-def _damped_axis(
+def _solve_damped_axis(
     masses: Array, stiffness: Array, damping: Array
 ) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
-    """Eigenvalues (2 N,) and shapes (N, 2 N) along one axis."""
+    """Return eigenvalues (2 N,) and shapes (N, 2 N) along one axis."""
+    # The state is (elongations of the links times the root of their stiffness, velocities times the root of the
+    # masses), see above. A flat slider has no first link: its rigid motion has the eigenvalue 0 twice, once as a
+    # displacement, which this state does not contain, and once as a velocity. Both are added by hand, exact.
     count = len(masses)
-    elongation = (np.eye(count) - np.eye(count, k=-1)) / np.sqrt(masses)  # of links by M0^1/2 q
-    held = stiffness > 0.0  # the first link of a flat slider is none
+    elongation = (np.eye(count) - np.eye(count, k=-1)) / np.sqrt(masses)  # elongations of the links by M0^1/2 q
+    held = stiffness > 0.0  # False for the missing first link of a flat slider
     factor = np.sqrt(stiffness[held])[:, None] * elongation[held]
     links = len(factor)
     state = np.zeros((links + count, links + count))
@@ -189,28 +192,28 @@ def _damped_axis(
     return values, shape / shape[largest, np.arange(2 * count)]
 
 
-def _axis(masses: Array, stiffness: Array) -> tuple[Array, Array, Array]:
-    """Frequencies (N,), shapes (N, N) and participation factors (N,) along one axis."""
+def _solve_axis(masses: Array, stiffness: Array) -> tuple[Array, Array, Array]:
+    """Return frequencies (N,), shapes (N, N) and participation factors (N,) along one axis."""
     count = len(masses)
-    beside = np.empty(2 * count - 1)
-    beside[0::2] = np.sqrt(stiffness / masses)  # link and the mass above it
-    beside[1::2] = -np.sqrt(stiffness[1:] / masses[:-1])  # link and the mass below it
+    couplings = np.empty(2 * count - 1)
+    couplings[0::2] = np.sqrt(stiffness / masses)  # link and the mass above it
+    couplings[1::2] = -np.sqrt(stiffness[1:] / masses[:-1])  # link and the mass below it
     free = stiffness[0] == 0.0
-    beside = beside[1:] if free else beside
-    size = len(beside) + 1
-    scale = np.abs(beside).max(initial=np.finfo(float).tiny)
+    couplings = couplings[1:] if free else couplings
+    size = len(couplings) + 1
+    scale = np.abs(couplings).max(initial=np.finfo(float).tiny)
     values, vectors = eigh_tridiagonal(
         np.zeros(size),
-        beside / scale,
+        couplings / scale,
         select="i",
-        select_range=(size - count, size - 1),  # the spectrum is +-omega
+        select_range=(size - count, size - 1),  # the positive half of the spectrum +-omega
         lapack_driver="stebz",
-        tol=2.0 * np.finfo(float).tiny,  # bisect to the last bit of each value, not of the largest
+        tol=2.0 * np.finfo(float).tiny,  # bisection to the last bit of each value, not of the largest
     )
     frequency = values * scale
     if free:
         frequency[0] = 0.0
-    symmetric = vectors[0 if free else 1 :: 2]  # the rows of masses: M0^1/2 times the shape
+    symmetric = vectors[0 if free else 1 :: 2]  # rows of the masses: M0^1/2 times the shape
     symmetric = symmetric / np.linalg.norm(symmetric, axis=0)
     participation = np.sqrt(masses) @ symmetric
     sign = np.where(participation < 0.0, -1.0, 1.0)

@@ -12,7 +12,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.measures.local_maxima import GRID, local_maxima
-from reference.measures.local_search import LocalSearch, Surface, follow_jump, kind_of, merged, search_round
+from reference.measures.local_search import (
+    LocalSearch,
+    Surface,
+    classify_maximum,
+    follow_jump,
+    merge_searches,
+    search_round,
+)
 from reference.problem import Scene, checked_phases
 from reference.problem.ranges import checked_choice
 from reference.problem.result import Array
@@ -120,8 +127,8 @@ def worst_phases(
     surface = Surface(scene, amplification, {**law, "tolerance": tolerance}, body - 1, quantity)
     if starts is None:
         phases, taken = distinct(scene, GRID)
-        starts = local_maxima(surface.at(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
-    points = surface.at(checked_phases(starts))
+        starts = local_maxima(surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
+    points = surface.compute(checked_phases(starts))
     searches = [
         LocalSearch(points.phases[n], float(points.value[n]), float(points.error[n]), 2.0 * np.pi / GRID)
         for n in np.flatnonzero(np.isfinite(points.value))
@@ -135,13 +142,13 @@ def worst_phases(
         if not active:
             break
         search_round(surface, active)
-        searches = merged(searches, shifts)
+        searches = merge_searches(searches, shifts)
     least = (1.0 - MAX_SHORTFALL) * max(search.value for search in searches)
-    kinds = {search: kind_of(surface, search) for search in searches if search.value >= least}
+    kinds = {search: classify_maximum(surface, search) for search in searches if search.value >= least}
     for search in [search for search, (kind, _) in kinds.items() if kind == "jump"]:
         follow_jump(surface, search)
-        kinds[search] = kind_of(surface, search)
-    best, *others = sorted(merged(searches, shifts), key=lambda search: -search.value)
+        kinds[search] = classify_maximum(surface, search)
+    best, *others = sorted(merge_searches(searches, shifts), key=lambda search: -search.value)
     kind, side = kinds[best]
     alpha1, alpha2 = (best.phases % (2.0 * np.pi)).tolist()
     return PhaseMaximum(

@@ -33,7 +33,7 @@ from reference.problem.ranges import (
     checked_number,
 )
 from reference.problem.scene import takes_scene
-from reference.solver.error_estimate import NOT_MET, Peaks, peaks_with_error
+from reference.solver.error_estimate import NOT_MET, RunPeaks, peaks_with_error
 from reference.solver.system import (
     OPEN,
     PAINLEVE,
@@ -43,7 +43,7 @@ from reference.solver.system import (
     TRAVEL,
     UNSOLVED,
     Array,
-    Demand,
+    RunSettings,
     System,
     pack,
 )
@@ -174,12 +174,12 @@ def amplification(
     return Amplification(mu, error, status, instant, cost, share, pairs, displacement).reshaped(shape)
 
 
-def superposed(scene: Scene, system: System, phases: Array, demand: Demand) -> Peaks:
+def superposed(scene: Scene, system: System, phases: Array, demand: RunSettings) -> RunPeaks:
     """The peaks of a linear scene, from one motion per harmonic; runs only where it may reach its end (4.1)."""
     value, error, reach, ends = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
     code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((3, len(phases)))
-    peaks = Peaks(value, error, code, no_run[0], no_run[1], reach, no_run[2])
+    peaks = RunPeaks(value, error, code, no_run[0], no_run[1], reach, no_run[2])
     if ends.any():  # whether it does, and when, is for the run to say
         for whole, ran in zip(peaks, peaks_with_error(system, phases[ends], demand)):
             whole[ends] = ran
@@ -200,7 +200,7 @@ def checked_demand(
     cutoff: float | None,
     rest_condition: str,
     axes: int = 2,
-) -> tuple[System, Demand]:
+) -> tuple[System, RunSettings]:
     """The scene in compiled form and what is asked of its runs, as of `amplification`. Raises ValueError, one line."""
     checked_choice("equations", equations, ("exact", "small"))
     checked_choice("rest_condition", rest_condition, ("consistent", "printed"))
@@ -217,7 +217,7 @@ def checked_demand(
     with np.errstate(over="ignore"):  # refused by loads_are_finite
         unit = float(np.sqrt((np.abs(system.amplitudes).sum(axis=1) ** 2).sum()))
         unit += float(np.sqrt((system.record[:, 1:] ** 2).sum(axis=1)).max(initial=0.0))
-    return system, Demand(
+    return system, RunSettings(
         tolerance=tolerance,
         unit=unit,
         period=time_scale(scene, unit, system.fastest),

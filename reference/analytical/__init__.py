@@ -1,7 +1,7 @@
 """
-Motions of the system that have a closed form: what the solver must reproduce, one case per file.
+Motions of the system that have a closed form, which the solver must reproduce: one case per file.
 
-None of them uses the solver. They hold for the linearized equations, or for the exact ones on the sphere where said.
+None of them uses the solver. They hold for the linearized equations, or for the exact ones on the sphere where stated.
 """
 
 from reference.analytical.circular_shaking import CircularMotion, circular_shaking

@@ -1,5 +1,5 @@
 """
-Circular shaking of a whole chain: every body runs on its own horizontal circle at constant speed, the platform sliding.
+Circular shaking of a whole chain: every body moves on its own horizontal circle at constant speed, the platform slides.
 
 Ground acceleration a exp(i omega t) in the complex plane x + i y, z = Z exp(i omega t). The contact carries m_sum g
 vertically and the slip is horizontal, so N = m_sum g / n_z with n_z = sqrt(1 - |Z1|^2/rho^2) is constant:
@@ -28,9 +28,16 @@ Complex = NDArray[np.complex128]
 @dataclass(frozen=True)
 class CircularMotion:
     """
-    Amplitudes Z, (N,), m, complex, of z = x + i y = Z exp(i omega t), while the ground accelerates a exp(i omega t).
+    Steady circular motion z = x + i y = Z exp(i omega t) under the ground acceleration a exp(i omega t).
 
-    amplification: (N,), mu_i of (5.1). normal: contact force, N.
+    Attributes
+    ----------
+    amplitude : ndarray of complex, (N,), m
+        Z, relative to the plate.
+    amplification : ndarray, (N,)
+        mu_i of (5.1).
+    normal : float, N
+        Contact force.
     """
 
     amplitude: Complex
@@ -40,11 +47,25 @@ class CircularMotion:
 
 def circular_shaking(scene: Scene, acceleration: float, frequency: float, equations: str = "exact") -> CircularMotion:
     """
-    Steady circular motion of the chain under ground acceleration `acceleration`, m/s^2, at `frequency`, rad/s.
+    Return the steady circular motion of the chain under ground acceleration `acceleration`, m/s^2, at `frequency`.
 
-    Dry friction, and springs and dampers of the links that are equal in x and y. equations: "exact" or "small". Of
-    several circles of the exact equations the smallest is given. Raises ValueError where friction holds the platform,
-    or no circle fits the cap.
+    Parameters
+    ----------
+    scene : Scene
+        With constant dry friction, and links whose springs and dampers are equal in x and y.
+    acceleration : float, m/s^2
+    frequency : float, rad/s
+    equations : {"exact", "small"}
+
+    Returns
+    -------
+    CircularMotion
+        The smallest circle, if the exact equations have several.
+
+    Raises
+    ------
+    ValueError
+        Where friction holds the platform, or no circle fits into the cap.
     """
     if any((links[:, 0] != links[:, 1]).any() for links in (scene.stiffness, scene.damping)):
         raise ValueError("links differ in x and y: the motion is not circular")
@@ -74,10 +95,10 @@ def circular_shaking(scene: Scene, acceleration: float, frequency: float, equati
 
 
 def _response(scene: Scene, acceleration: float, frequency: float, radius: float) -> tuple[complex, complex, float]:
-    """b, c and N for a platform on a circle of this radius; 0 gives the linearized equations."""
+    """Return b, c and N for a platform on a circle of this radius; 0 gives the linearized equations."""
     normal = scene.total_mass * GRAVITY / np.sqrt(1.0 - (radius / scene.radius) ** 2)
     dynamic = _chain(scene, normal / scene.radius, frequency) - frequency**2 * np.diag(scene.masses)
-    first = np.linalg.solve(dynamic, np.eye(len(scene.masses))[0])  # row 1 of G, which is symmetric
+    first = np.linalg.solve(dynamic, np.eye(len(scene.masses))[0])  # first row of G, which is symmetric
     return (
         complex(-acceleration * (first @ scene.masses)),
         complex(scene.friction_coefficient * normal * first[0]),
@@ -86,7 +107,7 @@ def _response(scene: Scene, acceleration: float, frequency: float, radius: float
 
 
 def _chain(scene: Scene, foot: float, frequency: float) -> Complex:
-    """K + i w C, (N, N), on a spring under the platform."""
+    """Return K + i omega C, (N, N), of the chain on a spring `foot` under the platform."""
     links = np.append(scene.stiffness[:, 0] + 1j * frequency * scene.damping[:, 0], 0.0)
     below = np.concatenate([[foot], links[:-1]])
     return np.diag(below + links) - np.diag(links[:-1], 1) - np.diag(links[:-1], -1)
@@ -95,7 +116,8 @@ def _chain(scene: Scene, foot: float, frequency: float) -> Complex:
 def _first_circle(misfit: Callable[[float], float], limit: float) -> float:
     radii = np.linspace(0.0, limit * (1.0 - 1e-9), 401)
     values = np.array([misfit(r) for r in radii])
-    # the misfit is continuous except where the chain resonates; a root is a change of sign that closes in on zero
+    # The misfit is continuous except where the chain resonates. There it changes its sign as well, so a root is a
+    # change of sign next to which the misfit vanishes.
     for k in np.flatnonzero(np.sign(values[1:]) != np.sign(values[:-1])):
         root = float(brentq(misfit, radii[k], radii[k + 1], xtol=1e-16, rtol=1e-15))
         if abs(misfit(root)) < 1e-9 * limit**2 and root > 0.0:

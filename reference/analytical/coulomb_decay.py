@@ -1,9 +1,9 @@
 """
 Free decay under dry friction: x'' + omega^2 x = -omega^2 x_f sign(x'), released at rest.
 
-Half cycle k is a cosine about +-x_f of half period pi / omega exactly; the amplitude falls by 2 x_f each, and the body
-stays where it first stops within x_f of the middle. One body on the isolator in small vibration (4.3):
-omega^2 = g / rho, x_f = mu rho, so that each whole cycle costs 4 mu rho.
+Half cycle k is a cosine about +-x_f of half period pi / omega exactly. In each the amplitude falls by 2 x_f, and the
+body stays where it first stops within x_f of the middle (Den Hartog, Mechanical Vibrations). For one body on the
+isolator in small vibration (4.3) omega^2 = g / rho and x_f = mu rho, so each whole cycle costs 4 mu rho.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ Array = NDArray[np.float64]
 
 def coulomb_rest(amplitude: float, dead_zone: float, frequency: float) -> tuple[float, float]:
     """
-    Time, s, and position, m, of the final rest after a release at `amplitude`, m.
+    Return time, s, and position, m, of the final rest after a release at `amplitude`, m.
 
-    dead_zone: x_f, m, where friction just holds the spring. frequency: omega, rad/s.
+    `dead_zone` is x_f, m, where friction just holds the spring; `frequency` is omega, rad/s.
     """
     halves = _half_cycles(amplitude, dead_zone)
     position = (-1.0) ** halves * np.sign(amplitude) * (abs(amplitude) - 2.0 * dead_zone * halves)
@@ -26,11 +26,11 @@ def coulomb_rest(amplitude: float, dead_zone: float, frequency: float) -> tuple[
 
 
 def coulomb_decay(time: ArrayLike, amplitude: float, dead_zone: float, frequency: float) -> tuple[Array, Array]:
-    """Position, m, and velocity, m/s, (T,) each, at `time` (T,), s, after the release. Arguments as `coulomb_rest`."""
+    """Return position, m, and velocity, m/s, (T,) each, at `time` (T,), s; other arguments as of `coulomb_rest`."""
     angle = frequency * np.asarray(time, dtype=float)
     half = np.minimum(np.floor(angle / np.pi), _half_cycles(amplitude, dead_zone))
     moving = half < _half_cycles(amplitude, dead_zone)
-    # in half cycle k the body swings from (-1)^k (A - 2 k x_f) about (-1)^k x_f; cos(angle) has the sign already
+    # In half cycle k the body swings from (-1)^k (A - 2 k x_f) about (-1)^k x_f; cos(angle) contains the sign (-1)^k.
     swing = abs(amplitude) - (2.0 * half + 1.0) * dead_zone
     middle = (-1.0) ** half * dead_zone
     _, rest = coulomb_rest(abs(amplitude), dead_zone, frequency)
@@ -40,5 +40,5 @@ def coulomb_decay(time: ArrayLike, amplitude: float, dead_zone: float, frequency
 
 
 def _half_cycles(amplitude: float, dead_zone: float) -> int:
-    """Half cycles until a turning point lies within the dead zone."""
+    """Return the number of half cycles until a turning point lies within the dead zone."""
     return max(0, int(np.ceil((abs(amplitude) / dead_zone - 1.0) / 2.0)))

@@ -1,5 +1,5 @@
 """
-Steady forced oscillation with dry friction and without stops (Den Hartog, Phil. Mag. 1930).
+Steady forced oscillation with dry friction and without stops (Den Hartog, Phil. Mag. 9, 1930).
 
 x'' + omega_n^2 x = omega_n^2 (a cos(omega t + phi) - x_f sign(x')). Between a turning point x0 at t = 0 and the next,
 -x0, half a loading period later, friction is constant and the motion is
@@ -30,8 +30,8 @@ class SteadyOscillation:
     phase: float
 
     def position(self, angle: ArrayLike) -> Array:
-        """x/a at loading angle omega t (T,), rad, counted from a positive turning point."""
-        turn, sign = _folded(angle)
+        """Return x/a at the loading angle omega t (T,), rad, from a positive turning point on."""
+        turn, sign = _fold_angle(angle)
         tangent = np.tan(0.5 * np.pi / self.ratio)
         natural = 1.0 - np.cos(turn / self.ratio) - tangent * np.sin(turn / self.ratio)
         forced = np.cos(turn + self.phase) / (1.0 - self.ratio**2)
@@ -39,8 +39,8 @@ class SteadyOscillation:
         return result
 
     def acceleration(self, angle: ArrayLike) -> Array:
-        """x''/(a omega_n^2) at loading angle omega t (T,), rad; one-sided (after) at turning points."""
-        turn, sign = _folded(angle)
+        """Return x''/(a omega_n^2) at the loading angle omega t (T,), rad; at turning points the limit from above."""
+        turn, sign = _fold_angle(angle)
         tangent = np.tan(0.5 * np.pi / self.ratio)
         natural = np.cos(turn / self.ratio) + tangent * np.sin(turn / self.ratio)
         forced = -(self.ratio**2) * np.cos(turn + self.phase) / (1.0 - self.ratio**2)
@@ -49,9 +49,7 @@ class SteadyOscillation:
 
 
 def den_hartog(ratio: float, dead_zone: float) -> SteadyOscillation:
-    """
-    The steady motion for b = `ratio` (not 1) and x_f/a = `dead_zone`. Raises ValueError where it would stop.
-    """
+    """Return the steady motion for b = `ratio` (not 1) and x_f/a = `dead_zone`; ValueError where it would stop."""
     if dead_zone > no_stop_bound(ratio):
         raise ValueError(f"x_f/a = {dead_zone}: the motion stops, the bound is {no_stop_bound(ratio)}")
     v = 1.0 / (1.0 - ratio**2)
@@ -63,34 +61,34 @@ def den_hartog(ratio: float, dead_zone: float) -> SteadyOscillation:
 
 def no_stop_bound(ratio: float) -> float:
     """
-    Largest x_f/a for which the motion does not stop, |V| / sqrt(U^2 + S^2).
+    Return the largest x_f/a for which the motion does not stop, |V| / sqrt(U^2 + S^2).
 
     S is the largest value over a half period of [sin omega_n t + b U (cos omega t - cos omega_n t)] / (b sin omega t).
     """
     v = 1.0 / (1.0 - ratio**2)
     u = np.tan(0.5 * np.pi / ratio) / ratio
 
-    def demand(turn: ArrayLike) -> Array:
+    def stop_ratio(turn: ArrayLike) -> Array:
         turn = np.asarray(turn, dtype=float)
         natural = turn / ratio
         top = np.sin(natural) + ratio * u * (np.cos(turn) - np.cos(natural))
         result: Array = top / (ratio * np.sin(turn))
         return result
 
-    # the limits at both ends are 1/b^2 (up to the sign of the half period), finite but 0/0: keep a small distance
+    # The limits at both ends are 1/b^2 up to a sign, finite but of the form 0/0: keep a small distance.
     turns = np.linspace(1e-4, np.pi - 1e-4, 2001)
-    values = demand(turns)
+    values = stop_ratio(turns)
     k = int(values.argmax())
     low, high = turns[max(k - 1, 0)], turns[min(k + 1, len(turns) - 1)]
     minimum = minimize_scalar(
-        lambda t: -float(demand(t)), bounds=(low, high), method="bounded", options={"xatol": 1e-12}
+        lambda t: -float(stop_ratio(t)), bounds=(low, high), method="bounded", options={"xatol": 1e-12}
     )
     largest = max(float(values[k]), -float(minimum.fun))
     return float(abs(v) / np.sqrt(u * u + largest * largest))
 
 
-def _folded(angle: ArrayLike) -> tuple[Array, Array]:
-    """Angle within the current half period, and the sign of that half period."""
+def _fold_angle(angle: ArrayLike) -> tuple[Array, Array]:
+    """Return the angle within the current half period, and the sign of that half period."""
     angle = np.asarray(angle, dtype=float)
     half = np.floor(angle / np.pi)
     return angle - half * np.pi, 1.0 - 2.0 * np.mod(half, 2.0)

@@ -5,8 +5,7 @@ Per axis and natural mode, eta'' + omega^2 eta = -Gamma Re(sum_k a_k exp(i alpha
     eta = -Gamma (D(s, i omega) - D(s, -i omega)) / (2 i omega),   D(s, z) = (exp(s t) - exp(z t)) / (s - z).
 D has a limit at resonance, t exp(z t), and D' = z D + exp(s t). On a plane the first mode is a motion of all bodies as
 one, omega = 0: nothing holds it, eta = -Gamma (exp(s t) - 1 - s t) / s^2. The modes' participation adds up to a unit
-motion of every body, so the absolute acceleration is -sum_j X_j omega_j^2 eta_j: nothing of the ground is left to
-subtract.
+motion of every body, so the absolute acceleration is -sum_j X_j omega_j^2 eta_j, and the ground's need not be added.
 The response is linear in exp(i alpha_k): a whole surface follows from one complex response per harmonic.
 """
 
@@ -15,28 +14,29 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.analytical.phase_peaks import Series, largest, reached
+from reference.analytical.phase_peaks import PhaseSeries, largest_lengths, may_reach_bound
 from reference.natural_modes import Modes, modes
 from reference.problem import Scene, checked_phases, exponents, ground_peak, linear, loading_period
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-# per shortest period: the terms left out of a series of SERIES_TERMS are below 1e-14 of the motion
+# Intervals per shortest period, and terms of the series on each: those left out are below 1e-14 of the motion
 INTERVALS_PER_PERIOD = 12
 SERIES_TERMS = 12
-MAX_SERIES_ANGLE, DRIFT_TERMS = 1.0, 20  # rad: below, the drift on a plane is summed, which subtracts nothing
+# Size of s t, rad, below which the drift on a plane is summed as a series of DRIFT_TERMS terms, without cancellation
+MAX_SERIES_ANGLE, DRIFT_TERMS = 1.0, 20
 ROUNDING_ERROR = 1e-13  # relative error of a frequency and of an operation
 
 
 def frictionless_motion(scene: Scene, phase: ArrayLike, time: ArrayLike) -> tuple[Array, Array, Array]:
     """
-    Position, velocity and horizontal absolute acceleration at `time` (T,), s, for one phase pair (2,), rad.
+    Return position, velocity and horizontal absolute acceleration at `time` (T,), s, for one phase pair (2,), rad.
 
-    (T, N, 2) each, m, m/s, m/s^2; displacement and velocity relative to the plate. Raises ValueError for a scene with
+    (T, N, 2) each, m, m/s, m/s^2; displacement and velocity relative to the plate. Raise ValueError for a scene with
     friction or with vertical loading, under which the pendulum's stiffness varies in time.
     """
-    _check(scene)
+    _check_closed_form(scene)
     turn = np.exp(1j * np.asarray(phase, dtype=float))
     natural, instants = modes(scene), np.asarray(time, dtype=float)
     position, velocity = ((part @ turn).real for part in _responses(scene, natural, instants, 2, absolute=False))
@@ -45,7 +45,7 @@ def frictionless_motion(scene: Scene, phase: ArrayLike, time: ArrayLike) -> tupl
 
 
 def frictionless_amplification(scene: Scene, phases: ArrayLike) -> Array:
-    """mu_i of (5.1) for phase pairs (M, 2), rad: (M, N), to about 1e-12. Raises as `frictionless_motion`."""
+    """Return mu_i of (5.1) for phase pairs (M, 2), rad: (M, N), to about 1e-12. Raise as `frictionless_motion`."""
     pairs = checked_phases(phases)
     result: Array = frictionless_peaks(scene, pairs)[0] / ground_peak(scene, pairs)[:, None]
     return result
@@ -53,27 +53,34 @@ def frictionless_amplification(scene: Scene, phases: ArrayLike) -> Array:
 
 def frictionless_peaks(scene: Scene, phases: Array) -> tuple[Array, Array, Array, NDArray[np.bool_]]:
     """
-    Largest absolute accelerations, m/s^2, and their errors, (M, N) each; largest displacement of the platform, m, (M,);
-    at which phases the travel, or without one the rim (4.1), may be reached.
+    Return largest accelerations, m/s^2, and their errors, (M, N) each; largest displacement, m, and `ends`, (M,) each.
 
-    Raises as `frictionless_motion`. A motion to the rim has left the small equations: its peaks mean nothing.
+    `ends` is True at phase pairs at which the platform may reach the end of its travel, or without one the rim (4.1).
+    Such a motion has left the range of the small equations: its peaks mean nothing. Raise as `frictionless_motion`.
     """
-    _check(scene)
+    _check_closed_form(scene)
     natural = modes(scene)
     fastest = max(float(natural.frequency.max()), float(-exponents(scene).real.min()))
     shortest = min(loading_period(scene), 2.0 * np.pi / fastest if fastest > 0.0 else np.inf)
     count = int(np.ceil(scene.duration / shortest * INTERVALS_PER_PERIOD))
     half = 0.5 * scene.duration / count
     centers: Array = half * (2.0 * np.arange(count, dtype=float) + 1.0)
-    series = Series.of(_responses(scene, natural, centers, SERIES_TERMS, absolute=True), half)
-    path = Series.of(_responses(scene, natural, centers, SERIES_TERMS, absolute=False, bodies=1), half)
-    peaks, search_error = largest(series, phases)
+    series = PhaseSeries.from_derivatives(_responses(scene, natural, centers, SERIES_TERMS, absolute=True), half)
+    path = PhaseSeries.from_derivatives(
+        _responses(scene, natural, centers, SERIES_TERMS, absolute=False, bodies=1), half
+    )
+    peaks, search_error = largest_lengths(series, phases)
     rounding = ROUNDING_ERROR * (10.0 + float(natural.frequency.max()) * scene.duration)
-    reach = largest(path, phases)[0][:, 0]
-    return peaks, search_error + rounding * series.envelope, reach, reached(path, phases, scene.displacement_limit)
+    reach = largest_lengths(path, phases)[0][:, 0]
+    return (
+        peaks,
+        search_error + rounding * series.envelope,
+        reach,
+        may_reach_bound(path, phases, scene.displacement_limit),
+    )
 
 
-def _check(scene: Scene) -> None:
+def _check_closed_form(scene: Scene) -> None:
     if not (allowed := linear(scene)):
         raise ValueError(f"{scene.name}: {allowed.reason}: no closed form")
 
@@ -81,7 +88,7 @@ def _check(scene: Scene) -> None:
 def _responses(
     scene: Scene, natural: Modes, time: Array, orders: int, *, absolute: bool, bodies: int | None = None
 ) -> list[Complex]:
-    """Complex response per harmonic and its first `orders` derivatives, (T, N, 2 axes, 2 harmonics) each."""
+    """Return the complex response per harmonic and its derivatives, `orders` arrays (T, N, 2 axes, 2 harmonics)."""
     shape = natural.shape[:, :bodies]
     parts = [np.zeros((len(time), shape.shape[1], 2, 2), dtype=complex) for _ in range(orders)]
     for axis in range(2):
@@ -93,7 +100,7 @@ def _responses(
             if scene.amplitudes[axis, k] == 0.0:
                 continue
             forced = np.exp(s * time)[:, None]
-            rising, falling = (_divided(s, root, time) for root in (1j * omega, -1j * omega))
+            rising, falling = (_difference_quotient(s, root, time) for root in (1j * omega, -1j * omega))
             for order, part in enumerate(parts):
                 part[:, :, axis, k] = (weight * (rising - falling)) @ swinging.T * scene.amplitudes[axis, k]
                 if not absolute and not swings.all():
@@ -104,7 +111,7 @@ def _responses(
 
 
 def _drift(s: complex, time: Array, order: int) -> Complex:
-    """Derivative of this order of (exp(s t) - 1 - s t) / s^2 at the instants, (T,)."""
+    """Return the derivative of this order of (exp(s t) - 1 - s t) / s^2 at the instants, (T,)."""
     angle = s * time
     if order > 1:
         return np.asarray(s ** (order - 2) * np.exp(angle))
@@ -114,13 +121,13 @@ def _drift(s: complex, time: Array, order: int) -> Complex:
     series = np.zeros(len(time), dtype=complex)
     for power in range(DRIFT_TERMS, 1, -1):
         series = (series * angle + 1.0) / power
-    # 1 / 2 + z / 6 + ..., by Horner's rule; with z^2 it is exp(z) - 1 - z
+    # `series` is 1 / 2 + z / 6 + ... by Horner's rule, (exp(z) - 1 - z) / z^2.
     direct = (np.expm1(angle) - angle) / s**2
     return np.where(small, series * time**2, direct)
 
 
-def _divided(s: complex, roots: Complex, time: Array) -> Complex:
-    """D(s, z) for the roots z (N,), (T, N), s: t exp(z t) where s meets z."""
+def _difference_quotient(s: complex, roots: Complex, time: Array) -> Complex:
+    """Return D(s, z) for the roots z (N,), (T, N), s: t exp(z t) where s equals z."""
     gap = s - roots
     same = gap == 0.0
     growth = np.expm1(np.multiply.outer(time, gap)) / np.where(same, 1.0, gap)

@@ -2,8 +2,8 @@
 Largest length over time of vectors that are linear in exp(i alpha_1), exp(i alpha_2): whole surfaces from one motion.
 
 A body's vector is v(t) = Re(A_1(t) exp(i alpha_1) + A_2(t) exp(i alpha_2)), one entry per axis. Time is cut into
-intervals on which A is a short series; the terms behind the slope bound |v| on the whole interval, so that those which
-cannot hold the largest are skipped, and the others are searched on the series itself.
+intervals on which A is a short series. The terms behind the slope bound |v| on the whole interval: intervals that
+cannot contain the largest length are skipped, and the others are searched on the series itself.
 """
 
 from __future__ import annotations
@@ -21,17 +21,24 @@ from reference.build_cache import cached_on_disk
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-STARTING_POINTS = np.linspace(-1.0, 1.0, 5)
-NEWTON_STEPS = 5
-SERIES_REMAINDER = 1e-14  # relative: what the series leaves out
+STARTING_POINTS = np.linspace(-1.0, 1.0, 5)  # places in an interval from which the best starts Newton's method
+NEWTON_STEPS = 5  # iterations to the largest length
+SERIES_REMAINDER = 1e-14  # terms that the series leaves out, as a share of the envelope
 
 
 @dataclass(frozen=True)
-class Series:
+class PhaseSeries:
     """
-    terms: (P, N, axes, 4, T), on interval T the coefficients of x^p, x from -1 to 1, of Re A_1, Im A_1, Re A_2, Im A_2.
-    rest: (N, axes, T), largest that the terms from p = 2 on can add up to at any phases. envelope: (N,), largest |v|
-    at any time and phases, from above.
+    Series of the vectors of N bodies on T intervals of time.
+
+    Attributes
+    ----------
+    terms : ndarray, (P, N, axes, 4, T)
+        Coefficients of x^p, x from -1 to 1 on each interval, of Re A_1, Im A_1, Re A_2, Im A_2.
+    rest : ndarray, (N, axes, T)
+        Upper bound on the sum of the terms from p = 2 on at any phases.
+    envelope : ndarray, (N,)
+        Upper bound on |v| at any time and phases.
     """
 
     terms: Array
@@ -39,43 +46,43 @@ class Series:
     envelope: Array
 
     @classmethod
-    def of(cls, derivatives: Sequence[Complex], half: float) -> Series:
-        """From the derivatives (T, N, axes, 2) of A in the middle of intervals of length 2 `half`, s."""
+    def from_derivatives(cls, derivatives: Sequence[Complex], half: float) -> PhaseSeries:
+        """Return the series from the derivatives (T, N, axes, 2) of A in the middle of intervals of 2 `half`, s."""
         scaled = np.stack([part * (half**order / factorial(order)) for order, part in enumerate(derivatives)])
-        sizes = np.abs(scaled).sum(axis=-1)  # the phases at their worst
+        sizes = np.abs(scaled).sum(axis=-1)  # at the phases at which both harmonics add up
         terms = np.stack([scaled.real, scaled.imag], axis=-1).reshape(*scaled.shape[:-1], 4)
         envelope = np.sqrt((sizes.sum(axis=0) ** 2).sum(axis=-1)).max(axis=0)
         rest = np.moveaxis(sizes[2:].sum(axis=0), 0, -1)
         return cls(np.ascontiguousarray(np.moveaxis(terms, 1, -1)), np.ascontiguousarray(rest), envelope)
 
 
-def largest(series: Series, phases: Array) -> tuple[Array, Array]:
-    """max_t |v| of every body for phase pairs (M, 2), rad, and the error of finding it: (M, N) each."""
+def largest_lengths(series: PhaseSeries, phases: Array) -> tuple[Array, Array]:
+    """Return max_t |v| of every body for phase pairs (M, 2), rad, and the error of finding it: (M, N) each."""
     peaks, errors = np.empty((2, len(phases), len(series.envelope)))
-    _largest(series.terms, series.rest, _turns(phases), peaks, errors)
+    _maximize_over_time(series.terms, series.rest, _phase_factors(phases), peaks, errors)
     return peaks, errors + SERIES_REMAINDER * series.envelope
 
 
-def reached(series: Series, phases: Array, bound: float) -> NDArray[np.bool_]:
-    """At which phase pairs (M, 2), rad, the first body's |v| may reach `bound`: (M,)."""
+def may_reach_bound(series: PhaseSeries, phases: Array, bound: float) -> NDArray[np.bool_]:
+    """Return True for phase pairs (M, 2), rad, at which the first body's |v| may reach `bound`: (M,)."""
     if series.envelope[0] < bound:
         return np.zeros(len(phases), dtype=bool)
     least, most = np.empty((2, series.terms.shape[-1]))
     may_reach = np.empty(len(phases), dtype=bool)
-    for m, turn in enumerate(_turns(phases)):
+    for m, turn in enumerate(_phase_factors(phases)):
         _bounds(series.terms, series.rest, turn, 0, least, most)
         may_reach[m] = most.max() >= bound * bound
     return may_reach
 
 
-def _turns(phases: Array) -> Array:
-    """What multiplies the four coefficients, (M, 4)."""
+def _phase_factors(phases: Array) -> Array:
+    """Return the factors of the four coefficients at phase pairs, (M, 4)."""
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
 
 @cached_on_disk(__file__)
 def _bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
-    """Fills |v|^2 in the middle of each interval, and what it cannot exceed on it, (T,) each."""
+    """Set |v|^2 in the middle of each interval, and an upper bound on it over the interval, (T,) each."""
     least[:] = 0.0
     most[:] = 0.0
     for axis in range(terms.shape[2]):
@@ -88,7 +95,7 @@ def _bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, mos
 
 @njit(nogil=True)
 def _coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n: int) -> float:
-    """Coefficient of x^order on interval n."""
+    """Return the coefficient of x^order on interval n."""
     total = 0.0
     for part in range(4):
         total += turn[part] * terms[order, body, axis, part, n]
@@ -96,7 +103,7 @@ def _coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n:
 
 
 @cached_on_disk(__file__, nogil=True)
-def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
+def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
     orders, bodies, axes, _, intervals = terms.shape
     least, most = np.empty(intervals), np.empty(intervals)
     series = np.empty((axes, orders))
@@ -113,7 +120,7 @@ def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Arra
                 for axis in range(axes):
                     for order in range(orders):
                         series[axis, order] = _coefficient(terms, turns[m], order, body, axis, n)
-                value, error = _searched(series)
+                value, error = _maximize_on_interval(series)
                 best = max(best, value)
                 possible = max(possible, value + error)
             peaks[m, body] = sqrt(best)
@@ -121,30 +128,30 @@ def _largest(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Arra
 
 
 @njit(nogil=True)
-def _searched(series: Array) -> tuple[float, float]:
-    """Largest |v|^2 on an interval with these coefficients (axes, P), and what Newton's method leaves."""
+def _maximize_on_interval(series: Array) -> tuple[float, float]:
+    """Return the largest |v|^2 on an interval with these coefficients (axes, P), and the error of Newton's method."""
     best, place = -1.0, 0.0
     for x in STARTING_POINTS:
-        value, _, _ = _squares(series, x)
+        value, _, _ = _squared_length(series, x)
         if value > best:
             best, place = value, x
     left = 0.0
     for _ in range(NEWTON_STEPS):
-        _, slope, curvature = _squares(series, place)
+        _, slope, curvature = _squared_length(series, place)
         step = -slope / curvature if curvature < 0.0 else np.sign(slope)
         target = min(max(place + step, -1.0), 1.0)
         left = abs(slope * (target - place))
         if target == place:
             break
         place = target
-        value, _, _ = _squares(series, place)
+        value, _, _ = _squared_length(series, place)
         best = max(best, value)
     return best, left
 
 
 @njit(nogil=True)
-def _squares(series: Array, x: float) -> tuple[float, float, float]:
-    """|v|^2 at x and its first two derivatives."""
+def _squared_length(series: Array, x: float) -> tuple[float, float, float]:
+    """Return |v|^2 at x and its first two derivatives."""
     total = first = second = 0.0
     for axis in range(series.shape[0]):
         value = slope = curvature = 0.0

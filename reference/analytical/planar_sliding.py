@@ -18,15 +18,15 @@ from reference.problem import GRAVITY
 
 
 def squared_rate(angle: float, start: float, start_rate: float, friction: float, radius: float) -> float:
-    """theta'^2, 1/s^2, at `angle`, rad, of the slide that passes `start`, rad, at theta' = `start_rate` <= 0, rad/s."""
+    """Return theta'^2, 1/s^2, at `angle`, rad, of the slide that passes `start`, rad, at `start_rate` <= 0, rad/s."""
     constant = (start_rate**2 - _particular(start, friction, radius)) * exp(-2.0 * friction * start)
     return constant * exp(2.0 * friction * angle) + _particular(angle, friction, radius)
 
 
 def turning_angle(start: float, friction: float, radius: float) -> float:
-    """Angle, rad, where a slide released at rest at `start` > atan(mu), rad, comes to its next stop."""
+    """Return the angle, rad, of the next stop of a slide released at rest at `start` > atan(mu), rad."""
     released = 1e-3 * (start - np.arctan(friction))
-    lowest = -start - 1e-6  # friction only ever shortens the swing
+    lowest = -start - 1e-6  # friction shortens every swing
     return float(
         brentq(
             lambda a: squared_rate(a, start, 0.0, friction, radius), lowest, start - released, xtol=1e-15, rtol=1e-14
@@ -35,9 +35,9 @@ def turning_angle(start: float, friction: float, radius: float) -> float:
 
 
 def turning_time(start: float, friction: float, radius: float) -> float:
-    """Time, s, from release at `start`, rad, to the next stop: the integral of d theta / |theta'|."""
+    """Return the time, s, from release at `start`, rad, to the next stop: the integral of d theta / |theta'|."""
     end = turning_angle(start, friction, radius)
-    # theta = middle - half cos(psi) takes the inverse square roots at both ends away
+    # The substitution theta = middle + half cos(psi) removes the inverse square roots at both ends.
     nodes, weights = leggauss(60)
     psi = 0.5 * np.pi * (nodes + 1.0)
     middle, half = 0.5 * (start + end), 0.5 * (start - end)

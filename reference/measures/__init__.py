@@ -1,9 +1,9 @@
 """
-What is read off motions and surfaces, whichever side computed them.
+Quantities that are read off motions and surfaces of either side.
 
 Functions
 ---------
-demands                 what a motion demands of isolator and structure
+demands                 demands of a motion on isolator and structure
 effective_isolator      effective period, damping and re-centering ratio of the isolator
 factor_for_spectrum     factor of a ground motion for a target spectrum
 response_spectrum       pseudo-accelerations of a ground motion
@@ -13,7 +13,7 @@ phase_distribution      mean and fractiles of mu over uniform phases
 Classes
 -------
 Demands, PeakDemands                demands of one motion; of the motions of many phase pairs
-EffectiveIsolator, FloorSpectra, PhaseDistribution     what the functions return
+EffectiveIsolator, FloorSpectra, PhaseDistribution     results of the functions
 Estimate, Estimates                 a number with its error; arrays of them
 """
 

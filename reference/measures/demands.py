@@ -1,4 +1,4 @@
-"""What a motion demands of isolator and structure: the numbers a design needs, each with its error."""
+"""Demands of a motion on isolator and structure: the numbers that a design needs, each with its error."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from reference.problem.result import Array, Trajectory, takes_motion
 from reference.problem.scene import Scene
 
 ANSWERED = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
-ROUNDING = 1e-9  # of the duration: the last instant of a motion may miss its end by it
-DECIMATION = 5  # the sampling error is the largest change if only one of so many samples is taken
+END_TOLERANCE = 1e-9  # time by which a motion may miss its end, as a share of the duration
+DECIMATION = 5  # the sampling error is the largest change if only one of DECIMATION samples is taken
 
 
 @dataclass(frozen=True)
 class Estimate:
     """
-    A number and its error.
+    Number with its error.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Estimate:
 
 
 NEVER_RESTS = "never at rest: no dry friction"
-MOVING = "moving at the end: take a longer duration"
+MOVING_AT_END = "moving at the end: take a longer duration"
 NOT_SAMPLED = "no samples of the last rest"
 
 UNKNOWN = Estimate(math.nan, math.nan)
@@ -50,7 +50,7 @@ UNKNOWN = Estimate(math.nan, math.nan)
 @dataclass(frozen=True)
 class Demands:
     """
-    Demands of one motion of N bodies; what `demands` returns.
+    Demands of one motion of N bodies, the result of `demands`.
 
     Attributes
     ----------
@@ -116,7 +116,7 @@ class Demands:
 @takes_motion
 def demands(trajectory: Trajectory) -> Demands:
     """
-    Demands of one motion, with errors.
+    Return the demands of one motion, with errors.
 
     Parameters
     ----------
@@ -133,14 +133,14 @@ def demands(trajectory: Trajectory) -> Demands:
     Newton's law it is sum_i m_i a_i with the absolute accelerations a_i. It equals friction and restoring force,
     N (n - mu w) of (3.2).
 
-    An error has two parts. That of sampling is the largest change if only every fifth sample is taken; a fourth of it
-    for energies, which the trapezoidal rule adds up: its error grows at least like the spacing. That of the solution
-    comes from the other runs in `Trajectory.accuracy`. Without these, as for a single run, it is NaN.
+    An error has two parts. The sampling error is the largest change if only every fifth sample is taken. For energies
+    it is a fourth of that, since the error of the trapezoidal rule grows at least like the spacing. The error of the
+    solution comes from the other runs in `Trajectory.accuracy`. Without these, as for a single run, it is NaN.
     A platform at rest under a regularized friction law creeps toward the center forever. So the residual is the
     displacement at the start of the last interval of `Trajectory.stick`, if that lasts to the end of the motion, under
-    either law. Its error also holds what the regularization may change: the largest distance that the platform creeps
-    from where an interval begins, summed over all of them. In 219 regularized motions under records the residual was
-    off by 0.62 of that sum at most. The set-valued law has no creep.
+    either law. Its error also contains the possible effect of the regularization: the largest distance that the
+    platform creeps from the start of an interval, summed over all intervals. In 219 regularized motions under records
+    the residual was off by 0.62 of that sum at most. The set-valued law has no creep.
 
     The samples do not reach the one-sided limits of accelerations at a stop. `acceleration` does: it is
     `Trajectory.peak`.
@@ -153,16 +153,16 @@ def demands(trajectory: Trajectory) -> Demands:
     >>> round(numbers.displacement.value, 4), numbers.displacement.error < 1e-5
     (0.0267, True)
     """
-    read = _Reading(trajectory)
+    read = DemandReader(trajectory)
     scene, bodies = trajectory.scene, range(len(trajectory.scene.bodies))
-    displacement = read.extreme(lambda samples: samples.largest(samples.place[:, 0], samples.velocity[:, 0]))
+    displacement = read.extreme(lambda samples: samples.largest_length(samples.place[:, 0], samples.velocity[:, 0]))
     supported, turning = read.samples.support.shape[1] > 0, "turns" in trajectory.extra
     return Demands(
         status=str(trajectory.status),
         displacement=displacement,
         residual=read.residual(),
-        cap_share=_share(displacement, scene.radius),
-        travel_share=None if scene.isolator.travel is None else _share(displacement, scene.isolator.travel),
+        cap_share=_ratio_to_limit(displacement, scene.radius),
+        travel_share=None if scene.isolator.travel is None else _ratio_to_limit(displacement, scene.isolator.travel),
         acceleration=read.peaks(),
         base_shear=read.extreme(lambda samples: float(np.linalg.norm(samples.isolator, axis=1).max())),
         drift=tuple(read.extreme(_drift_of(link)) for link in bodies[:-1]),
@@ -171,28 +171,32 @@ def demands(trajectory: Trajectory) -> Demands:
         support_force_min=read.extreme(lambda samples: float(samples.support.min())) if supported else None,
         support_force_max=read.extreme(lambda samples: float(samples.support.max())) if supported else None,
         torsion=tuple(map(read.extreme, map(_torsion_of, bodies))) if read.samples.rotation.shape[1] else None,
-        stops=read.count(lambda motion: float(sum(start > 0.0 for start, _ in motion.stick))),  # not that at the start
+        # A rest that begins with the motion is no stop.
+        stops=read.count(lambda motion: float(sum(start > 0.0 for start, _ in motion.stick))),
         support_displacement=read.extreme(_support_displacement_of(scene)) if supported and turning else None,
         uplift=read.extreme(lambda samples: float(samples.uplift.max())) if supported else None,
-        friction_energy=read.energy(Energy.dissipated),
-        damping_energy=read.energy(Energy.damped) if scene.damping.any() and not turning else None,
-        energy_balance=None if turning else read.energy(Energy.missing),
+        friction_energy=read.energy(Energy.friction_energy),
+        damping_energy=read.energy(Energy.damping_energy) if scene.damping.any() and not turning else None,
+        energy_balance=None if turning else read.energy(Energy.imbalance),
     )
 
 
-def _share(displacement: Estimate, limit: float) -> Estimate:
-    """A displacement over its limit, m."""
+def _ratio_to_limit(displacement: Estimate, limit: float) -> Estimate:
+    """Return a displacement over its limit, m."""
     return Estimate(displacement.value / limit, displacement.error / limit)
 
 
 def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
-    """Largest length of `place` (T, 2), m, also between the instants `time` (T,)."""
+    """Return the largest length of `place` (T, 2), m, also between the instants `time` (T,)."""
     square, summits = squares_and_summits(time, place, velocity)
     return float(np.sqrt(max(square.max(), summits.max(initial=0.0))))
 
 
 def squares_and_summits(time: Array, place: Array, velocity: Array) -> tuple[Array, Array]:
-    """Squared length of `place` (T, 2) at the instants, and the largest from each to the next, by linear rates."""
+    """Return the squared length of `place` (T, 2) at the instants, and its largest from each instant to the next."""
+    # Between two instants the rate p . v of half the squared length is taken as linear. Where it passes zero downward,
+    # the length has a summit: the squared length there exceeds the one before by rate^2 over the fall of the rate,
+    # times the interval.
     square, rate = (place**2).sum(axis=1), (place * velocity).sum(axis=1)
     before, behind = rate[:-1], rate[1:]
     turns = (before > 0.0) & (behind < 0.0)
@@ -200,36 +204,38 @@ def squares_and_summits(time: Array, place: Array, velocity: Array) -> tuple[Arr
     return square, np.where(turns, square[:-1] + rise, square[1:])
 
 
-class _Samples(NamedTuple):
-    """What extremes are read from, at T instants."""
+class DemandSamples(NamedTuple):
+    """Samples of a motion at T instants, from which extremes are read."""
 
-    time: Array  # (T,)
-    place: Array  # (T, N, 2)
-    velocity: Array  # (T, N, 2)
-    isolator: Array  # (T, 2)
-    contact: Array  # (T,)
-    support: Array  # (T, K); K = 0 in a model without single supports
-    rotation: Array  # (T, N), about the vertical; (T, 0) in a model whose bodies do not turn
-    uplift: Array  # (T, K)
+    time: Array  # (T,) s
+    place: Array  # (T, N, 2) m, horizontal displacements
+    velocity: Array  # (T, N, 2) m/s
+    isolator: Array  # (T, 2) N, horizontal force of the isolator
+    contact: Array  # (T,) N, normal force of the isolator
+    support: Array  # (T, K) N, normal forces of the supports; K = 0 in a model without single supports
+    rotation: Array  # (T, N) rad, about the vertical; (T, 0) in a model whose bodies do not turn
+    uplift: Array  # (T, K) m, gaps of the supports
 
     @staticmethod
-    def of(motion: Trajectory) -> _Samples:
+    def from_motion(motion: Trajectory) -> DemandSamples:
         moving = motion.time, motion.position[:, :, :2], motion.velocity[:, :, :2]
         support = motion.support_force
         uplift = motion.extra.get("uplift", np.zeros_like(support))
-        return _Samples(*moving, motion.isolator_force, motion.contact_force, support, motion.vertical_rotation, uplift)
+        return DemandSamples(
+            *moving, motion.isolator_force, motion.contact_force, support, motion.vertical_rotation, uplift
+        )
 
-    def decimated(self) -> list[_Samples]:
-        """One of DECIMATION samples, from the first, the second, ... on."""
+    def decimate(self) -> list[DemandSamples]:
+        """Return one of DECIMATION samples from the first on, from the second on, ..."""
         firsts = range(min(DECIMATION, len(self.time)))
-        return [_Samples(*(part[first::DECIMATION] for part in self)) for first in firsts]
+        return [DemandSamples(*(part[first::DECIMATION] for part in self)) for first in firsts]
 
-    def largest(self, place: Array, velocity: Array) -> float:
-        """Largest length of a displacement (T, 2)."""
+    def largest_length(self, place: Array, velocity: Array) -> float:
+        """Return the largest length of a displacement (T, 2), m."""
         return largest_displacement(self.time, place, velocity)
 
-    def at_rest(self, stick: list[tuple[float, float]]) -> tuple[float, float]:
-        """Displacement at the start of the last rest, and how far the platform creeps in all rests together."""
+    def residual_and_creep(self, stick: list[tuple[float, float]]) -> tuple[float, float]:
+        """Return the displacement at the start of the last rest, and the distance of creep in all rests together."""
         place, creep, first = self.place[:, 0], 0.0, 0
         for begin, end in stick:
             first = int(np.searchsorted(self.time, begin))
@@ -238,97 +244,99 @@ class _Samples(NamedTuple):
         return float(np.hypot(*place[min(first, len(place) - 1)])), creep
 
 
-Read = Callable[[_Samples], float]
+ReadNumber = Callable[[DemandSamples], float]
 
 
-class _Reading:
-    """Reads numbers from a motion, and their errors from its decimated samples and from the runs beside it."""
+class DemandReader:
+    """Reader of numbers from a motion, and of their errors from its decimated samples and from its other runs."""
 
     def __init__(self, motion: Trajectory) -> None:
         self.motion, self.accuracy = motion, motion.accuracy
         self.answered = motion.status in ANSWERED and len(motion.time) > 0
-        self.samples = _Samples.of(motion)
-        self.decimated = self.samples.decimated()
+        self.samples = DemandSamples.from_motion(motion)
+        self.decimated = self.samples.decimate()
         self.others = self.accuracy.coarser if self.accuracy else ()
-        self.coarser = [_Samples.of(other) for other in self.others]
+        self.coarser = [DemandSamples.from_motion(other) for other in self.others]
 
-    def extreme(self, read: Read) -> Estimate:
-        """A number that is read from samples."""
+    def extreme(self, read: ReadNumber) -> Estimate:
+        """Return a number that is read from samples."""
         if not self.answered:
             return UNKNOWN
         value = read(self.samples)
         sampling = max(abs(read(samples) - value) for samples in self.decimated)
-        return Estimate(value, sampling + self._of_solution(value, [read(samples) for samples in self.coarser]))
+        return Estimate(value, sampling + self._solution_error(value, [read(samples) for samples in self.coarser]))
 
     def residual(self) -> Estimate:
-        """Displacement in the last rest, with the creep in all of them as part of its error."""
+        """Return the displacement in the last rest, with the creep in all rests as part of its error."""
         if not self.answered:
             return UNKNOWN
         scene, stick = self.motion.scene, self.motion.stick
-        if not stick or stick[-1][1] < (1.0 - ROUNDING) * scene.duration:
+        if not stick or stick[-1][1] < (1.0 - END_TOLERANCE) * scene.duration:
             dry = scene.friction_coefficient > 0.0 and not scene.lubricated
-            return Estimate(math.nan, math.nan, MOVING if dry else NEVER_RESTS)
+            return Estimate(math.nan, math.nan, MOVING_AT_END if dry else NEVER_RESTS)
         if stick[-1][0] > self.samples.time[-1]:
             return Estimate(math.nan, math.nan, NOT_SAMPLED)
-        value, creep = self.samples.at_rest(stick)
-        decimated = (samples.at_rest(stick) for samples in self.decimated if samples.time[-1] >= stick[-1][0])
+        value, creep = self.samples.residual_and_creep(stick)
+        decimated = (
+            samples.residual_and_creep(stick) for samples in self.decimated if samples.time[-1] >= stick[-1][0]
+        )
         sampling = max(abs(place - value) + abs(way - creep) for place, way in decimated)
-        others = [samples.at_rest(motion.stick)[0] for samples, motion in zip(self.coarser, self.others)]
-        return Estimate(value, creep + sampling + self._of_solution(value, others))
+        others = [samples.residual_and_creep(motion.stick)[0] for samples, motion in zip(self.coarser, self.others)]
+        return Estimate(value, creep + sampling + self._solution_error(value, others))
 
     def energy(self, read: Callable[[Energy], float]) -> Estimate:
-        """An amount of energy, which is added up over the samples."""
+        """Return an amount of energy, which is added up over the samples."""
         if not self.answered:
             return UNKNOWN
         (energy, *coarser), decimated = self._energies
         value = read(energy)
         sampling = max(abs(read(part) - value) for part in decimated) / (DECIMATION - 1)
         others = [read(other) for other in coarser]
-        return Estimate(value, sampling + self._of_solution(value, others, energy.dissipated()))
+        return Estimate(value, sampling + self._solution_error(value, others, energy.friction_energy()))
 
     @cached_property
     def _energies(self) -> tuple[list[Energy], list[Energy]]:
-        """Energy of the motion and of the runs beside it, and of the motion's decimated samples."""
+        """Energies of the motion and of its other runs, and of the motion's decimated samples."""
         energies = [energy_of(motion) for motion in (self.motion, *self.others)]
-        return energies, energies[0].decimated(DECIMATION)
+        return energies, energies[0].decimate(DECIMATION)
 
     def count(self, read: Callable[[Trajectory], float]) -> Estimate:
-        """A number of events: the error is what the runs differ by."""
+        """Return a number of events; its error is the difference of the runs."""
         if not self.answered:
             return UNKNOWN
         value = read(self.motion)
         return Estimate(value, max((abs(value - read(other)) for other in self.others), default=math.nan))
 
     def peaks(self) -> tuple[Estimate, ...]:
-        """Largest accelerations."""
+        """Return the largest accelerations of all bodies."""
         bodies = len(self.motion.scene.bodies)
         if not self.answered:
             return (UNKNOWN,) * bodies
         errors = self.accuracy.peak_error if self.accuracy else np.full(bodies, np.nan)
         return tuple(Estimate(float(value), float(error)) for value, error in zip(self.motion.peak, errors))
 
-    def _of_solution(self, value: float, others: list[float], scale: float | None = None) -> float:
+    def _solution_error(self, value: float, others: list[float], scale: float | None = None) -> float:
         return math.nan if self.accuracy is None else self.accuracy.error_of(value, others, scale)
 
 
-def _drift_of(link: int) -> Read:
-    """Largest displacement of the body above a link relative to the one below."""
-    return lambda samples: samples.largest(
+def _drift_of(link: int) -> ReadNumber:
+    """Return a reader of the largest displacement of the body above a link relative to the one below."""
+    return lambda samples: samples.largest_length(
         samples.place[:, link + 1] - samples.place[:, link], samples.velocity[:, link + 1] - samples.velocity[:, link]
     )
 
 
-def _torsion_of(body: int) -> Read:
-    """Largest rotation of a body about the vertical."""
+def _torsion_of(body: int) -> ReadNumber:
+    """Return a reader of the largest rotation of a body about the vertical."""
     return lambda samples: float(np.abs(samples.rotation[:, body]).max())
 
 
-def _support_displacement_of(scene: Scene) -> Read:
-    """Largest displacement of a support, which turns about the platform's center of mass."""
+def _support_displacement_of(scene: Scene) -> ReadNumber:
+    """Return a reader of the largest displacement of a support, which turns about the platform's center of mass."""
     assert scene.support_places is not None
     arms = (scene.support_places - scene.offsets[0]) @ [1.0, 1.0j]  # x + i y
 
-    def largest(samples: _Samples) -> float:
+    def largest(samples: DemandSamples) -> float:
         place, turn = samples.place[:, :1] @ [1.0, 1.0j], np.exp(1.0j * samples.rotation[:, :1])
         return float(np.abs(place + (turn - 1.0) * arms).max())
 

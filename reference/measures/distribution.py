@@ -18,10 +18,11 @@ SAMPLING_FACTOR = 2.0
 
 def fractile(values: ArrayLike, probability: float) -> float:
     """
-    The value that a share of M values in any order stays below: every fractile of this project is one of these.
+    Return the value below which a share of M values in any order lies; every fractile of this project is one of these.
 
-    Linear between the values at the probabilities (k - 1/2)/M, k = 1 ... M (Hazen), and the smallest or largest value
-    beyond these. Values may be infinite: NaN between infinite ones of both signs.
+    The fractile is linear between the values at the probabilities (k - 1/2)/M, k = 1 ... M (plotting positions of
+    Hazen, Trans. ASCE 77, 1914), and the smallest or largest value beyond these. Values may be infinite: the fractile
+    between infinite ones of both signs is NaN.
 
     >>> fractile([4.0, 1.0, 2.0, 3.0], 0.5), fractile([4.0, 1.0, 2.0, 3.0], 0.84)
     (2.5, 3.86)
@@ -45,7 +46,7 @@ class PhaseDistribution:
     fractiles : tuple of Estimate
         At the probabilities FRACTILES: the value that mu stays below with this probability.
     points : int
-        Phase pairs that it was taken from.
+        Number of phase pairs.
     unknown : float
         Share of phase pairs without an answer.
     """
@@ -58,7 +59,7 @@ class PhaseDistribution:
 
 def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
     """
-    Mean and fractiles of mu over all initial phases, from its values on a grid of equally spaced phases.
+    Return mean and fractiles of mu over all initial phases, from its values on a grid of equally spaced phases.
 
     Parameters
     ----------
@@ -69,7 +70,7 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
     Returns
     -------
     PhaseDistribution
-        Each error is the sampling error, the errors of mu, and what unknown values may change, added up.
+        Each error is the sum of the sampling error, the errors of mu and the possible effect of unknown values.
 
     Notes
     -----
@@ -92,13 +93,13 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
         raise ValueError(f"mu {values.shape}, error {errors.shape}: must be one grid (n1, n2) with a finite value")
     coarse = [part for part in (values[i::2, j::2] for i in (0, 1) for j in (0, 1)) if np.isfinite(part).any()]
 
-    def mean() -> Estimate:
+    def estimate_mean() -> Estimate:
         value = float(values[known].mean())
         sampling = max(abs(float(np.nanmean(part)) - value) for part in coarse)
         error = SAMPLING_FACTOR * sampling + float(errors[known].mean())
         return Estimate(value, error if known.all() else float("nan"))
 
-    def estimated(probability: float) -> Estimate:
+    def estimate_fractile(probability: float) -> Estimate:
         value = fractile(values[known], probability)
         sampling = max(abs(fractile(part[np.isfinite(part)], probability) - value) for part in coarse)
         higher = fractile(np.where(known, values + errors, np.inf), probability) - value
@@ -106,4 +107,6 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
         total = SAMPLING_FACTOR * sampling + max(higher, lower)
         return Estimate(value, total if np.isfinite(total) else float("nan"))
 
-    return PhaseDistribution(mean(), tuple(map(estimated, FRACTILES)), values.size, float(1.0 - known.mean()))
+    return PhaseDistribution(
+        estimate_mean(), tuple(map(estimate_fractile, FRACTILES)), values.size, float(1.0 - known.mean())
+    )

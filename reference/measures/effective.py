@@ -1,4 +1,4 @@
-"""The linear isolator that design codes put in the place of a friction pendulum."""
+"""Effective linear isolator that design codes put in the place of a friction pendulum."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from reference.problem.scene import Scene, takes_scene
 @dataclass(frozen=True)
 class EffectiveIsolator:
     """
-    What `effective_isolator` returns, each of the shape of the displacements.
+    Effective properties of the isolator, each of the shape of the displacements; the result of `effective_isolator`.
 
     Attributes
     ----------
     stiffness : ndarray, N/m
         Secant stiffness W / rho + mu W / D.
     period : ndarray, s
-        Of the whole mass on that stiffness.
+        Period of the whole mass on that stiffness.
     damping : ndarray
-        Damping ratio with the same energy a cycle, 2 / pi mu / (mu + D / rho).
+        Damping ratio with the same energy per cycle, 2 / pi mu / (mu + D / rho).
     restoring : ndarray
         Restoring force over friction force, D / (mu rho). Below 1 the platform may stay at D. Half of it is the energy
         ratio E_S / E_H of EN 15129.
@@ -39,7 +39,7 @@ class EffectiveIsolator:
 @takes_scene
 def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolator:
     """
-    Effective stiffness, period and damping of the isolator at a displacement, and its re-centering ratio.
+    Return effective stiffness, period and damping of the isolator at a displacement, and its re-centering ratio.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The energy of a motion: what the ground puts in, what friction and dampers take out, what is stored."""
+"""Energy of a motion: work of the ground, energy dissipated by friction and dampers, energy stored."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from reference.problem.result import Array, Trajectory
 
 
 class Energy(NamedTuple):
-    """Powers and stored energy at T instants; NaN where the motion does not tell."""
+    """Powers and stored energy at T instants; NaN where the motion does not determine them."""
 
     time: Array  # (T,) s
     friction: Array  # (T,) W, power that friction dissipates
@@ -19,28 +19,30 @@ class Energy(NamedTuple):
     ground: Array  # (T,) W, power of the inertial forces in the plate's frame
     stored: Array  # (T,) J, kinetic and elastic energy of the bodies, and that of gravity
 
-    def dissipated(self) -> float:
-        """Energy that friction has dissipated at the end, J."""
+    def friction_energy(self) -> float:
+        """Return the energy that friction has dissipated at the end, J."""
         return float(np.trapezoid(self.friction, self.time))
 
-    def damped(self) -> float:
-        """Energy that the dampers of the links have dissipated at the end, J."""
+    def damping_energy(self) -> float:
+        """Return the energy that the dampers of the links have dissipated at the end, J."""
         return float(np.trapezoid(self.dampers, self.time))
 
-    def missing(self) -> float:
-        """Work of the ground less what is dissipated and what is stored, J: zero but for errors."""
+    def imbalance(self) -> float:
+        """Return the work of the ground less the energy dissipated and stored, J: zero but for errors."""
         power = self.ground - self.friction - self.dampers
         return float(np.trapezoid(power, self.time) - (self.stored[-1] - self.stored[0]))
 
-    def decimated(self, step: int) -> list[Energy]:
-        """One of `step` instants, from the first, the second, ... on, and both ends."""
+    def decimate(self, step: int) -> list[Energy]:
+        """Return one of `step` instants from the first on, from the second on, ..., each with both ends."""
         last = len(self.time) - 1
         kept = [np.unique(np.r_[0, first:last:step, last]) for first in range(step)]
         return [Energy(*(part[rows] for part in self)) for rows in kept]
 
 
 def energy_of(motion: Trajectory) -> Energy:
-    """Powers and stored energy of a motion, NaN but for friction where bodies turn; small ones are on a paraboloid."""
+    """Return powers and stored energy of a motion, NaN but for friction where bodies turn."""
+    # The motions of the small equations have no height. Their restoring force is that of a paraboloid, so its height
+    # p^2 / 2 rho and its slope take part in the energies of gravity and of the vertical ground motion.
     scene, place, velocity = motion.scene, motion.position, motion.velocity
     masses = scene.masses
     height, upward = place[:, :, 2], velocity[:, :, 2]

@@ -1,4 +1,4 @@
-"""Local maxima of a surface on a grid of phases: where the searches for its maximum begin."""
+"""Local maxima of a surface on a grid of phases, from which the searches for its maximum begin."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from reference.problem.result import Array
 from reference.problem.scene import Scene
 from reference.problem.symmetry import sources
 
-GRID = 48  # phases per axis on which the local maxima are found
-MAX_STARTS = 12  # those that may rise highest
+GRID = 48  # phases per axis of the grid on which local maxima are found
+MAX_STARTS = 12  # number of local maxima from which a search begins: those that may rise highest
 
 
 def local_maxima(surface: Array, scene: Scene) -> Array:
     """
-    Phase pairs (K, 2), rad, at which a surface is as high as at its eight neighbors, those first that may rise highest.
+    Return the phase pairs (K, 2), rad, at which a surface is as high as at its eight neighbors.
 
-    surface: (n, n), on `phase_grid(n)`; NaN without an answer. At most MAX_STARTS pairs, and of those that a symmetry
-    of the motion makes alike only one.
+    `surface` is (n, n), on `phase_grid(n)`; NaN without an answer. Pairs that may rise highest come first, at most
+    MAX_STARTS of them, and only one of those that a symmetry of the motion makes equal.
 
     >>> from reference.problem import load_scene
     >>> alpha = 2.0 * np.pi * np.arange(8) / 8

@@ -1,4 +1,4 @@
-"""Demands of every phase pair of a surface: one motion for each, read by `demands`."""
+"""Demands at all phase pairs of a surface: one motion for each, read by `demands`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # demands of bodies: index of the body that comes first
+PER_BODY = {"acceleration": 0, "drift": 1, "torsion": 0}  # demands of bodies, with the index of the first body
 QUANTITIES = {  # fields of `Demands` in words, and their units
     "displacement": ("largest displacement of the isolator", "m"),
     "residual": ("residual displacement of the isolator", "m"),
@@ -45,7 +45,7 @@ QUANTITIES = {  # fields of `Demands` in words, and their units
 
 
 def unit_of(quantity: str) -> str:
-    """Unit of a demand, a field of `Demands`, in words; "" for a pure number."""
+    """Return the unit of a demand, a field of `Demands`; "" for a pure number."""
     unit = QUANTITIES[quantity][1]
     return "" if unit == "1" else unit
 
@@ -53,13 +53,13 @@ def unit_of(quantity: str) -> str:
 @dataclass(frozen=True)
 class Estimates:
     """
-    Numbers and their errors.
+    Arrays of numbers with their errors.
 
     Attributes
     ----------
     value : ndarray, (...) or (..., K)
         In the shape of the phase pairs, of K bodies or links. NaN without an answer.
-    error : ndarray, likewise
+    error : ndarray, of the shape of `value`
         Estimated absolute error; NaN where it is not known.
     """
 
@@ -70,9 +70,9 @@ class Estimates:
 @dataclass(frozen=True)
 class PeakDemands(Mapping[str, Estimates]):
     """
-    Demands of many phase pairs; what `peak_demands` returns.
+    Demands at many phase pairs, the result of `peak_demands`.
 
-    A mapping from the names of the fields of `Demands` to `Estimates`, without those that the model lacks.
+    A mapping from the names of the fields of `Demands` to `Estimates`, without those that the model does not have.
 
     Attributes
     ----------
@@ -105,7 +105,7 @@ class PeakDemands(Mapping[str, Estimates]):
 
     def to_xarray(self) -> xr.Dataset:
         """
-        The demands with coordinates and units.
+        Return the demands with coordinates and units.
 
         Returns
         -------
@@ -146,7 +146,7 @@ class PeakDemands(Mapping[str, Estimates]):
 
 
 def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], Trajectory]) -> PeakDemands:
-    """Demands of the motions that `move` computes for phase pairs (..., 2), rad; NaN without an answer."""
+    """Return the demands of the motions that `move` computes for phase pairs (..., 2), rad; NaN without an answer."""
     pairs, shape = flat_phases(phases)
     clock = time.process_time()
     status = np.full(len(pairs), Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
@@ -157,17 +157,17 @@ def demands_of_motions(scene: Scene, phases: ArrayLike, move: Callable[[Array], 
         status[number], instant[number], answers[number] = motion.status, motion.instant, demands(motion)
     cost = time.process_time() - clock
     stacked = {}
-    for name, table in _stacked(answers).items():
+    for name, table in _stack_answers(answers).items():
         values, errors = np.moveaxis(table.reshape((*shape, *table.shape[1:])), -1, 0)
         stacked[name] = Estimates(values, errors)
     return PeakDemands(stacked, status.reshape(shape), instant.reshape(shape), cost, pairs.reshape(*shape, 2))
 
 
-def _stacked(answers: list[Demands | None]) -> dict[str, Array]:
-    """Value and error, the last axis, of every field that any answer has; NaN where an answer is lacking."""
+def _stack_answers(answers: list[Demands | None]) -> dict[str, Array]:
+    """Return value and error, the last axis, of every field that any answer has; NaN where one has no answer."""
     stacked: dict[str, Array] = {}
     for name in (field.name for field in fields(Demands) if field.name != "status"):
-        tables = [None if answer is None else _table(getattr(answer, name)) for answer in answers]
+        tables = [None if answer is None else _estimate_table(getattr(answer, name)) for answer in answers]
         present = next((table for table in tables if table is not None), None)
         if present is not None:
             nothing = np.full_like(present, np.nan)
@@ -175,8 +175,8 @@ def _stacked(answers: list[Demands | None]) -> dict[str, Array]:
     return stacked
 
 
-def _table(estimates: Estimate | tuple[Estimate, ...] | None) -> Array | None:
-    """Value and error, (2,) or (K, 2); None for a demand that the model does not have."""
+def _estimate_table(estimates: Estimate | tuple[Estimate, ...] | None) -> Array | None:
+    """Return value and error, (2,) or (K, 2); None for a demand that the model does not have."""
     if estimates is None:
         return None
     if isinstance(estimates, Estimate):

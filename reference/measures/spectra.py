@@ -1,9 +1,9 @@
 """
-Floor response spectra: what equipment on the bodies of a motion is exposed to.
+Response spectra of ground motions and of the floors of a motion.
 
 An oscillator of one degree of freedom stands on a body and follows its absolute acceleration, which is linear between
-the samples. Its motion from one sample to the next is the exact one (Nigam and Jennings, 1969), as a power series in
-the angle that it goes through: unlike the closed form, that has no cancellation in short steps.
+the samples. Its motion from one sample to the next is the exact one (Nigam and Jennings, Bull. Seism. Soc. Am. 59,
+1969), as a power series in its angle: unlike the closed form, that has no cancellation in short steps.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from reference.measures.demands import ANSWERED
 from reference.problem.ranges import Range, checked_array, checked_number
 from reference.problem.result import Array, Trajectory, takes_motion
 
-PERIODS = np.geomspace(0.02, 5.0, 49)  # s, where no others are asked for
-DAMPING = Range(0.0, 1.0, "of critical")
-TERMS = 8  # of the power series of a step
-MAX_ANGLE = 0.25  # rad, that the oscillator goes through in a step: the series then has an error of 1e-12
-# The sampling error is so many times the largest change if only one of so many samples is taken. Measured on the
-# built-in scenes against ten times as many samples: 0.6 of that at most.
+PERIODS = np.geomspace(0.02, 5.0, 49)  # s, default periods
+DAMPING_RANGE = Range(0.0, 1.0, "of critical")
+SERIES_TERMS = 8  # terms of the power series of a step
+MAX_ANGLE = 0.25  # rad, largest angle of the oscillator in a step: the series then has an error of 1e-12
+# The sampling error is SAMPLING_FACTOR times the largest change if only one of DECIMATION samples is taken. Measured on
+# the built-in scenes against ten times as many samples: 0.6 of that at most.
 SAMPLING_FACTOR, DECIMATION = 2.0, 3
 
 
@@ -55,7 +55,7 @@ class FloorSpectra:
 @takes_motion
 def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damping: float = 0.05) -> FloorSpectra:
     """
-    Floor response spectra of every body of one motion, with errors.
+    Return floor response spectra of every body of one motion, with errors.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     Returns
     -------
     FloorSpectra
-        Of the oscillator's motion from rest until the end of the scene, without the free vibration that follows.
+        Spectra of the oscillator's motion from rest to the end of the scene, without the free vibration that follows.
 
     Raises
     ------
@@ -91,8 +91,8 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     >>> spectra.acceleration.shape, bool((spectra.error < 1e-2 * spectra.acceleration).all())
     ((2, 2, 2), True)
     """
-    damping = checked_number("damping", damping, DAMPING)
-    period = PERIODS if periods is None else _checked_periods(periods)
+    damping = checked_number("damping", damping, DAMPING_RANGE)
+    period = PERIODS if periods is None else _check_periods(periods)
     if trajectory.status not in ANSWERED or len(trajectory.time) < 2:
         nothing = np.full((trajectory.position.shape[1], 2, len(period)), np.nan)
         return FloorSpectra(period, damping, nothing, nothing.copy())
@@ -126,7 +126,7 @@ def factor_for_spectrum(
     damping: float = 0.05,
 ) -> float:
     """
-    Factor of a ground motion that brings its response spectrum closest to a target spectrum.
+    Return the factor of a ground motion that brings its response spectrum closest to a target spectrum.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def response_spectrum(
     time: ArrayLike, acceleration: ArrayLike, periods: ArrayLike, damping: float = 0.05
 ) -> NDArray[np.float64]:
     """
-    Response spectrum of a ground motion.
+    Return the response spectrum of a ground motion.
 
     Parameters
     ----------
@@ -205,8 +205,8 @@ def response_spectrum(
     >>> reference.response_spectrum(time, 2.0 * np.sin(6.0 * time), [0.01]).round(2)
     array([2.])
     """
-    damping = checked_number("damping", damping, DAMPING)
-    period = _checked_periods(periods)
+    damping = checked_number("damping", damping, DAMPING_RANGE)
+    period = _check_periods(periods)
     rule = "must be rising instants (K,), s, and as many accelerations (K,) or (K, 2), m/s^2"
     instants, ground = checked_array("time", time, rule), checked_array("acceleration", acceleration, rule)
     ground = ground[:, None] if ground.ndim == 1 else ground
@@ -221,7 +221,7 @@ def response_spectrum(
     return mean
 
 
-def _checked_periods(periods: ArrayLike) -> Array:
+def _check_periods(periods: ArrayLike) -> Array:
     rule = "must be positive numbers (P,), s"
     period = checked_array("periods", periods, rule)
     if period.ndim != 1 or not len(period) or not (period > 0.0).all():
@@ -232,23 +232,26 @@ def _checked_periods(periods: ArrayLike) -> Array:
 @cached_on_disk(__file__, nogil=True)
 def _largest_accelerations(time: Array, floor: Array, period: Array, damping: float, series: Array) -> Array:
     """
-    Largest pseudo-acceleration (C, P), m/s^2, of oscillators on floors (T, C), m/s^2.
+    Return the largest pseudo-acceleration (C, P), m/s^2, of oscillators on floors (T, C), m/s^2.
 
     y'' + 2 damping y' + y = -floor, with y the displacement times the square of the natural frequency and derivatives
-    by the angle. series: as `_power_series`.
+    by the angle. `series` is that of `_power_series`.
     """
+    # The first loop over the intervals computes the matrices of their steps, which depend on the lengths alone, so that
+    # no interval waits for the motion in the one before. The second loop follows the motion. An interval between two
+    # samples is cut into equal steps of MAX_ANGLE at most.
     count, total = floor.shape[1], time.shape[0] - 1
     largest = np.zeros((count, period.shape[0]))
     place, speed = np.zeros(count), np.zeros(count)
     steps_of, motion = np.empty(total), np.empty((total, 6))
     for p in range(period.shape[0]):
         frequency = 2.0 * math.pi / period[p]
-        for n in range(total):  # by itself: no interval waits for the motion in the one before
+        for n in range(total):
             angle = frequency * (time[n + 1] - time[n])
             steps_of[n] = steps = max(1.0, np.ceil(angle / MAX_ANGLE))
             angle /= steps
             b = f = r = 0.0
-            for k in range(TERMS - 1, -1, -1):
+            for k in range(SERIES_TERMS - 1, -1, -1):
                 b, f, r = b * angle + series[k, 0], f * angle + series[k, 1], r * angle + series[k, 2]
             b, f, r = b * angle, f * angle, r * angle**2
             s = f * angle
@@ -266,7 +269,7 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
                     y1 = y - s * pulled + b * v - r * change
                     v1 = d * v - b * pulled - f * change
                     top = abs(y1)
-                    if v * v1 < 0.0:  # it turns: its speed is taken as linear
+                    if v * v1 < 0.0:  # the oscillator turns: its speed is taken as linear
                         top = max(top, abs(y + 0.5 * v * v / (v - v1) * angle))
                     if top > largest[i, p]:
                         largest[i, p] = top
@@ -276,17 +279,17 @@ def _largest_accelerations(time: Array, floor: Array, period: Array, damping: fl
 
 def _power_series(damping: float) -> Array:
     """
-    Coefficients (TERMS, 3) of the motion from rest as power series in the angle, from the lowest power on.
+    Return coefficients (SERIES_TERMS, 3) of the motion from rest as power series in the angle, lowest power first.
 
-    Columns: under a unit impulse, over the angle; under a constant 1, over the square of the angle; under a ramp up to
-    1, over the same. All motions of a step are sums of these. The k-th derivative at the start, of the motion under a
-    constant, is f_k: 0, 0, 1, and from there on -2 damping f_(k-1) - f_(k-2). The impulse is the derivative of the
-    constant, the ramp its integral over the angle.
+    Columns: motion under a unit impulse, over the angle; under a constant 1, over the square of the angle; under a ramp
+    up to 1, over the square of the angle. All motions of a step are sums of these. The k-th derivative at the start of
+    the motion under a constant is f_k: 0, 0, 1, and then -2 damping f_(k-1) - f_(k-2). The motion under the impulse is
+    the derivative of that under the constant; the one under the ramp is its integral over the angle.
     """
     derivatives = [0.0, 1.0]
-    for _ in range(TERMS - 1):
+    for _ in range(SERIES_TERMS - 1):
         derivatives.append(-2.0 * damping * derivatives[-1] - derivatives[-2])
-    power = np.arange(1.0, TERMS + 1.0)
+    power = np.arange(1.0, SERIES_TERMS + 1.0)
     impulse = np.array(derivatives[1:]) / np.cumprod(power)
     constant = impulse / (power + 1.0)
     return np.column_stack([impulse, constant, constant / (power + 2.0)])

@@ -4,7 +4,8 @@ The linear bodies above the platform (4.4), eliminated from a collocation step a
 In the eigenbasis of the collocation matrix each channel j is a tridiagonal system with L = (h lambda_j)^2,
     (1 + L (b_i + c_i)) a_i - L b_i a_{i-1} - L c_i a_{i+1} = r_i,   b_i = k_{i,i-1}/m_i,  c_i = k_{i+1,i}/m_i,
 solved from the top down: d_i = e_i + L b_i with e_i = 1 + L c_i e_{i+1} / d_{i+1}, which subtracts nothing and so keeps
-its digits however stiff a link is. With dampers L b_i becomes L b_i + h lambda_j c_{i,i-1}/m_i, and L c_i likewise.
+its digits however stiff a link is. With dampers L b_i becomes L b_i + h lambda_j c_{i,i-1}/m_i, and L c_i becomes
+L c_i + h lambda_j c_{i+1,i}/m_i.
 """
 
 from __future__ import annotations
@@ -25,46 +26,50 @@ from reference.solver.collocation import (
 )
 from reference.solver.compiled import compiled
 from reference.solver.polynomial import NODES_ROW
-from reference.solver.rows import Row, combined, put, row
+from reference.solver.rows import Row, combine_columns, put, row
 from reference.solver.system import PLATFORM, Ground, System
-from reference.solver.work import Work
+from reference.solver.work import Workspace
 
-# a number in every channel as a row: the real parts of all channels, the imaginary parts behind them
+# A number in every channel as a row: the real parts of all channels, the imaginary parts behind them
 TO_CHANNELS_COLUMNS = columns(np.vstack([TO_CHANNELS.real, TO_CHANNELS.imag]))
 FROM_CHANNELS_COLUMNS = columns(np.hstack([FROM_CHANNELS.real, -FROM_CHANNELS.imag]))
 ONES_IN_CHANNELS, NODES_IN_CHANNELS = product(TO_CHANNELS, np.stack([np.ones(STAGES), NODES], axis=1)).T.copy()
-# from stage m through channel j: to all stages, by its real and its imaginary part
+# Response at all stages to a number at stage m through channel j, by the channel's real and imaginary part
 _THROUGH = [product(FROM_CHANNELS[:, j : j + 1], TO_CHANNELS[j : j + 1]) for j in range(CHANNELS)]
 THROUGH_REAL, THROUGH_IMAGINARY = (
     np.array([columns(part) for part in parts])
     for parts in zip(*((through.real, through.imag) for through in _THROUGH))
 )
-# of the loads: what rounding on the way through the channels leaves in an acceleration, at the worst stage (3e-13)
+# Rounding of an acceleration on the way through the channels, as a share of the loads, at the worst stage (3e-13)
 CHANNEL_ROUNDING = float(np.finfo(float).eps * product(np.abs(FROM_CHANNELS), np.abs(TO_CHANNELS)).sum(axis=1).max())
 
 
 @compiled
 def coupling_below(system: System, i: int, axis: int, root: complex) -> complex:
-    """Acceleration of body i by one of the body below, through the link, with root = h lambda_j."""
+    """Return the coupling of body i to an acceleration of the body below in channel j; root = h lambda_j."""
     return root * root * system.below[i, axis] + root * system.damping_below[i, axis]
 
 
 @compiled
 def coupling_above(system: System, i: int, axis: int, root: complex) -> complex:
-    """The same by an acceleration of the body above."""
+    """Return the coupling of body i to an acceleration of the body above in channel j; root = h lambda_j."""
     return root * root * system.above[i, axis] + root * system.damping_above[i, axis]
 
 
 @compiled
 def reciprocal(number: complex) -> complex:
-    """1 / number, whose square neither overflows nor vanishes."""
+    """Return 1 / number; the square of its size must neither overflow nor vanish."""
     square = number.real * number.real + number.imag * number.imag
     return complex(number.real / square, -number.imag / square)
 
 
 @compiled
-def eliminate_chain(system: System, work: Work, h: float) -> None:
-    """For step length h: the inverse pivots."""
+def eliminate_chain(system: System, work: Workspace, h: float) -> None:
+    """Set the inverse pivots of the chain and its gain on the platform for the step length h."""
+    # Each channel j couples body i to its neighbors only (see above), so elimination from the top down costs one pivot
+    # per body. d_i = e_i + L b_i, and e_i = 1 + L c_i e_{i+1} / d_{i+1} replaces the usual difference
+    # 1 + L c_i - L^2 c_i b_{i+1} / d_{i+1}, in which a stiff link would cancel all digits of the inertia.
+    # `upper` is e_i, `inverse` 1 / d_i.
     bodies = work.x.shape[0]
     for axis in range(system.axes):
         for j in range(CHANNELS):
@@ -79,8 +84,8 @@ def eliminate_chain(system: System, work: Work, h: float) -> None:
 
 
 @compiled
-def feed_back(system: System, work: Work, h: float) -> None:
-    """What the platform's stage accelerations do to its own drive through the eliminated chain."""
+def set_feedback(system: System, work: Workspace, h: float) -> None:
+    """Set the response of the platform's drive to its own stage accelerations through the eliminated chain."""
     feedback = work.feedback
     for axis in range(system.axes):
         for m in range(STAGES):
@@ -95,20 +100,25 @@ def feed_back(system: System, work: Work, h: float) -> None:
 
 
 @compiled
-def to_channels(values: Row) -> Row:
-    """The numbers at the stages in the eigenbasis."""
-    return combined(TO_CHANNELS_COLUMNS, values)
+def transform_to_channels(values: Row) -> Row:
+    """Return the numbers at the stages in the eigenbasis."""
+    return combine_columns(TO_CHANNELS_COLUMNS, values)
 
 
 @compiled
-def from_channels(values: Row) -> Row:
-    """The numbers at the stages, from those in the channels and their conjugates."""
-    return combined(FROM_CHANNELS_COLUMNS, values)
+def transform_from_channels(values: Row) -> Row:
+    """Return the numbers at the stages from those in the channels and their conjugates."""
+    return combine_columns(FROM_CHANNELS_COLUMNS, values)
 
 
 @compiled
-def load_chain(system: System, work: Work, h: float) -> None:
-    """The loads of the eliminated chain from the state and the ground; fills `free`."""
+def load_chain(system: System, work: Workspace, h: float) -> None:
+    """Set the loads of the eliminated chain from the state and the ground, and the platform's drive `free`."""
+    # A body's load is its acceleration at the stages if all bodies kept their velocities: minus the ground's
+    # acceleration, plus the link forces of the state, which change by `slope` per unit of time. In the
+    # channels a constant is ONES_IN_CHANNELS and the elapsed time h NODES_IN_CHANNELS. `carried` is the part that
+    # elimination passes down from the body above. The link to body 1 brings it to the platform: together with the
+    # link's force in the state it is the drive `free`, to which `feedback` adds the response to the platform itself.
     x, v, loads, inverse, channels = work.x, work.v, work.load, work.inverse, work.channels
     bodies = work.x.shape[0]
     for axis in range(system.axes):
@@ -116,7 +126,7 @@ def load_chain(system: System, work: Work, h: float) -> None:
         if bodies == 1:
             put(work.free, axis, -ground)
             continue
-        drives = to_channels(-ground)
+        drives = transform_to_channels(-ground)
         for j in range(CHANNELS):
             root = h * EIGENVALUES[j]
             drive = complex(drives[j], drives[CHANNELS + j])
@@ -139,25 +149,25 @@ def load_chain(system: System, work: Work, h: float) -> None:
         stretch = x[1, axis] - x[0, axis]
         rate = v[1, axis] - v[0, axis]
         spring = system.above[0, axis] * (stretch + row(NODES_ROW, ()) * (h * rate))
-        carried_down = from_channels(row(channels, ()))
+        carried_down = transform_from_channels(row(channels, ()))
         put(work.free, axis, spring + system.damping_above[0, axis] * rate - ground + carried_down)
 
 
 @compiled
-def move_chain(system: System, work: Work, h: float) -> None:
-    """Stage accelerations of the bodies from those of the platform; the state at the end of the step in x1, v1."""
+def move_chain(system: System, work: Workspace, h: float) -> None:
+    """Set the bodies' stage accelerations from those of the platform, and the end of the step in x1, v1."""
     x, v, a, load, inverse, channels = work.x, work.v, work.a, work.load, work.inverse, work.channels
     bodies = work.x.shape[0]
     for axis in range(system.axes):
         if bodies > 1:
-            put(channels, (), to_channels(row(a, (0, axis))))
+            put(channels, (), transform_to_channels(row(a, (0, axis))))
         for i in range(1, bodies):
             for j in range(CHANNELS):
                 root = h * EIGENVALUES[j]
                 under = complex(channels[j], channels[CHANNELS + j])
                 moved = (load[i, axis, j] + coupling_below(system, i, axis, root) * under) * inverse[i, axis, j]
                 channels[j], channels[CHANNELS + j] = moved.real, moved.imag
-            put(a, (i, axis), from_channels(row(channels, ())))
+            put(a, (i, axis), transform_from_channels(row(channels, ())))
         for i in range(bodies):
             velocity = 0.0
             position = 0.0
@@ -169,8 +179,8 @@ def move_chain(system: System, work: Work, h: float) -> None:
 
 
 @compiled
-def chain_acceleration(system: System, work: Work, ground: Ground) -> None:
-    """Accelerations a0 of the bodies above the platform in the state x, v."""
+def set_chain_acceleration(system: System, work: Workspace, ground: Ground) -> None:
+    """Set the accelerations a0 of the bodies above the platform in the state x, v."""
     bodies = work.x.shape[0]
     for i in range(1, bodies):
         for axis in range(system.axes):

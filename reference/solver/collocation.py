@@ -6,8 +6,9 @@ integrals:  v_i = v_0 + h (A a)_i,  x_i = x_0 + c_i h v_0 + h^2 (A^2 a)_i.  The 
 A = T diag(lambda) T^-1 turns a linear chain into one scalar problem per eigenvalue; of each conjugate pair one is kept.
 Source: Hairer and Wanner, Solving Ordinary Differential Equations II, sections IV.5 and IV.8.
 
-LAPACK rounds otherwise on every kind of processor, and mu would follow in its eighth digit. So it only gives first
-guesses here, rounded to a few digits; sums are Python's own (docs/decisions/0003-floating-point-flags.md).
+LAPACK rounds differently on every kind of processor, and mu would follow in its eighth digit. So it only gives first
+guesses here, rounded to a few digits. The constants are refined from these with sums in a fixed order
+(docs/decisions/0003-floating-point-flags.md).
 """
 
 from __future__ import annotations
@@ -18,14 +19,14 @@ import numpy as np
 from numpy.polynomial import legendre
 
 STAGES = 7
-LANES = STAGES + 1  # of a row (rows.py)
+ROW_LENGTH = STAGES + 1  # numbers in a row (rows.py)
 CHANNELS = (STAGES + 1) // 2  # one real eigenvalue and one of each conjugate pair
-GUESSED_DIGITS = 3
-ITERATIONS = 12  # from such a guess to rounding
+GUESSED_DIGITS = 3  # decimals of LAPACK's results that serve as first guesses
+ITERATIONS = 12  # iterations from such a guess to rounding
 
 
-def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """X of matrix X = right, by elimination with row pivoting."""
+def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Return X of matrix X = right, by elimination with row pivoting."""
     rows = [[*left, *rest] for left, rest in zip(matrix.tolist(), right.tolist())]
     size = len(rows)
     for i in range(size):
@@ -39,26 +40,26 @@ def _solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 def product(left: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """left @ right, with exact sums."""
+    """Return left @ right with exact sums."""
     columns = right.T.tolist()
     entries = np.array([[_dot(row, column) for column in columns] for row in left.tolist()])
     return entries if np.iscomplexobj(left) or np.iscomplexobj(right) else entries.real.copy()
 
 
 def _dot(row: list[complex], column: list[complex]) -> complex:
-    """Sum of the products of their entries."""
+    """Return the sum of the products of two vectors' entries, rounded once."""
     pairs = list(zip(row, column))
     real = math.fsum([*(a.real * b.real for a, b in pairs), *(-a.imag * b.imag for a, b in pairs)])
     return complex(real, math.fsum([*(a.real * b.imag for a, b in pairs), *(a.imag * b.real for a, b in pairs)]))
 
 
-def _shifted_legendre(order: int) -> legendre.Legendre:
+def _legendre_basis(order: int) -> legendre.Legendre:
     return legendre.Legendre.basis(order, domain=[0.0, 1.0])
 
 
 def _nodes(stages: int) -> np.ndarray:
-    """Right Radau points on (0, 1]: the roots of P_s - P_{s-1}."""
-    polynomial = _shifted_legendre(stages) - _shifted_legendre(stages - 1)
+    """Return the right Radau points on (0, 1]: the roots of P_s - P_{s-1} (Hairer and Wanner, IV.5)."""
+    polynomial = _legendre_basis(stages) - _legendre_basis(stages - 1)
     roots = np.round(np.sort(polynomial.roots().real), GUESSED_DIGITS)
     for _ in range(ITERATIONS):
         roots -= polynomial(roots) / polynomial.deriv()(roots)
@@ -67,53 +68,58 @@ def _nodes(stages: int) -> np.ndarray:
 
 
 def _weights(theta: np.ndarray, integrated: bool) -> np.ndarray:
-    """Weights of the interpolating polynomial at theta, or of its integral from 0 to theta: (len(theta), STAGES)."""
-    basis = [_shifted_legendre(k) for k in range(STAGES)]
+    """Return weights of the interpolating polynomial at theta, or of its integral from 0: (len(theta), STAGES)."""
+    basis = [_legendre_basis(k) for k in range(STAGES)]
     values = np.stack([p(NODES) for p in basis], axis=1)
     raised = np.stack([(p.integ(lbnd=0.0) if integrated else p)(theta) for p in basis], axis=1)
-    return np.ascontiguousarray(_solved(values.T, raised.T).T)
+    return np.ascontiguousarray(_solve(values.T, raised.T).T)
 
 
 NODES = _nodes(STAGES)
 A = _weights(NODES, True)
 A2 = product(A, A)
-# values of the interpolating polynomial at theta = 0: the defect there against the true acceleration is the error
+# Weights of the interpolating polynomial at theta = 0: its defect there against the known acceleration is the error
 AT_START = _weights(np.zeros(1), False)[0]
-# coefficients of theta^k of the interpolating polynomial
-MONOMIALS = _solved(np.vander(NODES, increasing=True), np.eye(STAGES))
+# Coefficients of theta^k of the interpolating polynomial
+MONOMIALS = _solve(np.vander(NODES, increasing=True), np.eye(STAGES))
 
 
-def _missed() -> np.ndarray:
-    """Coefficients of theta^k, highest first, of the polynomial that is 1 at the start of a step, 0 at the stages."""
+def _defect_polynomial() -> np.ndarray:
+    """Return the coefficients of theta^k, highest first, of the polynomial that is 1 at theta = 0, 0 at the stages."""
     coefficients = [1.0]
     for node in NODES.tolist():
         coefficients = [a - b / node for a, b in zip([0.0, *coefficients], [*coefficients, 0.0])]
     return np.array(coefficients)
 
 
-# what the polynomial through the stages misses, over that at the start of the step, and its integral
-MISSED = _missed()
-# from the accelerations: what the polynomial through the velocities at the stages misses at theta = 0, over h
+# Interpolation error of the polynomial through the stages over that at theta = 0
+DEFECT_POLYNOMIAL = _defect_polynomial()
+# Weights of the accelerations in the defect at theta = 0 of the polynomial through the velocities, over h
 VELOCITY_AT_START = product(AT_START[None, :], A)[0]
-MISSED_INTEGRAL = np.append(MISSED / np.arange(len(MISSED), 0, -1), 0.0)
+DEFECT_INTEGRAL = np.append(DEFECT_POLYNOMIAL / np.arange(len(DEFECT_POLYNOMIAL), 0, -1), 0.0)
 
 
 def _channels() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the eigenvalues of A, one of each conjugate pair, and the matrices to their eigenbasis and back."""
+    # A has one real eigenvalue and three conjugate pairs. The numbers in the channels of a pair are conjugate, so one
+    # channel is kept and counted twice. LAPACK's eigenvalues are rounded to GUESSED_DIGITS and refined by inverse
+    # iteration; the inverse of the eigenvectors gets one step of Newton's method (X <- 2 X - X V X), which makes it
+    # exact to rounding. All sums have a fixed order, so the constants are the same on every processor.
     guesses = np.round(np.linalg.eigvals(A), GUESSED_DIGITS)
     kept = sorted((complex(guess) for guess in guesses if guess.imag >= 0.0), key=lambda guess: guess.imag)
     values, vectors = zip(*(_eigenpair(guess) for guess in kept))
-    doubled = [1.0 if value.imag == 0.0 else 2.0 for value in values]  # the conjugate's share
+    doubled = [1.0 if value.imag == 0.0 else 2.0 for value in values]  # a kept channel stands for its conjugate, too
     others = [vector.conj() for vector, factor in zip(vectors, doubled) if factor == 2.0]
     every = np.stack([*vectors, *others], axis=1)
-    inverse = _solved(every, np.eye(STAGES))
+    inverse = _solve(every, np.eye(STAGES))
     inverse = 2.0 * inverse - product(inverse, product(every, inverse))
     return np.array(values), inverse[:CHANNELS], np.stack(vectors, axis=1) * doubled
 
 
 def _eigenpair(guess: complex) -> tuple[complex, np.ndarray]:
-    """Eigenvalue of A next to a guess, and its eigenvector with one entry 1: inverse iteration, by its corrections."""
+    """Return the eigenvalue of A next to a guess and its eigenvector with one entry 1, by inverse iteration."""
     shifted = A - guess * np.eye(STAGES)
-    vector = _solved(shifted, np.ones((STAGES, 1), complex))
+    vector = _solve(shifted, np.ones((STAGES, 1), complex))
     unit = int(np.abs(vector).argmax())
     value = guess
     for _ in range(ITERATIONS):
@@ -121,18 +127,18 @@ def _eigenpair(guess: complex) -> tuple[complex, np.ndarray]:
         image = product(A, vector)
         value = image[unit, 0].item()
         missed = [[a - value * b] for a, b in zip(image[:, 0].tolist(), vector[:, 0].tolist())]
-        vector = vector - _solved(shifted, np.array(missed))
+        vector = vector - _solve(shifted, np.array(missed))
     return value, vector[:, 0]
 
 
 EIGENVALUES, TO_CHANNELS, FROM_CHANNELS = (np.ascontiguousarray(part) for part in _channels())
 
-# where peaks and events are looked for inside a step
-DENSE = np.linspace(0.0, 1.0, 15)
+# Places in a step, theta, at which the search for peaks and events begins
+SEARCH_POINTS = np.linspace(0.0, 1.0, 15)
 
 
 def columns(matrix: np.ndarray) -> np.ndarray:
-    """The columns of a matrix with at most LANES rows, as rows (rows.py) with zeros behind."""
-    filled = np.zeros((matrix.shape[1], LANES))
+    """Return the columns of a matrix with at most ROW_LENGTH rows, as rows (rows.py) with zeros behind."""
+    filled = np.zeros((matrix.shape[1], ROW_LENGTH))
     filled[:, : len(matrix)] = matrix.T
     return filled

@@ -8,8 +8,8 @@ Everything is per platform mass m1. The inputs, all horizontal pairs in x, y:
   pressure  g + zeta'', m/s^2
   speed2    squared sliding speed v-bar^2 of (3.8), m^2/s^2
   sx, sy    slip vector: friction coefficient times the horizontal part of the slip direction, mu v_h / v-bar
-Both are linear in the slip vector, which is all that the friction law contributes (see friction.py). All are floats at
-one instant, or rows at all stages of a step (rows.py).
+Both are linear in the slip vector, which alone depends on the friction law (contact/friction.py). All are floats at one
+instant, or rows at all stages of a step (rows.py).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from __future__ import annotations
 from math import sqrt
 
 from reference.solver.compiled import compiled
-from reference.solver.rows import Number, as_many
+from reference.solver.rows import Number, broadcast_like
 
 
 @compiled
@@ -34,7 +34,7 @@ def exact_acceleration(
     radius: float,
 ) -> tuple[Number, Number, Number, Number]:
     """
-    Equations (3.9)-(3.13), the multiplier eliminated: (ax, ay, reaction N / m1, inertia determinant).
+    Return (ax, ay, reaction N / m1, inertia determinant) by (3.9)-(3.13), the multiplier eliminated.
 
     With n = -p / rho the inward normal, M = m_sum / m1 and s the slip vector, Newton's law
         a_h = f + R (n_h - s),   a_z = -pressure + (R / M) (n_z - s_z),   R = N / m1
@@ -67,10 +67,10 @@ def small_acceleration(
     radius: float,
 ) -> tuple[Number, Number, Number, Number]:
     """
-    Equations (4.3) as printed: (ax, ay, reaction N / m1, 1).
+    Return (ax, ay, reaction N / m1, 1) by (4.3) as printed.
 
-    Friction takes mu [M (g + zeta'') w - u (p . w) / rho]: the terms with xi'' p are kept, those with the acceleration
-    and the spring force, of the same order, are dropped as in the paper.
+    Friction is mu [M (g + zeta'') w - u (p . w) / rho]. As in the paper, the terms with xi'' p are kept, and those with
+    the acceleration and the spring force, which are of the same order, are left out.
     """
     reaction = mass_ratio * pressure
     lever = (px * sx + py * sy) / radius
@@ -78,15 +78,15 @@ def small_acceleration(
         fx - reaction * (px / radius + sx) + ux * lever,
         fy - reaction * (py / radius + sy) + uy * lever,
         reaction,
-        as_many(1.0, reaction),
+        broadcast_like(1.0, reaction),
     )
 
 
 @compiled
-def vertical_acceleration(
+def vertical_motion(
     px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number, radius: float
 ) -> tuple[Number, Number, Number]:
-    """Height above the lowest point z1, vertical velocity and acceleration on the sphere (2.1), (3.4)-(3.5)."""
+    """Return height above the lowest point, vertical velocity and acceleration on the sphere (2.1), (3.4)-(3.5)."""
     depth = sqrt(radius * radius - px * px - py * py)  # -Delta of (3.3)
     vz = (px * vx + py * vy) / depth
     az = (vx * vx + vy * vy + vz * vz + px * ax + py * ay) / depth

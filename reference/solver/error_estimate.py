@@ -1,4 +1,4 @@
-"""Peaks with an error that holds: every run is made twice, and again while the two disagree by too much."""
+"""Peaks with error estimates: every run is made twice, and once more while the two disagree by too much."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from reference.solver.heating import heated, mean, uniform
-from reference.solver.run import runs
+from reference.solver.heating import mean_factor, set_factor_by_heat, set_uniform_factor
+from reference.solver.run import integrate_runs
 from reference.solver.step_control import MIN_SCALE_FRACTION
 from reference.solver.system import (
     CONSISTENT,
@@ -16,143 +16,160 @@ from reference.solver.system import (
     STEP_LIMIT,
     UNSOLVED,
     Array,
-    Demand,
-    Record,
+    RunSettings,
+    StepRecord,
     System,
-    record_of,
+    allocate_record,
 )
 
+# The constants of the estimate and their measurements are in docs/decisions/0002-two-run-error.md.
 TOLERANCE_RATIO = 30.0  # tolerance inside a step of the coarser run over that of the finer run
-# Share of the runs' difference that counts as error of the finer run. 1 / TOLERANCE_RATIO is expected.
+# Share of the runs' difference that counts as error of the finer run; 1 / TOLERANCE_RATIO is expected
 DIFFERENCE_FRACTION = 0.4
-# Lower bound on the error, in units of the tolerance inside a step: closer agreement is treated as accidental.
+# Lower bounds on the error, since closer agreement of two runs is accidental. The first is in units of the tolerance
+# inside a step, the second in those of the requested tolerance. The third takes the place of the second where friction
+# depends on the velocity: stiff creep needs more and shorter steps (measured: up to 0.015).
 MIN_ERROR_PER_STEP_TOLERANCE = 5e-4
-# Lower bound on the error, in units of the tolerance asked for: closer agreement is treated as accidental.
 MIN_ERROR_FRACTION = 0.007
-# Likewise where friction depends on the velocity: stiff creep takes more and shorter steps (measured: up to 0.015).
 MIN_ERROR_FRACTION_VARYING = 0.07
-READING_ERROR_FACTOR = 2.0  # times the interpolation error at the peak: the step before may add as much
+READING_ERROR_FACTOR = 2.0  # factor of the interpolation error at the peak: the step before may add as much
 ROUNDING_ERROR = 1e-12  # relative error that no tolerance removes: some hundred steps of some ten operations
-# Bounds on the tolerance inside a step, relative to the accelerations; a looser one saves few steps.
+# Bounds on the tolerance inside a step, relative to the accelerations; a looser one saves few steps
 MAX_STEP_TOLERANCE = 1e-5
 MIN_STEP_TOLERANCE = 1e-11
-# Tolerance inside a step over the tolerance of the peak: errors inside a step are local, a peak comes from all steps.
+# Tolerance inside a step over the tolerance of the peak: errors inside a step are local, a peak comes from all steps
 STEP_TOLERANCE_FACTOR = 10.0
-
-# Of the period (Demand.period): by which the coarser run goes beyond the peaks, since its events come earlier or later.
+# Time by which the coarser run goes beyond the last peak, over RunSettings.period: its events come earlier or later
 EVENT_MARGIN = 0.01
 
-FIRST_CAPACITY, STEPS_PER_KNOT = 1024, 2  # steps, to begin with: so many, and of every knot of a record
-# With heating the last run changes peaks and mean k_T by less than this share of the tolerance, or by less than the
-# tolerance and more than a share of the change before: what is left is the steps' own error. Before that a change may
-# be larger than the one before it: runs agree up to an instant that comes later with each run.
-SETTLED, CONTRACTION = 0.02, 0.5
-MOST_RUNS, SMALLEST = 30, 1e-300
+FIRST_STEP_CAPACITY, STEPS_PER_KNOT = 1024, 2  # first capacity of a record: steps, and steps per knot of the loading
+# With heating the last run changes peaks and mean k_T by less than the first share of the tolerance, or by less than
+# the tolerance and more than the second share of the change before: what remains is the steps' own error. In the first
+# runs a change may be larger than the one before it: runs agree up to an instant that comes later with each run.
+SETTLED_SHARE, CONTRACTING_SHARE = 0.02, 0.5
+MAX_HEATED_RUNS = 30  # runs for one k_T at most
+SMALLEST_VALUE = 1e-300  # lower bound on a peak, m/s^2, that a change is divided by
 
 NOT_MET = 100  # code of a run whose error stays above the tolerance; system.py has the other codes
 
 
-class Peaks(NamedTuple):
-    """Largest absolute accelerations and their estimated errors, and how, when and at what cost the runs ended."""
+class RunPeaks(NamedTuple):
+    """Largest absolute accelerations with estimated errors, and outcome, instant and cost of the runs."""
 
     value: Array  # (M, N) m/s^2
     error: Array  # (M, N) m/s^2
-    code: Array  # (M,)
-    instant: Array  # (M,) s
-    steps: Array  # (M,) of the last run
+    code: Array  # (M,) outcome (system.py), or NOT_MET
+    instant: Array  # (M,) s, end of the run
+    steps: Array  # (M,) number of steps of the last run
     reach: Array  # (M,) m, largest horizontal displacement of the platform
-    peaked: Array  # (M,) s, from when on no acceleration comes near the largest
+    last_peak: Array  # (M,) s, end of the last step with an acceleration near the largest
 
 
-def peaks_at(system: System, phases: Array, demand: Demand, tolerance: float, until: Array | None = None) -> Peaks:
+def peaks_at(
+    system: System, phases: Array, settings: RunSettings, tolerance: float, until: Array | None = None
+) -> RunPeaks:
     """
-    One run from rest for every phase pair (M, 2), this tolerance inside the steps.
+    Return the peaks of one run from rest for every phase pair (M, 2), with this tolerance inside the steps.
 
-    Errors are those of reading a peak, with what the steps before it missed of vibrations.
-
-    until: (M,) s, beyond which runs that do not end early make no step; the end of the motion by default.
+    Errors are those of reading a peak, with the drift of the steps before it. Runs that do not end early make no step
+    beyond `until` (M,), s, by default the end of the motion.
     """
     rest = np.zeros((len(system.below), 2))
-    demand = demand._replace(tolerance=tolerance)
+    settings = settings._replace(tolerance=tolerance)
     if len(system.heat) and len(phases):
-        (pair,) = phases  # each has a k_T of its own
-        return recorded(rest, rest, system, pair, demand)[0]
-    return peaks_from(rest, rest, system, phases, demand, record_of(0, len(rest)), until)
+        (pair,) = phases  # every phase pair has a k_T of its own
+        return record_run(rest, rest, system, pair, settings)[0]
+    return peaks_from(rest, rest, system, phases, settings, allocate_record(0, len(rest)), until)
 
 
 def peaks_from(
-    x: Array, v: Array, system: System, phases: Array, demand: Demand, record: Record, until: Array | None = None
-) -> Peaks:
-    """One run from positions x and velocities v (N, 2) for every phase pair (M, 2), rad; `record` keeps its steps."""
+    x: Array,
+    v: Array,
+    system: System,
+    phases: Array,
+    settings: RunSettings,
+    record: StepRecord,
+    until: Array | None = None,
+) -> RunPeaks:
+    """Return the peaks of one run from x and v (N, 2) for every phase pair (M, 2), rad; `record` keeps the steps."""
     count, bodies = len(phases), len(x)
-    value, error, ends = np.empty((count, bodies)), np.empty((count, bodies)), np.empty((len(Peaks._fields) - 2, count))
+    value, error = np.empty((count, bodies)), np.empty((count, bodies))
+    ends = np.empty((len(RunPeaks._fields) - 2, count))
     until = np.full(count, system.duration) if until is None else until
-    runs(system, phases, x, v, demand, record, until, value, error, ends)
-    return Peaks(value, error, *ends)
+    integrate_runs(system, phases, x, v, settings, record, until, value, error, ends)
+    return RunPeaks(value, error, *ends)
 
 
-def recorded(x: Array, v: Array, system: System, phase: Array, demand: Demand) -> tuple[Peaks, Record, System]:
+def record_run(
+    x: Array, v: Array, system: System, phase: Array, settings: RunSettings
+) -> tuple[RunPeaks, StepRecord, System]:
     """
-    One run with all its steps, however many, and the system with the k_T that it leaves.
+    Return the peaks of one run with all its steps, however many, and the system with k_T by the heat of the last run.
 
-    With heating, k_T in a run follows from the run before, until the two agree; the last change counts as error. The
-    first run has the k_T of `system`, or without one that of the initial temperature.
+    With heating, the run is repeated until its k_T no longer changes; the last change counts as error.
     """
-    capacity = FIRST_CAPACITY + STEPS_PER_KNOT * len(system.record)
+    # The number of steps is known only afterwards: a run that outgrows its record is made again with a larger one.
+    # With heating, k_T as a function of time follows from the heat of the run before. The first run has the k_T of
+    # `system`, or that of the initial temperature. This is a fixed-point iteration on whole motions (waveform
+    # relaxation): runs agree from the start up to an instant that comes later with each run, so a change may grow
+    # before it falls.
+    capacity = FIRST_STEP_CAPACITY + STEPS_PER_KNOT * len(system.record)
     known, before, made = np.array(np.inf), np.inf, 0
     if len(system.heat) and not len(system.k_t):
-        system = uniform(system)
+        system = set_uniform_factor(system)
     while True:
-        record = record_of(capacity, len(x))
-        peaks = peaks_from(x, v, system, phase[None], demand, record)
-        if record.made.max() > capacity:
-            capacity = int(record.made.max())
+        record = allocate_record(capacity, len(x))
+        peaks = peaks_from(x, v, system, phase[None], settings, record)
+        if record.counts.max() > capacity:
+            capacity = int(record.counts.max())
             continue
-        if not len(system.heat) or peaks.code[0] in (UNSOLVED, STEP_LIMIT) or record.made[0] == 0:
+        if not len(system.heat) or peaks.code[0] in (UNSOLVED, STEP_LIMIT) or record.counts[0] == 0:
             return peaks, record, system
-        system, made = heated(system, record, peaks.instant[0]), made + 1
-        now = np.array([*peaks.value[0], mean(system)])
+        system, made = set_factor_by_heat(system, record, peaks.instant[0]), made + 1
+        now = np.array([*peaks.value[0], mean_factor(system)])
         change = np.abs(now - known)
-        known, worst = now, (change / np.maximum(now, SMALLEST)).max() / demand.tolerance
-        if not worst > SETTLED or CONTRACTION * before < worst <= 1.0 or made == MOST_RUNS:
+        known, worst = now, (change / np.maximum(now, SMALLEST_VALUE)).max() / settings.tolerance
+        if not worst > SETTLED_SHARE or CONTRACTING_SHARE * before < worst <= 1.0 or made == MAX_HEATED_RUNS:
             return peaks._replace(error=peaks.error + change[:-1]), record, system
         before = worst
 
 
-def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool = False) -> Peaks:
+def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole: bool = False) -> RunPeaks:
     """
-    Peaks to the relative tolerance of `demand`, with errors.
+    Return the peaks to the relative tolerance of `settings`, with errors.
 
-    The tolerance inside the steps is tightened until two runs agree; one that cannot be finished is tried again, too.
-    What two runs before it have left remains, with its error.
-    Every run ends where nothing can come that changes them, the displacement or the outcome (look_ahead.py). The
-    coarser one serves the error of the peaks alone and ends behind the last of them. `whole`: all go to the end of the
-    motion.
+    With `whole` all runs go to the end of the motion; otherwise they end where no peak, displacement or outcome can
+    change any more (look_ahead.py).
     """
-    # the rough run knows the consistent condition for rest alone, and no heat
+    # Two runs with tolerances TOLERANCE_RATIO apart; their difference estimates the error of the finer one
+    # (docs/decisions/0002-two-run-error.md). The coarser run serves the error alone and ends just beyond the last peak.
+    # Where the error misses the tolerance, the finer run becomes the coarser one of the next pair. A run that cannot be
+    # finished is tried again, too, with a tighter tolerance: it may pass where a looser one stumbled. If the tighter
+    # one fails instead, the peaks of the pair before remain, with their error and the status "tolerance not met".
+    # Looking ahead supports only the consistent condition for rest and no heat.
     early = not whole and system.rest_condition == CONSISTENT and not len(system.heat)
-    demand = demand._replace(early=early)
-    tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * demand.tolerance, MIN_STEP_TOLERANCE))
-    if len(system.heat) and len(phases) and not len(system.k_t):  # every pair has a k_T, which a coarse run begins
-        rest, coarse = np.zeros((len(system.below), 2)), demand._replace(tolerance=TOLERANCE_RATIO * tolerance)
-        begun = [recorded(rest, rest, system, pair, coarse)[2] for pair in phases]
-        each = [peaks_with_error(its, pair[None], demand, whole) for its, pair in zip(begun, phases)]
-        return Peaks(*map(np.concatenate, zip(*each)))
-    after = peaks_at(system, phases, demand, tolerance)
-    known = demand.early & (after.code == SOLVED)
-    until = np.where(known, after.peaked + EVENT_MARGIN * demand.period, system.duration)
-    coarser = demand._replace(early=False, damped_weight=1.0)
+    settings = settings._replace(early=early)
+    tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * settings.tolerance, MIN_STEP_TOLERANCE))
+    if len(system.heat) and len(phases) and not len(system.k_t):  # every pair has its own k_T, first from a coarse run
+        rest, coarse = np.zeros((len(system.below), 2)), settings._replace(tolerance=TOLERANCE_RATIO * tolerance)
+        begun = [record_run(rest, rest, system, pair, coarse)[2] for pair in phases]
+        each = [peaks_with_error(its, pair[None], settings, whole) for its, pair in zip(begun, phases)]
+        return RunPeaks(*map(np.concatenate, zip(*each)))
+    after = peaks_at(system, phases, settings, tolerance)
+    known = settings.early & (after.code == SOLVED)
+    until = np.where(known, after.last_peak + EVENT_MARGIN * settings.period, system.duration)
+    coarser = settings._replace(early=False, damped_weight=1.0)
     before = peaks_at(system, phases, coarser, TOLERANCE_RATIO * tolerance, until)
-    peaks, disagree = _judged(before, after, tolerance, system, demand)
+    peaks, disagree = _compare_runs(before, after, tolerance, system, settings)
     unfinished = np.flatnonzero(disagree)
-    known = ~_given_up(before, after)
+    known = ~_where_unfinished(before, after)
     while len(unfinished) and tolerance > MIN_STEP_TOLERANCE:
         tolerance = max(tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
-        before = Peaks(*(part[disagree] for part in after))
-        after = peaks_at(system, phases[unfinished], demand, tolerance)
-        finer, disagree = _judged(before, after, tolerance, system, demand)
-        given_up = _given_up(before, after)
-        better = ~(given_up & known[unfinished])  # where not, what is known with its error stays
+        before = RunPeaks(*(part[disagree] for part in after))
+        after = peaks_at(system, phases[unfinished], settings, tolerance)
+        finer, disagree = _compare_runs(before, after, tolerance, system, settings)
+        given_up = _where_unfinished(before, after)
+        better = ~(given_up & known[unfinished])  # elsewhere the known peaks stay, with their errors
         for values, found in zip(peaks, finer):
             values[unfinished[better]] = found[better]
         peaks.code[unfinished[~better]] = NOT_MET
@@ -162,15 +179,17 @@ def peaks_with_error(system: System, phases: Array, demand: Demand, whole: bool 
     return peaks
 
 
-def _given_up(before: Peaks, after: Peaks) -> npt.NDArray[np.bool_]:
-    """At which phase pairs (M,) one of the two runs could not be finished."""
+def _where_unfinished(before: RunPeaks, after: RunPeaks) -> npt.NDArray[np.bool_]:
+    """Return True for phase pairs (M,) at which one of the two runs could not be finished."""
     return np.isin(before.code, (UNSOLVED, STEP_LIMIT)) | np.isin(after.code, (UNSOLVED, STEP_LIMIT))
 
 
-def _judged(before: Peaks, after: Peaks, tolerance: float, system: System, demand: Demand) -> tuple[Peaks, Array]:
-    """`after` with its errors, and at which phase pairs (M,) the two runs disagree by more than `demand` permits."""
-    error = _error(before, after, tolerance, demand.unit)
-    permitted = demand.tolerance * after.value
+def _compare_runs(
+    before: RunPeaks, after: RunPeaks, tolerance: float, system: System, settings: RunSettings
+) -> tuple[RunPeaks, Array]:
+    """Return `after` with its errors, and True for pairs (M,) at which the runs disagree by too much for `settings`."""
+    error = _estimate_error(before, after, tolerance, settings.unit)
+    permitted = settings.tolerance * after.value
     solved = (before.code == SOLVED) & (after.code == SOLVED)
     met = solved & (error <= permitted).all(axis=1)
     refused = (before.code == after.code) & (after.code != SOLVED)
@@ -178,17 +197,17 @@ def _judged(before: Peaks, after: Peaks, tolerance: float, system: System, deman
     return after._replace(error=np.maximum(error, fraction * permitted)), ~(met | refused)
 
 
-def _error(before: Peaks, after: Peaks, tolerance: float, unit: float) -> Array:
+def _estimate_error(before: RunPeaks, after: RunPeaks, tolerance: float, unit: float) -> Array:
     """
-    Estimated error of `after`, (M, N): what reading the peak leaves, and what the runs' states leave.
+    Return the estimated error of `after`, (M, N): that of reading the peak, and that of the state of the runs.
 
-    Below what rounding may do the two runs differ by chance: there the error is that of rounding, however they differ.
+    Two runs that differ by less than rounding agree by chance: there the error is that of rounding.
     """
-    share = np.where(
-        after.value < MIN_SCALE_FRACTION * unit, 1.0, DIFFERENCE_FRACTION
-    )  # steps do not resolve less than that
+    # Steps do not resolve peaks below MIN_SCALE_FRACTION of the loading: there the whole difference counts. Small
+    # accelerations are differences of large ones, so their rounding is relative to the loading.
+    share = np.where(after.value < MIN_SCALE_FRACTION * unit, 1.0, DIFFERENCE_FRACTION)
     between = share * np.abs(after.value - before.value)
-    rounding = ROUNDING_ERROR * np.maximum(after.value, unit)  # small accelerations are differences of large ones
+    rounding = ROUNDING_ERROR * np.maximum(after.value, unit)
     return (
         np.maximum(READING_ERROR_FACTOR * after.error + between, rounding)
         + MIN_ERROR_PER_STEP_TOLERANCE * tolerance * after.value

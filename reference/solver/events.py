@@ -1,62 +1,62 @@
-"""Where inside a step something happens, from the polynomials through its stages."""
+"""Events inside a step, located on the polynomials through its stages."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from reference.solver.collocation import DENSE, STAGES
+from reference.solver.collocation import SEARCH_POINTS, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.load import loaded
+from reference.solver.contact.load import scale_by_load
 from reference.solver.contact.platform import load_at_stages, rest_excess
 from reference.solver.ground import k_t_at
 from reference.solver.polynomial import expand, value_at
-from reference.solver.rows import Row, as_many, highest, put, row, where_positive
+from reference.solver.rows import Row, broadcast_like, highest, put, row, where_positive
 from reference.solver.system import Load, System
-from reference.solver.work import MAX_PARTS, REACTION, SPEED2, VELOCITY, Work
+from reference.solver.work import MAX_PARTS, REACTION, SPEED2, VELOCITY, Workspace
 
-# What is passed: a level by the polynomial in powers[0], the friction limit at rest, a sliding speed.
+# Kinds of events: the polynomial in powers[0] passes zero, friction at rest its limit, the sliding speed a given one.
 # No literals (system.py).
 LEVEL, ONSET, SPEED = np.int64(0), np.int64(1), np.int64(2)
 NEVER = 2.0  # theta of an event that is not within the step
-GOLDEN_SECTIONS = 30  # of two instants: an event shorter than a millionth of the step moves nothing
-GOLDEN_SHARE = 0.382
-MAX_SECANTS = 200
-SECANTS_PER_HALVING = 3  # that do not halve the interval: a bisection follows
-LOCATION_TOLERANCE = 1e-15  # of the step
-NEAR_LIMIT = 0.5  # of the squared friction limit: between two stages of a step at rest the excess changes by less
+GOLDEN_SECTIONS = 30  # sections of an interval that may hide an event: one shorter than 1e-6 of a step moves nothing
+GOLDEN_SHARE = 0.382  # share of the interval that a golden section cuts off, (3 - sqrt(5)) / 2
+MAX_SECANTS = 200  # steps of regula falsi
+SECANTS_PER_HALVING = 3  # steps that do not halve the interval, before a bisection follows
+LOCATION_TOLERANCE = 1e-15  # share of the step to which an event is located
+NEAR_LIMIT = 0.5  # share of the squared friction limit by which the excess at rest changes less between two stages
 
 
 @compiled
-def first_crossing(system: System, work: Work, values: Row, start: float, target: float) -> float:
-    """First theta at which the polynomial through `values` has passed `target`, seen from `start` at theta = 0."""
+def locate_level_crossing(system: System, work: Workspace, values: Row, start: float, target: float) -> float:
+    """Return the first theta at which the polynomial through `values` passes `target`, coming from `start`."""
     expand_level(work, values, target)
-    return first_passage(system, work, LEVEL, 1.0 if start < target else -1.0, 0.0, start - target)
+    return locate_first_event(system, work, LEVEL, 1.0 if start < target else -1.0, 0.0, start - target)
 
 
 @compiled
-def expand_level(work: Work, values: Row, target: float) -> None:
-    """Powers of theta of the polynomial through `values` less `target`, in powers[0]."""
+def expand_level(work: Workspace, values: Row, target: float) -> None:
+    """Set powers[0] to the powers of theta of the polynomial through `values` less `target`."""
     expand(values, work.powers[0])
     work.powers[0, 0] -= target
 
 
 @compiled
-def first_onset(system: System, work: Work) -> float:
-    """First theta of a step at rest at which friction can no longer hold the platform; fills the reaction."""
+def locate_onset(system: System, work: Workspace) -> float:
+    """Return the first theta at which friction can no longer hold the platform; set the reaction at the stages."""
     load = load_at_stages(work)
     excess, reaction = rest_excess(system, load)
     put(work.stage, REACTION, reaction)
-    limit = loaded(system, load.k_t, reaction, system.friction * reaction)
+    limit = scale_by_load(system, load.k_t, reaction, system.friction * reaction)
     most = highest(excess + NEAR_LIMIT * (limit * limit))
-    if most < 0.0:  # only a step that comes near the limit is looked at closely
+    if most < 0.0:  # the step does not come near the limit
         return NEVER
     expand_drive(work)
-    return first_passage(system, work, ONSET, 1.0, 0.0, excess_at(system, work, 0.0))
+    return locate_first_event(system, work, ONSET, 1.0, 0.0, excess_at(system, work, 0.0))
 
 
 @compiled
-def expand_drive(work: Work) -> None:
-    """Powers of theta of the drive and the ground acceleration of a step at rest, in `powers`."""
+def expand_drive(work: Workspace) -> None:
+    """Set the powers of theta of the drive and the ground acceleration of a step at rest."""
     for axis in range(2):
         expand(row(work.free, axis), work.powers[axis])
     for axis in range(3):
@@ -64,8 +64,8 @@ def expand_drive(work: Work) -> None:
 
 
 @compiled
-def excess_at(system: System, work: Work, theta: float) -> float:
-    """Excess over the condition for rest at theta of a step at rest, after `expand_drive`."""
+def excess_at(system: System, work: Workspace, theta: float) -> float:
+    """Return the excess over the condition for rest at theta of a step at rest, after `expand_drive`."""
     powers = work.powers
     fx = fy = ux = uy = uz = 0.0
     for k in range(STAGES - 1, -1, -1):
@@ -80,24 +80,27 @@ def excess_at(system: System, work: Work, theta: float) -> float:
 
 
 @compiled
-def expand_speed(work: Work, h: float, target: float) -> None:
+def expand_speed(work: Workspace, h: float, target: float) -> None:
     """
     Prepare `speed_excess` over the squared sliding speed `target` in a step of length h, s.
 
-    The velocity is the integral of the polynomial through the accelerations. A polynomial through the squared speeds
-    would miss a small speed in a step whose speed becomes large.
+    The velocity is the integral of the polynomial through the accelerations. A polynomial through the squared speeds at
+    the stages would miss a small speed in a step whose speed becomes large.
     """
     for axis in range(2):
         expand_velocity(work, h, axis)
     vx, vy = row(work.stage, VELOCITY), row(work.stage, VELOCITY + 1)
     horizontal = vx * vx + vy * vy
-    expand(where_positive(horizontal, row(work.stage, SPEED2) / horizontal, as_many(1.0, horizontal)), work.powers[2])
+    expand(
+        where_positive(horizontal, row(work.stage, SPEED2) / horizontal, broadcast_like(1.0, horizontal)),
+        work.powers[2],
+    )
     work.powers[3, 0] = target
 
 
 @compiled
-def expand_velocity(work: Work, h: float, axis: int) -> None:
-    """Powers of theta of the platform's velocity: the integral of its acceleration."""
+def expand_velocity(work: Workspace, h: float, axis: int) -> None:
+    """Set the powers of theta of the platform's velocity: the integral of its acceleration."""
     powers = work.powers[axis]
     expand(row(work.a, (0, axis)), powers)
     for k in range(STAGES - 1, -1, -1):
@@ -106,8 +109,8 @@ def expand_velocity(work: Work, h: float, axis: int) -> None:
 
 
 @compiled
-def speed_excess(work: Work, theta: float) -> float:
-    """Squared sliding speed at theta less the one looked for, after `expand_speed`, m^2/s^2."""
+def speed_excess(work: Workspace, theta: float) -> float:
+    """Return the squared sliding speed at theta less the target of `expand_speed`, m^2/s^2."""
     powers = work.powers
     vx = vy = 0.0
     for k in range(STAGES, -1, -1):
@@ -117,37 +120,40 @@ def speed_excess(work: Work, theta: float) -> float:
 
 
 @compiled
-def beyond(system: System, work: Work, event: int, way: float, theta: float) -> float:
-    """How far the step is past an event at theta, upward if `way` is 1, downward if it is -1."""
+def event_value(system: System, work: Workspace, event: int, way: float, theta: float) -> float:
+    """Return a value that is positive past an event at theta: `way` is 1 if it is passed upward, -1 downward."""
     if event == ONSET:
         return way * excess_at(system, work, theta)
     return way * (speed_excess(work, theta) if event == SPEED else value_at(work.powers[0], theta))
 
 
 @compiled
-def first_passage(system: System, work: Work, event: int, way: float, begin: float, start: float) -> float:
-    """First theta after `begin` at which `beyond` is positive; `start` is the value that passes zero, at `begin`."""
+def locate_first_event(system: System, work: Workspace, event: int, way: float, begin: float, start: float) -> float:
+    """Return the first theta after `begin` at which `event_value` is positive; `start` is the value at `begin`."""
+    # SEARCH_POINTS show every event that lasts longer than the distance of two of them. A shorter one may hide: the
+    # value passes zero and returns between two points. That is possible only if the largest value seen lies below zero
+    # by no more than the largest change from point to point. Then golden sections look for a positive value around it.
+    # Once a positive value is found, `locate_crossing` locates the passage before it.
     top, place, change, low, before = -1.0e300, begin, 0.0, begin, way * start
-    for n in range(1, DENSE.shape[0]):
-        if DENSE[n] <= begin:
+    for n in range(1, SEARCH_POINTS.shape[0]):
+        if SEARCH_POINTS[n] <= begin:
             continue
-        here = beyond(system, work, event, way, DENSE[n])
+        here = event_value(system, work, event, way, SEARCH_POINTS[n])
         if here > 0.0:
-            return passed(system, work, event, way, low, DENSE[n])
+            return locate_crossing(system, work, event, way, low, SEARCH_POINTS[n])
         change = max(change, abs(here - before))
         if here > top:
-            top, place = here, DENSE[n]
-        before, low = here, DENSE[n]
+            top, place = here, SEARCH_POINTS[n]
+        before, low = here, SEARCH_POINTS[n]
     if top + change < 0.0:
         return NEVER
-    # it may pass and return between two of these instants
-    low, high = max(begin, place - DENSE[1]), min(1.0, place + DENSE[1])
+    low, high = max(begin, place - SEARCH_POINTS[1]), min(1.0, place + SEARCH_POINTS[1])
     first = low
     for _ in range(GOLDEN_SECTIONS):
         left, right = low + GOLDEN_SHARE * (high - low), high - GOLDEN_SHARE * (high - low)
-        at_left, at_right = beyond(system, work, event, way, left), beyond(system, work, event, way, right)
+        at_left, at_right = event_value(system, work, event, way, left), event_value(system, work, event, way, right)
         if max(at_left, at_right) > 0.0:
-            return passed(system, work, event, way, first, left if at_left > 0.0 else right)
+            return locate_crossing(system, work, event, way, first, left if at_left > 0.0 else right)
         if at_left > at_right:
             high = right
         else:
@@ -156,9 +162,13 @@ def first_passage(system: System, work: Work, event: int, way: float, begin: flo
 
 
 @compiled
-def passed(system: System, work: Work, event: int, way: float, low: float, high: float) -> float:
-    """Where `beyond` becomes positive between low and high, by regula falsi (Illinois) or, if slow, bisection."""
-    at_low, at_high = beyond(system, work, event, way, low), beyond(system, work, event, way, high)
+def locate_crossing(system: System, work: Workspace, event: int, way: float, low: float, high: float) -> float:
+    """Return the theta between low and high at which `event_value` becomes positive."""
+    # Regula falsi in the variant "Illinois" (Dowell and Jarratt, BIT 11, 1971): the value at an end that stays twice is
+    # halved. Where the values at the ends differ by orders of magnitude the secants creep; a bisection follows after
+    # SECANTS_PER_HALVING secants that have not halved the interval. The end with the positive value is returned, so
+    # that the event has happened there.
+    at_low, at_high = event_value(system, work, event, way, low), event_value(system, work, event, way, high)
     rose = fell = False
     width, secants = high - low, 0
     for _ in range(MAX_SECANTS):
@@ -171,7 +181,7 @@ def passed(system: System, work: Work, event: int, way: float, low: float, high:
             middle, secants = 0.5 * (low + high), 0
         middle = min(max(middle, low + 0.5 * LOCATION_TOLERANCE), high - 0.5 * LOCATION_TOLERANCE)
         secants += 1
-        here = beyond(system, work, event, way, middle)
+        here = event_value(system, work, event, way, middle)
         if here > 0.0:
             high, at_high = middle, here
             at_low = 0.5 * at_low if fell else at_low
@@ -183,15 +193,15 @@ def passed(system: System, work: Work, event: int, way: float, low: float, high:
 
 
 @compiled
-def parts_beyond(system: System, work: Work, event: int, way: float, start: float) -> int:
+def mark_parts(system: System, work: Workspace, event: int, way: float, start: float) -> int:
     """
-    Number of parts of the step in which the value of `event`, `start` at theta = 0, is not below zero.
+    Mark the parts of the step in which the value of `event`, `start` at theta = 0, is not below zero.
 
-    way: -1 for not above zero. The ends of the parts, in theta, are in work.edges (2 MAX_PARTS,).
+    With `way` = -1, those in which it is not above zero. Return their number; their ends, in theta, are in work.edges.
     """
     parts, theta, counts, value = 0, 0.0, way * start >= 0.0, start
     while theta < 1.0 and parts < MAX_PARTS:
-        end = min(1.0, first_passage(system, work, event, -way if counts else way, theta, value))
+        end = min(1.0, locate_first_event(system, work, event, -way if counts else way, theta, value))
         if counts:
             work.edges[2 * parts], work.edges[2 * parts + 1] = theta, end
             parts += 1

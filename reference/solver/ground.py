@@ -1,4 +1,4 @@
-"""Ground acceleration inside compiled code, (5.3) or a record; both as reference.problem.excitation has them."""
+"""Ground acceleration in compiled code, (5.3) or a record; both as in reference.problem.excitation."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from math import cos, exp, sin
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.rows import as_many, put, row
+from reference.solver.rows import broadcast_like, put, row
 from reference.solver.system import Array, Ground, System
-from reference.solver.work import SERIES_TERMS, Work
+from reference.solver.work import SERIES_TERMS, Workspace
 
-MAX_SERIES_ANGLE = 2.0  # by which a harmonic turns and decays in a step: beyond it its series would lose digits
-SERIES_ROUNDING = 1e-17  # of the harmonic: a term this small ends its series
+MAX_SERIES_ANGLE = 2.0  # turn and decay of a harmonic in a step beyond which its Taylor series would lose digits
+SERIES_ROUNDING = 1e-17  # term over harmonic that ends its series
 
 
 @compiled
-def knot_after(record: Array, t: float) -> int:
-    """The first knot later than t; their number behind the last."""
+def next_knot(record: Array, t: float) -> int:
+    """Return the index of the first knot later than t; the number of knots if none is."""
     low, high = 0, record.shape[0]
     while low < high:
         middle = (low + high) // 2
@@ -29,11 +29,11 @@ def knot_after(record: Array, t: float) -> int:
 
 @compiled
 def k_t_at(system: System, t: float) -> float:
-    """k_T (load.py) at time t: the polynomial of its piece; after the last piece, its end value."""
+    """Return k_T (contact/load.py) at time t: the polynomial of its piece; after the last piece, its end value."""
     table = system.k_t
     if table.shape[0] == 0:
         return 1.0
-    piece = max(knot_after(table, t) - 1, 0)
+    piece = max(next_knot(table, t) - 1, 0)
     theta, value = min((t - table[piece, 0]) / table[piece, 1], 1.0), 0.0
     for power in range(STAGES, -1, -1):
         value = value * theta + table[piece, 2 + power]
@@ -41,10 +41,10 @@ def k_t_at(system: System, t: float) -> float:
 
 
 @compiled
-def recorded_at(system: System, t: float) -> Ground:
-    """The acceleration of a record, linear between its knots and zero behind them."""
+def record_at(system: System, t: float) -> Ground:
+    """Return the acceleration of a record, linear between its knots and zero behind them, and k_T."""
     record, k_t = system.record, k_t_at(system, t)
-    k = knot_after(record, t)
+    k = next_knot(record, t)
     if k == 0:
         return Ground(record[0, 1], record[0, 2], record[0, 3], k_t)
     if k == record.shape[0]:
@@ -55,10 +55,10 @@ def recorded_at(system: System, t: float) -> Ground:
 
 
 @compiled
-def ground_at(system: System, work: Work, t: float) -> Ground:
-    """(xi'', eta'', zeta''), m/s^2, and k_T at time t."""
+def ground_at(system: System, work: Workspace, t: float) -> Ground:
+    """Return (xi'', eta'', zeta''), m/s^2, and k_T at time t."""
     if system.record.shape[0] > 0:
-        return recorded_at(system, t)
+        return record_at(system, t)
     e0, e1 = system.exponents[0], system.exponents[1]
     z0 = exp(e0.real * t) * cos(e0.imag * t + work.phase[0])
     z1 = exp(e1.real * t) * cos(e1.imag * t + work.phase[1])
@@ -69,8 +69,8 @@ def ground_at(system: System, work: Work, t: float) -> Ground:
 
 
 @compiled
-def start_waves(system: System, work: Work, t: float) -> None:
-    """Prepare `ground_at_stages`, or `next_ground` from t on: the harmonics at t."""
+def set_waves(system: System, work: Workspace, t: float) -> None:
+    """Prepare `set_ground_at_stages`, or `next_ground` from t on: set the harmonics at t."""
     for m in range(2):
         e = system.exponents[m]
         angle, size = e.imag * t + work.phase[m], exp(e.real * t)
@@ -78,8 +78,8 @@ def start_waves(system: System, work: Work, t: float) -> None:
 
 
 @compiled
-def start_turns(system: System, work: Work, h: float) -> None:
-    """Prepare `next_ground` for steps of h: by what the harmonics turn and decay."""
+def set_turns(system: System, work: Workspace, h: float) -> None:
+    """Prepare `next_ground` for steps of h: set the factors by which the harmonics turn and decay."""
     for m in range(2):
         e = system.exponents[m]
         angle, growth = e.imag * h, exp(e.real * h)
@@ -87,10 +87,10 @@ def start_turns(system: System, work: Work, h: float) -> None:
 
 
 @compiled
-def next_ground(system: System, work: Work, t: float) -> Ground:
-    """The ground at t, that of `start_waves` or a step of `start_turns` after the last call."""
+def next_ground(system: System, work: Workspace, t: float) -> Ground:
+    """Return the ground at t: the time of `set_waves`, or a step of `set_turns` after the last call."""
     if system.record.shape[0] > 0:
-        return recorded_at(system, t)
+        return record_at(system, t)
     z0, z1, a = work.waves[0], work.waves[1], system.amplitudes
     work.waves[0], work.waves[1] = z0 * work.turns[0], z1 * work.turns[1]
     return Ground(
@@ -102,12 +102,12 @@ def next_ground(system: System, work: Work, t: float) -> Ground:
 
 
 @compiled
-def ground_at_stages(system: System, work: Work) -> None:
-    """Fill work.ground after `start_waves`: harmonics from their Taylor series, quicker than sines at every stage."""
+def set_ground_at_stages(system: System, work: Workspace) -> None:
+    """Set work.ground after `set_waves`; Taylor series of the harmonics are quicker than sines at every stage."""
     elapsed = work.elapsed
     longest = elapsed[STAGES - 1]
     e0, e1 = system.exponents[0] * longest, system.exponents[1] * longest
-    if system.record.shape[0] > 0 or square(e0) + square(e1) > MAX_SERIES_ANGLE * MAX_SERIES_ANGLE:
+    if system.record.shape[0] > 0 or squared_modulus(e0) + squared_modulus(e1) > MAX_SERIES_ANGLE * MAX_SERIES_ANGLE:
         for k in range(STAGES):
             here = ground_at(system, work, work.time + elapsed[k])
             work.ground[0, k], work.ground[1, k], work.ground[2, k] = here.x, here.y, here.z
@@ -115,8 +115,8 @@ def ground_at_stages(system: System, work: Work) -> None:
         return
     terms = expand_waves(work, e0, e1)
     series, a, ground = work.series, system.amplitudes, work.ground
-    share = row(elapsed, ()) / longest if longest > 0.0 else as_many(0.0, row(elapsed, ()))
-    z0 = z1 = as_many(0.0, share)
+    share = row(elapsed, ()) / longest if longest > 0.0 else broadcast_like(0.0, row(elapsed, ()))
+    z0 = z1 = broadcast_like(0.0, share)
     for n in range(terms - 1, -1, -1):
         z0 = z0 * share + series[n, 0]
         z1 = z1 * share + series[n, 1]
@@ -128,13 +128,13 @@ def ground_at_stages(system: System, work: Work) -> None:
 
 
 @compiled
-def expand_waves(work: Work, e0: complex, e1: complex) -> int:
-    """Fill work.series for a time in which the harmonics change by exp(e0) and exp(e1); how many terms count."""
+def expand_waves(work: Workspace, e0: complex, e1: complex) -> int:
+    """Set work.series for a time in which the harmonics change by exp(e0), exp(e1); return the number of terms."""
     series, z0, z1 = work.series, work.waves[0], work.waves[1]
-    enough = SERIES_ROUNDING * SERIES_ROUNDING * min(square(z0), square(z1))
+    enough = SERIES_ROUNDING * SERIES_ROUNDING * min(squared_modulus(z0), squared_modulus(z1))
     for n in range(SERIES_TERMS):
         series[n, 0], series[n, 1] = z0.real, z1.real
-        if max(square(z0), square(z1)) <= enough:
+        if max(squared_modulus(z0), squared_modulus(z1)) <= enough:
             return n
         z0, z1 = z0 * e0, z1 * e1
         share = 1.0 / (n + 1.0)
@@ -143,6 +143,6 @@ def expand_waves(work: Work, e0: complex, e1: complex) -> int:
 
 
 @compiled
-def square(z: complex) -> float:
-    """|z|^2."""
+def squared_modulus(z: complex) -> float:
+    """Return |z|^2."""
     return z.real * z.real + z.imag * z.imag

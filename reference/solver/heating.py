@@ -1,9 +1,10 @@
 """
 The temperature factor k_T of friction as a function of time, from the heat that the steps of a run produce.
 
-The temperature is T0 + rise * integral of P(t - s) / sqrt(s), P the power of friction while the slider covers the
-center. In pieces of the time, which the run's steps and the instants of covering bound, P is a polynomial and the
-kernel is integrated exactly. P itself has the factor k_T: both are found together, piece by piece.
+The temperature is T0 + rise * integral of P(t - s) / sqrt(s), the conduction into a half-space (Carslaw and Jaeger,
+Conduction of Heat in Solids), with P the power of friction while the slider covers the center of the cap. Time is cut
+into pieces at the run's steps and at the instants at which covering begins or ends. On a piece P is a polynomial and
+the kernel is integrated exactly. P itself has the factor k_T: both are found together, piece by piece.
 """
 
 from __future__ import annotations
@@ -16,76 +17,85 @@ from numba import njit
 from reference.build_cache import cached_on_disk
 from reference.problem import DryFriction
 from reference.problem.friction import Heat
-from reference.solver.collocation import MISSED, MONOMIALS, NODES, STAGES, A
+from reference.solver.collocation import DEFECT_POLYNOMIAL, MONOMIALS, NODES, STAGES, A
 from reference.solver.compiled import OPTIONS
-from reference.solver.samples import Samples, sampled
-from reference.solver.system import REST, Array, Record, System
+from reference.solver.samples import SampledMotion, sample_motion
+from reference.solver.system import REST, Array, StepRecord, System
 
-NEWTON_STEPS = 8  # to the instant between two nodes at which covering changes
-GRADED = np.append(0.25 ** np.arange(8), 0.0)  # of a step: pieces behind a kink of the power, where T is not smooth
-SHORTEST = 1e-10  # of the duration: pieces are no shorter
-FAR = 4.0  # of its length: from the start of a piece so far away its own nodes serve as those of a quadrature,
-VERY_FAR = 30.0  # and so far away, for blocks of pieces in lengths of the block, the moments of the heat
-SETTLED, ITERATIONS = 1e-14, 50  # change of k_T, at which the iteration within a piece ends; at most so many
-WEIGHTS = A[-1].copy()
+NEWTON_STEPS = 8  # iterations to the instant between two nodes at which covering begins or ends
+# Ends of the pieces behind a kink of the power, as shares of the step: T is not smooth there, like the root of time
+GRADED_FRACTIONS = np.append(0.25 ** np.arange(8), 0.0)
+MIN_PIECE = 1e-10  # length of the shortest piece, as a share of the duration
+# Distances in time, in lengths of the piece: beyond the first the kernel is integrated by quadrature at the nodes,
+# beyond the second by the moments of the heat, also for whole blocks of pieces in lengths of the block.
+FAR_DISTANCE = 4.0
+BLOCK_DISTANCE = 30.0
+MAX_LAST_CHANGE = 1e-14  # change of k_T that ends the iteration within a piece
+MAX_ITERATIONS = 50  # iterations within a piece at most
+WEIGHTS = A[-1].copy()  # quadrature weights of the nodes, over the length of a piece
 
 
-def uniform(system: System) -> System:
-    """The system with k_T at the initial temperature throughout."""
+def set_uniform_factor(system: System) -> System:
+    """Return the system with k_T at the initial temperature throughout."""
     k_t = np.zeros((1, 3 + STAGES))
     k_t[0, 1:3] = system.duration, Heat.factor(system.heat[0])
     return system._replace(k_t=k_t)
 
 
-def heated(system: System, record: Record, end: float) -> System:
-    """The system with k_T by the heat of a run that ends at `end`, s."""
-    start = record.start[: record.made[0]]
+def set_factor_by_heat(system: System, record: StepRecord, end: float) -> System:
+    """Return the system with k_T by the heat of a run that ends at `end`, s."""
+    # The power of friction has a kink where a slide begins or ends, and a jump where the slider leaves or enters the
+    # cap's center: there k_T changes like a root of time. So pieces are graded behind these instants, the latter of
+    # which are located by Newton's method. By the error of the integration k_T jumps from piece to piece, and a jump
+    # inside a step of the next run would cost its order. So each piece gets a multiple of DEFECT_POLYNOMIAL, which is 0
+    # at the nodes and 1 at the start: the table is continuous.
+    start = record.start[: record.counts[0]]
     bounds = np.append(start, end)
-    times = _nodes(bounds)
-    changes = np.flatnonzero(np.diff(_outside(system, sampled(record, times)) > 0.0))
+    times = _nodes_of_pieces(bounds)
+    changes = np.flatnonzero(np.diff(_squared_excess_of_cover(system, sample_motion(record, times)) > 0.0))
     instants = 0.5 * (times[changes] + times[changes + 1])
     for _ in range(NEWTON_STEPS if len(changes) else 0):
-        motion = sampled(record, instants)
+        motion = sample_motion(record, instants)
         with np.errstate(divide="ignore", invalid="ignore"):
-            step = _outside(system, motion) / (2.0 * (motion.x[:, 0] * motion.v[:, 0]).sum(axis=1))
+            step = _squared_excess_of_cover(system, motion) / (2.0 * (motion.x[:, 0] * motion.v[:, 0]).sum(axis=1))
         step[np.isnan(step)] = 0.0
         instants = np.clip(instants - step, times[changes], times[changes + 1])
     starts = np.flatnonzero(np.diff(record.contact[: len(start)] == REST, prepend=True))
     behind = np.append(np.diff(times)[changes], np.diff(bounds)[starts])
-    graded = np.append(instants, start[starts])[:, None] + behind[:, None] * GRADED
+    graded = np.append(instants, start[starts])[:, None] + behind[:, None] * GRADED_FRACTIONS
     bounds = np.unique(np.concatenate([bounds, graded.ravel()]))
     bounds = bounds[bounds <= end]
-    bounds = bounds[np.append(True, np.diff(bounds) > SHORTEST * system.duration)]
-    motion = sampled(record, _nodes(bounds))
-    covered = _outside(system, motion).reshape(-1, STAGES)[:, STAGES // 2] < 0.0
-    power = _power(system, motion).reshape(-1, STAGES) * covered[:, None]
+    bounds = bounds[np.append(True, np.diff(bounds) > MIN_PIECE * system.duration)]
+    motion = sample_motion(record, _nodes_of_pieces(bounds))
+    covered = _squared_excess_of_cover(system, motion).reshape(-1, STAGES)[:, STAGES // 2] < 0.0
+    power = _cold_friction_power(system, motion).reshape(-1, STAGES) * covered[:, None]
     length, k_t = np.diff(bounds), np.zeros((len(bounds) - 1, STAGES))
-    warm(bounds[:-1], length, power * system.heat[1], system.heat[0], k_t)
+    fill_temperature_factors(bounds[:-1], length, power * system.heat[1], system.heat[0], k_t)
     powers = k_t @ MONOMIALS.T
     jump = np.append(Heat.factor(system.heat[0]), k_t[:-1, -1]) - powers[:, 0]
-    powers = np.column_stack([powers, np.zeros(len(powers))]) + jump[:, None] * MISSED[::-1]  # so that none is left
+    powers = np.column_stack([powers, np.zeros(len(powers))]) + jump[:, None] * DEFECT_POLYNOMIAL[::-1]
     table = np.column_stack([bounds[:-1], length, powers])
     return system._replace(k_t=table, kinks=np.sort(instants)[:, None])
 
 
-def mean(system: System) -> float:
-    """Mean k_T over the time."""
+def mean_factor(system: System) -> float:
+    """Return the mean of k_T over time."""
     lengths, coefficients = system.k_t[:, 1], system.k_t[:, 2:]
     return float(lengths @ coefficients @ (1.0 / np.arange(1, STAGES + 2)) / lengths.sum())
 
 
-def _nodes(bounds: Array) -> Array:
+def _nodes_of_pieces(bounds: Array) -> Array:
     return (bounds[:-1, None] + np.diff(bounds)[:, None] * NODES).ravel()
 
 
-def _outside(system: System, motion: Samples) -> Array:
-    """Squared displacement less that up to which the slider covers the center, m^2."""
+def _squared_excess_of_cover(system: System, motion: SampledMotion) -> Array:
+    """Return the squared displacement less that up to which the slider covers the center, m^2."""
     outside: Array = (motion.x[:, 0] ** 2).sum(axis=1) - system.heat[2] ** 2
     return outside
 
 
-def _power(system: System, motion: Samples) -> Array:
-    """Power of friction over m1 where k_T is one, m^2/s^3."""
+def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
+    """Return the power of friction over m1 at k_T = 1, m^2/s^3."""
     x, v = motion.x[:, 0], motion.v[:, 0]
     speed2 = (v**2).sum(axis=1)
     if not system.small:
@@ -97,8 +107,8 @@ def _power(system: System, motion: Samples) -> Array:
 
 
 @njit(**OPTIONS)
-def after(theta: float, coefficients: Array) -> float:
-    """Integral of the polynomial in u with these coefficients over sqrt(theta - u), u from 0 to theta or to 1."""
+def conduction_integral(theta: float, coefficients: Array) -> float:
+    """Return the integral of the polynomial in u with these coefficients over sqrt(theta - u), u up to theta or 1."""
     beyond = np.sqrt(max(theta - 1.0, 0.0))
     moment = 2.0 * (np.sqrt(theta) - beyond)
     total = moment * coefficients[0]
@@ -109,8 +119,8 @@ def after(theta: float, coefficients: Array) -> float:
 
 
 @njit(**OPTIONS)
-def long_after(theta: float, power: Array) -> float:
-    """The same, far from the piece, of the polynomial through `power` at the nodes."""
+def far_conduction_integral(theta: float, power: Array) -> float:
+    """Return the integral of the polynomial through `power` at the nodes over sqrt(theta - u), far from the piece."""
     total = 0.0
     for k in range(STAGES):
         total += WEIGHTS[k] * power[k] / np.sqrt(theta - NODES[k])
@@ -118,12 +128,16 @@ def long_after(theta: float, power: Array) -> float:
 
 
 @cached_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
-def warm(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
+def fill_temperature_factors(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
     """
-    Fill k_T at the nodes of pieces (K, S). power: where k_T is one, times the rise of the temperature.
-
-    Row l of the moments is of blocks of 2^l pieces each, of which a few serve for all that is long past.
+    Fill k_T at the nodes of pieces (K, S). `power` is that at k_T = 1, times the rise of the temperature.
     """
+    # The temperature at a node sums the heat of all pieces before it: K^2 terms. Long past, only the sum, mean time and
+    # variance of a block's heat count: with d the distance in time, 1 / sqrt(d - x) = (1 + x / 2 d + 3 x^2 / 8 d^2 ...)
+    # / sqrt(d), whose linear term vanishes about the mean. Row l of the moments holds blocks of 2^l pieces; walking
+    # back in time the blocks grow with the distance, which leaves of the order of log K terms a node. Near pieces are
+    # integrated exactly, those at a middle distance by quadrature. Within its own piece power and k_T depend on each
+    # other: a fixed-point iteration, which contracts by the heat of one short piece.
     count = start.shape[0]
     past, heat, coefficients = np.zeros(STAGES), power.copy(), np.zeros_like(power)
     moments = np.zeros((int(np.log2(count)) + 1, count, 3))
@@ -132,22 +146,24 @@ def warm(start: Array, length: Array, power: Array, initial: float, k_t: Array) 
             time, past[m], j = start[i] + NODES[m] * length[i], initial, i
             while j > 0:
                 level, size, first = 0, 1, j - 1
-                while j % (2 * size) == 0 and time - start[j - 2 * size] > VERY_FAR * (start[j] - start[j - 2 * size]):
+                while j % (2 * size) == 0 and time - start[j - 2 * size] > BLOCK_DISTANCE * (
+                    start[j] - start[j - 2 * size]
+                ):
                     level, size, first = level + 1, 2 * size, j - 2 * size
                 theta = (time - start[first]) / length[first]
                 moment = moments[level, first // size]
                 if moment[0] == 0.0:
                     pass
-                elif level > 0 or theta > VERY_FAR:
+                elif level > 0 or theta > BLOCK_DISTANCE:
                     distance = time - moment[1]
                     past[m] += moment[0] * (1.0 + 0.375 * moment[2] / (distance * distance)) / np.sqrt(distance)
-                elif theta > FAR:
-                    past[m] += np.sqrt(length[first]) * long_after(theta, heat[first])
+                elif theta > FAR_DISTANCE:
+                    past[m] += np.sqrt(length[first]) * far_conduction_integral(theta, heat[first])
                 else:
-                    past[m] += np.sqrt(length[first]) * after(theta, coefficients[first])
+                    past[m] += np.sqrt(length[first]) * conduction_integral(theta, coefficients[first])
                 j = first
-            k_t[i, m] = factor(past[m])
-        for _ in range(ITERATIONS):
+            k_t[i, m] = temperature_factor(past[m])
+        for _ in range(MAX_ITERATIONS):
             change = 0.0
             heat[i] = power[i] * k_t[i]
             for k in range(STAGES):
@@ -155,9 +171,9 @@ def warm(start: Array, length: Array, power: Array, initial: float, k_t: Array) 
                 for m in range(STAGES):
                     coefficients[i, k] += MONOMIALS[k, m] * heat[i, m]
             for m in range(STAGES):
-                now = factor(past[m] + np.sqrt(length[i]) * after(NODES[m], coefficients[i]))
+                now = temperature_factor(past[m] + np.sqrt(length[i]) * conduction_integral(NODES[m], coefficients[i]))
                 change, k_t[i, m] = max(change, abs(now - k_t[i, m])), now
-            if change < SETTLED:
+            if change < MAX_LAST_CHANGE:
                 break
         if power[i, 0] > 0.0:
             share = WEIGHTS * heat[i] / (WEIGHTS * heat[i]).sum()
@@ -168,13 +184,13 @@ def warm(start: Array, length: Array, power: Array, initial: float, k_t: Array) 
         level, done = 0, i + 1
         while done % 2 == 0:
             done //= 2
-            join(moments[level, 2 * done - 2], moments[level, 2 * done - 1], moments[level + 1, done - 1])
+            join_blocks(moments[level, 2 * done - 2], moments[level, 2 * done - 1], moments[level + 1, done - 1])
             level += 1
 
 
 @njit(**OPTIONS)
-def join(a: Array, b: Array, both: Array) -> None:
-    """Fill heat, its mean time and variance of the two together."""
+def join_blocks(a: Array, b: Array, both: Array) -> None:
+    """Fill heat, mean time and variance of two blocks together."""
     heat = a[0] + b[0]
     if heat > 0.0:
         center = (a[0] * a[1] + b[0] * b[1]) / heat
@@ -183,6 +199,6 @@ def join(a: Array, b: Array, both: Array) -> None:
 
 
 @njit(**OPTIONS)
-def factor(temperature: float) -> float:
-    """As `Heat.factor`."""
+def temperature_factor(temperature: float) -> float:
+    """Return k_T at a temperature in degrees C, as `Heat.factor`."""
     return 0.79 * (0.7 ** (0.02 * temperature) + 0.4)

@@ -10,57 +10,62 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.solver.collocation import LANES, STAGES
+from reference.solver.collocation import ROW_LENGTH, STAGES
 from reference.solver.compiled import compiled
 from reference.solver.rows import highest, put, row
 from reference.solver.system import Array
 
-MOST_BLOCKS = 2
-MIN_PIVOT = 0.1  # of the largest entry below
+MOST_BLOCKS = 2  # blocks of a system: the platform's accelerations along x and y
+MIN_PIVOT = 0.1  # share of the largest entry below a pivot that the pivot must have; otherwise rows are exchanged
 _PLACES = np.arange(MOST_BLOCKS * STAGES)
 
 
 def _ones_where(chosen: NDArray[np.bool_]) -> Array:
-    """1 in the chosen places of every column, 0 elsewhere: (n, blocks, LANES)."""
-    ones = np.zeros((len(_PLACES), MOST_BLOCKS, LANES))
+    """Return 1 in the chosen places of every column, 0 elsewhere: (n, blocks, ROW_LENGTH)."""
+    ones = np.zeros((len(_PLACES), MOST_BLOCKS, ROW_LENGTH))
     ones[:, :, :STAGES] = chosen.reshape(-1, MOST_BLOCKS, STAGES)
     return ones
 
 
-# places of every column, by the one on the diagonal
-BEFORE = _ones_where(_PLACES[:, None] > _PLACES)
-AT = _ones_where(_PLACES[:, None] == _PLACES)
-BEHIND = _ones_where(_PLACES[:, None] < _PLACES)
+# Masks of every column: its places above the diagonal, on it and below it
+ABOVE_DIAGONAL = _ones_where(_PLACES[:, None] > _PLACES)
+IDENTITY = _ones_where(_PLACES[:, None] == _PLACES)
+BELOW_DIAGONAL = _ones_where(_PLACES[:, None] < _PLACES)
 
 
 @compiled
 def factorize(columns: Array, pivots: Array) -> bool:
-    """Overwrite a matrix (n, blocks, LANES) by its factors, with pivots (n,); False if it is singular or not finite."""
+    """Overwrite a matrix (n, blocks, ROW_LENGTH) by its factors; return False if it is singular or not finite."""
     return factorize_blocks(columns, pivots, 1) if pivots.shape[0] == STAGES else factorize_blocks(columns, pivots, 2)
 
 
 @compiled
 def factorize_blocks(columns: Array, pivots: Array, blocks: int) -> bool:
-    """`factorize` for so many blocks."""
+    """Overwrite a matrix of this number of blocks by its factors; return False if it is singular or not finite."""
+    # Right-looking LU by columns (Golub and Van Loan, Matrix Computations, 3.2): a column lies in one or two rows of
+    # rows.py, so an elimination takes one multiplication and one subtraction for all its entries at once. Masks leave
+    # the entries above and on the diagonal alone. The diagonal keeps the inverse pivots. Rows are exchanged only where
+    # a pivot is below MIN_PIVOT of the largest entry (threshold pivoting), which is rare: in short steps these matrices
+    # are near the identity.
     n = blocks * STAGES
     for block in range(blocks):
         for k in range(STAGES):
             i = block * STAGES + k
-            place = block * LANES + k
-            if abs(columns[i, block, k]) < MIN_PIVOT * largest_behind(columns, i, block, blocks):
-                place = largest_place(columns[i], block, k, blocks)
+            place = block * ROW_LENGTH + k
+            if abs(columns[i, block, k]) < MIN_PIVOT * largest_below_diagonal(columns, i, block, blocks):
+                place = locate_largest(columns[i], block, k, blocks)
                 for j in range(n):
                     exchange(columns[j], block, k, place)
             pivots[i] = place
             inverse = 1.0 / columns[i, block, k]
             if not abs(inverse) < np.inf:
                 return False
-            near = far = inverse * (row(BEHIND, (i, 0)) * row(columns, (i, 0)))
+            near = far = inverse * (row(BELOW_DIAGONAL, (i, 0)) * row(columns, (i, 0)))
             if block == 0:
-                put(columns, (i, 0), row(BEFORE, (i, 0)) * row(columns, (i, 0)) + near)
+                put(columns, (i, 0), row(ABOVE_DIAGONAL, (i, 0)) * row(columns, (i, 0)) + near)
             if blocks == MOST_BLOCKS:
-                far = inverse * (row(BEHIND, (i, 1)) * row(columns, (i, 1)))
-                put(columns, (i, 1), row(BEFORE, (i, 1)) * row(columns, (i, 1)) + far)
+                far = inverse * (row(BELOW_DIAGONAL, (i, 1)) * row(columns, (i, 1)))
+                put(columns, (i, 1), row(ABOVE_DIAGONAL, (i, 1)) * row(columns, (i, 1)) + far)
             for j in range(i + 1, n):
                 factor = columns[j, block, k]
                 if block == 0:
@@ -72,9 +77,9 @@ def factorize_blocks(columns: Array, pivots: Array, blocks: int) -> bool:
 
 
 @compiled
-def largest_behind(columns: Array, i: int, block: int, blocks: int) -> float:
-    """The largest size of an entry of column i behind the diagonal, which is in `block`."""
-    sizes = abs(row(columns, (i, block))) * row(BEHIND, (i, block))
+def largest_below_diagonal(columns: Array, i: int, block: int, blocks: int) -> float:
+    """Return the largest size of an entry of column i below the diagonal, which is in `block`."""
+    sizes = abs(row(columns, (i, block))) * row(BELOW_DIAGONAL, (i, block))
     if block + 1 < blocks:
         sizes = max(sizes, abs(row(columns, (i, block + 1))))
     largest: float = highest(sizes)
@@ -82,26 +87,26 @@ def largest_behind(columns: Array, i: int, block: int, blocks: int) -> float:
 
 
 @compiled
-def largest_place(column: Array, block: int, first: int, blocks: int) -> int:
-    """Where the largest entry of a column (blocks, LANES) is, from a row of a block on: LANES times block and row."""
-    best, place = 0.0, block * LANES + first
+def locate_largest(column: Array, block: int, first: int, blocks: int) -> int:
+    """Return the place of a column's largest entry from a row of a block on: ROW_LENGTH times block, plus row."""
+    best, place = 0.0, block * ROW_LENGTH + first
     for b in range(block, blocks):
         for k in range(first if b == block else 0, STAGES):
             if abs(column[b, k]) > best:
-                best, place = abs(column[b, k]), b * LANES + k
+                best, place = abs(column[b, k]), b * ROW_LENGTH + k
     return place
 
 
 @compiled
 def exchange(column: Array, block: int, k: int, place: int) -> None:
-    """Exchange two entries of a column (blocks, LANES)."""
-    other, m = place // LANES, place % LANES
+    """Exchange two entries of a column (blocks, ROW_LENGTH)."""
+    other, m = place // ROW_LENGTH, place % ROW_LENGTH
     column[block, k], column[other, m] = column[other, m], column[block, k]
 
 
 @compiled
 def solve(factors: Array, pivots: Array, rhs: Array) -> None:
-    """Overwrites rhs (blocks, LANES) by the solution, with what `factorize` left."""
+    """Overwrite the right side (blocks, ROW_LENGTH) by the solution, with the factors of `factorize`."""
     if pivots.shape[0] == STAGES:
         solve_blocks(factors, pivots, rhs, 1)
     else:
@@ -110,30 +115,30 @@ def solve(factors: Array, pivots: Array, rhs: Array) -> None:
 
 @compiled
 def solve_blocks(factors: Array, pivots: Array, rhs: Array, blocks: int) -> None:
-    """`solve` for so many blocks."""
+    """Solve for this number of blocks."""
     for block in range(blocks):
         for k in range(STAGES):
             place = int(pivots[block * STAGES + k])
-            if place != block * LANES + k:
+            if place != block * ROW_LENGTH + k:
                 exchange(rhs, block, k, place)
     for block in range(blocks):
         for k in range(STAGES):
-            subtract(factors, BEHIND, block * STAGES + k, rhs, rhs[block, k], block, blocks)
+            subtract_column(factors, BELOW_DIAGONAL, block * STAGES + k, rhs, rhs[block, k], block, blocks)
     near = far = 0.0 * row(rhs, 0)
     for block in range(blocks - 1, -1, -1):
         for k in range(STAGES - 1, -1, -1):
             j = block * STAGES + k
             known = rhs[block, k] * factors[j, block, k]
-            subtract(factors, BEFORE, j, rhs, known, 0, block + 1)
-            near += known * row(AT, (j, 0))
-            far += known * row(AT, (j, 1))
+            subtract_column(factors, ABOVE_DIAGONAL, j, rhs, known, 0, block + 1)
+            near += known * row(IDENTITY, (j, 0))
+            far += known * row(IDENTITY, (j, 1))
     put(rhs, 0, near)
     if blocks == MOST_BLOCKS:
         put(rhs, 1, far)
 
 
 @compiled
-def subtract(factors: Array, part: Array, j: int, rhs: Array, known: float, first: int, end: int) -> None:
-    """Take a known number times a part of column j from some blocks of the right side."""
+def subtract_column(factors: Array, part: Array, j: int, rhs: Array, known: float, first: int, end: int) -> None:
+    """Subtract a known number times a part of column j from blocks of the right side."""
     for b in range(first, end):
         put(rhs, b, row(rhs, b) - known * (row(part, (j, b)) * row(factors, (j, b))))

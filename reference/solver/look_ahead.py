@@ -1,85 +1,92 @@
 """
-What may still come after a state: a rough run from there to the end, for a small part of the cost of an accurate one.
+Look ahead from a state: a rough run from there to the end, for a small part of the cost of an accurate one.
 
-Constant steps of second order: half a drift, the forces, half a drift. Friction acts at the end of the step, so a
-platform whose velocity it can take within the step comes to rest. Forces and friction are those of the accurate run.
-Every value counts as large that reaches LARGE_FRACTION of the largest so far. The direction of a slide turns fast near
-its stop; there the platform's acceleration is the largest that any direction allows on the way, and a little beyond.
+Its constant steps are of second order: positions move by half a step, forces change the velocities, positions move by
+the other half (Strang's splitting). Friction acts at the end of the step, so a platform whose velocity it can remove
+within the step comes to rest. Forces and friction are those of the accurate run. A value counts as large if it reaches
+LARGE_FRACTION of the largest so far. The direction of a slide turns fast near its stop; there the platform's
+acceleration counts as the largest that any direction on the way allows, with a margin.
 """
 
 from __future__ import annotations
 
 from math import cos, inf, sin, sqrt
 
-from reference.solver.chain import chain_acceleration
+from reference.solver.chain import set_chain_acceleration
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import coefficient, sliding_speed2
-from reference.solver.contact.load import loaded
+from reference.solver.contact.friction import coefficient, squared_sliding_speed
+from reference.solver.contact.load import scale_by_load
 from reference.solver.contact.platform import acceleration, load_in_state, rest_excess, slip_factor
-from reference.solver.ground import next_ground, start_turns, start_waves
-from reference.solver.steps import lifted
+from reference.solver.ground import next_ground, set_turns, set_waves
+from reference.solver.steps import vertical_acceleration
 from reference.solver.system import (
     CREEPING,
     LUBRICATED,
     LUBRICATED_SLIDING,
     SET_VALUED,
     SLIDING,
-    Demand,
     Ground,
     Load,
+    RunSettings,
     System,
 )
-from reference.solver.work import Work
+from reference.solver.work import Workspace
 
-STEPS_PER_PERIOD = 25.0  # of Demand.period
-MAX_STEPS_PER_STEP = 50.0  # steps of a rough run over the accurate ones so far, each of which costs about as much as 50
-MAX_CHAIN_ANGLE = 0.5  # rad: most that the chain's fastest vibration may turn during one step
-LARGE_FRACTION = 0.85  # of the largest so far: a smaller value of a rough run does not reach it in an accurate one
-# of the rim in rho, of the end of its travel, of liftoff in weights, of Painleve's paradox: closer, the run goes on
+STEPS_PER_PERIOD = 25.0  # steps of a rough run per RunSettings.period
+MAX_STEPS_PER_STEP = 50.0  # steps of a rough run per accurate step so far, each of which costs about as much as 50
+MAX_CHAIN_ANGLE = 0.5  # rad, largest turn of the chain's fastest vibration in one step
+# Share of the largest value so far that a rough run does not exceed where an accurate one stays below the largest
+LARGE_FRACTION = 0.85
+# Relative distance from the rim, the end of the travel, liftoff and Painleve's paradox within which a rough run is not
+# trusted: the accurate run goes on
 MIN_MARGIN = 0.1
-MAX_SLOW_STEPS = 2.0  # in which friction would stop the slide: so slow a slide counts as near its stop
-DIRECTION_MARGIN = 0.35  # rad, by which the direction of a slide near its stop is uncertain
-MIN_SURE_DRIVE = 0.5  # of the friction limit: the direction of a smaller drive changes too much until the stop
-MAX_HELD_DRIVE = 0.8  # of the squared friction limit: a larger drive may move a platform that rests in a rough run
-WAIT = 0.25  # of the period, from the last large value until the run looks ahead
+MAX_SLOW_STEPS = 2.0  # number of steps in which friction would stop a slide that counts as near its stop
+DIRECTION_MARGIN = 0.35  # rad, uncertainty of the direction of a slide near its stop
+MIN_SURE_DRIVE = 0.5  # share of the friction limit below which the drive's direction changes too much until the stop
+MAX_HELD_DRIVE = 0.8  # share of the squared friction limit above which a drive may move a platform at rest
+LOOK_AHEAD_DELAY = 0.25  # time from the last large value until the run looks ahead, over RunSettings.period
 
 
 @compiled
-def end_early(system: System, work: Work, demand: Demand) -> None:
-    """End the run, at a step whose end is in x, v, where nothing large can come any more; set when to look again."""
-    if not demand.early:  # told when to end
+def end_early(system: System, work: Workspace, settings: RunSettings) -> None:
+    """End the run in the state x, v if no large value can follow; set when to look again."""
+    # The run looks ahead a quarter of a period after its last large value, and only if the rough run takes at most
+    # fifty times as many steps as the accurate ones so far: then both cost about the same. If the rough run finds a
+    # large value, the next look follows that one, so that all rough runs together cover the motion at most once. The
+    # measurements are in docs/reference.md, "Early end": no result of 10 000 random scenes and records changed.
+    if not settings.early:  # the instant of the end is given
         work.end = work.time
         return
-    work.look = work.settled + WAIT * demand.period
-    h = rough_length(system, demand)
-    if work.time > work.look and system.duration - work.time <= MAX_STEPS_PER_STEP * h * work.steps:
-        comes = next_large(system, work, h)
-        work.look = comes + WAIT * demand.period
+    work.look_time = work.last_large + LOOK_AHEAD_DELAY * settings.period
+    h = rough_step_length(system, settings)
+    if work.time > work.look_time and system.duration - work.time <= MAX_STEPS_PER_STEP * h * work.steps:
+        comes = instant_of_next_large(system, work, h)
+        work.look_time = comes + LOOK_AHEAD_DELAY * settings.period
         if comes == inf:
             work.end = work.time
 
 
 @compiled
-def rough_length(system: System, demand: Demand) -> float:
-    """Length of the steps of a rough run, s."""
-    h = demand.period / STEPS_PER_PERIOD
+def rough_step_length(system: System, settings: RunSettings) -> float:
+    """Return the length of the steps of a rough run, s."""
+    h = settings.period / STEPS_PER_PERIOD
     if system.fastest > 0.0:
         h = min(h, MAX_CHAIN_ANGLE / system.fastest)
     return h
 
 
 @compiled
-def next_large(system: System, work: Work, h: float) -> float:
-    """When something large may come after the state x, v, s, in steps of h; infinity if nothing can."""
+def instant_of_next_large(system: System, work: Workspace, h: float) -> float:
+    """Return when a large value may follow the state x, v, s, by rough steps of length h; infinity if none can."""
     bodies = work.x.shape[0]
-    for i in range(bodies):  # the next step writes x1, v1 anew
+    for i in range(bodies):  # x1, v1 keep the state: the next accurate step sets them anew
         for axis in range(2):
             work.x1[i, axis], work.v1[i, axis] = work.x[i, axis], work.v[i, axis]
     time, large = work.time, False
-    start_waves(system, work, time + 0.5 * h)
-    start_turns(system, work, h)
+    set_waves(system, work, time + 0.5 * h)
+    set_turns(system, work, h)
     while time < system.duration and not large:
-        large = rough_step(system, work, time, h)
+        large = make_rough_step(system, work, time, h)
         time += h
     for i in range(bodies):
         for axis in range(2):
@@ -88,29 +95,29 @@ def next_large(system: System, work: Work, h: float) -> float:
 
 
 @compiled
-def rough_step(system: System, work: Work, time: float, h: float) -> bool:
-    """Move x, v by h; whether something large may come meanwhile. Uses a0 of the bodies above the platform."""
-    drift(work, 0.5 * h)
+def make_rough_step(system: System, work: Workspace, time: float, h: float) -> bool:
+    """Move x, v by h; return True if a value may become large meanwhile. Sets a0 of the bodies above the platform."""
+    move_at_velocity(work, 0.5 * h)
     ground = next_ground(system, work, time + 0.5 * h)
-    chain_acceleration(system, work, ground)
+    set_chain_acceleration(system, work, ground)
     vx, vy = work.v[0, 0], work.v[0, 1]
     largest, far = push_platform(system, work, load_in_state(system, work, ground), ground, h)
     ax, ay = (work.v[0, 0] - vx) / h, (work.v[0, 1] - vy) / h
-    vertical = ground.z + lifted(system, work.x[0, 0], work.x[0, 1], vx, vy, ax, ay)
+    vertical = ground.z + vertical_acceleration(system, work.x[0, 0], work.x[0, 1], vx, vy, ax, ay)
     level = LARGE_FRACTION * LARGE_FRACTION
-    # a number that is none is large, too
+    # NaN is not small, so a run that overflows counts as large.
     small = not far and largest * largest + vertical * vertical < level * work.best[0]
     for i in range(1, work.x.shape[0]):
         tx, ty = work.a0[i, 0] + ground.x, work.a0[i, 1] + ground.y
         small = small and tx * tx + ty * ty + vertical * vertical < level * work.best[i]
         for axis in range(2):
             work.v[i, axis] += h * work.a0[i, axis]
-    drift(work, 0.5 * h)
+    move_at_velocity(work, 0.5 * h)
     return not small
 
 
 @compiled
-def drift(work: Work, h: float) -> None:
+def move_at_velocity(work: Workspace, h: float) -> None:
     """Move every body at its velocity."""
     for i in range(work.x.shape[0]):
         for axis in range(2):
@@ -118,24 +125,29 @@ def drift(work: Work, h: float) -> None:
 
 
 @compiled
-def push_platform(system: System, work: Work, load: Load, ground: Ground, h: float) -> tuple[float, bool]:
+def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h: float) -> tuple[float, bool]:
     """
-    Change the platform's velocity by a step.
+    Change the platform's velocity by a step of length h.
 
-    Returns the largest its horizontal absolute acceleration may be, m/s^2, and whether it may come to where it was
-    farthest, to the rim, the end of its travel, liftoff or Painleve's paradox.
+    Return a bound on its horizontal absolute acceleration, m/s^2, and True if it may come near its largest
+    displacement, the rim, the end of the travel, liftoff or Painleve's paradox.
     """
+    # Four cases. (1) At rest under the set-valued law and held: the acceleration is the ground's; where the drive comes
+    # near the limit, the accurate run may have slipped, so that of a stop counts. (2) Moving, friction removes less
+    # than the velocity: `share` of the velocity without friction remains, implicitly for the linear laws. (3) Friction
+    # would stop the platform within MAX_SLOW_STEPS: on the way its direction turns, which steps this long do not
+    # resolve, so the largest acceleration of any direction counts. (4) Near a limit: infinity, the run goes on.
     vx, vy = work.v[0, 0], work.v[0, 1]
     place2 = load.px * load.px + load.py * load.py
     bound = (1.0 - MIN_MARGIN) * min(system.radius, system.travel)
     if not place2 < bound * bound:
         return inf, True
-    far = place2 >= LARGE_FRACTION * LARGE_FRACTION * work.reach2
+    far = place2 >= LARGE_FRACTION * LARGE_FRACTION * work.squared_reach
     least = MIN_MARGIN * system.mass_ratio * system.gravity
-    speed2 = sliding_speed2(system, load.px, load.py, vx, vy)
+    speed2 = squared_sliding_speed(system, load.px, load.py, vx, vy)
     if system.law == SET_VALUED and speed2 == 0.0:
         excess, reaction = rest_excess(system, load)
-        limit = loaded(system, load.k_t, reaction, system.friction * reaction)
+        limit = scale_by_load(system, load.k_t, reaction, system.friction * reaction)
         if excess <= 0.0:
             largest = sqrt(ground.x * ground.x + ground.y * ground.y)
             nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
@@ -143,12 +155,12 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
                 gx, gy = load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
                 largest = max(largest, largest_near_stop(gx, gy, gx, gy, ground, limit))
             return largest, (nearly and far) or not reaction >= least
-    sx, sy = slip(system, vx, vy, speed2)
+    sx, sy = slip_in_state(system, vx, vy, speed2)
     ax, ay, reaction, determinant = acceleration(system, load, speed2, sx, sy)
     if not (reaction >= least and determinant >= MIN_MARGIN):
         return inf, True
-    held = loaded(system, load.k_t, reaction, reaction)
-    gx, gy = ax + held * sx, ay + held * sy  # without friction
+    held = scale_by_load(system, load.k_t, reaction, reaction)
+    gx, gy = ax + held * sx, ay + held * sy  # acceleration without friction
     free_x, free_y = vx + h * gx, vy + h * gy
     free = sqrt(free_x * free_x + free_y * free_y)
     if free == 0.0:
@@ -157,7 +169,7 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
     if system.law == LUBRICATED:
         share = 1.0 / (1.0 + h * reaction * system.friction)
     else:
-        ratio = sqrt(sliding_speed2(system, load.px, load.py, free_x / free, free_y / free))
+        ratio = sqrt(squared_sliding_speed(system, load.px, load.py, free_x / free, free_y / free))
         limit = held * coefficient(system, sqrt(speed2)) / ratio
         share = max(0.0, 1.0 - h * limit / free)
         if share * free * ratio < system.v_reg:
@@ -173,8 +185,8 @@ def push_platform(system: System, work: Work, load: Load, ground: Ground, h: flo
 
 
 @compiled
-def slip(system: System, vx: float, vy: float, speed2: float) -> tuple[float, float]:
-    """Slip vector (friction.py) at the velocity before the step, for the reaction; none where a slide begins."""
+def slip_in_state(system: System, vx: float, vy: float, speed2: float) -> tuple[float, float]:
+    """Return the slip vector (friction.py) at the velocity before the step; zero where a slide begins."""
     if speed2 == 0.0:
         return 0.0, 0.0
     contact = SLIDING
@@ -189,10 +201,14 @@ def slip(system: System, vx: float, vy: float, speed2: float) -> tuple[float, fl
 @compiled
 def largest_near_stop(gx: float, gy: float, vx: float, vy: float, ground: Ground, friction: float) -> float:
     """
-    Largest absolute acceleration on the way from the velocity v into a stop under the drive g, m/s^2.
+    Return the largest absolute acceleration on the way from the velocity v into a stop under the drive g, m/s^2.
 
     The direction of the slide turns from that of v to that of g (stop_arc.py), and friction, m/s^2, with it.
     """
+    # The absolute acceleration is d - f e: d the drive with the ground's acceleration, f friction, e the direction of
+    # slip. It is the larger, the more e points against d. The smallest cosine between them over the turn, less a margin
+    # for the direction, bounds it by the law of cosines. If e passes the direction opposite to d on its way, or if the
+    # direction is too uncertain, the bound is |d| + f.
     dx, dy = gx + ground.x, gy + ground.y
     drive, speed, force = sqrt(dx * dx + dy * dy), sqrt(vx * vx + vy * vy), sqrt(gx * gx + gy * gy)
     if drive == 0.0 or speed == 0.0 or force <= MIN_SURE_DRIVE * friction:
@@ -201,7 +217,7 @@ def largest_near_stop(gx: float, gy: float, vx: float, vy: float, ground: Ground
     cosine = min(max(cosine, -1.0), 1.0)
     sine = sqrt(1.0 - cosine * cosine)
     turn = vx * gy - vy * gx
-    opposed = turn * (dx * vy - dy * vx) > 0.0 and turn * (gx * dy - gy * dx) > 0.0  # somewhere on the way
+    opposed = turn * (dx * vy - dy * vx) > 0.0 and turn * (gx * dy - gy * dx) > 0.0  # e is -d / |d| on the way
     if opposed or cosine < -cos(DIRECTION_MARGIN):
         return drive + friction
     cosine = cosine * cos(DIRECTION_MARGIN) - sine * sin(DIRECTION_MARGIN)

@@ -1,10 +1,12 @@
 """
 Sliding close to a stop, in the stretched time tau with dt = S dtau, S the horizontal speed.
 
-There the direction theta and the logarithm of the speed, sigma = ln S, obey smooth equations however small S is,
+There the direction theta and the logarithm of the speed, sigma = ln S, obey smooth equations however small S is
+(T7 of docs/theory.md),
     theta' = a . e_perp(theta),   sigma' = a . e(theta),   t' = S,   p' = S^2 e(theta),
 so the turning of the slip direction on the way into a stop, or past one, is resolved at a constant cost per decade of
-speed. The chain above the platform, slow on this time scale, follows by iteration.
+speed (docs/decisions/0001-stretched-time.md). The chain above the platform is slow on this time scale and is solved by
+iteration.
 """
 
 from __future__ import annotations
@@ -14,12 +16,12 @@ from math import exp, inf, log
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import heading
-from reference.solver.contact.platform import directed, load_at_stages
-from reference.solver.ground import ground_at_stages, start_waves
-from reference.solver.linear_solve import AT, factorize, solve
-from reference.solver.polynomial import A_COLUMNS, NODES_ROW, integral
-from reference.solver.rows import finite, highest, lowest, put, row
-from reference.solver.steps import absolute_accelerations, beyond_rim
+from reference.solver.contact.platform import acceleration_along, load_at_stages
+from reference.solver.ground import set_ground_at_stages, set_waves
+from reference.solver.linear_solve import IDENTITY, factorize, solve
+from reference.solver.polynomial import A_COLUMNS, NODES_ROW, integrate_to_stages
+from reference.solver.rows import highest, is_finite, lowest, put, row
+from reference.solver.steps import rim_or_unsolved, set_absolute_accelerations
 from reference.solver.system import OPEN, SLIDING, SOLVED, UNSOLVED, System
 from reference.solver.work import (
     ACROSS,
@@ -39,30 +41,36 @@ from reference.solver.work import (
     SPEED,
     SPEED2,
     VELOCITY,
-    Work,
+    Workspace,
 )
 
-MAX_ITERATIONS = 40  # of Newton's method
-SLOW_CONVERGENCE = 0.01  # of the change before: a larger change asks for new slopes
-ROUNDING_ANGLE = 1e-13  # rad: change of the angles by rounding alone
-DIRECTION_DIFFERENCE = 1e-6  # rad: step of the difference quotient by the direction, needed to a few digits only
-SPEED_DIFFERENCE = 1e-6  # of the speed: step of the difference quotient by its logarithm
-MAX_GUESSED_TURN = 0.5  # rad: a turn is at most towards the force, which the guess must not overshoot
-DIVERGED = 1e3  # change of angle or logarithm of the speed that ends the iteration
+MAX_ITERATIONS = 40  # iterations of Newton's method before a step counts as unsolved
+SLOW_CONVERGENCE = 0.01  # ratio of two successive changes above which the slopes are computed anew
+ROUNDING_ANGLE = 1e-13  # rad, change of the angles by rounding alone
+DIRECTION_DIFFERENCE = 1e-6  # rad, step of the difference quotient by the direction, needed to a few digits only
+SPEED_DIFFERENCE = 1e-6  # relative step of the speed in the difference quotient by its logarithm
+MAX_GUESSED_TURN = 0.5  # rad: the direction turns towards the force, and the guess must not turn beyond it
+DIVERGED = 1e3  # change of angle, rad, or logarithm of the speed that ends the iteration
 
 
 @compiled
-def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> int:
-    """One step of length h in tau: the stages and the end; `tolerance` bounds the last change of the angle."""
-    guess_turning(system, work, h)
-    start_waves(system, work, work.time)
+def solve_near_stop_step(system: System, work: Workspace, h: float, tolerance: float) -> int:
+    """Solve one step of length h in tau; `tolerance` bounds the last change of the angle. Return its outcome."""
+    # One iteration has three parts. Speeds and directions at the stages give time and positions by integration
+    # (`move_bodies`). These give ground, springs and dampers (`pull_bodies`): a fixed-point iteration for the chain,
+    # which converges because the chain hardly moves within the step. The forces give the platform's acceleration along
+    # and across its direction (`turn_platform`), and Newton's method corrects the directions, which turn fast; ln S
+    # follows from them (`correct_turning`). Slopes are kept while the changes fall fast. Two iterations are always
+    # fresh: the guess is a straight line.
+    guess_near_stop(system, work, h)
+    set_waves(system, work, work.time)
     before, slow = 0.0, True
     for iteration in range(MAX_ITERATIONS):
         fresh = iteration < 2 or slow or system.rate > 0.0
         move_bodies(system, work, h)
         change = pull_bodies(system, work, h)
-        if not inside_rim(system, work):
-            return beyond_rim(system, work)
+        if not is_inside_rim(system, work):
+            return rim_or_unsolved(system, work)
         turn_platform(system, work, fresh)
         change = max(change, correct_turning(system, work, h, fresh))
         if not change < DIVERGED or (iteration > 4 and change > 2.0 * before):
@@ -72,17 +80,17 @@ def near_stop_step(system: System, work: Work, h: float, tolerance: float) -> in
         if change <= max(tolerance, ROUNDING_ANGLE):
             for i in range(work.x.shape[0]):
                 for axis in range(system.axes):
-                    work.x1[i, axis] = work.chain[i, axis, STAGES - 1]
-                    work.v1[i, axis] = work.velocity[i, axis, STAGES - 1]
+                    work.x1[i, axis] = work.positions[i, axis, STAGES - 1]
+                    work.v1[i, axis] = work.velocities[i, axis, STAGES - 1]
             put(work.levels, (), row(work.turning, SIGMA) + log(row(work.turning, RATIO)))
-            absolute_accelerations(system, work, SLIDING)
+            set_absolute_accelerations(system, work, SLIDING)
             return SOLVED if lowest(row(work.stage, REACTION)) > 0.0 else OPEN
     return UNSOLVED
 
 
 @compiled
-def guess_turning(system: System, work: Work, h: float) -> None:
-    """Direction and speed at the stages, and the chain's accelerations, from those at the start of the step."""
+def guess_near_stop(system: System, work: Workspace, h: float) -> None:
+    """Set the first guess of directions, speeds and the chain's accelerations from those at the start of the step."""
     ex, ey = heading(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     across = work.a0[0, 1] * ex - work.a0[0, 0] * ey
@@ -96,13 +104,13 @@ def guess_turning(system: System, work: Work, h: float) -> None:
 
 
 @compiled
-def move_bodies(system: System, work: Work, h: float) -> None:
-    """Speed, time, velocities and positions at the stages."""
+def move_bodies(system: System, work: Workspace, h: float) -> None:
+    """Set speed, time, velocities and positions at the stages."""
     x, v, a, turning = work.x, work.v, work.a, work.turning
     for k in range(STAGES):
         turning[COSINE, k], turning[SINE, k] = heading(turning[DIRECTION, k], system.axes)
     speeds = exp(row(turning, SIGMA))
-    elapsed = h * integral(speeds)
+    elapsed = h * integrate_to_stages(speeds)
     put(turning, SPEED, speeds)
     put(turning, CLOCK, work.time + elapsed)
     put(work.elapsed, (), elapsed)
@@ -111,18 +119,18 @@ def move_bodies(system: System, work: Work, h: float) -> None:
             if i == 0:
                 velocity = speeds * row(turning, COSINE + axis)
             else:
-                velocity = v[i, axis] + h * integral(speeds * row(a, (i, axis)))
-            put(work.velocity, (i, axis), velocity)
-            put(work.chain, (i, axis), x[i, axis] + h * integral(speeds * velocity))
+                velocity = v[i, axis] + h * integrate_to_stages(speeds * row(a, (i, axis)))
+            put(work.velocities, (i, axis), velocity)
+            put(work.positions, (i, axis), x[i, axis] + h * integrate_to_stages(speeds * velocity))
 
 
 @compiled
-def pull_bodies(system: System, work: Work, h: float) -> float:
-    """Ground, chain and drive at the stages; the largest change of the chain's, as one of velocity over the speed."""
-    place, velocity, stage = work.chain, work.velocity, work.stage
+def pull_bodies(system: System, work: Workspace, h: float) -> float:
+    """Set ground, chain and drive at the stages; return the largest change of the chain's velocity over the speed."""
+    place, velocity, stage = work.positions, work.velocities, work.stage
     bodies = work.x.shape[0]
     change = 0.0
-    ground_at_stages(system, work)
+    set_ground_at_stages(system, work)
     duration = row(work.turning, SPEED) * h
     for axis in range(system.axes):
         for i in range(1, bodies):
@@ -146,19 +154,19 @@ def pull_bodies(system: System, work: Work, h: float) -> float:
 
 
 @compiled
-def inside_rim(system: System, work: Work) -> bool:
-    """Whether the platform is within the cap at every stage (4.1)."""
+def is_inside_rim(system: System, work: Workspace) -> bool:
+    """Return True if the platform is within the cap at every stage (4.1)."""
     x, y = row(work.stage, POSITION), row(work.stage, POSITION + 1)
     inside: bool = highest(x * x + y * y) < system.radius**2
     return inside
 
 
 @compiled
-def turn_platform(system: System, work: Work, fresh: bool) -> None:
-    """Acceleration of the platform at the stages, along and across its direction; `fresh`: and its slopes."""
+def turn_platform(system: System, work: Workspace, fresh: bool) -> None:
+    """Set the platform's acceleration at the stages, along and across its direction; if `fresh`, its slopes, too."""
     turning, stage, load = work.turning, work.stage, load_at_stages(work)
     speed, ex, ey = row(turning, SPEED), row(turning, COSINE), row(turning, SINE)
-    ax, ay, reaction, ratio = directed(system, load, speed, ex, ey)
+    ax, ay, reaction, ratio = acceleration_along(system, load, speed, ex, ey)
     along, across, full = ax * ex + ay * ey, ay * ex - ax * ey, speed * ratio
     put(work.a, (0, 0), ax)
     put(work.a, (0, 1), ay)
@@ -170,32 +178,38 @@ def turn_platform(system: System, work: Work, fresh: bool) -> None:
     if not fresh:
         return
     gx, gy = ex - DIRECTION_DIFFERENCE * ey, ey + DIRECTION_DIFFERENCE * ex
-    bx, by, _, _ = directed(system, load, speed, gx, gy)
+    bx, by, _, _ = acceleration_along(system, load, speed, gx, gy)
     put(turning, ALONG_SLOPE, (bx * gx + by * gy - along) / DIRECTION_DIFFERENCE)
     put(turning, ACROSS_SLOPE, (by * gx - bx * gy - across) / DIRECTION_DIFFERENCE)
     if system.rate > 0.0:
-        cx, cy, _, _ = directed(system, load, (1.0 + SPEED_DIFFERENCE) * speed, ex, ey)
+        cx, cy, _, _ = acceleration_along(system, load, (1.0 + SPEED_DIFFERENCE) * speed, ex, ey)
         put(turning, ALONG_BY_SIGMA, (cx * ex + cy * ey - along) / SPEED_DIFFERENCE)
 
 
 @compiled
-def correct_turning(system: System, work: Work, h: float, fresh: bool) -> float:
-    """One iteration of Newton's method, with slopes that are `fresh` or kept; the largest change, or infinity."""
+def correct_turning(system: System, work: Workspace, h: float, fresh: bool) -> float:
+    """Correct directions and speeds by Newton's method, with `fresh` or kept slopes; return the largest change."""
+    # The unknowns are the directions at the stages: theta_0 + h A (a . e_perp) - theta = 0, with the derivative of the
+    # sideways acceleration by the direction alone. The logarithms of the speed follow explicitly from the corrected
+    # directions, for constant friction hardly depends on the speed. Where friction depends on the speed that iteration
+    # converges slowly or not at all, and Newton's method takes its place (`correct_levels`). Infinity means no
+    # solution of the linear equations.
     turning, residual = work.turning, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
-    put(residual, 0, work.angle - row(turning, DIRECTION) + h * integral(row(turning, ACROSS)))
+    put(residual, 0, work.angle - row(turning, DIRECTION) + h * integrate_to_stages(row(turning, ACROSS)))
     if fresh:
         for m in range(STAGES):
-            put(matrix, (m, 0), row(AT, (m, 0)) - row(A_COLUMNS, m) * (h * turning[ACROSS_SLOPE, m]))
+            put(matrix, (m, 0), row(IDENTITY, (m, 0)) - row(A_COLUMNS, m) * (h * turning[ACROSS_SLOPE, m]))
         if not factorize(matrix, pivots):
             return inf
     solve(matrix, pivots, residual)
     turn = row(residual, 0)
-    put(work.levels, (), work.log_speed + h * integral(row(turning, ALONG) + row(turning, ALONG_SLOPE) * turn))
+    along = row(turning, ALONG) + row(turning, ALONG_SLOPE) * turn
+    put(work.levels, (), work.log_speed + h * integrate_to_stages(along))
     if system.rate > 0.0 and not correct_levels(work, h):
         return inf
     rise = row(work.levels, ()) - row(turning, SIGMA)
-    if not (finite(turn) and finite(rise)):
+    if not (is_finite(turn) and is_finite(rise)):
         return inf
     put(turning, DIRECTION, row(turning, DIRECTION) + turn)
     put(turning, SIGMA, row(work.levels, ()))
@@ -204,14 +218,14 @@ def correct_turning(system: System, work: Work, h: float, fresh: bool) -> float:
 
 
 @compiled
-def correct_levels(work: Work, h: float) -> bool:
-    """Newton's method in place of iteration for the logarithms of the speed in `levels`; False if it has no step."""
+def correct_levels(work: Workspace, h: float) -> bool:
+    """Correct the logarithms of the speed in `levels` by Newton's method; return False if it has no step."""
     turning, levels, residual = work.turning, work.levels, work.residual
     matrix, pivots = work.turn_matrix, work.pivots[:STAGES]
     turn = row(residual, 0)
     put(residual, 0, row(levels, ()) - row(turning, SIGMA))
     for m in range(STAGES):
-        put(matrix, (m, 0), row(AT, (m, 0)) - row(A_COLUMNS, m) * (h * turning[ALONG_BY_SIGMA, m]))
+        put(matrix, (m, 0), row(IDENTITY, (m, 0)) - row(A_COLUMNS, m) * (h * turning[ALONG_BY_SIGMA, m]))
     if not factorize(matrix, pivots):
         return False
     solve(matrix, pivots, residual)

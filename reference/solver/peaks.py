@@ -1,4 +1,4 @@
-"""Running maxima over each step: |absolute acceleration|^2 of every body (5.1), the platform's displacement."""
+"""Running maxima over the steps: |absolute acceleration|^2 of every body (5.1), the platform's displacement."""
 
 from __future__ import annotations
 
@@ -6,28 +6,35 @@ from math import sqrt
 
 import numpy as np
 
-from reference.solver.collocation import DENSE, LANES, MISSED, MISSED_INTEGRAL, STAGES, VELOCITY_AT_START
+from reference.solver.collocation import (
+    DEFECT_INTEGRAL,
+    DEFECT_POLYNOMIAL,
+    ROW_LENGTH,
+    SEARCH_POINTS,
+    STAGES,
+    VELOCITY_AT_START,
+)
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import decay_rate, turning_rate
 from reference.solver.polynomial import POWERS, expand
-from reference.solver.rows import as_many, highest, lowest, put, row
+from reference.solver.rows import broadcast_like, highest, lowest, put, row
 from reference.solver.system import PLATFORM, REST, SLIDING, STOPPING, System
-from reference.solver.work import SPEED2, Work
+from reference.solver.work import SPEED2, Workspace
 
-# A step resolved to the tolerance turns by a small part of a wave between two stages: a peak between them stands less
-# than this share above the higher one.
+# In a step that meets its tolerance a vibration turns by a small part of a wave between two stages: a peak between them
+# exceeds the higher one by less than this share of the squared acceleration.
 MAX_RISE_BETWEEN_STAGES = 0.2
-MAX_WAY_FACTOR = 1.5  # bound on the way within a step, times the larger speed at its ends and its length
-NEWTON_ITERATIONS = 6
-IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # components of a vector; no literals (system.py)
-DENSE_ROWS = np.resize(DENSE, (-(-len(DENSE) // LANES), LANES))
-MAX_RATE = 60.0  # over the length of a step: an answer that is faster leaves no larger part of the defect
-SETTLED_FRACTION = 0.9  # of the largest so far: smaller values count as over
+MAX_WAY_FACTOR = 1.5  # bound on the way within a step over its length times the larger speed at its ends
+NEWTON_ITERATIONS = 6  # iterations from the best of SEARCH_POINTS to a maximum
+IN_THE_PLANE, IN_SPACE = np.int64(2), np.int64(3)  # numbers of components of a vector; no literals (system.py)
+SEARCH_ROWS = np.resize(SEARCH_POINTS, (-(-len(SEARCH_POINTS) // ROW_LENGTH), ROW_LENGTH))
+MAX_RATE = 60.0  # rate times step length beyond which a faster response of friction adds no more to the error
+SETTLED_FRACTION = 0.9  # share of the largest acceleration so far below which no peak is near
 
 
 @compiled
-def squares(work: Work, components: int, theta: float) -> tuple[float, float, float]:
-    """Sum of the squares of the first polynomials in `powers` at theta, and its two derivatives."""
+def sum_of_squares(work: Workspace, components: int, theta: float) -> tuple[float, float, float]:
+    """Return the sum of the squares of the first polynomials in `powers` at theta, and its first two derivatives."""
     value = slope = curvature = 0.0
     for n in range(components):
         p = dp = ddp = 0.0
@@ -42,26 +49,30 @@ def squares(work: Work, components: int, theta: float) -> tuple[float, float, fl
 
 
 @compiled
-def largest_square(work: Work, components: int, low: float, high: float) -> tuple[float, float]:
-    """Largest sum of the squares of the first polynomials in `powers` over [low, high], and where: Newton's method."""
-    for block in range(DENSE_ROWS.shape[0]):
-        thetas = min(max(row(DENSE_ROWS, block), low), high)
-        values = as_many(0.0, thetas)
+def largest_square(work: Workspace, components: int, low: float, high: float) -> tuple[float, float]:
+    """Return the largest sum of squares of the first polynomials in `powers` over [low, high], and its theta."""
+    # SEARCH_POINTS are twice as many as the stages, so the best of them is next to the largest maximum of a step that
+    # meets its tolerance. Newton's method for a zero of the derivative goes on from there, and stays between its
+    # neighbors. The best value seen counts, also where the iteration does not converge: it is a value of the
+    # polynomial, and so never above the true maximum.
+    for block in range(SEARCH_ROWS.shape[0]):
+        thetas = min(max(row(SEARCH_ROWS, block), low), high)
+        values = broadcast_like(0.0, thetas)
         for n in range(components):
-            p = as_many(0.0, thetas)
+            p = broadcast_like(0.0, thetas)
             for k in range(POWERS - 1, -1, -1):
                 p = p * thetas + work.powers[n, k]
             values += p * p
         put(work.dense, block, values)
     best, place = -1.0, low
-    for n in range(DENSE.shape[0]):
-        value = work.dense[n // LANES, n % LANES]
+    for n in range(SEARCH_POINTS.shape[0]):
+        value = work.dense[n // ROW_LENGTH, n % ROW_LENGTH]
         if value > best:
-            best, place = value, min(max(DENSE[n], low), high)
-    left, right = max(low, place - DENSE[1]), min(high, place + DENSE[1])
+            best, place = value, min(max(SEARCH_POINTS[n], low), high)
+    left, right = max(low, place - SEARCH_POINTS[1]), min(high, place + SEARCH_POINTS[1])
     theta = place
     for _ in range(NEWTON_ITERATIONS):
-        value, slope, curvature = squares(work, components, theta)
+        value, slope, curvature = sum_of_squares(work, components, theta)
         if value > best:
             best, place = value, theta
         if not curvature < 0.0:
@@ -73,8 +84,8 @@ def largest_square(work: Work, components: int, low: float, high: float) -> tupl
 
 
 @compiled
-def missed_velocity(work: Work, body: int, axis: int) -> float:
-    """What the polynomial through a body's velocities at the stages misses at the start of a step, over its length."""
+def velocity_defect(work: Workspace, body: int, axis: int) -> float:
+    """Return the defect of the polynomial through a body's velocities at the start of a step, over its length."""
     missed = 0.0
     for k in range(STAGES):
         missed += VELOCITY_AT_START[k] * work.a[body, axis, k]
@@ -82,54 +93,55 @@ def missed_velocity(work: Work, body: int, axis: int) -> float:
 
 
 @compiled
-def returned(system: System, work: Work, h: float, body: int) -> float:
-    """Rate at which the acceleration of a body goes wrong at the start of the step, m/s^3, by the links."""
+def link_error_rate(system: System, work: Workspace, h: float, body: int) -> float:
+    """Return the rate, m/s^3, at which the links make a body's acceleration wrong at the start of the step."""
     squared, last = 0.0, work.x.shape[0] - 1
     for axis in range(2):
-        own = missed_velocity(work, body, axis)
+        own = velocity_defect(work, body, axis)
         rate = 0.0
         if body > 0:
-            rate += system.below[body, axis] * (missed_velocity(work, body - 1, axis) - own)
+            rate += system.below[body, axis] * (velocity_defect(work, body - 1, axis) - own)
         if body < last:
-            rate += system.above[body, axis] * (missed_velocity(work, body + 1, axis) - own)
+            rate += system.above[body, axis] * (velocity_defect(work, body + 1, axis) - own)
         squared += (h * rate) ** 2
     return sqrt(squared)
 
 
 @compiled
-def friction_rate(system: System, work: Work, contact: int) -> float:
-    """Rate at which friction answers to a wrong velocity of the platform in the step just made, 1/s."""
+def friction_error_rate(system: System, work: Workspace, contact: int) -> float:
+    """Return the rate, 1/s, at which friction turns an error of the platform's velocity into one of acceleration."""
     if contact == REST:
         return 0.0
     if contact != SLIDING:
         return decay_rate(system, contact)
-    return turning_rate(system, sqrt(min(work.start2, lowest(row(work.stage, SPEED2)))))
+    return turning_rate(system, sqrt(min(work.squared_start_speed, lowest(row(work.stage, SPEED2)))))
 
 
 @compiled
-def interpolation_error(system: System, work: Work, contact: int, h: float, body: int, theta: float) -> float:
-    """
-    Error of a body's acceleration at theta, m/s^2.
-
-    What the polynomial through the stages misses vanishes at the stages. Positions and velocities are wrong most of all
-    there, and links and friction return them as accelerations.
-    """
+def interpolation_error(system: System, work: Workspace, contact: int, h: float, body: int, theta: float) -> float:
+    """Return the error of a body's acceleration at theta of the step just solved, m/s^2."""
+    # The error has three parts (docs/decisions/0002-two-run-error.md). (1) The polynomial through the stages misses the
+    # acceleration between them: DEFECT_POLYNOMIAL, which is 1 at the start of the step and 0 at the stages, times the
+    # defect. At the stages this part vanishes, but positions and velocities there are integrals of a polynomial with
+    # an error. (2) The links turn the error of the positions into accelerations, (3) friction that of the velocity,
+    # most of all where a slow slide turns. For one free vibration that turns by up to 4 rad in a step, the first two
+    # parts together are the true error to a hundredth or two in the median.
     missed = integral = 0.0
     for k in range(STAGES + 1):
-        missed = missed * theta + MISSED[k]
-        integral = integral * theta + MISSED_INTEGRAL[k]
+        missed = missed * theta + DEFECT_POLYNOMIAL[k]
+        integral = integral * theta + DEFECT_INTEGRAL[k]
     error = abs(missed) * work.defect[body]
-    if contact != STOPPING:  # its steps have no length in time, and are short
-        rate = returned(system, work, h, body)
+    if contact != STOPPING:  # steps near a stop have no length in time, and are short
+        rate = link_error_rate(system, work, h, body)
         if body == PLATFORM:
-            rate += min(friction_rate(system, work, contact), MAX_RATE / h) * work.defect[body]
+            rate += min(friction_error_rate(system, work, contact), MAX_RATE / h) * work.defect[body]
         error += abs(integral) * theta * h * rate
     return error
 
 
 @compiled
-def take_peaks(system: System, work: Work, contact: int, h: float, low: float, high: float) -> bool:
-    """Raise work.best (N,) by the largest |total|^2 over [low, high] of the step; whether one is near the largest."""
+def update_peaks(system: System, work: Workspace, contact: int, h: float, low: float, high: float) -> bool:
+    """Raise work.best (N,) to the largest |total|^2 over [low, high] of the step; return True if one is near it."""
     large = False
     for i in range(work.x.shape[0]):
         x, y, z = row(work.total, (i, 0)), row(work.total, (i, 1)), row(work.total, (i, 2))
@@ -147,22 +159,23 @@ def take_peaks(system: System, work: Work, contact: int, h: float, low: float, h
 
 
 @compiled
-def take_limit(work: Work, body: int, squared: float) -> None:
-    """Raises a body's largest acceleration by a one-sided limit, which is read without an error of its own."""
+def update_peak_by_limit(work: Workspace, body: int, squared: float) -> None:
+    """Raise a body's largest acceleration to a one-sided limit, which is read without an error of its own."""
     if squared >= SETTLED_FRACTION**2 * work.best[body]:
-        work.peaked = work.settled = work.time
+        work.last_peak = work.last_large = work.time
     if squared > work.best[body]:
         work.best[body] = squared
         work.reading_error[body] = work.drift[body]
 
 
 @compiled
-def take_reach(work: Work, h: float, stretched: bool) -> bool:
+def update_displacement(work: Workspace, h: float, stretched: bool) -> bool:
     """
-    Raises work.reach2 by the largest |x|^2 of the platform in the step just made.
+    Raise work.squared_reach to the largest |x|^2 of the platform in the step just solved.
 
-    From the polynomial of its acceleration through the stages; in stretched time near a stop, where h is no length of
-    time, at the stages: the way left there is short. Returns whether the displacement is near the largest so far.
+    It is read from the polynomial of the acceleration through the stages. In stretched time near a stop, where h is no
+    length of time and the way left is short, it is read at the stages. Return True if the displacement is near the
+    largest so far.
     """
     speed2 = 0.0
     for axis in range(2):
@@ -171,20 +184,20 @@ def take_reach(work: Work, h: float, stretched: bool) -> bool:
     end = work.x1[0, 0] ** 2 + work.x1[0, 1] ** 2
     far = max(start, end)
     if stretched:
-        x, y = row(work.chain, (0, 0)), row(work.chain, (0, 1))
+        x, y = row(work.positions, (0, 0)), row(work.positions, (0, 1))
         far = max(far, highest(x * x + y * y))
-    elif sqrt(max(start, end)) + MAX_WAY_FACTOR * h * sqrt(speed2) > sqrt(work.reach2):
+    elif sqrt(max(start, end)) + MAX_WAY_FACTOR * h * sqrt(speed2) > sqrt(work.squared_reach):
         for axis in range(2):
-            expand_place(work, h, axis)
+            expand_position(work, h, axis)
         top, _ = largest_square(work, IN_THE_PLANE, 0.0, 1.0)
         far = max(far, top)
-    work.reach2 = max(work.reach2, far)
-    return far >= SETTLED_FRACTION**2 * work.reach2
+    work.squared_reach = max(work.squared_reach, far)
+    return far >= SETTLED_FRACTION**2 * work.squared_reach
 
 
 @compiled
-def expand_place(work: Work, h: float, axis: int) -> None:
-    """Powers of theta of the platform's position: the second integral of its acceleration."""
+def expand_position(work: Workspace, h: float, axis: int) -> None:
+    """Set the powers of theta of the platform's position: the second integral of its acceleration."""
     powers = work.powers[axis]
     expand(row(work.a, (0, axis)), powers)
     for k in range(STAGES - 1, -1, -1):

@@ -1,34 +1,34 @@
-"""The polynomial through the numbers at the stages of a step: its integrals, its coefficients, its values."""
+"""Polynomial through the numbers at the stages of a step: its integrals, coefficients and values."""
 
 from __future__ import annotations
 
 from reference.solver.collocation import A2, MONOMIALS, NODES, STAGES, A, columns
 from reference.solver.compiled import compiled
-from reference.solver.rows import Row, combined, put
+from reference.solver.rows import Row, combine_columns, put
 from reference.solver.system import Array
 
 A_COLUMNS, A2_COLUMNS, MONOMIALS_COLUMNS = columns(A), columns(A2), columns(MONOMIALS)
 NODES_ROW = columns(NODES[:, None])[0]
-POWERS = STAGES + 2  # coefficients of a polynomial: a position is the second integral of one through the stages
+POWERS = STAGES + 2  # number of coefficients: a position is the second integral of a polynomial through the stages
 
 
 @compiled
-def integral(values: Row) -> Row:
-    """From the start of the step to every stage, over its length."""
-    return combined(A_COLUMNS, values)
+def integrate_to_stages(values: Row) -> Row:
+    """Return the integrals from the start of the step to every stage, over the length of the step."""
+    return combine_columns(A_COLUMNS, values)
 
 
 @compiled
 def expand(values: Row, coefficients: Array) -> None:
-    """Coefficients (POWERS,) of the powers of theta."""
-    put(coefficients, (), combined(MONOMIALS_COLUMNS, values))
+    """Set the coefficients (POWERS,) of the powers of theta."""
+    put(coefficients, (), combine_columns(MONOMIALS_COLUMNS, values))
     for k in range(STAGES, POWERS):
         coefficients[k] = 0.0
 
 
 @compiled
 def value_at(coefficients: Array, theta: float) -> float:
-    """The polynomial at theta."""
+    """Return the polynomial at theta."""
     value = 0.0
     for k in range(STAGES - 1, -1, -1):
         value = value * theta + coefficients[k]

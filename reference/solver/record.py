@@ -1,18 +1,18 @@
-"""Keeps the steps of a motion, to be sampled afterwards (samples.py)."""
+"""Keep the steps of a motion, to be sampled afterwards (samples.py)."""
 
 from __future__ import annotations
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.system import Record
-from reference.solver.work import CLOCK, REACTION, Work
+from reference.solver.system import StepRecord
+from reference.solver.work import CLOCK, REACTION, Workspace
 
 
 @compiled
-def record_step(work: Work, record: Record, h: float, contact: int) -> None:
-    """Keep the step just made (not yet committed) while there is room; count it in any case."""
-    n = record.made[0]
-    record.made[0] += 1
+def record_step(work: Workspace, record: StepRecord, h: float, contact: int) -> None:
+    """Keep the step just solved, before it is committed, while there is room; count it in any case."""
+    n = record.counts[0]
+    record.counts[0] += 1
     if n >= record.start.shape[0]:
         return
     record.start[n] = work.time
@@ -28,20 +28,20 @@ def record_step(work: Work, record: Record, h: float, contact: int) -> None:
                 record.x[n, i, axis] = work.x[i, axis]
                 record.v[n, i, axis] = work.v[i, axis]
                 record.a[n, i, axis, k] = work.a[i, axis, k]
-                record.position[n, i, axis, k] = work.chain[i, axis, k]
-                record.velocity[n, i, axis, k] = work.velocity[i, axis, k]
+                record.position[n, i, axis, k] = work.positions[i, axis, k]
+                record.velocities[n, i, axis, k] = work.velocities[i, axis, k]
 
 
 @compiled
-def note_stick(record: Record, start: float, end: float) -> None:
-    """One interval of rest, if the motion does not end before it begins; intervals that touch are one."""
+def record_stick(record: StepRecord, start: float, end: float) -> None:
+    """Keep one interval of rest, if the motion does not end before it begins; join intervals that touch."""
     if end <= start:
         return
-    n = record.made[1]
+    n = record.counts[1]
     if 0 < n <= record.sticks.shape[0] and record.sticks[n - 1, 1] == start:
         record.sticks[n - 1, 1] = end
         return
     if n < record.sticks.shape[0]:
         record.sticks[n, 0] = start
         record.sticks[n, 1] = end
-    record.made[1] += 1
+    record.counts[1] += 1

@@ -1,16 +1,16 @@
 """
 Eight numbers as one value of compiled code, a row: the processor computes with all of them at once.
 
-A row has one number for each stage of a step, and one that is never looked at; or the real and the imaginary parts of a
-step's channels (collocation.py). The last axis of the arrays in `Work` has room for it.
+A row has one number for each stage of a step, and one without a meaning; or the real and the imaginary parts of a
+step's channels (collocation.py). The last axis of the arrays in `Workspace` has room for it.
 
     values = row(work.a, (0, axis))             read
     put(work.stage, POSITION, x + h * values)   write
     values[k]                                   one number
 
 `+ - * /`, negation, abs, min, max and `math`'s sqrt, exp, expm1 and log do with every number what they do with a float,
-to the same bits. So one function serves an instant and all stages alike. Left to find this in loops over stages, whose
-arrays might overlap, LLVM finds nothing: docs/decisions/0014-rows-of-stages.md.
+to the same bits. So one function serves both an instant and all stages. LLVM does not vectorize loops over stages by
+itself, since their arrays might overlap: docs/decisions/0014-rows-of-stages.md.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from numba.core import cgutils
 from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
 from numpy.typing import NDArray
 
-from reference.solver.collocation import LANES, STAGES
+from reference.solver.collocation import ROW_LENGTH, STAGES
 from reference.solver.compiled import compiled
 
-Row: TypeAlias = Any  # of compiled code alone
+Row: TypeAlias = Any  # a row, which exists in compiled code alone
 Number: TypeAlias = Any  # a float or a row
 
-_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
-_ALIGNMENT = 8  # bytes: arrays promise no better
-Lower: TypeAlias = Callable[[Any, Any, Any, Any], Any]  # how numba asks for the code of a call
+_VECTOR = ir.VectorType(ir.DoubleType(), ROW_LENGTH)
+_ALIGNMENT = 8  # bytes, the alignment that numpy's arrays guarantee
+Lower: TypeAlias = Callable[[Any, Any, Any, Any], Any]  # a function that numba asks for the code of a call
 
 
 class _RowType(types.Type):  # type: ignore[misc]
@@ -47,7 +47,7 @@ class _RowType(types.Type):  # type: ignore[misc]
 
 @register_model(_RowType)
 class _RowModel(models.PrimitiveModel):  # type: ignore[misc]
-    """Its type in LLVM."""
+    """Type of a row in LLVM."""
 
     def __init__(self, manager: Any, kind: Any) -> None:
         super().__init__(manager, kind, _VECTOR)
@@ -56,27 +56,27 @@ class _RowModel(models.PrimitiveModel):  # type: ignore[misc]
 _ROW = _RowType()
 
 
-def _lane(k: int) -> Any:
+def _index(k: int) -> Any:
     return ir.IntType(32)(k)
 
 
-def _rearranged(builder: Any, values: Any, places: list[int]) -> Any:
-    """The numbers of a row that stand at these places of it."""
-    return builder.shuffle_vector(values, values, ir.Constant(ir.VectorType(ir.IntType(32), LANES), places))
+def _shuffle(builder: Any, values: Any, places: list[int]) -> Any:
+    """Write code for a row of the numbers at these places of another."""
+    return builder.shuffle_vector(values, values, ir.Constant(ir.VectorType(ir.IntType(32), ROW_LENGTH), places))
 
 
-def _spread(builder: Any, number: Any) -> Any:
-    """The same number in all places."""
-    first = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), number, _lane(0))
-    return _rearranged(builder, first, [0] * LANES)
+def _broadcast(builder: Any, number: Any) -> Any:
+    """Write code for a row with the same number in all places."""
+    first = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), number, _index(0))
+    return _shuffle(builder, first, [0] * ROW_LENGTH)
 
 
-def _as_rows(builder: Any, numbers: Iterable[Any], kinds: Iterable[Any]) -> list[Any]:
-    return [number if kind == _ROW else _spread(builder, number) for number, kind in zip(numbers, kinds)]
+def _broadcast_to_rows(builder: Any, numbers: Iterable[Any], kinds: Iterable[Any]) -> list[Any]:
+    return [number if kind == _ROW else _broadcast(builder, number) for number, kind in zip(numbers, kinds)]
 
 
 def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) -> None:
-    """Make a row of two, or of a row and a float."""
+    """Define an operation of two rows, or of a row and a float, whose result is a row."""
 
     def typer(context: Any) -> Callable[..., Any]:
         def kind(left: Any, right: Any) -> Any:
@@ -85,7 +85,7 @@ def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) ->
         return kind
 
     def lower(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
-        return instruction(builder, *_as_rows(builder, numbers, signature.args))
+        return instruction(builder, *_broadcast_to_rows(builder, numbers, signature.args))
 
     type_callable(operation)(typer)
     for kinds in ((_ROW, _ROW), (_ROW, types.float64), (types.float64, _ROW)):
@@ -93,34 +93,36 @@ def _define_pair(operation: Any, instruction: Callable[[Any, Any, Any], Any]) ->
 
 
 def _define_single(operation: Any, lower: Lower) -> None:
-    """Make a row of one."""
+    """Define a function of one row whose result is a row."""
     type_callable(operation)(lambda context: lambda number: _ROW if number == _ROW else None)
     lower_builtin(operation, _ROW)(lower)
 
 
-def _by_instruction(name: str) -> Lower:
+def _lower_by_instruction(name: str) -> Lower:
     def lower(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
         kind = ir.FunctionType(_VECTOR, [_VECTOR])
-        return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{LANES}f64"), numbers)
+        return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.v{ROW_LENGTH}f64"), numbers)
 
     return lower
 
 
-def _one_by_one(operation: Any) -> Lower:
-    """For the stages alone."""
+def _lower_one_by_one(operation: Any) -> Lower:
+    """Return code that applies a function to the number of every stage; the last place of the row becomes 0."""
+    # exp, expm1 and log are functions of the C library for one float: called for each number, they give the same bits
+    # as at an instant.
 
     def lower(context: Any, builder: Any, signature: Any, numbers: Any) -> Any:
         function = context.get_function(operation, types.float64(types.float64))
-        results = ir.Constant(_VECTOR, [0.0] * LANES)
-        for lane in map(_lane, range(STAGES)):
-            result = function(builder, [builder.extract_element(numbers[0], lane)])
-            results = builder.insert_element(results, result, lane)
+        results = ir.Constant(_VECTOR, [0.0] * ROW_LENGTH)
+        for place in map(_index, range(STAGES)):
+            result = function(builder, [builder.extract_element(numbers[0], place)])
+            results = builder.insert_element(results, result, place)
         return results
 
     return lower
 
 
-def _selecting(relation: str) -> Callable[[Any, Any, Any], Any]:
+def _select_by(relation: str) -> Callable[[Any, Any, Any], Any]:
     def lower(builder: Any, left: Any, right: Any) -> Any:
         return builder.select(builder.fcmp_ordered(relation, left, right), left, right)
 
@@ -132,30 +134,30 @@ for _operations, _instruction in (
     ((operator.sub, operator.isub), ir.IRBuilder.fsub),
     ((operator.mul, operator.imul), ir.IRBuilder.fmul),
     ((operator.truediv, operator.itruediv), ir.IRBuilder.fdiv),
-    ((max,), _selecting(">")),
-    ((min,), _selecting("<")),
+    ((max,), _select_by(">")),
+    ((min,), _select_by("<")),
 ):
     for _operation in _operations:
         _define_pair(_operation, _instruction)
 _define_single(operator.neg, lambda context, builder, signature, numbers: builder.fneg(numbers[0]))
-_define_single(abs, _by_instruction("llvm.fabs"))
-_define_single(math.sqrt, _by_instruction("llvm.sqrt"))
+_define_single(abs, _lower_by_instruction("llvm.fabs"))
+_define_single(math.sqrt, _lower_by_instruction("llvm.sqrt"))
 for _function in (math.exp, math.expm1, math.log):
-    _define_single(_function, _one_by_one(_function))
+    _define_single(_function, _lower_one_by_one(_function))
 
 
 @type_callable(operator.getitem)
-def _type_of_number(context: Any) -> Callable[..., Any]:
+def _type_getitem(context: Any) -> Callable[..., Any]:
     return lambda values, k: types.float64 if values == _ROW and isinstance(k, types.Integer) else None
 
 
 @lower_builtin(operator.getitem, _ROW, types.Integer)
-def _number(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+def _lower_getitem(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     return builder.extract_element(*arguments)
 
 
 def _address(context: Any, builder: Any, kinds: Any, arguments: Any) -> Any:
-    """Of the row at a place (an index, or a tuple of them) of an array."""
+    """Write code for the address of the row at a place of an array: an index, or a tuple of them."""
     array = context.make_array(kinds[0])(context, builder, arguments[0])
     several = isinstance(kinds[1], types.BaseTuple)
     place = cgutils.unpack_tuple(builder, arguments[1]) if several else [arguments[1]]
@@ -169,7 +171,7 @@ def _address(context: Any, builder: Any, kinds: Any, arguments: Any) -> Any:
 
 @intrinsic
 def row(context: Any, array: Any, place: Any) -> Any:
-    """The row at a place of an array, one axis fewer than it has: an index, or a tuple of them."""
+    """Return the row at a place of an array: an index, or a tuple of them, for all axes but the last."""
 
     def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.load(_address(context, builder, signature.args, arguments), align=_ALIGNMENT)
@@ -182,7 +184,7 @@ def put(context: Any, array: Any, place: Any, values: Any) -> Any:
     """Write a row, or a float in all places of it, to a place of an array."""
 
     def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        (written,) = _as_rows(builder, arguments[2:], signature.args[2:])
+        (written,) = _broadcast_to_rows(builder, arguments[2:], signature.args[2:])
         builder.store(written, _address(context, builder, signature.args, arguments), align=_ALIGNMENT)
         return context.get_dummy_value()
 
@@ -190,66 +192,69 @@ def put(context: Any, array: Any, place: Any, values: Any) -> Any:
 
 
 @intrinsic
-def as_many(context: Any, number: Any, pattern: Any) -> Any:
-    """A float, in all places of a row if `pattern` is one."""
+def broadcast_like(context: Any, number: Any, pattern: Any) -> Any:
+    """Return a float, or a row with it in all places if `pattern` is a row."""
 
     def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return _spread(builder, arguments[0]) if signature.return_type == _ROW else arguments[0]
+        return _broadcast(builder, arguments[0]) if signature.return_type == _ROW else arguments[0]
 
     return pattern(types.float64, pattern), lower
 
 
 @intrinsic
 def where_positive(context: Any, number: Any, positive: Any, otherwise: Any) -> Any:
-    """One value where the number is above zero, the other elsewhere; all three rows, or all floats."""
+    """Return one value where the number is above zero, the other elsewhere; all three rows, or all floats."""
 
     def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        zero = ir.Constant(arguments[0].type, [0.0] * LANES if signature.return_type == _ROW else 0.0)
+        zero = ir.Constant(arguments[0].type, [0.0] * ROW_LENGTH if signature.return_type == _ROW else 0.0)
         return builder.select(builder.fcmp_ordered(">", arguments[0], zero), *arguments[1:])
 
     return number(number, number, number), lower
 
 
-def _reduction(relation: str) -> Callable[..., Any]:
-    """The number at a stage that is above or below all others; any of them where one is NaN. A float is its own."""
+def _reduce_by(relation: str) -> Callable[..., Any]:
+    """Return a function that finds the largest or smallest number of all stages; a float is its own."""
+    # Three comparisons of a row with a rearranged copy of itself leave the extreme number in the first place. The last
+    # place of a row has no meaning: the last stage is compared in its stead. Where a number is NaN, any of the numbers
+    # may be returned: an ordered comparison with NaN is false.
 
     def reduce(context: Any, values: Any) -> Any:
         def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
             if signature.args[0] != _ROW:
                 return arguments[0]
-            best, width = arguments[0], LANES
+            best, width = arguments[0], ROW_LENGTH
             while width > 1:
                 width //= 2
-                places = [min(k + width, STAGES - 1) if k < width else k for k in range(LANES)]
-                other = _rearranged(builder, best, places)
+                places = [min(k + width, STAGES - 1) if k < width else k for k in range(ROW_LENGTH)]
+                other = _shuffle(builder, best, places)
                 best = builder.select(builder.fcmp_ordered(relation, other, best), other, best)
-            return builder.extract_element(best, _lane(0))
+            return builder.extract_element(best, _index(0))
 
         return types.float64(values), lower
 
     return reduce
 
 
-lowest = intrinsic(_reduction("<"))
-highest = intrinsic(_reduction(">"))
+lowest = intrinsic(_reduce_by("<"))
+highest = intrinsic(_reduce_by(">"))
 
 
 @intrinsic
-def finite(context: Any, values: Any) -> Any:
-    """Whether the numbers at the stages are finite."""
+def is_finite(context: Any, values: Any) -> Any:
+    """Return True if the numbers at the stages are finite."""
 
     def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        bits = ir.IntType(LANES)
+        bits = ir.IntType(ROW_LENGTH)
         known = builder.fcmp_ordered("ord", *[builder.fsub(arguments[0], arguments[0])] * 2)
-        never_looked_at = bits(1 << LANES - 1)
+        never_looked_at = bits(1 << ROW_LENGTH - 1)
         return builder.icmp_signed("==", builder.or_(builder.bitcast(known, bits), never_looked_at), bits(-1))
 
     return types.boolean(values), lower
 
 
 @compiled
-def combined(columns: NDArray[np.float64], values: Row) -> Row:
-    """The columns of a matrix (M, LANES), each times its number, and summed."""
+def combine_columns(columns: NDArray[np.float64], values: Row) -> Row:
+    """Return the sum of the columns of a matrix (M, ROW_LENGTH), each times its number."""
     total = row(columns, 0) * values[0]
     for m in range(1, columns.shape[0]):
         total += row(columns, m) * values[m]

@@ -1,11 +1,11 @@
 """
-One run from 0 to the end of the motion: the three-structure model around (4.6), every change located.
+One run from the start to the end of the motion: the three-structure model around (4.6), every change located.
 
     rest      -> sliding                     when friction can no longer hold the platform
     sliding   -> stopping                    when the slide would stop within a step
-    stopping  -> rest, creep or sliding      into the stop, below v_reg, or past the stop
+    stopping  -> rest, creep or sliding      at the stop, below v_reg, or past the stop
     creep     -> sliding                     at v_reg (regularized law)
-A lubricated contact stays lubricated. Each phase carries the state in `Work` on until the contact changes.
+A lubricated contact stays lubricated. Each phase moves the state in `Workspace` on until the contact changes.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from __future__ import annotations
 from math import pi, sqrt
 
 from reference.solver.compiled import cached_entry_point, compiled
-from reference.solver.contact.platform import load_in_state, moving, rest_excess
-from reference.solver.contact.stop_arc import can_begin
+from reference.solver.contact.platform import load_in_state, moving_acceleration, rest_excess
+from reference.solver.contact.stop_arc import can_begin_slide
 from reference.solver.ground import ground_at
-from reference.solver.phases.follow import follow
-from reference.solver.phases.sliding import barely_slips, speed2
-from reference.solver.step_control import remaining
+from reference.solver.phases.follow import follow_phase
+from reference.solver.phases.sliding import barely_slips, squared_speed_in_state
+from reference.solver.step_control import remaining_time
 from reference.solver.system import (
     CREEPING,
     LUBRICATED,
@@ -35,28 +35,37 @@ from reference.solver.system import (
     TRAVEL,
     UNSOLVED,
     Array,
-    Demand,
-    Record,
+    RunSettings,
+    StepRecord,
     System,
 )
-from reference.solver.work import Work, record_by_reference, start_anew, system_by_reference, workspace
+from reference.solver.work import (
+    Workspace,
+    allocate_workspace,
+    record_by_reference,
+    reset_workspace,
+    system_by_reference,
+)
 
-FIRST_STEP = 0.02  # of the period (Demand.period)
-NEGLIGIBLE_REMAINDER = 1e-8  # of the period: a run that fails so shortly before its end counts as finished
-RIM_SQUARED_FRACTION = 0.998  # of the squared radius: a run that fails beyond it has reached the rim
-HOLDING_TIME = 1e-6  # of the period: time in rest or creep of a state on the border of two phases
-MAX_IDLE_PHASES = 4  # phases without time: beyond them the state is on the border of two that each gives to the other
-# of the inertia determinant without friction: a run that fails below it has come to Painleve's paradox
+# Lengths of time below are in units of RunSettings.period, the time in which forces change.
+FIRST_STEP = 0.02  # length of the first step of a run
+NEGLIGIBLE_REMAINDER = 1e-8  # time before its end at which a run that fails counts as finished
+HOLDING_TIME = 1e-6  # time for which a state on the border of two phases keeps rest or creep
+RIM_SQUARED_FRACTION = 0.998  # share of rho^2 beyond which a run that fails has reached the rim
+# Phases in succession that last no time: after more of them the state is on the border of two phases, each of which
+# ends at once in favor of the other.
+MAX_IDLE_PHASES = 4
+# Share of the inertia determinant without friction below which a run that fails has come to Painleve's paradox
 MIN_DETERMINANT_FRACTION = 0.02
-MAX_CRAWL_SPEED = 1e-8  # of the loading's velocity: a slide that cannot go on at this speed has not moved
+MAX_CRAWL_SPEED = 1e-8  # share of the loading's velocity below which a slide that cannot go on has not moved
 
 
 @compiled
-def first_contact(system: System, work: Work) -> int:
-    """What the contact does in the initial state."""
+def initial_contact(system: System, work: Workspace) -> int:
+    """Return the state of the contact in the initial state of the motion."""
     if system.law == LUBRICATED:
         return LUBRICATED_SLIDING
-    speed = speed2(system, work)
+    speed = squared_speed_in_state(system, work)
     if system.law == REGULARIZED:
         return CREEPING if speed < system.v_reg**2 else SLIDING
     if speed > 0.0:
@@ -66,11 +75,11 @@ def first_contact(system: System, work: Work) -> int:
 
 
 @compiled
-def named(system: System, work: Work, contact: int, demand: Demand, code: int) -> int:
-    """What a run that cannot go on has come to: nearly its end, the rim (4.1), a paradox, or the trouble it reports."""
+def classify_failure(system: System, work: Workspace, contact: int, settings: RunSettings, code: int) -> int:
+    """Return the outcome of a run that cannot go on: nearly its end, the rim (4.1), a paradox, or `code` itself."""
     if code == TRAVEL:
         return code
-    if code != STEP_LIMIT and work.end - work.time < NEGLIGIBLE_REMAINDER * demand.period:
+    if code != STEP_LIMIT and work.end - work.time < NEGLIGIBLE_REMAINDER * settings.period:
         return SOLVED
     if code not in (UNSOLVED, STEP_LIMIT):
         return code
@@ -80,71 +89,73 @@ def named(system: System, work: Work, contact: int, demand: Demand, code: int) -
 
 
 @compiled
-def is_paradox(system: System, work: Work, contact: int) -> bool:
-    """Whether no slide can begin in the state, or the reaction has outgrown every bound in it (Painleve)."""
+def is_paradox(system: System, work: Workspace, contact: int) -> bool:
+    """Return True if no slide can begin in the state, or if the reaction exceeds every bound (Painleve's paradox)."""
     load = load_in_state(system, work, ground_at(system, work, work.time))
-    if contact == SLIDING and speed2(system, work) == 0.0:
-        return not can_begin(system, load, work.angle)
+    if contact == SLIDING and squared_speed_in_state(system, work) == 0.0:
+        return not can_begin_slide(system, load, work.angle)
     moves = SLIDING if contact == STOPPING else contact
-    _, _, _, determinant, _ = moving(system, moves, load, work.v[0, 0], work.v[0, 1])
+    _, _, _, determinant, _ = moving_acceleration(system, moves, load, work.v[0, 0], work.v[0, 1])
     tilt2 = (load.px * load.px + load.py * load.py) / system.radius**2
     without_friction: float = 1.0 + (system.mass_ratio - 1.0) * tilt2
     return determinant < MIN_DETERMINANT_FRACTION * without_friction
 
 
 @compiled
-def crawls(system: System, work: Work, contact: int, demand: Demand) -> bool:
-    """Whether a slide that cannot go on hardly moves, under a drive that hardly exceeds the friction limit."""
+def is_crawling(system: System, work: Workspace, contact: int, settings: RunSettings) -> bool:
+    """Return True if a slide that cannot go on hardly moves, under a drive that hardly exceeds the friction limit."""
     if system.law != SET_VALUED or contact == REST:
         return False
-    slow2 = (MAX_CRAWL_SPEED * demand.unit * demand.period / (2.0 * pi)) ** 2
-    return speed2(system, work) <= slow2 and barely_slips(system, work)
+    slow2 = (MAX_CRAWL_SPEED * settings.unit * settings.period / (2.0 * pi)) ** 2
+    return squared_speed_in_state(system, work) <= slow2 and barely_slips(system, work)
 
 
 @compiled
-def integrate(system: System, work: Work, demand: Demand, record: Record, until: float) -> int:
+def integrate(system: System, work: Workspace, settings: RunSettings, record: StepRecord, until: float) -> int:
     """
-    Follow the motion from the state in work.x, work.v; how it ended (system.py), at work.time.
+    Follow the motion from the state in work.x, work.v; return its outcome (system.py), at work.time.
 
-    A run that may end early does so where nothing large can come any more (look_ahead.py), any other with the first
-    whole step beyond `until`, s.
-
-    work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
+    A run that may end early does so where no peak can grow any more (look_ahead.py), any other with the first whole
+    step beyond `until`, s. work.best (N,) holds the squared peaks of absolute acceleration, m^2/s^4.
     """
-    start_anew(work, min(FIRST_STEP * demand.period, system.duration), system.duration)
-    work.look = 0.0 if demand.early else until
-    contact = first_contact(system, work)
+    # Two kinds of states lie on the border of two phases, and would make the run fail or circle without end.
+    # A slide whose drive exceeds the friction limit by rounding alone has no acceleration that a step could resolve: it
+    # counts as rest for HOLDING_TIME. And two phases may each end at once in favor of the other: after MAX_IDLE_PHASES
+    # the next phase of rest or creep lasts HOLDING_TIME whatever the force. In that time nothing moves measurably.
+    reset_workspace(work, min(FIRST_STEP * settings.period, system.duration), system.duration)
+    work.look_time = 0.0 if settings.early else until
+    contact = initial_contact(system, work)
     before, idle = -1.0, 0
-    while remaining(system, work, demand) > 0.0:
-        code, contact = follow(system, work, contact, demand, record)
-        if code == UNSOLVED and crawls(system, work, contact, demand):
+    while remaining_time(system, work, settings) > 0.0:
+        code, contact = follow_phase(system, work, contact, settings, record)
+        if code == UNSOLVED and is_crawling(system, work, contact, settings):
             work.v[0, 0] = work.v[0, 1] = 0.0
-            work.held = max(work.held, HOLDING_TIME * demand.period)
-            work.length = max(work.length, work.held)  # the slide has shortened it to nothing
+            work.hold_time = max(work.hold_time, HOLDING_TIME * settings.period)
+            work.length = max(work.length, work.hold_time)  # the failed slide has shortened it to almost zero
             code, contact = SOLVED, REST
         if code != SOLVED:
-            return named(system, work, contact, demand, code)
+            return classify_failure(system, work, contact, settings, code)
         idle = idle + 1 if work.time == before else 0
         before = work.time
         if idle > MAX_IDLE_PHASES:
-            work.held = max(work.held, HOLDING_TIME * demand.period)
+            work.hold_time = max(work.hold_time, HOLDING_TIME * settings.period)
     return SOLVED
 
 
 @cached_entry_point
-def runs(
-    system: System, phases: Array, x: Array, v: Array, demand: Demand, record: Record,
+def integrate_runs(
+    system: System, phases: Array, x: Array, v: Array, settings: RunSettings, record: StepRecord,
     until: Array, peaks: Array, reading_errors: Array, ends: Array,
 ) -> None:  # fmt: skip
     """
     Follow the motion from x, v (N, 2) for every phase pair (M, 2), rad, until (M,), s, or an early end.
 
-    Fills peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), their errors inside their
-    steps with what the steps before missed of vibrations, and ends (5, M): how (system.py), when (s) and after how many
-    steps each run ended, the platform's largest displacement (m), and from when on no acceleration comes near the
-    largest (s).
+    Fill peaks (M, N), the largest absolute accelerations, m/s^2, and reading_errors (M, N), m/s^2, their errors inside
+    their steps with the drift of the steps before. Fill ends (5, M): outcome (system.py), instant (s) and number of
+    steps of each run, the platform's largest displacement (m), and the end of the last step with an acceleration near
+    the largest (s).
     """
-    work = workspace(peaks.shape[1])
+    work = allocate_workspace(peaks.shape[1])
     system_reference, record_reference = system_by_reference(system), record_by_reference(record)
     for m in range(phases.shape[0]):
         work.phase[0], work.phase[1] = phases[m, 0], phases[m, 1]
@@ -152,9 +163,9 @@ def runs(
             for axis in range(2):
                 work.x[i, axis] = x[i, axis]
                 work.v[i, axis] = v[i, axis]
-        code = integrate(system_reference, work, demand, record_reference, until[m])
-        ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.reach2)
-        ends[4, m] = work.peaked
+        code = integrate(system_reference, work, settings, record_reference, until[m])
+        ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.squared_reach)
+        ends[4, m] = work.last_peak
         for i in range(peaks.shape[1]):
             peaks[m, i] = sqrt(work.best[i])
             reading_errors[m, i] = work.reading_error[i]

@@ -1,110 +1,116 @@
-"""What every phase of a run does with a step: begin, judge its length, commit it."""
+"""Control of the steps in every phase of a run: their begin, their lengths, their end."""
 
 from __future__ import annotations
 
 from math import exp, sqrt
 
-from reference.solver.chain import chain_acceleration
+from reference.solver.chain import set_chain_acceleration
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.platform import load_in_state, moving
-from reference.solver.ground import ground_at, knot_after
-from reference.solver.peaks import take_peaks, take_reach
+from reference.solver.contact.platform import load_in_state, moving_acceleration
+from reference.solver.ground import ground_at, next_knot
+from reference.solver.peaks import update_displacement, update_peaks
 from reference.solver.polynomial import NODES_ROW, expand
 from reference.solver.record import record_step
-from reference.solver.rows import as_many, put, row
-from reference.solver.steps import lifted
-from reference.solver.system import REST, SLIDING, STOPPING, UNSOLVED, Demand, Ground, Record, System
-from reference.solver.work import CLOCK, Work
+from reference.solver.rows import broadcast_like, put, row
+from reference.solver.steps import vertical_acceleration
+from reference.solver.system import REST, SLIDING, STOPPING, UNSOLVED, Ground, RunSettings, StepRecord, System
+from reference.solver.work import CLOCK, Workspace
 
-MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85
-MAX_SHORTENING = 0.7  # factor of the length of a step that misses the tolerance, at most
-FAILURE_SHORTENING = 0.3  # factor of the length of a step whose equations have no solution
+MIN_LENGTH_FACTOR, MAX_LENGTH_FACTOR, SAFETY_FACTOR = 0.1, 5.0, 0.85  # controller in `length_factor`
+MAX_SHORTENING = 0.7  # largest factor from the length of a step that misses the tolerance to the next
+FAILURE_SHORTENING = 0.3  # factor from the length of a step whose equations have no solution to the next
 ERROR_ORDER = 7.0  # order of the error estimate in the step length
-MIN_SCALE_FRACTION = 0.02  # of the loading: lower bound on the acceleration that the error of a body is relative to
-FATAL_STEP = 1e-9  # of the period (Demand.period): a step this short that still fails has located the instant
-MIN_STEP = 1e-16  # of the period: shortest step
-NEGLIGIBLE_TIME = 1e-11  # of the shorter of period and duration: no acceleration changes within it
-NEWTON_FRACTION = 0.01  # of the tolerance: change of the accelerations at which Newton's method ends
-MAX_EXTRAPOLATION = 1.1  # of the step before: a longer step does not start from its polynomial
+# Lower bound on the acceleration that the error of a body is relative to, as a share of the loading
+MIN_SCALE_FRACTION = 0.02
+# The shortest steps, in units of RunSettings.period. An outcome such as the rim is located by the steps that fail
+# before it, down to FATAL_STEP; a step whose equations have no solution is shortened down to MIN_STEP.
+FATAL_STEP = 1e-9
+MIN_STEP = 1e-16
+# Time within which no acceleration changes, as a share of the shorter of RunSettings.period and the duration
+NEGLIGIBLE_TIME = 1e-11
+NEWTON_FRACTION = 0.01  # share of the tolerance at which the change of the accelerations ends Newton's method
+MAX_EXTRAPOLATION = 1.1  # ratio of two step lengths up to which the last polynomial is a guess for the next step
 
 
 @compiled
-def begin(system: System, work: Work, contact: int) -> None:
-    """Accelerations of the state; a slide that has no direction yet is begun by begin_sliding. No guess for a step."""
+def begin_from_state(system: System, work: Workspace, contact: int) -> None:
+    """Set the accelerations at the start of a phase; those of a slide from rest follow in begin_sliding."""
     ground = ground_at(system, work, work.time)
-    chain_acceleration(system, work, ground)
+    set_chain_acceleration(system, work, ground)
     ax = ay = 0.0
     still = work.v[0, 0] == 0.0 and work.v[0, 1] == 0.0
     if contact != REST and not (contact == SLIDING and still):
         load = load_in_state(system, work, ground)
-        ax, ay, _, _, _ = moving(system, contact, load, work.v[0, 0], work.v[0, 1])
-    begin_with(system, work, ground, ax, ay, contact)
+        ax, ay, _, _, _ = moving_acceleration(system, contact, load, work.v[0, 0], work.v[0, 1])
+    begin_with_acceleration(system, work, ground, ax, ay, contact)
 
 
 @compiled
-def begin_with(system: System, work: Work, ground: Ground, ax: float, ay: float, contact: int) -> None:
-    """The platform's acceleration at the start of a phase, and with it the absolute accelerations there."""
+def begin_with_acceleration(
+    system: System, work: Workspace, ground: Ground, ax: float, ay: float, contact: int
+) -> None:
+    """Set the platform's acceleration and all absolute accelerations at the start of a phase."""
     work.a0[0, 0], work.a0[0, 1] = ax, ay
     vertical = ground.z
     if contact != REST:
-        vertical += lifted(system, work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], ax, ay)
+        vertical += vertical_acceleration(system, work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1], ax, ay)
     for i in range(work.x.shape[0]):
         work.total0[i, 0] = work.a0[i, 0] + ground.x
         work.total0[i, 1] = work.a0[i, 1] + ground.y
         work.total0[i, 2] = vertical
-    work.old_length = 0.0
+    work.last_length = 0.0
 
 
 @compiled
-def next_step(work: Work, demand: Demand) -> bool:
-    """Count one more step and set what its error is measured against; False past the limit of steps."""
+def count_step(work: Workspace, settings: RunSettings) -> bool:
+    """Count one more step and set the scale of its error; return False past the limit of steps."""
     for i in range(work.x.shape[0]):
-        work.scale[i] = max(sqrt(work.best[i]), MIN_SCALE_FRACTION * demand.unit)
+        work.scale[i] = max(sqrt(work.best[i]), MIN_SCALE_FRACTION * settings.unit)
     work.steps += 1.0
-    return work.steps <= demand.step_limit
+    return work.steps <= settings.step_limit
 
 
 @compiled
-def negligible_time(system: System, demand: Demand) -> float:
-    """Time, s, in which nothing changes."""
-    return NEGLIGIBLE_TIME * min(demand.period, system.duration)
+def negligible_time(system: System, settings: RunSettings) -> float:
+    """Return the time within which no acceleration changes, s."""
+    return NEGLIGIBLE_TIME * min(settings.period, system.duration)
 
 
 @compiled
-def remaining(system: System, work: Work, demand: Demand) -> float:
-    """Time left, s; 0 when it is so little that nothing changes."""
+def remaining_time(system: System, work: Workspace, settings: RunSettings) -> float:
+    """Return the time to the end of the run, s; 0 if no acceleration changes within it."""
     left = work.end - work.time
-    return left if left > negligible_time(system, demand) else 0.0
+    return left if left > negligible_time(system, settings) else 0.0
 
 
 @compiled
-def next_break(system: System, work: Work, demand: Demand) -> float:
-    """Where loading or k_T has its next kink, s, or the run ends: a step beyond it would lose its order."""
-    after, end = work.time + negligible_time(system, demand), work.end
+def next_kink(system: System, work: Workspace, settings: RunSettings) -> float:
+    """Return the next kink of loading or k_T, or the end of the run, s: a step beyond it would lose its order."""
+    after, end = work.time + negligible_time(system, settings), work.end
     for kinks in (system.record, system.kinks):
-        k = knot_after(kinks, after)
+        k = next_knot(kinks, after)
         if k < kinks.shape[0]:
             end = min(end, kinks[k, 0])
     return end
 
 
 @compiled
-def plain_length(system: System, work: Work, demand: Demand) -> float:
-    """Length of the next step in time, s: at most to the loading's next kink."""
-    return min(min(work.length, remaining(system, work, demand)), next_break(system, work, demand) - work.time)
+def propose_plain_length(system: System, work: Workspace, settings: RunSettings) -> float:
+    """Return the length of the next step in time, s: at most to the loading's next kink."""
+    return min(min(work.length, remaining_time(system, work, settings)), next_kink(system, work, settings) - work.time)
 
 
 @compiled
-def first_guess(work: Work, h: float) -> None:
-    """Stage accelerations of the platform to start Newton's method: the last step's polynomial where it reaches."""
-    old = work.old_length
+def guess_from_last_step(work: Workspace, h: float) -> None:
+    """Set the first guess of the platform's stage accelerations: the last step's polynomial, where it reaches."""
+    old = work.last_length
     theta = row(NODES_ROW, ())
     near = 0.0 < h <= MAX_EXTRAPOLATION * old
     if near:
         theta = 1.0 + theta * h / old
     for axis in range(2):
-        guess = as_many(0.0 if near else work.a0[0, axis], theta)
+        guess = broadcast_like(0.0 if near else work.a0[0, axis], theta)
         if near:
             for m in range(STAGES - 1, -1, -1):
                 guess = guess * theta + work.guess[axis, m]
@@ -113,53 +119,56 @@ def first_guess(work: Work, h: float) -> None:
 
 @compiled
 def length_factor(error: float, tolerance: float) -> float:
-    """By what to multiply the step length so that the next error meets the tolerance."""
+    """Return the factor of the step length with which the next error meets the tolerance."""
+    # The error falls like h^7, so the length that just meets the tolerance is the present one times
+    # (tolerance / error)^(1/7) (Hairer and Wanner, IV.8). SAFETY_FACTOR makes the next step likely to pass, and the
+    # bounds limit what a single estimate can change.
     if error <= 0.0:
         return MAX_LENGTH_FACTOR
     return min(MAX_LENGTH_FACTOR, max(MIN_LENGTH_FACTOR, SAFETY_FACTOR * (tolerance / error) ** (1.0 / ERROR_ORDER)))
 
 
 @compiled
-def duration_of(work: Work, contact: int, h: float) -> float:
-    """About how long a step of length h lasts, s."""
+def step_duration(work: Workspace, contact: int, h: float) -> float:
+    """Return about how long a step of length h lasts, s: near a stop h is a length in stretched time."""
     return h * exp(work.log_speed) if contact == STOPPING else h
 
 
 @compiled
-def too_short(work: Work, contact: int, demand: Demand, h: float, code: int) -> bool:
-    """Whether a step of length h need not be tried after one that failed with `code`."""
-    shortest = (MIN_STEP if code == UNSOLVED else FATAL_STEP) * demand.period
+def is_too_short(work: Workspace, contact: int, settings: RunSettings, h: float, code: int) -> bool:
+    """Return True if a step of length h need not be tried after one that failed with `code`."""
+    shortest = (MIN_STEP if code == UNSOLVED else FATAL_STEP) * settings.period
     if contact == STOPPING and code == UNSOLVED:
         shortest *= 1e-3 * exp(min(0.0, work.log_speed))
-    return duration_of(work, contact, h) < shortest
+    return step_duration(work, contact, h) < shortest
 
 
 @compiled
-def set_length(work: Work, contact: int, h: float) -> None:
-    """The length of the next step, in the time of the phase."""
+def set_length(work: Workspace, contact: int, h: float) -> None:
+    """Set the length of the next step, in the time of the phase."""
     if contact == STOPPING:
-        work.stretched = h
+        work.stretched_length = h
     else:
         work.length = h
 
 
 @compiled
-def adapt(work: Work, h: float, factor: float) -> None:
-    """The length after a step that was made; one cut short for another reason does not shorten the next."""
+def adapt_length(work: Workspace, h: float, factor: float) -> None:
+    """Set the length after a step that met the tolerance; one cut short for another reason shortens nothing."""
     if h * factor > work.length or h == work.length:
         work.length = h * factor
 
 
 @compiled
-def commit(system: System, work: Work, record: Record, h: float, contact: int, parts: int) -> None:
-    """Make the step's end the new state; `parts` of it count for the peaks, between pairs of work.edges."""
+def commit_step(system: System, work: Workspace, record: StepRecord, h: float, contact: int, parts: int) -> None:
+    """Make the end of the step the new state; `parts` of it, between pairs of work.edges, count for the peaks."""
     if record.start.shape[0] > 0:
         record_step(work, record, h, contact)
     peaking = False
     for part in range(parts):
         low, high = work.edges[2 * part], work.edges[2 * part + 1]
-        peaking = take_peaks(system, work, contact, h, low, high) or peaking
-    far = contact != REST and take_reach(work, h, contact == STOPPING)
+        peaking = update_peaks(system, work, contact, h, low, high) or peaking
+    far = contact != REST and update_displacement(work, h, contact == STOPPING)
     for axis in range(2):
         expand(row(work.a, (0, axis)), work.guess[axis])
     for i in range(work.x.shape[0]):
@@ -169,10 +178,10 @@ def commit(system: System, work: Work, record: Record, h: float, contact: int, p
             work.a0[i, axis] = work.a[i, axis, STAGES - 1]
         for axis in range(3):
             work.total0[i, axis] = work.total[i, axis, STAGES - 1]
-    work.old_length = 0.0 if contact in (STOPPING, REST) else h
+    work.last_length = 0.0 if contact in (STOPPING, REST) else h
     if contact != STOPPING:
         work.time += h
     if peaking or far:
-        work.settled = work.turning[CLOCK, STAGES - 1] if contact == STOPPING else work.time
+        work.last_large = work.turning[CLOCK, STAGES - 1] if contact == STOPPING else work.time
     if peaking:
-        work.peaked = work.settled
+        work.last_peak = work.last_large

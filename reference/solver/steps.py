@@ -1,9 +1,8 @@
 """
 One collocation step in time: at rest, or moving under a friction law.
 
-A step reads the state x, v of `Work`, leaves the stage accelerations in `a`, the platform at the stages in `stage`, the
-absolute accelerations in `total` and the end of the step in x1, v1. A moving step returns SOLVED or what stood in the
-way.
+A step reads the state x, v of `Workspace`. It leaves the stage accelerations in `a`, the platform at the stages in
+`stage`, the absolute accelerations in `total` and the end of the step in x1, v1. A moving step returns its outcome.
 """
 
 from __future__ import annotations
@@ -12,16 +11,16 @@ from math import inf, sqrt
 
 import numpy as np
 
-from reference.solver.chain import CHANNEL_ROUNDING, eliminate_chain, feed_back, load_chain, move_chain
+from reference.solver.chain import CHANNEL_ROUNDING, eliminate_chain, load_chain, move_chain, set_feedback
 from reference.solver.collocation import AT_START, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.platform import load_at_stages, moving
-from reference.solver.contact.slopes import slopes
-from reference.solver.equations import vertical_acceleration
-from reference.solver.ground import ground_at_stages, start_waves
-from reference.solver.linear_solve import AT, factorize, solve
+from reference.solver.contact.platform import load_at_stages, moving_acceleration
+from reference.solver.contact.slopes import set_slopes
+from reference.solver.equations import vertical_motion
+from reference.solver.ground import set_ground_at_stages, set_waves
+from reference.solver.linear_solve import IDENTITY, factorize, solve
 from reference.solver.polynomial import A2_COLUMNS, A_COLUMNS, NODES_ROW
-from reference.solver.rows import Number, as_many, finite, highest, lowest, put, row
+from reference.solver.rows import Number, broadcast_like, highest, is_finite, lowest, put, row
 from reference.solver.system import CREEPING, OPEN, PAINLEVE, REST, RIM, SLIDING, SOLVED, UNSOLVED, System
 from reference.solver.work import (
     BY_DRIVE,
@@ -33,31 +32,31 @@ from reference.solver.work import (
     REACTION,
     SPEED2,
     VELOCITY,
-    Work,
+    Workspace,
 )
 
-MAX_ITERATIONS = 14  # of Newton's method
-SLOW_CONVERGENCE = 0.1  # of the change before: a larger change asks for a new derivative
-FORCE_ROUNDING = 1e-13  # of the forces: what rounding leaves of the defect at the start of a step
-ROUNDING_CHANGE = 4e-15  # of the accelerations: change by rounding alone from one iteration to the next
-# of the squared speed of a slide: beyond it a derivative understates tenfold how far the direction turns
+MAX_ITERATIONS = 14  # iterations of Newton's method before a step counts as unsolved
+SLOW_CONVERGENCE = 0.1  # ratio of two successive changes above which the derivative is computed anew
+FORCE_ROUNDING = 1e-13  # part of the forces that rounding leaves in the defect at the start of a step
+ROUNDING_CHANGE = 4e-15  # relative change of the accelerations that rounding alone makes from iteration to iteration
+# Growth of the squared speed of a slide beyond which a derivative understates tenfold how far the direction turns
 MAX_SPEED2_GROWTH = 100.0
-RIM_SQUARED_FRACTION = 0.99  # of the squared radius: an iteration that starts beyond it and strays has reached the rim
+RIM_SQUARED_FRACTION = 0.99  # share of rho^2 beyond which a step whose iteration leaves the cap has reached the rim
 
 
 @compiled
-def load_step(system: System, work: Work, h: float) -> None:
-    """The ground at the stages, and what it and the state do to the platform through the eliminated chain."""
+def load_step(system: System, work: Workspace, h: float) -> None:
+    """Set the ground at the stages and the load that it and the state put on the platform through the chain."""
     put(work.elapsed, (), h * row(NODES_ROW, ()))
-    start_waves(system, work, work.time)
-    ground_at_stages(system, work)
+    set_waves(system, work, work.time)
+    set_ground_at_stages(system, work)
     eliminate_chain(system, work, h)
     load_chain(system, work, h)
 
 
 @compiled
-def rest_step(system: System, work: Work, h: float) -> None:
-    """The platform stays; the chain above it vibrates (4.4)."""
+def solve_rest_step(system: System, work: Workspace, h: float) -> None:
+    """Solve a step in which the platform stays and the chain above it vibrates (4.4)."""
     load_step(system, work, h)
     for axis in range(system.axes):
         put(work.a, (0, axis), 0.0)
@@ -65,22 +64,24 @@ def rest_step(system: System, work: Work, h: float) -> None:
         put(work.stage, VELOCITY + axis, 0.0)
         put(work.stage, DRIVE + axis, row(work.free, axis))
     move_chain(system, work, h)
-    absolute_accelerations(system, work, REST)
+    set_absolute_accelerations(system, work, REST)
 
 
 @compiled
-def moving_step(system: System, work: Work, contact: int, h: float, tolerance: float) -> int:
+def solve_moving_step(system: System, work: Workspace, contact: int, h: float, tolerance: float) -> int:
     """
-    Newton's method for the stage accelerations of the platform, the chain eliminated exactly.
+    Solve for the stage accelerations of the platform by Newton's method, the chain eliminated exactly.
 
-    `load_step` comes before; `a[0]` holds the first guess on entry. `tolerance`, m/s^2: the iteration ends when the
-    change is below it. A derivative serves several iterations while these converge fast, so what is left is far
-    smaller. A tolerance below what rounding does to the accelerations is met at that level.
-
-    The slower a slide, the less acceleration turns it, so a derivative at a guess that is far too slow leaves a wrong
-    direction as it is and calls that settled. It serves no iteration at a much higher speed.
+    `load_step` comes before; `a[0]` holds the first guess. The iteration ends when its change is below `tolerance`,
+    m/s^2, or at the level of rounding.
     """
-    feed_back(system, work, h)
+    # A derivative serves several iterations while these converge fast. The error that remains is then far smaller than
+    # the last change, which is what `tolerance` bounds.
+    # In a slide the derivative of friction by the velocity is mu N / v across the direction of slip. Computed at a
+    # guess that is far too slow it is far too large: Newton's method then hardly corrects a wrong direction, and its
+    # small change looks like convergence. So a derivative serves no iteration at a much higher speed
+    # (MAX_SPEED2_GROWTH).
+    set_feedback(system, work, h)
     pivots = work.pivots[: system.axes * STAGES]
     known = row(work.stage, SPEED2)
     fresh, before = True, 0.0
@@ -91,19 +92,19 @@ def moving_step(system: System, work: Work, contact: int, h: float, tolerance: f
             return code
         if fresh or (contact == SLIDING and highest(row(work.stage, SPEED2) - MAX_SPEED2_GROWTH * known) > 0.0):
             known = row(work.stage, SPEED2)
-            slopes(system, contact, work)
+            set_slopes(system, contact, work)
             set_matrix(work, h, system.axes)
             if not factorize(work.matrix, pivots):
                 return UNSOLVED
         solve(work.matrix, pivots, work.residual)
-        change = correct(work, system.axes)
+        change = correct_accelerations(work, system.axes)
         settled = change <= max(tolerance, ROUNDING_CHANGE * size)
         if not np.isfinite(change) or (iteration > 1 and fresh and change > before and not settled):
             return UNSOLVED
         if settled:
             place_platform(work, h, system.axes)
             move_chain(system, work, h)
-            absolute_accelerations(system, work, contact)
+            set_absolute_accelerations(system, work, contact)
             return SOLVED if lowest(row(work.stage, REACTION)) > 0.0 else OPEN
         fresh = iteration > 0 and change > SLOW_CONVERGENCE * before
         before = change
@@ -111,13 +112,13 @@ def moving_step(system: System, work: Work, contact: int, h: float, tolerance: f
 
 
 @compiled
-def set_residual(system: System, work: Work, contact: int) -> tuple[int, float]:
-    """What the accelerations of the platform miss at the stages; (what stands in the way, their size in m/s^2)."""
+def set_residual(system: System, work: Workspace, contact: int) -> tuple[int, float]:
+    """Set the residual at the stages from the platform's equations; return the outcome and their size, m/s^2."""
     a, stage, residual = work.a, work.stage, work.residual
     load = load_at_stages(work)
     if highest(load.px * load.px + load.py * load.py) >= system.radius**2:
-        return beyond_rim(system, work), 0.0
-    ax, ay, reaction, determinant, speed2 = moving(
+        return rim_or_unsolved(system, work), 0.0
+    ax, ay, reaction, determinant, speed2 = moving_acceleration(
         system, contact, load, row(stage, VELOCITY), row(stage, VELOCITY + 1)
     )
     put(stage, REACTION, reaction)
@@ -125,28 +126,29 @@ def set_residual(system: System, work: Work, contact: int) -> tuple[int, float]:
     put(stage, SPEED2, speed2)
     put(residual, 0, ax - row(a, (0, 0)))
     put(residual, 1, ay - row(a, (0, 1)))
-    # creep answers within a time that may be shorter than the one to which an instant is located: its steps fall on
+    # Painleve's paradox is located to FATAL_STEP (step_control.py). Creep may respond within a shorter time: there a
+    # determinant that is not positive counts as UNSOLVED, so that the steps may become shorter still.
     code = UNSOLVED if contact == CREEPING else PAINLEVE
     return (SOLVED if lowest(determinant) > 0.0 else code), highest(abs(ax) + abs(ay))
 
 
 @compiled
-def correct(work: Work, axes: int) -> float:
-    """Add Newton's correction, in `residual`, to the stage accelerations; its largest entry, or infinity."""
+def correct_accelerations(work: Workspace, axes: int) -> float:
+    """Add Newton's correction, in `residual`, to the stage accelerations; return its largest entry, or infinity."""
     change = 0.0
     for axis in range(axes):
         correction = row(work.residual, axis)
         put(work.a, (0, axis), row(work.a, (0, axis)) + correction)
-        change = max(change, highest(abs(correction)) if finite(correction) else inf)
+        change = max(change, highest(abs(correction)) if is_finite(correction) else inf)
     return change
 
 
 @compiled
-def place_platform(work: Work, h: float, axes: int) -> None:
-    """Position, velocity and drive of the platform at the stages, from its stage accelerations."""
+def place_platform(work: Workspace, h: float, axes: int) -> None:
+    """Set position, velocity and drive of the platform at the stages from its stage accelerations."""
     a, stage, feedback, x, v = work.a, work.stage, work.feedback, work.x, work.v
     for axis in range(axes):
-        velocity = position = as_many(0.0, row(NODES_ROW, ()))
+        velocity = position = broadcast_like(0.0, row(NODES_ROW, ()))
         drive = row(work.free, axis)
         for m in range(STAGES):
             acceleration = a[0, axis, m]
@@ -159,8 +161,8 @@ def place_platform(work: Work, h: float, axes: int) -> None:
 
 
 @compiled
-def set_matrix(work: Work, h: float, axes: int) -> None:
-    """Derivative of the stage equations a - acceleration(a) = 0 by the stage accelerations of the platform."""
+def set_matrix(work: Workspace, h: float, axes: int) -> None:
+    """Set the derivative of the stage equations a - acceleration(a) = 0 by the platform's stage accelerations."""
     matrix, feedback, slope = work.matrix, work.feedback, work.slopes
     for axis in range(axes):
         for column in range(axes):
@@ -170,32 +172,34 @@ def set_matrix(work: Work, h: float, axes: int) -> None:
             for m in range(STAGES):
                 answer = by_position * row(A2_COLUMNS, m) + by_velocity * row(A_COLUMNS, m)
                 answer += by_drive * row(feedback, (column, m))
-                own = row(AT, (column * STAGES + m, axis))
+                own = row(IDENTITY, (column * STAGES + m, axis))
                 put(matrix, (column * STAGES + m, axis), own - answer)
 
 
 @compiled
-def beyond_rim(system: System, work: Work) -> int:
-    """RIM (4.1) if the step began close to it; otherwise the iteration strayed there."""
+def rim_or_unsolved(system: System, work: Workspace) -> int:
+    """Return RIM (4.1) if the step began close to it, or UNSOLVED: the iteration strayed there."""
     return RIM if work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2 else UNSOLVED
 
 
 @compiled
-def lifted(system: System, px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number) -> Number:
-    """Vertical acceleration of all bodies relative to the plate (2.2); none in the small equations."""
+def vertical_acceleration(
+    system: System, px: Number, py: Number, vx: Number, vy: Number, ax: Number, ay: Number
+) -> Number:
+    """Return the vertical acceleration of all bodies relative to the plate (2.2); zero in the small equations."""
     if system.small:
-        return as_many(0.0, px)
-    _, _, az = vertical_acceleration(px, py, vx, vy, ax, ay, system.radius)
+        return broadcast_like(0.0, px)
+    _, _, az = vertical_motion(px, py, vx, vy, ax, ay, system.radius)
     return az
 
 
 @compiled
-def absolute_accelerations(system: System, work: Work, contact: int) -> None:
-    """Relative plus ground acceleration at the stages."""
+def set_absolute_accelerations(system: System, work: Workspace, contact: int) -> None:
+    """Set the absolute accelerations at the stages: relative plus ground acceleration."""
     a, ground, stage, total = work.a, work.ground, work.stage, work.total
     vertical = row(ground, 2)
     if contact != REST:
-        vertical += lifted(
+        vertical += vertical_acceleration(
             system, row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1),
             row(a, (0, 0)), row(a, (0, 1)),
         )  # fmt: skip
@@ -206,19 +210,23 @@ def absolute_accelerations(system: System, work: Work, contact: int) -> None:
 
 
 @compiled
-def step_error(system: System, work: Work, tolerance: float, weight: float) -> float:
+def step_error(system: System, work: Workspace, tolerance: float, weight: float) -> float:
     """
-    Error of the absolute accelerations inside the step, times `weight`, over `scale` (N,), the largest over the bodies.
+    Return the error of the absolute accelerations inside the step over `scale`, the largest of all bodies.
 
-    The interpolating polynomial, evaluated at the start of the step, misses the acceleration known there by the
-    interpolation error of the step, which falls like h^7. What rounding in the chain's channels may do is at most
-    `tolerance`: it falls with no step. On a plane the platform's acceleration relative to the plate counts as well:
-    without a restoring force no absolute acceleration shows a wrong way.
+    `weight` multiplies the error; `tolerance` is the error that the step may have.
     """
+    # The acceleration at the start of the step is known. The polynomial through the stages, evaluated there, misses it
+    # by the interpolation error of the step, which falls like h^7: Radau IIA has no stage at theta = 0. This defect is
+    # the error of the step.
+    # Rounding limits it from below: FORCE_ROUNDING of the forces always, CHANNEL_ROUNDING where the chain is solved in
+    # the eigenbasis. No shorter step would reduce an error of that size, so it counts as the tolerance at most.
+    # On a plane the platform's acceleration relative to the plate counts as well: without a restoring force no absolute
+    # acceleration shows an error of the position.
     total, total0, stage, a = work.total, work.total0, work.stage, work.a
     load = abs(total0[0, 2])
     load = max(load, highest(abs(row(stage, DRIVE)) + abs(row(stage, DRIVE + 1))))
-    # friction may decelerate a platform that nothing drives
+    # Friction may decelerate a platform without any drive, so its own acceleration is a measure of the forces, too.
     load = max(load, highest(abs(row(a, (0, 0))) + abs(row(a, (0, 1)))))
     noise = FORCE_ROUNDING * load
     channels = noise + (CHANNEL_ROUNDING * load if work.x.shape[0] > 1 else 0.0)
@@ -240,8 +248,8 @@ def step_error(system: System, work: Work, tolerance: float, weight: float) -> f
 
 
 @compiled
-def relative_defect(work: Work) -> float:
-    """Interpolation error of the platform's acceleration relative to the plate, m/s^2."""
+def relative_defect(work: Workspace) -> float:
+    """Return the interpolation error of the platform's acceleration relative to the plate, m/s^2."""
     squared = 0.0
     for axis in range(2):
         defect = -work.a0[0, axis]

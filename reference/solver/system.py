@@ -1,4 +1,4 @@
-"""A scene, what is asked of a run and the steps that it keeps, as tuples of numbers and arrays."""
+"""The scene, the settings of a run and the record of its steps, as tuples of numbers and arrays for compiled code."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from reference.solver.rows import Number
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-# friction laws (friction.py)
+# Friction laws (contact/friction.py)
 SET_VALUED, REGULARIZED, LUBRICATED = 0, 1, 2
-# conditions for rest
+# Conditions for rest: that of the friction cone, or (4.6) as printed in the paper
 CONSISTENT, PRINTED = 0, 1
-# numpy integers below: numba would build a function once more for every literal it is called with
-PLATFORM = np.int64(0)  # its number among the bodies
-# what the contact does
+# The integers below are numpy's: numba would compile a function once more for every literal that it is called with.
+PLATFORM = np.int64(0)  # index of the platform among the bodies
+# States of the contact
 REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING = cast("tuple[int, ...]", tuple(map(np.int64, range(5))))
-# how the equations of one step, or a whole run, ended
+# Outcomes of the equations of one step, or of a whole run
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = cast("tuple[int, ...]", tuple(map(np.int64, range(7))))
 
 
@@ -30,16 +30,16 @@ class System(NamedTuple):
     """The paper's system in accelerations: link stiffness and damping over the mass of the body they act on."""
 
     small: bool  # equations (4.3) instead of (3.9)
-    law: int
-    rest_condition: int
-    friction: float  # mu, at rest where it depends on the velocity, or f_c in s/m
-    rise: float  # of mu from rest to high speed
-    rate: float  # s/m, of that rise; 0 where mu is constant
-    exponent: Any  # float, of the normal force over the weight, in mu; None where mu has neither that nor heating
-    v_reg: float  # m/s, of the regularized law
+    law: int  # SET_VALUED, REGULARIZED or LUBRICATED
+    rest_condition: int  # CONSISTENT or PRINTED
+    friction: float  # coefficient mu, that at rest where it depends on the velocity; f_c in s/m of a lubricated contact
+    rise: float  # increase of mu from rest to high speed
+    rate: float  # s/m, rate of that increase with the speed; 0 where mu is constant
+    exponent: Any  # float, exponent n of N / W in mu (contact/load.py); None where mu has neither that nor heating
+    v_reg: float  # m/s, speed below which friction is linear under the regularized law
     mass_ratio: float  # m_sum / m1
-    radius: float  # m
-    travel: float  # m, largest displacement of the platform; infinite without one
+    radius: float  # m, rho
+    travel: float  # m, largest displacement that the isolator permits; infinite without such a limit
     gravity: float  # m/s^2
     below: Array  # (N, 2), k_{i,i-1} / m_i, zero for the platform
     above: Array  # (N, 2), k_{i+1,i} / m_i, zero for the last body
@@ -49,16 +49,16 @@ class System(NamedTuple):
     exponents: Complex  # (2,), 1/s
     record: Array  # (K, 4), s and m/s^2, knots of a recorded motion, between which it is linear; (0, 4) without one
     heat: Array  # (3,) initial temperature, degrees C, rise times m1, K s^2.5/m^2, and cover, m (Heat); (0,) without
-    k_t: Array  # (K, 3 + S): s, start and length of pieces, and coefficients of k_T; (0, 3 + S) without
+    k_t: Array  # (K, 3 + S): s, start and length of pieces, and coefficients of k_T; (0, 3 + S) without heating
     kinks: Array  # (J, 1) s, instants from which k_T changes like a root of time
     duration: float  # s
-    axes: int  # 1 for a motion in the plane of x and z: y stays exactly zero
-    fastest: float  # rad/s, bound of the chain's natural frequencies and rates of decay
-    damping_rate: float  # 1/s, bound of the rates of its dampers alone
+    axes: int  # 1 for a motion in the plane of x and z, where y stays exactly zero; otherwise 2
+    fastest: float  # rad/s, upper bound on the chain's natural frequencies and rates of decay
+    damping_rate: float  # 1/s, upper bound on the rates of the chain's dampers alone
 
 
 class Ground(NamedTuple):
-    """What time alone decides at one instant: acceleration of the ground, m/s^2, and k_T."""
+    """Acceleration of the ground, m/s^2, and temperature factor of friction at one instant."""
 
     x: float  # xi''
     y: float  # eta''
@@ -67,7 +67,7 @@ class Ground(NamedTuple):
 
 
 class Load(NamedTuple):
-    """Where the platform is and what acts on it, at one instant or at all stages of a step (equations.py)."""
+    """Position of the platform and all that acts on it, at one instant or at all stages of a step (equations.py)."""
 
     px: Number  # m
     py: Number
@@ -79,44 +79,44 @@ class Load(NamedTuple):
     k_t: Number  # temperature factor of friction (contact/load.py)
 
 
-class Record(NamedTuple):
-    """The steps of one motion for `trajectory` (samples.py); of capacity 0 when only the peaks are wanted."""
+class StepRecord(NamedTuple):
+    """Steps of one motion for `trajectory` (samples.py); its capacity T is 0 when only the peaks are wanted."""
 
     start: Array  # (T,) s, time at the start of each step
-    length: Array  # (T,) s, or of the stretched time near a stop
-    contact: Array  # (T,)
-    x: Array  # (T, N, 2) at the start
-    v: Array  # (T, N, 2)
-    a: Array  # (T, N, 2, S) acceleration at the stages
-    position: Array  # (T, N, 2, S) near a stop
-    velocity: Array  # (T, N, 2, S) near a stop
-    clock: Array  # (T, S) time at the stages near a stop
-    total: Array  # (T, N, 3, S)
-    reaction: Array  # (T, S) over m1
-    sticks: Array  # (T, 2) intervals of rest, or of creep below v_reg
-    made: NDArray[np.int64]  # (2,) steps and intervals made, which may be more than there is room for
+    length: Array  # (T,) s; near a stop the length in stretched time
+    contact: Array  # (T,) state of the contact
+    x: Array  # (T, N, 2) m, positions at the start of each step
+    v: Array  # (T, N, 2) m/s, velocities there
+    a: Array  # (T, N, 2, S) m/s^2, accelerations at the stages
+    position: Array  # (T, N, 2, S) m, positions at the stages near a stop
+    velocities: Array  # (T, N, 2, S) m/s, velocities at the stages near a stop
+    clock: Array  # (T, S) s, time at the stages near a stop
+    total: Array  # (T, N, 3, S) m/s^2, absolute accelerations at the stages
+    reaction: Array  # (T, S) N/kg, reaction over m1 at the stages
+    sticks: Array  # (T, 2) s, intervals of rest, or of creep below v_reg
+    counts: NDArray[np.int64]  # (2,) numbers of steps and of intervals, also of those beyond the capacity
 
 
-class Demand(NamedTuple):
-    """What is asked of one run."""
+class RunSettings(NamedTuple):
+    """Settings of one run: accuracy, scales, what counts as a peak, and when it ends."""
 
-    tolerance: float  # of accelerations, relative
-    unit: float  # m/s^2, the scale errors are measured against from below
-    period: float  # s, in which forces change (time_scale)
+    tolerance: float  # relative error of the accelerations inside a step
+    unit: float  # m/s^2, size of the loading: errors of smaller accelerations are measured against a share of it
+    period: float  # s, time in which forces change (time_scale of reference/surface.py)
     cutoff: float  # m/s, v_c of the resolved peak; 0 for the supremum
-    step_limit: int
-    early: bool  # whether a run ends where nothing asked for can come any more (look_ahead.py)
-    damped_weight: float = 30.0  # of the error of a step that damps a vibration, over that of a step that follows it
+    step_limit: int  # number of steps after which the run ends with STEP_LIMIT
+    early: bool  # True if the run ends where no peak can grow any more (look_ahead.py)
+    damped_weight: float = 30.0  # factor of the error of a step that damps a vibration (docs/decisions/0002)
 
 
 def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = False, axes: int = 2) -> System:
-    """The scene in compiled form. `v_reg`, m/s, selects the regularized law; None the set-valued one."""
+    """Return the scene in compiled form. `v_reg`, m/s, selects the regularized law; None the set-valued one."""
     masses = scene.masses
     (below, above), (damping_below, damping_above) = (
-        _per_mass(masses, links) for links in (scene.stiffness, scene.damping)
+        _link_coefficients(masses, links) for links in (scene.stiffness, scene.damping)
     )
     damping_rate = float(2.0 * (damping_below + damping_above).max())
-    # without friction the lubricated law with f_c = 0 says the same and has no corner
+    # Without friction the lubricated law with f_c = 0 is the same, and has no corner.
     dry = scene.dry_friction
     smooth = scene.lubricated or scene.friction_coefficient == 0.0
     heat = None if smooth else dry.heat
@@ -145,23 +145,23 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         kinks=np.zeros((0, 1)),
         duration=float(scene.duration),
         axes=axes,
-        fastest=float(np.sqrt(2.0 * (below + above).max())) + damping_rate,  # Gershgorin's bounds
+        fastest=float(np.sqrt(2.0 * (below + above).max())) + damping_rate,  # Gershgorin's bounds of the eigenvalues
         damping_rate=damping_rate,
     )
 
 
-def _per_mass(masses: Array, links: Array) -> tuple[Array, Array]:
-    """Coefficients of the links, (N - 1, 2), over the mass of the body above and of the one below, (N, 2) each."""
+def _link_coefficients(masses: Array, links: Array) -> tuple[Array, Array]:
+    """Return coefficients of the links, (N - 1, 2), over the mass of the body above and below them, (N, 2) each."""
     below, above = np.zeros((len(masses), 2)), np.zeros((len(masses), 2))
     below[1:] = links / masses[1:, None]
     above[:-1] = links / masses[:-1, None]
     return below, above
 
 
-def record_of(capacity: int, bodies: int) -> Record:
-    """Room for so many steps."""
+def allocate_record(capacity: int, bodies: int) -> StepRecord:
+    """Return an empty record with room for `capacity` steps."""
     t, n, s = capacity, bodies, STAGES
-    return Record(
+    return StepRecord(
         start=np.zeros(t),
         length=np.zeros(t),
         contact=np.zeros(t),
@@ -169,10 +169,10 @@ def record_of(capacity: int, bodies: int) -> Record:
         v=np.zeros((t, n, 2)),
         a=np.zeros((t, n, 2, s)),
         position=np.zeros((t, n, 2, s)),
-        velocity=np.zeros((t, n, 2, s)),
+        velocities=np.zeros((t, n, 2, s)),
         clock=np.zeros((t, s)),
         total=np.zeros((t, n, 3, s)),
         reaction=np.zeros((t, s)),
         sticks=np.zeros((t, 2)),
-        made=np.zeros(2, np.int64),
+        counts=np.zeros(2, np.int64),
     )

@@ -1,35 +1,35 @@
-"""Where a motion ends because the platform needs a larger displacement than the isolator permits."""
+"""End of a motion in which the platform needs a larger displacement than the isolator permits."""
 
 from __future__ import annotations
 
 from math import inf
 
-from reference.solver.collocation import DENSE
+from reference.solver.collocation import SEARCH_POINTS
 from reference.solver.compiled import compiled
-from reference.solver.peaks import IN_THE_PLANE, expand_place, largest_square, squares
+from reference.solver.peaks import IN_THE_PLANE, expand_position, largest_square, sum_of_squares
 from reference.solver.polynomial import expand, value_at
 from reference.solver.rows import row
 from reference.solver.system import REST, STOPPING, System
-from reference.solver.work import CLOCK, Work
+from reference.solver.work import CLOCK, Workspace
 
-BISECTIONS = 50  # of a step, to its rounding
+BISECTIONS = 50  # bisections that locate the displacement in a step, to rounding
 
 
 @compiled
-def travel_reached(system: System, work: Work, contact: int, h: float) -> float:
-    """When the platform's displacement passes the travel within the step just made, s; infinite if it does not."""
+def instant_of_travel(system: System, work: Workspace, contact: int, h: float) -> float:
+    """Return when the displacement passes the travel within the step just solved, s; infinity if it does not."""
     if contact == REST or system.travel == inf:
         return inf
     for axis in range(2):
         if contact == STOPPING:
-            expand(row(work.chain, (0, axis)), work.powers[axis])
+            expand(row(work.positions, (0, axis)), work.powers[axis])
         else:
-            expand_place(work, h, axis)
+            expand_position(work, h, axis)
     limit = system.travel * system.travel
     top, place = largest_square(work, IN_THE_PLANE, 0.0, 1.0)
     if top <= limit:
         return inf
-    theta = first_beyond(work, limit, place)
+    theta = locate_displacement(work, limit, place)
     if contact != STOPPING:
         return work.time + h * theta
     expand(row(work.turning, CLOCK), work.powers[2])
@@ -37,20 +37,20 @@ def travel_reached(system: System, work: Work, contact: int, h: float) -> float:
 
 
 @compiled
-def first_beyond(work: Work, limit: float, place: float) -> float:
-    """First theta up to `place` at which the squared displacement, from its `powers`, is above `limit`."""
+def locate_displacement(work: Workspace, limit: float, place: float) -> float:
+    """Return the first theta up to `place` at which the squared displacement, by its `powers`, exceeds `limit`."""
     low, high = 0.0, place
-    for n in range(1, DENSE.shape[0]):
-        if DENSE[n] >= place:
+    for n in range(1, SEARCH_POINTS.shape[0]):
+        if SEARCH_POINTS[n] >= place:
             break
-        square, _, _ = squares(work, IN_THE_PLANE, DENSE[n])
+        square, _, _ = sum_of_squares(work, IN_THE_PLANE, SEARCH_POINTS[n])
         if square > limit:
-            high = DENSE[n]
+            high = SEARCH_POINTS[n]
             break
-        low = DENSE[n]
+        low = SEARCH_POINTS[n]
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
-        square, _, _ = squares(work, IN_THE_PLANE, middle)
+        square, _, _ = sum_of_squares(work, IN_THE_PLANE, middle)
         if square > limit:
             high = middle
         else:

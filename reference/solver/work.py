@@ -1,7 +1,8 @@
 """
-The state and the arrays of one run, and how compiled code passes large tuples.
+The workspace of one run: its state and its arrays.
 
-Compiled code passes them by reference: as a tuple, every call would copy and compile all its fields again.
+Compiled code passes the workspace, the system and the record by reference. As a tuple, every call would copy and
+compile all fields again.
 """
 
 from __future__ import annotations
@@ -11,108 +12,112 @@ from types import SimpleNamespace
 import numpy as np
 from numba import njit
 
-from reference.solver.collocation import CHANNELS, LANES, STAGES
+from reference.solver.collocation import CHANNELS, ROW_LENGTH, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.compiled.by_reference import ByReference, by_reference, empty
+from reference.solver.compiled.by_reference import ByReference, empty_structure, structure_from_tuple
 from reference.solver.polynomial import POWERS
 from reference.solver.system import Array, Complex
 
-# rows of Work.stage: position, velocity, drive, reaction / m1, squared speed, inertia determinant; y behind x
+# Rows of Workspace.stage: position, velocity, drive, reaction / m1, squared speed, inertia determinant; y behind x
 POSITION, VELOCITY, DRIVE, REACTION, SPEED2, DETERMINANT = 0, 2, 4, 6, 7, 8
-# first row of Work.slopes of the derivatives by px, vx, fx; two rows for each of x and y
+# First rows of Workspace.slopes of the derivatives by px, vx, fx; two rows for each of x and y
 BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
-# rows of Work.turning (near_stop.py)
+# Rows of Workspace.turning (near_stop.py)
 (
     DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
 ) = range(12)  # fmt: skip
-MAX_PARTS = 3  # of a step, apart from each other, that count for the peaks
-SERIES_TERMS = 32  # of the harmonics of the ground: more than a step takes
+MAX_PARTS = 3  # separate parts of one step that count for the peaks
+SERIES_TERMS = 32  # terms of the Taylor series of the ground's harmonics in a step: more than any step needs
 
 
 class _SystemType(ByReference):
     """Numba's type of a System, passed by reference."""
 
 
-class _RecordType(ByReference):
+class _StepRecordType(ByReference):
     """Numba's type of a Record, passed by reference."""
 
 
-class _WorkType(ByReference):
-    """Numba's type of Work."""
+class _WorkspaceType(ByReference):
+    """Numba's type of a Workspace, passed by reference."""
 
 
-class Work:
-    """One run: nothing is allocated while it goes on, and nothing grows with its duration."""
+class Workspace:
+    """
+    State and arrays of one run of N bodies: nothing is allocated during the run, nothing grows with its duration.
 
-    phase: Array  # (2,) rad, of the loading
-    # the state at the start of the step
+    L is ROW_LENGTH, S is STAGES (collocation.py).
+    """
+
+    phase: Array  # (2,) rad, initial phases of the loading
+    # State at the start of the step
     time: float  # s
-    x: Array  # (N, 2) position
-    v: Array  # (N, 2) velocity
-    a0: Array  # (N, 2) acceleration
-    total0: Array  # (N, 3) absolute acceleration
+    x: Array  # (N, 2) m, positions
+    v: Array  # (N, 2) m/s, velocities
+    a0: Array  # (N, 2) m/s^2, accelerations
+    total0: Array  # (N, 3) m/s^2, absolute accelerations
     angle: float  # rad, direction of a slide that begins or stops
     log_speed: float  # logarithm of the horizontal speed near a stop
     log_ratio: float  # logarithm of the full speed over the horizontal one near a stop
-    start2: float  # squared speed of a slide, m^2/s^2
-    # the next step
+    squared_start_speed: float  # m^2/s^2, squared sliding speed
+    # Proposal for the next step
     length: float  # s
-    stretched: float  # length near a stop, in stretched time
-    fitting: float  # length near a stop with which the step before would have met the tolerance, in stretched time
-    growth: float  # bound on the growth of the length
-    held: float  # s, for which rest or creep is held whatever the force; 0 where nothing holds it
-    # the phase of the contact
+    stretched_length: float  # length near a stop, in stretched time
+    fitting_length: float  # length with which the last step near a stop would have met the tolerance, in stretched time
+    max_growth: float  # largest factor from one length to the next
+    hold_time: float  # s, time for which the contact keeps rest or creep under any force; 0 if it need not
+    # Phase of the contact
     first_log_speed: float  # logarithm of the speed at which stretched time began
-    left: float  # s, by which rest is entered early
-    # the step
-    x1: Array  # (N, 2) at its end
-    v1: Array
-    a: Array  # (N, 2, L) acceleration at the stages
-    ground: Array  # (4, L) ground acceleration and k_T at the stages
-    total: Array  # (N, 3, L) absolute acceleration at the stages
-    free: Array  # (2, L) driving acceleration of the platform if it kept its velocity
-    feedback: Array  # (2, S, L) what its own stage accelerations add to that
-    inverse: Complex  # (N, 2, CHANNELS) of the pivots of the eliminated chain
-    load: Complex  # (N, 2, CHANNELS)
-    channels: Array  # (L,) a number in every channel: real parts, imaginary parts
-    gain: Complex  # (2, CHANNELS) what the platform's acceleration takes from its own drive through the chain
-    stage: Array  # (9, L) the platform at the stages
-    slopes: Array  # (12, L) derivative of its acceleration
-    matrix: Array  # (2 S, 2, L) by columns (linear_solve.py)
-    residual: Array  # (2, L)
-    turn_matrix: Array  # (S, 1, L) of the directions near a stop
-    pivots: Array  # (2 S,) of the factorized matrix
-    chain: Array  # (N, 2, L) position of the bodies at the stages of a step near a stop
-    velocity: Array  # (N, 2, L)
-    turning: Array  # (12, L) direction, speed and time there
-    levels: Array  # (L,) a quantity at the stages whose passage of a level ends the step
+    early_rest: float  # s, time left of the slide when the phase of rest begins
+    # Step that is being solved
+    x1: Array  # (N, 2) m, positions at the end of the step
+    v1: Array  # (N, 2) m/s, velocities there
+    a: Array  # (N, 2, L) m/s^2, accelerations at the stages
+    ground: Array  # (4, L) ground acceleration, m/s^2, and k_T at the stages
+    total: Array  # (N, 3, L) m/s^2, absolute accelerations at the stages
+    free: Array  # (2, L) m/s^2, driving acceleration of the platform if it kept its velocity
+    feedback: Array  # (2, S, L) response of the drive at all stages to the platform's acceleration at one stage
+    inverse: Complex  # (N, 2, CHANNELS) inverse pivots of the eliminated chain
+    load: Complex  # (N, 2, CHANNELS) loads of the eliminated chain
+    channels: Array  # (L,) one number in every channel: real parts, imaginary parts
+    gain: Complex  # (2, CHANNELS) response of the platform's drive to its own acceleration through the chain
+    stage: Array  # (9, L) state of the platform at the stages, in the rows above
+    slopes: Array  # (12, L) derivatives of the platform's acceleration, in the rows above
+    matrix: Array  # (2 S, 2, L) matrix of Newton's method, by columns (linear_solve.py)
+    residual: Array  # (2, L) its right side, then its correction
+    turn_matrix: Array  # (S, 1, L) matrix of Newton's method for the directions near a stop
+    pivots: Array  # (2 S,) row exchanges of the factorized matrix
+    positions: Array  # (N, 2, L) m, positions of the bodies at the stages of a step near a stop
+    velocities: Array  # (N, 2, L) m/s, their velocities there
+    turning: Array  # (12, L) direction, speed and time at the stages near a stop, in the rows above
+    levels: Array  # (L,) logarithm of the sliding speed at the stages near a stop
     edges: Array  # (2 MAX_PARTS,) theta where the parts of the step that count for the peaks begin and end
-    powers: Array  # (5, POWERS) coefficients of the powers of theta where a step is looked at closely
-    dense: Array  # (2, L) a quantity at the places of collocation.DENSE
-    scale: Array  # (N,) m/s^2, what errors are measured against
-    defect: Array  # (N,) m/s^2, interpolation error of the step at its start
-    # the step before
-    old_length: float  # s; 0 where its polynomial is no guess for the next step
-    guess: Array  # (2, POWERS) coefficients of the platform's acceleration in it
-    waves: Complex  # (2,) the harmonics of the ground at the start of the step
-    turns: Complex  # (2,) by what they change in a step of a rough run
-    elapsed: Array  # (L,) s, from the start of the step to its stages
-    series: Array  # (SERIES_TERMS, 2) of the harmonics in a step
-    # the run
-    end: float  # s, at most the duration
-    steps: float
-    best: Array  # (N,) largest squared absolute acceleration so far
-    reading_error: Array  # (N,) m/s^2, error of reading it inside its step, with the drift before
-    drift: Array  # (N,) m/s^2, what the steps have missed of the chain's fastest vibration
-    reach2: float  # m^2, largest squared displacement of the platform
-    peaked: float  # s, end of the last step with a large acceleration
-    settled: float  # s, end of the last step with a large value of anything that is asked for
-    look: float  # s, after which the run looks ahead, or ends if it may not end early by itself
+    powers: Array  # (5, POWERS) coefficients of polynomials in theta, the elapsed share of the step
+    dense: Array  # (2, L) values at collocation.SEARCH_POINTS
+    scale: Array  # (N,) m/s^2, accelerations that errors are relative to
+    defect: Array  # (N,) m/s^2, interpolation error at the start of the step
+    # Last step
+    last_length: float  # s; 0 where its polynomial is no guess for the next step
+    guess: Array  # (2, POWERS) coefficients of the platform's acceleration in the last step
+    waves: Complex  # (2,) harmonics of the ground at the start of the step
+    turns: Complex  # (2,) factors by which they change in a step of a rough run
+    elapsed: Array  # (L,) s, time from the start of the step to its stages
+    series: Array  # (SERIES_TERMS, 2) Taylor series of the harmonics in the step
+    # Run as a whole
+    end: float  # s, end of the run, at most the duration
+    steps: float  # number of steps so far
+    best: Array  # (N,) m^2/s^4, largest squared absolute acceleration so far
+    reading_error: Array  # (N,) m/s^2, error of reading it inside its step, with the drift of the steps before
+    drift: Array  # (N,) m/s^2, error that the steps so far have left in the chain's fastest vibration
+    squared_reach: float  # m^2, largest squared displacement of the platform
+    last_peak: float  # s, end of the last step with an acceleration near the largest
+    last_large: float  # s, end of the last step with an acceleration or a displacement near the largest
+    look_time: float  # s, instant after which the run looks ahead, or ends if it must not end early by itself
 
 
-def _fill(work: Work, bodies: int) -> None:
-    """Zeros in every field, for so many bodies."""
-    n, s, c, lanes = bodies, STAGES, CHANNELS, LANES
+def _allocate_fields(work: Workspace, bodies: int) -> None:
+    """Set every field to zeros, for N = `bodies`."""
+    n, s, c, length = bodies, STAGES, CHANNELS, ROW_LENGTH
     work.phase = np.zeros(2)
     work.x = np.zeros((n, 2))
     work.v = np.zeros((n, 2))
@@ -120,65 +125,68 @@ def _fill(work: Work, bodies: int) -> None:
     work.total0 = np.zeros((n, 3))
     work.x1 = np.zeros((n, 2))
     work.v1 = np.zeros((n, 2))
-    work.a = np.zeros((n, 2, lanes))
-    work.ground = np.zeros((4, lanes))
+    work.a = np.zeros((n, 2, length))
+    work.ground = np.zeros((4, length))
     work.ground[3] = 1.0
-    work.total = np.zeros((n, 3, lanes))
-    work.free = np.zeros((2, lanes))
-    work.feedback = np.zeros((2, s, lanes))
+    work.total = np.zeros((n, 3, length))
+    work.free = np.zeros((2, length))
+    work.feedback = np.zeros((2, s, length))
     work.inverse = np.zeros((n, 2, c), np.complex128)
     work.load = np.zeros((n, 2, c), np.complex128)
-    work.channels = np.zeros(lanes)
+    work.channels = np.zeros(length)
     work.gain = np.zeros((2, c), np.complex128)
-    work.stage = np.zeros((9, lanes))
-    work.slopes = np.zeros((12, lanes))
-    work.matrix = np.zeros((2 * s, 2, lanes))
-    work.residual = np.zeros((2, lanes))
-    work.turn_matrix = np.zeros((s, 1, lanes))
+    work.stage = np.zeros((9, length))
+    work.slopes = np.zeros((12, length))
+    work.matrix = np.zeros((2 * s, 2, length))
+    work.residual = np.zeros((2, length))
+    work.turn_matrix = np.zeros((s, 1, length))
     work.pivots = np.zeros(2 * s)
-    work.chain = np.zeros((n, 2, lanes))
-    work.velocity = np.zeros((n, 2, lanes))
-    work.turning = np.zeros((12, lanes))
-    work.levels = np.zeros(lanes)
+    work.positions = np.zeros((n, 2, length))
+    work.velocities = np.zeros((n, 2, length))
+    work.turning = np.zeros((12, length))
+    work.levels = np.zeros(length)
     work.edges = np.zeros(2 * MAX_PARTS)
     work.powers = np.zeros((5, POWERS))
-    work.dense = np.zeros((2, lanes))
+    work.dense = np.zeros((2, length))
     work.scale = np.zeros(n)
     work.defect = np.zeros(n)
     work.guess = np.zeros((2, POWERS))
     work.waves = np.zeros(2, np.complex128)
     work.turns = np.zeros(2, np.complex128)
-    work.elapsed = np.zeros(lanes)
+    work.elapsed = np.zeros(length)
     work.series = np.zeros((SERIES_TERMS, 2))
     work.best = np.zeros(n)
     work.reading_error = np.zeros(n)
     work.drift = np.zeros(n)
-    work.time = work.angle = work.log_speed = work.log_ratio = work.start2 = 0.0
-    work.length = work.stretched = work.fitting = work.growth = work.held = 0.0
-    work.first_log_speed = work.left = work.old_length = work.end = work.steps = 0.0
-    work.reach2 = work.peaked = work.settled = work.look = 0.0
+    work.time = work.angle = work.log_speed = work.log_ratio = work.squared_start_speed = 0.0
+    work.length = work.stretched_length = work.fitting_length = work.max_growth = work.hold_time = 0.0
+    work.first_log_speed = work.early_rest = work.last_length = work.end = work.steps = 0.0
+    work.squared_reach = work.last_peak = work.last_large = work.look_time = 0.0
 
 
-system_by_reference, record_by_reference = by_reference(_SystemType), by_reference(_RecordType)
+system_by_reference, record_by_reference = structure_from_tuple(_SystemType), structure_from_tuple(_StepRecordType)
 _fields = SimpleNamespace()
-_fill(_fields, 2)  # type: ignore[arg-type]
-_empty, _compiled_fill = empty(_WorkType, vars(_fields)), njit(nogil=True)(_fill)
+_allocate_fields(_fields, 2)  # type: ignore[arg-type]
+_empty_workspace, _compiled_allocation = (
+    empty_structure(_WorkspaceType, vars(_fields)),
+    njit(nogil=True)(_allocate_fields),
+)
 
 
 @njit(nogil=True)
-def workspace(bodies: int) -> Work:
-    """For runs with this many bodies."""
-    work = _empty()
-    _compiled_fill(work, bodies)
+def allocate_workspace(bodies: int) -> Workspace:
+    """Return the workspace for runs of N = `bodies`."""
+    work = _empty_workspace()
+    _compiled_allocation(work, bodies)
     return work
 
 
 @compiled
-def start_anew(work: Work, length: float, end: float) -> None:
-    """Forget the run before; `length` of the first step and end of the run, s."""
-    work.time = work.angle = work.log_speed = work.log_ratio = work.start2 = 0.0
-    work.length, work.stretched, work.growth, work.old_length = length, 0.0, 0.0, 0.0
-    work.end, work.peaked, work.settled = end, 0.0, 0.0
-    work.held = work.first_log_speed = work.left = work.steps = work.reach2 = 0.0
+def reset_workspace(work: Workspace, length: float, end: float) -> None:
+    """Reset the state for a new run, whose first step has this length, s, and which ends at `end`, s."""
+    work.time = work.angle = work.log_speed = work.log_ratio = work.squared_start_speed = 0.0
+    work.length, work.stretched_length, work.max_growth, work.last_length = length, 0.0, 0.0, 0.0
+    work.end, work.last_peak, work.last_large = end, 0.0, 0.0
+    work.hold_time = work.first_log_speed = work.early_rest = work.steps = work.squared_reach = 0.0
     for i in range(work.x.shape[0]):
         work.best[i] = work.reading_error[i] = work.drift[i] = 0.0

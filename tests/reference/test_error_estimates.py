@@ -9,7 +9,7 @@ from chains import chain
 
 import reference
 from reference.problem import Scene, phase_grid
-from reference.solver.error_estimate import _error, peaks_at
+from reference.solver.error_estimate import _estimate_error, peaks_at
 from reference.surface import checked_demand
 
 FIG3 = reference.load_scene("fig3-I")
@@ -37,7 +37,7 @@ def test_reading_and_states_add_to_an_error() -> None:
     before, after = (
         SimpleNamespace(value=np.array([[3.0, 1e-6]]) * k, error=np.array([[0.02, 1e-7]])) for k in (1.1, 1)
     )
-    found: Any = _error(before, after, 1e-3, 1.0)  # type: ignore[arg-type]
+    found: Any = _estimate_error(before, after, 1e-3, 1.0)  # type: ignore[arg-type]
     expected = [0.04 + 0.4 * 0.3 + 5e-4 * 1e-3 * 3.0, 2e-7 + 1e-7 + 5e-4 * 1e-3 * 1e-6]
     np.testing.assert_allclose(found[0], expected, rtol=1e-9)
 

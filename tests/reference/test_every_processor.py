@@ -72,7 +72,10 @@ def test_the_constants_of_the_method_are_accurate_to_rounding() -> None:
 
 def test_a_cache_folder_holds_a_build_per_version_and_no_part_may_reorder_sums(tmp_path: Path) -> None:
     """Such freedom is used otherwise on another processor, and otherwise where a part is not inlined."""
-    code = "from reference.solver.run import runs; result = runs.stats.cache_path, runs.targetoptions.get('fastmath')\n"
+    code = (
+        "from reference.solver.run import integrate_runs\n"
+        "result = integrate_runs.stats.cache_path, integrate_runs.targetoptions.get('fastmath')\n"
+    )
     build = build_folder(ROOT / "reference" / "solver")
     assert build is not None
     place, fastmath = eval(elsewhere(code, NUMBA_CACHE_DIR=str(tmp_path)))

@@ -8,7 +8,7 @@ import reference
 from reference.problem import DryFriction, load_scene
 from reference.problem.friction import Heat
 from reference.solver.collocation import NODES
-from reference.solver.heating import warm
+from reference.solver.heating import fill_temperature_factors
 
 SCENE = load_scene("fig3-I").with_values({"duration": 4.0})
 # so small a weight heats only what hardly conducts; the slider leaves the center within each swing
@@ -100,7 +100,7 @@ def test_what_the_published_sum_of_heat_tends_to_is_solved():
     length = np.diff(bounds)
     speed = 0.1 * np.pi * np.abs(np.cos(np.pi * (bounds[:-1, None] + length[:, None] * NODES)))
     k_t = np.ones_like(speed)
-    warm(bounds[:-1], length, 1e3 * LOAD * LAWS[0].at(speed) * speed * HEAT.rise, 20.0, k_t)
+    fill_temperature_factors(bounds[:-1], length, 1e3 * LOAD * LAWS[0].at(speed) * speed * HEAT.rise, 20.0, k_t)
     solved = k_t[np.searchsorted(bounds, 1.0 - 1e-9) - 1, -1]
     rough, fine = (summed(LAWS[0], 5e-3 / parts)[200 * parts] / solved - 1.0 for parts in (1, 64))
     assert 0.01 < rough < 0.04

@@ -5,7 +5,8 @@ import pytest
 from turning_platform import turning
 
 import reference
-from reference.solver.error_estimate import peaks_from, record_of
+from reference.solver.error_estimate import peaks_from
+from reference.solver.system import allocate_record
 from reference.surface import checked_demand
 
 INSTANTS = np.linspace(0.0, 3.0, 100)
@@ -24,7 +25,7 @@ def test_circles_over_friction_are_kept(links, within):
 def test_collocation_is_of_order_eight_inside_its_steps(links):
     """Seven stages; at the end of a step the order is 13, and the error below rounding."""
     motion = turning(*links, 3.0)
-    rest = record_of(0, len(motion.circles))
+    rest = allocate_record(0, len(motion.circles))
     errors, steps = [], []
     for tolerance in (1e-7, 1e-8, 1e-9, 1e-10):
         run = reference.trajectory(

@@ -14,7 +14,7 @@ from reference.measures.distribution import FRACTILES, fractile
 from reference.measures.peak_demands import QUANTITIES
 from reference.problem import State, load_scene
 from reference.solver.phases import follow, stopping
-from reference.solver.record import note_stick
+from reference.solver.record import record_stick
 
 
 def test_fractiles_are_named_in_rising_order_and_follow_hazen() -> None:
@@ -96,29 +96,33 @@ def test_the_error_of_a_peak_counts_the_other_run() -> None:
 def test_bodies_above_have_the_arc_s_vertical_part(monkeypatch: pytest.MonkeyPatch) -> None:
     """At a stop: the horizontal part of each stays, and all share the vertical acceleration of the platform."""
     taken: dict[int, float] = {}
-    monkeypatch.setattr(stopping, "settled_direction", lambda *rest: 1.0)
+
+    def take(work: object, body: int, squared: float) -> None:
+        taken[int(body)] = squared
+
+    monkeypatch.setattr(stopping, "direction_at_stop", lambda *rest: 1.0)
     monkeypatch.setattr(stopping, "arc_peak", lambda system, load, a, b, floor, horizontal: 9.0 if horizontal else 4.0)
-    monkeypatch.setattr(stopping, "take_limit", lambda work, body, squared: taken.update({int(body): squared}))
+    monkeypatch.setattr(stopping, "update_peak_by_limit", take)
     total = np.array([[0.0, 0.0, 0.0], [1.0, 2.0, 0.1], [3.0, 0.5, 0.1]])
     work: Any = SimpleNamespace(x=np.zeros((3, 2)), total0=total, best=np.ones(3), angle=0.0)
-    assert stopping.take_arc.py_func(SimpleNamespace(small=False), work, None, False)
+    assert stopping.update_peaks_by_arc.py_func(SimpleNamespace(small=False), work, None, False)
     assert taken == {0: 9.0, 1: 1.0 + 4.0 + 4.0, 2: 9.0 + 0.25 + 4.0}
 
 
 def test_what_steps_miss_of_a_vibration_adds_up_to_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """A share of 6e-8 of the defect and the angle's seventh power in a step, up to the defect over twice that share."""
-    monkeypatch.setattr(follow, "returned", lambda *given: 0.0)
+    monkeypatch.setattr(follow, "link_error_rate", lambda *given: 0.0)
     work: Any = SimpleNamespace(x=np.zeros((2, 2)), defect=np.array([1e-3, 2e-3]), drift=np.zeros(2))
     share = 6e-8 * 6.0**7
     for step in range(1, 10_000):
-        follow.note_drift.py_func(SimpleNamespace(fastest=50.0), work, 0.1, 6.0)
+        follow.add_drift.py_func(SimpleNamespace(fastest=50.0), work, 0.1, 6.0)
         if step < 5:
             np.testing.assert_allclose(work.drift, step * share * work.defect)
     np.testing.assert_allclose(work.drift, work.defect / (2.0 * share))
 
 
 def test_rests_that_touch_are_one() -> None:
-    record: Any = SimpleNamespace(made=np.zeros(2, int), sticks=np.zeros((4, 2)))
+    record: Any = SimpleNamespace(counts=np.zeros(2, int), sticks=np.zeros((4, 2)))
     for start, end in ((0.0, 1.0), (1.0, 2.5), (3.0, 4.0), (3.5, 3.5)):
-        note_stick.py_func(record, start, end)
-    assert record.sticks[: record.made[1]].tolist() == [[0.0, 2.5], [3.0, 4.0]]
+        record_stick.py_func(record, start, end)
+    assert record.sticks[: record.counts[1]].tolist() == [[0.0, 2.5], [3.0, 4.0]]

@@ -9,7 +9,7 @@ from random_loadings import random_case
 import reference
 from reference.problem import Scene, load_scene
 from reference.solver import error_estimate
-from reference.solver.error_estimate import Peaks, peaks_at, peaks_with_error
+from reference.solver.error_estimate import RunPeaks, peaks_at, peaks_with_error
 from reference.surface import checked_demand
 
 TOLERANCE = 1e-5
@@ -30,7 +30,7 @@ def random_record(random: np.random.Generator) -> dict[str, Any]:
     return {"record": "two bursts.csv", "samples": samples.tolist()}
 
 
-def early_and_whole(seed: int) -> tuple[Peaks, Peaks]:
+def early_and_whole(seed: int) -> tuple[RunPeaks, RunPeaks]:
     """Of one random scene, with runs that stop early and with runs to the end; some have two bursts, or a travel."""
     random = np.random.default_rng(seed)
     scene, phase, v_reg, _ = random_case(seed, 0.5, 5.0, 2.0, 8.0)
@@ -65,7 +65,7 @@ def test_no_peak_is_lost_by_stopping_early(seeds: range) -> None:
 def test_both_runs_stop_early_but_full_ones_and_those_with_the_printed_condition(monkeypatch) -> None:
     scene, ends = load_scene("fig3-I"), []
 
-    def noted(*arguments: Any) -> Peaks:
+    def noted(*arguments: Any) -> RunPeaks:
         ran = peaks_at(*arguments)
         ends.append(ran.instant[0])
         return ran

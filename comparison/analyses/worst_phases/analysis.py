@@ -27,7 +27,7 @@ from comparison.study.study import Study
 from comparison.surfaces.model_difference import usable_mu
 from comparison.surfaces.surfaces import values_of
 from reference.measures.local_maxima import GRID, local_maxima
-from reference.measures.local_search import LocalSearch, Points, Surface, predicted, square_of
+from reference.measures.local_search import ComputedPhases, LocalSearch, Surface, predict_best, square_nodes
 from reference.problem import Scene
 
 TOLERANCE = 1e-5  # relative error of mu by the equations
@@ -144,14 +144,14 @@ class WorstPhases(MappedAnalysis[list[Worst]]):
 def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolerance: float) -> Worst:
     """The engine at the worst phases of the equations `like` it, and its largest value in a square around them."""
     engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
-    start = engine.at(np.array([worst.phases]))
+    start = engine.compute(np.array([worst.phases]))
     search = LocalSearch(start.phases[0], float(start.value[0]), float(start.error[0]), ENGINE_HALF_WIDTH)
-    (corners, _), (square, _) = square_of(2), square_of(3)
-    computed = engine.at(search.phases + ENGINE_HALF_WIDTH * corners)
-    equations = _surface(scene, like, TOLERANCE, worst.body).at(search.phases + ENGINE_HALF_WIDTH * square)
-    highest, _ = predicted(engine, search, _estimated(start, computed, equations))
-    search.take(computed)
-    search.take(engine.at(highest[None]))
+    (corners, _), (square, _) = square_nodes(2), square_nodes(3)
+    computed = engine.compute(search.phases + ENGINE_HALF_WIDTH * corners)
+    equations = _surface(scene, like, TOLERANCE, worst.body).compute(search.phases + ENGINE_HALF_WIDTH * square)
+    highest, _ = predict_best(engine, search, _estimated(start, computed, equations))
+    search.move_to_best(computed)
+    search.move_to_best(engine.compute(highest[None]))
     if not math.isfinite(search.value):
         return Worst(scene.name, model.key, worst.quantity, worst.body, reason=engine.outcome)
     alpha1, alpha2 = (search.phases % (2.0 * np.pi)).tolist()
@@ -181,7 +181,7 @@ def _larger_of_grid_and_worst(worst: Worst, scene: Scene, on_grid: OnGrid, toler
     """The larger of an engine's values at the worst phases of the equations and on its own grid."""
     model, value, error, phases = on_grid
     engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
-    there = engine.at(np.array([worst.phases]))
+    there = engine.compute(np.array([worst.phases]))
     start, start_error = float(there.value[0]), float(there.error[0])
     about = {"at_start": start, "start_error": start_error, "evaluations": engine.evaluations}
     name = worst.scene, model.key, worst.quantity, worst.body
@@ -194,7 +194,7 @@ def _surface(scene: Scene, model: Model, tolerance: float, body: int) -> Surface
     return Surface(scene, imported(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
 
 
-def _estimated(middle: Points, corners: Points, equations: Points) -> Points:
+def _estimated(middle: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases) -> ComputedPhases:
     """The engine at the 3 x 3 places of a square that the equations have, from its ratio to them at five of these."""
     like = equations.numerator.reshape(3, 3)
     ratio = np.empty((3, 3))

@@ -1,5 +1,5 @@
 """
-How the solver is compiled: numba, cached on disk under a hash of the solver's whole source.
+Compilation of the solver: by numba, cached on disk under a hash of the solver's whole source.
 
 Sums are not reordered and products are not fused with sums (no `fastmath`), so that mu is the same to the last bit in
 every process and on every processor: docs/decisions/0003-floating-point-flags.md.
@@ -14,12 +14,12 @@ from typing import Any
 from reference.build_cache import cached_on_disk
 from reference.solver.compiled.parts import compiled_part
 
-# divisions by zero give inf or NaN as in NumPy; other threads go on meanwhile
+# Divisions by zero give inf or NaN as in NumPy; other threads run meanwhile.
 OPTIONS = {"error_model": "numpy", "nogil": True}
 
 
 def compiled(function: Callable[..., Any]) -> Any:
-    """A part of the solver, called by compiled code alone."""
+    """Decorate a part of the solver that only compiled code calls."""
     return compiled_part(**OPTIONS)(function)
 
 

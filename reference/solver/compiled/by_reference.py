@@ -31,17 +31,17 @@ class ByReference(types.StructRef):  # type: ignore[misc, name-defined]
 
     @property
     def mangling_args(self) -> tuple[str, tuple[()]]:
-        """The type in the names of functions: those of another variant (variants.py) have others."""
+        """Name of the type in the names of compiled functions, with its variant (variants.py)."""
         return "_".join([self._typename, *(name for name, kind in self._fields if kind == types.none)]), ()
 
     @cached_property
     def field_dict(self) -> dict[str, Any]:
-        """The type of every field."""
+        """Types of all fields."""
         return dict(self._fields)
 
     @cached_property
     def places(self) -> dict[str, tuple[int, Any]]:
-        """Bytes before every field, and the type of a pointer to it; filled by `pointer`."""
+        """Offset of every field, in bytes, and the type of a pointer to it; filled by `pointer`."""
         return {}
 
     def pointer(self, context: Any, builder: Any, reference: Any, name: str) -> Any:
@@ -86,21 +86,21 @@ def _write(context: Any, builder: Any, signature: Any, arguments: Any, name: str
     builder.store(new, pointer)
 
 
-def _new(context: Any, builder: Any, kind: ByReference) -> Any:
+def _allocate(context: Any, builder: Any, kind: ByReference) -> Any:
     """Write code for a structure without values."""
     _, lower = structref.new._defn(context.typing_context, types.TypeRef(kind))
     return lower(context, builder, None, None)
 
 
-def by_reference(kind: type[ByReference]) -> Any:
-    """A function of compiled code that makes such a structure from a named tuple."""
+def structure_from_tuple(kind: type[ByReference]) -> Any:
+    """Return a function of compiled code that makes such a structure from a named tuple."""
 
     @intrinsic
-    def made(context: Any, values: Any) -> Any:
+    def construct(context: Any, values: Any) -> Any:
         structure = kind(list(zip(values.fields, values.types)))
 
         def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            reference = _new(context, builder, structure)
+            reference = _allocate(context, builder, structure)
             for k, (name, field) in enumerate(structure._fields):
                 value = builder.extract_value(arguments[0], k)
                 context.nrt.incref(builder, field, value)
@@ -109,18 +109,18 @@ def by_reference(kind: type[ByReference]) -> Any:
 
         return structure(values), lower
 
-    return made
+    return construct
 
 
-def empty(kind: type[ByReference], fields: Mapping[str, Any]) -> Any:
-    """A function of compiled code that makes such a structure with fields of the types of `fields`, all bits zero."""
+def empty_structure(kind: type[ByReference], fields: Mapping[str, Any]) -> Any:
+    """Return a function of compiled code that makes such a structure with the types of `fields`, all bits zero."""
     structure = kind([(name, typeof(value)) for name, value in fields.items()])
 
     @intrinsic
-    def made(context: Any) -> Any:
+    def construct(context: Any) -> Any:
         def lower(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            return _new(context, builder, structure)
+            return _allocate(context, builder, structure)
 
         return structure(), lower
 
-    return made
+    return construct

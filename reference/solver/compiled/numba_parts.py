@@ -1,7 +1,7 @@
 """
-How numba is made to build parts (parts.py): by its own passes, with another library for what they write.
+Compilation of parts (parts.py) by numba's own passes, with another library for the code that they write.
 
-All of this is numba's inside, which may change with any version.
+All of this uses numba's internals, which may change with any version.
 """
 
 from __future__ import annotations
@@ -20,27 +20,27 @@ from numba.core.typed_passes import AnnotateTypes, InlineOverloads, IRLegalizati
 from numba.core.typing import Context
 from numba.core.untyped_passes import DeadBranchPrune, InlineClosureLikes
 
-# Passes that change nothing in a part: it has no expressions of whole arrays, functions within, branches on None
-# or functions that numba inlines before their types are known, and needs no end of a variable's life to be marked.
+# Passes that change nothing in a part: it has no expressions of whole arrays, inner functions, branches on None or
+# functions that numba inlines before their types are known, and no variable whose end must be marked.
 UNNEEDED = {NopythonRewrites, InlineClosureLikes, DeadBranchPrune, InlineOverloads, IRLegalization}
 OPERATORS = {each for each in vars(operator).values() if callable(each)}
 
 
 class _NoEnvironment:
-    """Stands for numba's code generator where it hands a function the Python objects that its wrapper needs."""
+    """Substitute for numba's code generator, which hands a function the Python objects that its wrapper needs."""
 
     def set_env(self, name: str, environment: object) -> None:
-        """A part has no wrapper."""
+        """Do nothing: a part has no wrapper."""
 
 
-class _Part(JITCodeLibrary):  # type: ignore[misc]
-    """The code of one part as numba writes it; entry points link, optimize and translate it."""
+class _PartLibrary(JITCodeLibrary):  # type: ignore[misc]
+    """Code of one part as numba writes it; entry points link, optimize and translate it."""
 
     codegen = _NoEnvironment()
     _whole: Any = None
 
     def finalize(self) -> None:
-        """Neither link what this part calls, nor optimize, nor translate."""
+        """Finish the part without linking what it calls, without optimizing and without translating it."""
         self._raise_if_finalized()
         for function in self._final_module.functions:
             if not function.is_declaration and function.linkage == Linkage.external:
@@ -48,29 +48,29 @@ class _Part(JITCodeLibrary):  # type: ignore[misc]
         self._finalized = True
 
     def _get_module_for_linking(self) -> Any:
-        """The code with that of all parts that it calls, each once: asked for by an entry point."""
+        """Return the code of this part and of all parts that it calls, each once; entry points call this."""
         if self._whole is None:
             whole = self._final_module.clone()
             libraries = [self]
             for library in libraries:
-                called = library._linking_libraries if isinstance(library, _Part) else ()
+                called = library._linking_libraries if isinstance(library, _PartLibrary) else ()
                 libraries += [each for each in dict.fromkeys(called) if each not in libraries]
                 if hasattr(self, "_reload_init"):  # since numba 0.62
                     self._reload_init.update(library._reload_init)
             for library in libraries[1:]:
-                part = isinstance(library, _Part)
+                part = isinstance(library, _PartLibrary)
                 whole.link_in(library._final_module if part else library._get_module_for_linking(), preserve=True)
             self._whole = whole
         return self._whole
 
     def get_pointer_to_function(self, name: str) -> int:
-        """None: there is no machine code."""
+        """Return 0: there is no machine code."""
         return 0
 
 
 @register_pass(mutates_CFG=False, analysis_only=False)
 class _AsPart(LoweringPass):  # type: ignore[misc]
-    """Just before the lowering: the code goes into a `_Part` and counts no references."""
+    """Pass before the lowering: its code goes into a `_PartLibrary` and counts no references."""
 
     _name = "as_part"
 
@@ -78,8 +78,8 @@ class _AsPart(LoweringPass):  # type: ignore[misc]
         super().__init__()
 
     def run_pass(self, state: Any) -> bool:
-        context = state.targetctx  # of this function alone
-        state.library = _Part(context.codegen(), state.func_id.func_qualname)
+        context = state.targetctx  # numba makes one for every function
+        state.library = _PartLibrary(context.codegen(), state.func_id.func_qualname)
         context.nrt = NRTContext(context, True)  # fields of structures are still read through it
         context.enable_nrt = False
         return False

@@ -8,8 +8,9 @@ A part compiled here is linked into its callers without that: it is optimized an
 Numba counts the references to an array wherever one is named, also while a caller holds it anyway. A part counts none:
 it makes no arrays, and keeps or returns none.
 
-This needs numba's inside (numba_parts.py). With a numba newer than the newest that was tried, parts are built as numba
-builds functions: the same numbers, for about twice the time of compiling.
+This needs numba's internals (numba_parts.py). With a numba newer than the newest that was tried, parts are built as
+numba builds functions: the same numbers, in about twice the time of compiling
+(docs/decisions/0013-parts-compiled-with-their-entry-point.md).
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from typing import Any
 import numba
 
 njit: Any = numba.njit
-NEWEST_KNOWN = 0, 68  # numba whose inside was seen to work as this needs it (oldest: 0.61)
+NEWEST_KNOWN = 0, 68  # newest version of numba whose internals were tried (oldest: 0.61)
 
 
 def compiled_part(**options: Any) -> Callable[[Callable[..., Any]], Any]:

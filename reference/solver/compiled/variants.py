@@ -1,4 +1,4 @@
-"""A function of compiled code in two variants, of which only the one that a system needs is compiled."""
+"""Functions of compiled code in two variants, of which only the one that a system needs is compiled."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from numba.extending import lower_builtin, type_callable
 
 
 def variants(field: str, without: Any, present: Any) -> Callable[..., Any]:
-    """A function whose first argument is a System: `without` where its `field` is None, else `present`."""
+    """Return a function whose first argument is a System: `without` where its `field` is None, else `present`."""
 
     def call(system: Any, *numbers: Any) -> Any:
         return (without if getattr(system, field) is None else present)(system, *numbers)
 
-    def chosen(system: Any) -> Any:
+    def choose(system: Any) -> Any:
         return types.Dispatcher(without if system.field_dict[field] == types.none else present)
 
     @type_callable(call)
     def _type(context: Any) -> Callable[..., Any]:
-        def typed(*kinds: Any) -> Any:
-            return chosen(kinds[0]).get_call_type(context, kinds, {})
+        def resolve(*kinds: Any) -> Any:
+            return choose(kinds[0]).get_call_type(context, kinds, {})
 
-        typed.pysig = signature(without.py_func)  # type: ignore[attr-defined]  # where numba looks for it
-        return typed
+        resolve.pysig = signature(without.py_func)  # type: ignore[attr-defined]  # where numba looks for it
+        return resolve
 
     @lower_builtin(call, types.VarArg(types.Any))
     def _lower(context: Any, builder: Any, call: Any, arguments: Any) -> Any:
-        function = context.get_function(chosen(call.args[0]), call)
+        function = context.get_function(choose(call.args[0]), call)
         context.add_linking_libs(getattr(function, "libs", ()))
         return function(builder, arguments)
 

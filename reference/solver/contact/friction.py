@@ -1,5 +1,5 @@
 """
-Friction at the contact: slip vectors, the condition for rest, the direction in which a slide begins.
+Friction at the contact: slip vectors and the conditions for rest.
 
 Laws: dry and set-valued (2.5), dry and linear below the speed v_reg, lubricated with mu = f_c v (3.14). Each gives
 a slip vector s = factor * v_h with v_h the horizontal velocity:
@@ -16,36 +16,36 @@ from __future__ import annotations
 from math import cos, exp, expm1, sin, sqrt
 
 from reference.solver.compiled import compiled
-from reference.solver.contact.load import loaded
-from reference.solver.rows import Number, as_many, where_positive
+from reference.solver.contact.load import scale_by_load
+from reference.solver.rows import Number, broadcast_like, where_positive
 from reference.solver.system import CREEPING, Load, System
 
-SMALLEST_SPEED = 1e-200  # m/s
+SMALLEST_SPEED = 1e-200  # m/s: its square underflows, so a slower slide has stopped
 
 
 @compiled
 def coefficient(system: System, speed: Number) -> Number:
-    """Dry friction coefficient mu at the sliding speed (3.8), m/s."""
+    """Return the dry friction coefficient mu at the sliding speed (3.8), m/s."""
     if system.rate == 0.0:
-        return as_many(system.friction, speed)
+        return broadcast_like(system.friction, speed)
     return system.friction - system.rise * expm1(-system.rate * speed)
 
 
 @compiled
 def coefficient_slope(system: System, speed: Number) -> Number:
-    """Derivative of mu by the sliding speed, s/m."""
+    """Return the derivative of mu by the sliding speed, s/m."""
     return system.rise * system.rate * exp(-system.rate * speed)
 
 
 @compiled
 def rising_rate(system: System, speed: float) -> float:
-    """Rate at which friction that rises with the speed damps it, 1/s; 0 where it does not rise."""
+    """Return the rate at which friction that rises with the speed damps it, 1/s; 0 where it does not rise."""
     return max(0.0, coefficient_slope(system, speed)) * system.mass_ratio * system.gravity
 
 
 @compiled
-def sliding_speed2(system: System, px: Number, py: Number, vx: Number, vy: Number) -> Number:
-    """Squared sliding speed: v-bar^2 of (3.8), or the horizontal one in the small equations (4.3)."""
+def squared_sliding_speed(system: System, px: Number, py: Number, vx: Number, vy: Number) -> Number:
+    """Return the squared sliding speed: v-bar^2 of (3.8), or the horizontal one in the small equations (4.3)."""
     planar = vx * vx + vy * vy
     if system.small:
         return planar
@@ -56,10 +56,10 @@ def sliding_speed2(system: System, px: Number, py: Number, vx: Number, vy: Numbe
 @compiled
 def rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Consistent condition for rest of the exact equations: (excess, reaction / m1).
+    Return (excess, reaction / m1) of the consistent condition for rest of the exact equations, (T4) of docs/theory.md.
 
-    The force that holds the platform at rest is (-f, M pressure) per m1; rest is possible while its tangential part is
-    at most mu times its normal part N > 0: while the excess |T|^2 - (mu N)^2 is not positive.
+    The force that holds the platform at rest is (-f, M pressure) per m1. Rest is possible while its tangential part is
+    at most mu times its normal part N > 0, that is while the excess |T|^2 - (mu N)^2 is not positive.
     """
     nx = -load.px / system.radius
     ny = -load.py / system.radius
@@ -69,21 +69,21 @@ def rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     tx = -load.fx - normal * nx
     ty = -load.fy - normal * ny
     tz = rz - normal * nz
-    limit = loaded(system, load.k_t, normal, system.friction * normal)
+    limit = scale_by_load(system, load.k_t, normal, system.friction * normal)
     return tx * tx + ty * ty + tz * tz - limit * limit, normal
 
 
 @compiled
 def rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     """
-    Consistent condition for rest of (4.3): (excess, reaction / m1); rest while |Mf^-1 F_3| <= 1 (4.6, corrected).
+    Return (excess, reaction / m1) of the condition for rest of (4.3): rest while |Mf^-1 F_3| <= 1 (4.6, corrected).
 
     Mf = mu (R I - u p^T / rho) with R = M (g + zeta''); F_3 = f - R p / rho. The excess is |adj F_3|^2 - det^2 with
     Mf^-1 = adj / det, so that nothing is divided by a small number.
     """
     px, py, radius = load.px, load.py, system.radius
     reaction = system.mass_ratio * (system.gravity + load.uz)
-    friction = loaded(system, load.k_t, reaction, system.friction)
+    friction = scale_by_load(system, load.k_t, reaction, system.friction)
     gx = load.fx - reaction * px / radius
     gy = load.fy - reaction * py / radius
     a = friction * (reaction - load.ux * px / radius)
@@ -93,29 +93,32 @@ def rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     hx = d * gx - b * gy
     hy = a * gy - c * gx
     det = a * d - b * c
-    scale = friction * friction * reaction * reaction  # the unit of the exact excess
+    scale = friction * friction * reaction * reaction  # makes the unit that of the exact excess
     return where_positive(scale, (hx * hx + hy * hy - det * det) / scale, gx * gx + gy * gy), reaction
 
 
 @compiled
 def rest_excess_printed(system: System, load: Load) -> Number:
     """
-    |F_3|^2 - |F_F|^2 of (4.6) as printed: the components of F_F are mu N each, so the limit is sqrt(2) mu N at the
-    origin, and F_3 carries gravity and spring with the printed signs. Kept to measure what the slip costs.
+    Return |F_3|^2 - |F_F|^2 of (4.6) as printed in the paper.
+
+    The components of F_F are mu N each, so the limit is sqrt(2) mu N at the origin. F_3 has gravity and spring with the
+    printed signs. It serves to measure the effect of this misprint.
     """
     reaction = system.mass_ratio * (system.gravity + load.uz)
-    friction = loaded(system, load.k_t, reaction, system.friction)
+    friction = scale_by_load(system, load.k_t, reaction, system.friction)
     lx = friction * (reaction - load.ux * (load.px + load.py) / system.radius)
     ly = friction * (reaction - load.uy * (load.px + load.py) / system.radius)
-    gx = -(2.0 * load.ux + load.fx) + reaction * load.px / system.radius  # spring force f + u with its sign turned
+    # The spring force f + u has the opposite sign in print.
+    gx = -(2.0 * load.ux + load.fx) + reaction * load.px / system.radius
     gy = -(2.0 * load.uy + load.fy) + reaction * load.py / system.radius
     return gx * gx + gy * gy - lx * lx - ly * ly
 
 
 @compiled
 def heading(angle: float, axes: int) -> tuple[float, float]:
-    """Cosine and sine of a slip direction; along x exactly where the motion stays in that plane."""
-    cosine, sine = cos(angle), sin(angle)  # one call of the library
+    """Return cosine and sine of a slip direction; along x exactly where the motion stays in that plane."""
+    cosine, sine = cos(angle), sin(angle)  # side by side: LLVM makes one call of them
     if axes == 1:
         return (1.0 if cosine > 0.0 else -1.0), 0.0
     return cosine, sine
@@ -126,25 +129,25 @@ def slip_vector(
     system: System, px: Number, py: Number, speed: Number, ex: Number, ey: Number
 ) -> tuple[Number, Number, Number]:
     """
-    Slip vector of dry sliding in the horizontal direction (ex, ey), and the ratio of full to horizontal speed.
+    Return the slip vector of dry sliding along (ex, ey), and the ratio of full to horizontal speed.
 
-    speed: the horizontal one, m/s.
+    `speed` is the horizontal one, m/s.
     """
-    ratio = sqrt(sliding_speed2(system, px, py, ex, ey))
+    ratio = sqrt(squared_sliding_speed(system, px, py, ex, ey))
     friction = coefficient(system, speed * ratio) / ratio
     return friction * ex, friction * ey, ratio
 
 
 @compiled
 def largest_coefficient(system: System) -> float:
-    """Of friction, at any speed."""
+    """Return the largest coefficient of friction at any speed."""
     largest: float = system.friction + max(0.0, system.rise)
     return largest
 
 
 @compiled
 def decay_rate(system: System, contact: int) -> float:
-    """Of the velocity by friction alone, 1/s."""
+    """Return the rate of decay of the velocity by friction alone, 1/s, where friction is linear in it."""
     largest = largest_coefficient(system)
     factor = largest / system.v_reg if contact == CREEPING else largest
     rate: float = factor * system.mass_ratio * system.gravity
@@ -153,6 +156,6 @@ def decay_rate(system: System, contact: int) -> float:
 
 @compiled
 def turning_rate(system: System, speed: float) -> float:
-    """Rate at which friction changes as a slide turns, 1/s; its change with the speed is at most 1/e of that."""
+    """Return the rate at which friction changes as a slide turns, 1/s; with its speed it changes by 1/e of that."""
     rate: float = largest_coefficient(system) * system.mass_ratio * system.gravity / max(speed, SMALLEST_SPEED)
     return rate

@@ -2,9 +2,9 @@
 Friction mu k_T (N / W)^n under a normal force N, with W the weight and mu the cold coefficient under it.
 
 The temperature factor k_T is a function of time (heating.py), 1 without heating. The slip vector s of equations.py is
-that under the weight; its share here is phi(R) = k_T (R / (M g))^n, R = N / m1. In the
-exact equations R depends on friction in turn: R (1 + (M - 1) (n_h^2 - phi(R) n_h . s)) = M q, q the drive along the
-normal. Without such friction nothing of this is compiled (variants.py).
+that under the weight; here it is multiplied by phi(R) = k_T (R / (M g))^n, R = N / m1. In the exact equations R depends
+on friction in turn: R (1 + (M - 1) (n_h^2 - phi(R) n_h . s)) = M q, q the drive along the normal. Without such friction
+nothing of this is compiled (variants.py).
 """
 
 from __future__ import annotations
@@ -15,57 +15,58 @@ from reference.problem.friction import LEAST_LOAD
 from reference.solver.compiled import compiled
 from reference.solver.compiled.variants import variants
 from reference.solver.equations import exact_acceleration
-from reference.solver.rows import Number, as_many, highest, where_positive
+from reference.solver.rows import Number, broadcast_like, highest, where_positive
 from reference.solver.system import Load, System
 
-MAX_ITERATIONS = 40
-LAST_CHANGE = 1e-8  # of the reaction: the one behind it is below rounding
-MAX_MISFIT = 1e-7  # of the drive along the normal, before the last change: a larger one means that no reaction fits
+MAX_ITERATIONS = 40  # iterations of Newton's method for the reaction
+LAST_CHANGE = 1e-8  # relative change of the reaction that ends the iteration: the next one would be below rounding
+# Misfit before the last change, as a share of the drive along the normal, above which no reaction fits
+MAX_MISFIT = 1e-7
 
 
 @compiled
-def _same(system: System, k_t: Number, reaction: Number, number: Number) -> Number:
-    """Without dependence on load or heating."""
+def _keep_number(system: System, k_t: Number, reaction: Number, number: Number) -> Number:
+    """Return the number: friction depends on neither load nor heating."""
     return number
 
 
 @compiled
-def _with_share(system: System, k_t: Number, reaction: Number, number: Number) -> Number:
-    return number * share(system, k_t, reaction)
+def _scale_by_share(system: System, k_t: Number, reaction: Number, number: Number) -> Number:
+    return number * load_factor(system, k_t, reaction)
 
 
 @compiled
-def _unchanged(system: System, reaction: Number, number: Number) -> Number:
+def _keep_slip(system: System, reaction: Number, number: Number) -> Number:
     return number
 
 
 @compiled
-def _with_response(system: System, reaction: Number, number: Number) -> Number:
+def _scale_by_response(system: System, reaction: Number, number: Number) -> Number:
     return number * (1.0 + elasticity(system, reaction))
 
 
-loaded = variants("exponent", _same, _with_share)
-"""A number times the coefficient at k_T and under a reaction, over that under the weight."""
+scale_by_load = variants("exponent", _keep_number, _scale_by_share)
+"""Return a number times the coefficient at k_T and under a reaction, over that under the weight."""
 
-responding = variants("exponent", _unchanged, _with_response)
-"""A slip vector times the relative change of the friction force over that of the reaction."""
+scale_by_response = variants("exponent", _keep_slip, _scale_by_response)
+"""Return a slip vector times the relative change of the friction force over that of the reaction."""
 
 
 @compiled
-def share(system: System, k_t: Number, reaction: Number) -> Number:
-    """Coefficient at k_T and under a reaction, over that under the weight."""
+def load_factor(system: System, k_t: Number, reaction: Number) -> Number:
+    """Return the coefficient at k_T and under a reaction, over that under the weight."""
     return k_t * exp(system.exponent * log(max(reaction / (system.mass_ratio * system.gravity), LEAST_LOAD)))
 
 
 @compiled
 def elasticity(system: System, reaction: Number) -> Number:
-    """Relative change of the coefficient over that of the reaction."""
+    """Return the relative change of the coefficient over that of the reaction."""
     above = reaction - LEAST_LOAD * system.mass_ratio * system.gravity
-    return where_positive(above, as_many(system.exponent, above), as_many(0.0, above))
+    return where_positive(above, broadcast_like(system.exponent, above), broadcast_like(0.0, above))
 
 
 @compiled
-def _of_constant_share(
+def _acceleration_of_given_slip(
     system: System, load: Load, speed2: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
     pressure = system.gravity + load.uz
@@ -75,10 +76,13 @@ def _of_constant_share(
 
 
 @compiled
-def _of_load(
+def _acceleration_of_load(
     system: System, load: Load, speed2: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """By Newton's method for the reaction; the determinant is the derivative of its equation."""
+    """Solve for the reaction by Newton's method; the determinant is the derivative of its equation."""
+    # Friction that eases with the load (n < 0) makes the equation for R nonlinear. Its derivative takes the place of
+    # the inertia determinant: where it vanishes, no acceleration exists (Painleve's paradox). If the iteration ends far
+    # from a solution, none exists either: the determinant is set to -1, which the callers read as the paradox.
     curvature = 1.0 / system.radius
     nx, ny = -load.px * curvature, -load.py * curvature
     tilt = nx * nx + ny * ny
@@ -88,19 +92,19 @@ def _of_load(
     drive = system.mass_ratio * drive
     reaction, misfit = drive / plain, drive
     for _ in range(MAX_ITERATIONS):
-        factor = share(system, load.k_t, reaction)
+        factor = load_factor(system, load.k_t, reaction)
         slope = plain - (1.0 + elasticity(system, reaction)) * factor * taken
         misfit = drive - reaction * (plain - factor * taken)
         change = misfit / slope
         reaction += change
         if not highest(abs(change) - LAST_CHANGE * abs(reaction)) > 0.0:
             break
-    factor = share(system, load.k_t, reaction)
+    factor = load_factor(system, load.k_t, reaction)
     determinant = plain - (1.0 + elasticity(system, reaction)) * factor * taken
-    determinant = where_positive(abs(misfit) - MAX_MISFIT * abs(drive), as_many(-1.0, determinant), determinant)
+    determinant = where_positive(abs(misfit) - MAX_MISFIT * abs(drive), broadcast_like(-1.0, determinant), determinant)
     sx, sy = factor * sx, factor * sy
     return load.fx + reaction * (nx - sx), load.fy + reaction * (ny - sy), reaction, determinant
 
 
-exact = variants("exponent", _of_constant_share, _of_load)
-"""(ax, ay, reaction / m1, inertia determinant) by the exact equations."""
+exact_equations = variants("exponent", _acceleration_of_given_slip, _acceleration_of_load)
+"""Return (ax, ay, reaction / m1, inertia determinant) by the exact equations."""

@@ -10,21 +10,21 @@ from reference.solver.contact.friction import (
     rest_excess_exact,
     rest_excess_printed,
     rest_excess_small,
-    sliding_speed2,
     slip_vector,
+    squared_sliding_speed,
 )
-from reference.solver.contact.load import exact, loaded
+from reference.solver.contact.load import exact_equations, scale_by_load
 from reference.solver.equations import small_acceleration
-from reference.solver.rows import Number, as_many, row
+from reference.solver.rows import Number, broadcast_like, row
 from reference.solver.system import CREEPING, PRINTED, SLIDING, Ground, Load, System
-from reference.solver.work import DRIVE, POSITION, Work
+from reference.solver.work import DRIVE, POSITION, Workspace
 
-ROUNDING_EXCESS = 1e-12  # of the squared friction limit: a drive that exceeds it by no more than rounding is held
+ROUNDING_EXCESS = 1e-12  # share of the squared friction limit by which rounding may make a drive exceed it
 
 
 @compiled
-def load_in_state(system: System, work: Work, ground: Ground) -> Load:
-    """What acts on the platform in the state x, v at the start of the step."""
+def load_in_state(system: System, work: Workspace, ground: Ground) -> Load:
+    """Return all that acts on the platform in the state x, v at the start of the step."""
     fx, fy = -ground.x, -ground.y
     if work.x.shape[0] > 1:
         fx += system.above[0, 0] * (work.x[1, 0] - work.x[0, 0])
@@ -35,8 +35,8 @@ def load_in_state(system: System, work: Work, ground: Ground) -> Load:
 
 
 @compiled
-def load_at_stages(work: Work) -> Load:
-    """What acts on the platform at the stages, in rows, from `stage` and `ground`."""
+def load_at_stages(work: Workspace) -> Load:
+    """Return all that acts on the platform at the stages, in rows, from `stage` and `ground`."""
     stage, ground = work.stage, work.ground
     return Load(
         row(stage, POSITION), row(stage, POSITION + 1), row(stage, DRIVE), row(stage, DRIVE + 1),
@@ -46,47 +46,47 @@ def load_at_stages(work: Work) -> Load:
 
 @compiled
 def slip_factor(system: System, contact: int, speed2: Number) -> Number:
-    """Slip vector over horizontal velocity (friction.py), s/m."""
+    """Return the slip vector over the horizontal velocity (friction.py), s/m."""
     if contact == SLIDING:
         speed = sqrt(speed2)
         return coefficient(system, speed) / speed
     if contact == CREEPING:
         return coefficient(system, sqrt(speed2)) / system.v_reg
-    return as_many(system.friction, speed2)
+    return broadcast_like(system.friction, speed2)
 
 
 @compiled
 def acceleration(
     system: System, load: Load, speed2: Number, sx: Number, sy: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """(ax, ay, reaction / m1, inertia determinant) by the system's own equations (equations.py)."""
+    """Return (ax, ay, reaction / m1, inertia determinant) by the exact or the small equations (equations.py)."""
     if system.small:
         pressure = system.gravity + load.uz
         reaction = system.mass_ratio * pressure
         return small_acceleration(
             load.px, load.py, load.fx, load.fy, load.ux, load.uy, pressure,
-            loaded(system, load.k_t, reaction, sx), loaded(system, load.k_t, reaction, sy),
+            scale_by_load(system, load.k_t, reaction, sx), scale_by_load(system, load.k_t, reaction, sy),
             system.mass_ratio, system.radius,
         )  # fmt: skip
-    return exact(system, load, speed2, sx, sy)
+    return exact_equations(system, load, speed2, sx, sy)
 
 
 @compiled
-def moving(
+def moving_acceleration(
     system: System, contact: int, load: Load, vx: Number, vy: Number
 ) -> tuple[Number, Number, Number, Number, Number]:
-    """(ax, ay, reaction / m1, inertia determinant, speed2) at a velocity that is not zero while sliding."""
-    speed2 = sliding_speed2(system, load.px, load.py, vx, vy)
+    """Return (ax, ay, reaction / m1, inertia determinant, speed2); the velocity of a slide must not be zero."""
+    speed2 = squared_sliding_speed(system, load.px, load.py, vx, vy)
     factor = slip_factor(system, contact, speed2)
     ax, ay, reaction, determinant = acceleration(system, load, speed2, factor * vx, factor * vy)
     return ax, ay, reaction, determinant, speed2
 
 
 @compiled
-def directed(
+def acceleration_along(
     system: System, load: Load, speed: Number, ex: Number, ey: Number
 ) -> tuple[Number, Number, Number, Number]:
-    """(ax, ay, reaction / m1, full over horizontal speed) when sliding in the direction (ex, ey) at any speed >= 0."""
+    """Return (ax, ay, reaction / m1, full over horizontal speed) of a slide along (ex, ey) at any speed >= 0."""
     sx, sy, ratio = slip_vector(system, load.px, load.py, speed, ex, ey)
     ax, ay, reaction, _ = acceleration(system, load, (speed * ratio) * (speed * ratio), sx, sy)
     return ax, ay, reaction, ratio
@@ -94,13 +94,13 @@ def directed(
 
 @compiled
 def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
-    """(excess, reaction / m1): rest is possible while the excess is not positive (friction.py)."""
+    """Return (excess, reaction / m1): rest is possible while the excess is not positive (friction.py)."""
     if system.small:
         excess, reaction = rest_excess_small(system, load)
     else:
         excess, reaction = rest_excess_exact(system, load)
     if system.rest_condition == PRINTED:
-        # where (4.6) lets go of a platform that friction can hold, no motion begins all the same
+        # Where (4.6) as printed lets go of a platform that friction can hold, no motion begins.
         excess = min(excess, rest_excess_printed(system, load))
-    limit = loaded(system, load.k_t, reaction, system.friction * reaction)
+    limit = scale_by_load(system, load.k_t, reaction, system.friction * reaction)
     return excess - ROUNDING_EXCESS * (limit * limit), reaction

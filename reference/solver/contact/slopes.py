@@ -6,9 +6,9 @@ from math import sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import coefficient_slope
-from reference.solver.contact.load import loaded, responding
+from reference.solver.contact.load import scale_by_load, scale_by_response
 from reference.solver.contact.platform import slip_factor
-from reference.solver.rows import Row, as_many, put, row, where_positive
+from reference.solver.rows import Row, broadcast_like, put, row, where_positive
 from reference.solver.system import LUBRICATED_SLIDING, SLIDING, Array, System
 from reference.solver.work import (
     BY_DRIVE,
@@ -20,32 +20,33 @@ from reference.solver.work import (
     REACTION,
     SPEED2,
     VELOCITY,
-    Work,
+    Workspace,
 )
 
 
 @compiled
-def slopes(system: System, contact: int, work: Work) -> None:
+def set_slopes(system: System, contact: int, work: Workspace) -> None:
     """
-    Derivative of the platform's (ax, ay) by position, velocity and drive at the stages, where it was asked before.
+    Set the derivatives of the platform's (ax, ay) by position, velocity and drive at the stages.
 
-    Rows of work.slopes: behind BY_POSITION, BY_VELOCITY and BY_DRIVE (ax, ay) by x, then by y.
+    `stage` holds the reaction, determinant and speed there. Rows of work.slopes: from BY_POSITION, BY_VELOCITY and
+    BY_DRIVE on (ax, ay) by x, then by y.
     """
     speed2 = row(work.stage, SPEED2)
     factor = slip_factor(system, contact, speed2)
     bend = factor_slope(system, contact, factor, speed2)
     reaction, k_t = row(work.stage, REACTION), row(work.ground, 3)
-    factor, bend = loaded(system, k_t, reaction, factor), loaded(system, k_t, reaction, bend)
+    factor, bend = scale_by_load(system, k_t, reaction, factor), scale_by_load(system, k_t, reaction, bend)
     if system.small:
-        small_slopes(system, work, factor, bend)
+        set_small_slopes(system, work, factor, bend)
     else:
-        exact_slopes(system, work, factor, bend)
+        set_exact_slopes(system, work, factor, bend)
 
 
 @compiled
 def factor_slope(system: System, contact: int, factor: Row, speed2: Row) -> Row:
-    """Derivative of the slip factor (platform.py) by the squared sliding speed, s^3/m^3."""
-    bend = -0.5 * factor / speed2 if contact == SLIDING else as_many(0.0, speed2)
+    """Return the derivative of the slip factor (platform.py) by the squared sliding speed, s^3/m^3."""
+    bend = -0.5 * factor / speed2 if contact == SLIDING else broadcast_like(0.0, speed2)
     if system.rate > 0.0 and contact != LUBRICATED_SLIDING:
         speed = sqrt(speed2)
         changing = speed2 if contact == SLIDING else speed * system.v_reg
@@ -61,8 +62,8 @@ def put_pair(slopes: Array, place: int, x: Row, y: Row) -> None:
 
 
 @compiled
-def small_slopes(system: System, work: Work, factor: Row, bend: Row) -> None:
-    """Of (4.3)."""
+def set_small_slopes(system: System, work: Workspace, factor: Row, bend: Row) -> None:
+    """Set the derivatives of (4.3)."""
     stage, out, radius = work.stage, work.slopes, system.radius
     px, py, vx, vy = row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1)
     reaction, ux, uy = row(stage, REACTION), row(work.ground, 0), row(work.ground, 1)
@@ -75,12 +76,17 @@ def small_slopes(system: System, work: Work, factor: Row, bend: Row) -> None:
         dsx, dsy = factor * ex + gain * vx, factor * ey + gain * vy
         lever = (px * dsx + py * dsy) / radius
         put_pair(out, BY_VELOCITY + 2 * axis, ux * lever - reaction * dsx, uy * lever - reaction * dsy)
-        put_pair(out, BY_DRIVE + 2 * axis, as_many(ex, ux), as_many(ey, uy))
+        put_pair(out, BY_DRIVE + 2 * axis, broadcast_like(ex, ux), broadcast_like(ey, uy))
 
 
 @compiled
-def exact_slopes(system: System, work: Work, factor: Row, bend: Row) -> None:
-    """Of (3.9)-(3.13)."""
+def set_exact_slopes(system: System, work: Workspace, factor: Row, bend: Row) -> None:
+    """Set the derivatives of (3.9)-(3.13)."""
+    # With a = f + R (n - s), R = M (v^2 / rho - n . f + n_z q) / D and D = 1 + (M - 1) (n^2 - n . s) (equations.py)
+    # every derivative is  f' + R' (n - t) + R (n' - s'),  where t is s times the relative change of the friction force
+    # over that of the reaction (load.py), and
+    #     R' = (M / D) (v^2 / rho - n . f + n_z q)' - R (M - 1) / D (n^2 - n . s)',  `share` and `turn` below.
+    # The slip vector changes as s' = factor v' + bend (v^2)' v.
     stage, out, radius, ratio = work.stage, work.slopes, system.radius, system.mass_ratio
     px, py, vx, vy = row(stage, POSITION), row(stage, POSITION + 1), row(stage, VELOCITY), row(stage, VELOCITY + 1)
     reaction, determinant = row(stage, REACTION), row(stage, DETERMINANT)
@@ -88,10 +94,10 @@ def exact_slopes(system: System, work: Work, factor: Row, bend: Row) -> None:
     radial = (px * vx + py * vy) / (radius * radius - px * px - py * py)
     rise = (system.gravity + row(work.ground, 2)) / sqrt(1.0 - nx * nx - ny * ny)
     lean = nx * vx + ny * vy
-    share = ratio / determinant  # of the reaction in a load along the normal
+    share = ratio / determinant  # change of the reaction per load along the normal
     turn = reaction * (ratio - 1.0) / determinant
     dn = -1.0 / radius
-    tx, ty = responding(system, reaction, sx), responding(system, reaction, sy)
+    tx, ty = scale_by_response(system, reaction, sx), scale_by_response(system, reaction, sy)
     for axis in range(system.axes):
         ex, ey = (1.0, 0.0) if axis == 0 else (0.0, 1.0)
         p, v, n, s = row(stage, POSITION + axis), row(stage, VELOCITY + axis), nx, sx

@@ -1,4 +1,4 @@
-"""The steps of one phase of the contact: each is proposed, made, judged, cut where something happens, committed."""
+"""The steps of one phase of the contact: each is proposed, solved, checked, cut at an event and committed."""
 
 from __future__ import annotations
 
@@ -6,48 +6,48 @@ from math import inf, log, sqrt
 
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import decay_rate, rising_rate
-from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, parts_beyond
+from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, mark_parts
 from reference.solver.look_ahead import end_early
-from reference.solver.near_stop import near_stop_step
-from reference.solver.peaks import returned
-from reference.solver.phases.rest import begin_rest, onset_within, set_reaction
+from reference.solver.near_stop import solve_near_stop_step
+from reference.solver.peaks import link_error_rate
+from reference.solver.phases.rest import begin_rest, cut_at_onset, set_reaction
 from reference.solver.phases.sliding import (
-    adapt_slide,
-    after_failed_slide,
+    adapt_sliding_length,
     begin_sliding,
+    cut_at_creep,
     guess_slide,
     guess_turning_slide,
     is_slow,
-    sliding_length,
-    slowing_within,
-    speed2,
+    propose_sliding_length,
+    recover_failed_slide,
+    squared_speed_in_state,
     turns_too_far,
 )
-from reference.solver.phases.smooth import begin_smooth, speeding_within
+from reference.solver.phases.smooth import begin_smooth, cut_at_slide
 from reference.solver.phases.stopping import (
     NEAR_STOP_NEWTON_FRACTION,
-    after_stopping_step,
     begin_stopping,
-    break_within,
-    stretched_length,
+    commit_stopping_step,
+    cut_at_kink_or_creep,
+    propose_stretched_length,
 )
-from reference.solver.record import note_stick
+from reference.solver.record import record_stick
 from reference.solver.rows import highest, lowest, row
 from reference.solver.step_control import (
     FAILURE_SHORTENING,
     MAX_SHORTENING,
     NEWTON_FRACTION,
-    adapt,
-    commit,
-    first_guess,
+    adapt_length,
+    commit_step,
+    count_step,
+    guess_from_last_step,
+    is_too_short,
     length_factor,
-    next_step,
-    plain_length,
-    remaining,
+    propose_plain_length,
+    remaining_time,
     set_length,
-    too_short,
 )
-from reference.solver.steps import load_step, moving_step, rest_step, step_error
+from reference.solver.steps import load_step, solve_moving_step, solve_rest_step, step_error
 from reference.solver.system import (
     CREEPING,
     OPEN,
@@ -58,41 +58,51 @@ from reference.solver.system import (
     STOPPING,
     TRAVEL,
     UNSOLVED,
-    Demand,
-    Record,
+    RunSettings,
+    StepRecord,
     System,
 )
-from reference.solver.travel import travel_reached
-from reference.solver.work import REACTION, SPEED2, Work
+from reference.solver.travel import instant_of_travel
+from reference.solver.work import REACTION, SPEED2, Workspace
 
-FRICTION_ROUNDING = 1e-14  # of the friction limit: no acceleration is closer, a difference of such forces
-MAX_VIBRATION_ANGLE = 5.0  # rad, by which the chain's fastest vibration turns in a step that follows it
-# What the end of a step misses of a free vibration, over the step's defect and the seventh power of the angle by which
-# it turns. The vibration is the defect over twice that.
+# Rounding of an acceleration, which is a difference of forces, as a share of the friction limit
+FRICTION_ROUNDING = 1e-14
+MAX_VIBRATION_ANGLE = 5.0  # rad, largest turn of the chain's fastest vibration in a step that follows it
+# Error that a step leaves in a free vibration, over the step's defect and the seventh power of the angle by which the
+# vibration turns. The vibration itself is the defect over twice that (docs/decisions/0002).
 DRIFT_SHARE = 6e-8
-MIN_DRIFT_ANGLE = 2.0  # rad: a hundred steps with smaller angles miss less than a thousandth of their tolerance
-VARYING_NEWTON_FRACTION = 1e-3  # of that change otherwise, where friction depends on the speed
+MIN_DRIFT_ANGLE = 2.0  # rad: a hundred steps with smaller angles leave less than a thousandth of their tolerance
+# Factor of Newton's tolerance where friction depends on the speed
+VARYING_NEWTON_FRACTION = 1e-3
 
 
 @compiled
-def follow(system: System, work: Work, contact: int, demand: Demand, record: Record) -> tuple[int, int]:
-    """Until the contact changes or the motion ends: (how it went, what the contact does next). See run.py."""
-    since = begin_phase(system, work, contact, demand)
+def follow_phase(
+    system: System, work: Workspace, contact: int, settings: RunSettings, record: StepRecord
+) -> tuple[int, int]:
+    """Follow the motion until the contact changes or the run ends: (outcome, next state of the contact). See run.py."""
+    # A step goes through five gates. (1) The phase proposes its length; a slide about to stop proposes none and hands
+    # over to stretched time. (2) Its equations are solved; if they are not, it is tried again and shorter, down to the
+    # length at which the outcome counts as located. (3) Its error must meet the tolerance. (4) The first event inside
+    # it cuts it: the shorter step is solved again, by `cut_at_onset` in rest and by the next pass in every other phase,
+    # so that a step always ends at the event. (5) Peaks, displacement and drift are read off it before its end becomes
+    # the new state.
+    since = begin_phase(system, work, contact, settings)
     following = contact
-    while following == contact and remaining(system, work, demand) > 0.0:
-        if not next_step(work, demand):
+    while following == contact and remaining_time(system, work, settings) > 0.0:
+        if not count_step(work, settings):
             return STEP_LIMIT, contact
-        h = proposed_length(system, work, contact, demand)
+        h = propose_length(system, work, contact, settings)
         if h == 0.0:
             return SOLVED, STOPPING
-        if too_short(work, contact, demand, h, UNSOLVED):
+        if is_too_short(work, contact, settings, h, UNSOLVED):
             return UNSOLVED, contact
-        code = made(system, work, contact, demand, h)
+        code = solve_step(system, work, contact, settings, h)
         if code != SOLVED:
-            if code != UNSOLVED and too_short(work, contact, demand, h, code):
+            if code != UNSOLVED and is_too_short(work, contact, settings, h, code):
                 return code, contact
             if contact == SLIDING:
-                code, following = after_failed_slide(system, work, demand, h)
+                code, following = recover_failed_slide(system, work, settings, h)
                 if code != SOLVED:
                     return code, contact
             if following == contact:
@@ -100,159 +110,163 @@ def follow(system: System, work: Work, contact: int, demand: Demand, record: Rec
             continue
         angle = vibration_angle(system, contact, h)
         damps = angle > MAX_VIBRATION_ANGLE
-        error = step_error(system, work, demand.tolerance, demand.damped_weight if damps else 1.0)
-        factor = length_factor(error, demand.tolerance)
-        if not error <= demand.tolerance:
+        error = step_error(system, work, settings.tolerance, settings.damped_weight if damps else 1.0)
+        factor = length_factor(error, settings.tolerance)
+        if not error <= settings.tolerance:
             set_length(work, contact, min(MAX_SHORTENING, factor) * h)
             continue
-        end, following = event_within(system, work, contact, demand, h)
+        end, following = cut_at_event(system, work, contact, settings, h)
         if end == 0.0:
             break
         if end < h and contact != REST:
             set_length(work, contact, end)
             following = contact
             continue
-        parts = counted(system, work, contact, demand, end, since)
-        reached = travel_reached(system, work, contact, end)
+        parts = mark_counted_parts(system, work, contact, settings, end, since)
+        reached = instant_of_travel(system, work, contact, end)
         if angle > MIN_DRIFT_ANGLE:
-            note_drift(system, work, end, angle)
-        commit(system, work, record, end, contact, parts)
+            add_drift(system, work, end, angle)
+        commit_step(system, work, record, end, contact, parts)
         if reached < inf:
             work.time = reached
             return TRAVEL, contact
-        following = after_step(system, work, contact, following, demand, end, factor)
-        if contact != STOPPING and work.time > work.look:
-            end_early(system, work, demand)
+        following = prepare_next_step(system, work, contact, following, settings, end, factor)
+        if contact != STOPPING and work.time > work.look_time:
+            end_early(system, work, settings)
     if contact in (REST, CREEPING):
-        note_stick(record, since, work.time)
+        record_stick(record, since, work.time)
     return SOLVED, following
 
 
 @compiled
 def vibration_angle(system: System, contact: int, h: float) -> float:
-    """By what the chain's fastest vibration turns in a step, rad: little near a stop."""
+    """Return the angle by which the chain's fastest vibration turns in a step, rad; 0 near a stop, in short steps."""
     return 0.0 if contact == STOPPING else system.fastest * h
 
 
 @compiled
-def note_drift(system: System, work: Work, h: float, angle: float) -> None:
-    """Add what a step misses of the fastest vibration to what those before it missed: together at most all of it."""
+def add_drift(system: System, work: Workspace, h: float, angle: float) -> None:
+    """Add to work.drift the error that a step leaves in the fastest vibration: in all at most the vibration itself."""
     share = min(DRIFT_SHARE * angle**7, 1.0)
     for i in range(work.x.shape[0]):
-        defect = sqrt(work.defect[i] ** 2 + (returned(system, work, h, i) / system.fastest) ** 2)
+        defect = sqrt(work.defect[i] ** 2 + (link_error_rate(system, work, h, i) / system.fastest) ** 2)
         largest = defect / min(2.0 * share, 1.0)
         work.drift[i] = max(work.drift[i], min(work.drift[i] + share * defect, largest))
 
 
 @compiled
-def begin_phase(system: System, work: Work, contact: int, demand: Demand) -> float:
-    """Prepare the first step of a phase; since when it lasts, s."""
+def begin_phase(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
+    """Prepare the first step of a phase; return when the phase begins, s."""
     since: float = work.time
     if contact == REST:
         since = begin_rest(system, work)
     elif contact == SLIDING:
-        begin_sliding(system, work, demand)
+        begin_sliding(system, work, settings)
     elif contact == STOPPING:
-        begin_stopping(system, work, demand)
+        begin_stopping(system, work, settings)
     else:
         begin_smooth(system, work, contact)
     return since
 
 
 @compiled
-def proposed_length(system: System, work: Work, contact: int, demand: Demand) -> float:
-    """Length of the next step in the time of the phase; 0 where stretched time begins instead."""
+def propose_length(system: System, work: Workspace, contact: int, settings: RunSettings) -> float:
+    """Return the length of the next step in the time of the phase; 0 where stretched time begins instead."""
     if contact == SLIDING:
-        return sliding_length(system, work, demand)
+        return propose_sliding_length(system, work, settings)
     if contact == STOPPING:
-        return stretched_length(system, work)
-    h: float = plain_length(system, work, demand)
-    return min(h, work.held) if work.held > 0.0 else h
+        return propose_stretched_length(system, work)
+    h: float = propose_plain_length(system, work, settings)
+    return min(h, work.hold_time) if work.hold_time > 0.0 else h
 
 
 @compiled
-def made(system: System, work: Work, contact: int, demand: Demand, h: float) -> int:
-    """Make the step; SOLVED or what stood in the way."""
+def solve_step(system: System, work: Workspace, contact: int, settings: RunSettings, h: float) -> int:
+    """Solve the equations of one step of the phase; return their outcome."""
     if contact == STOPPING:
-        code: int = near_stop_step(system, work, h, NEAR_STOP_NEWTON_FRACTION * demand.tolerance)
+        code: int = solve_near_stop_step(system, work, h, NEAR_STOP_NEWTON_FRACTION * settings.tolerance)
         return code
     if contact == REST:
-        rest_step(system, work, h)
+        solve_rest_step(system, work, h)
         set_reaction(system, work)
         return OPEN if lowest(row(work.stage, REACTION)) <= 0.0 else SOLVED
     load_step(system, work, h)
-    enough = NEWTON_FRACTION * demand.tolerance * work.scale[0]
+    enough = NEWTON_FRACTION * settings.tolerance * work.scale[0]
     if contact == SLIDING:
         guess_slide(system, work, h)
         if system.rate > 0.0:
-            # slow growth and decay of the speed pass small errors on to the next step, whose direction they turn
+            # Where friction depends on the speed, small errors of the speed grow or decay slowly: they reach the next
+            # step and turn its direction.
             rounding = FRICTION_ROUNDING * system.friction * system.mass_ratio * system.gravity
             enough = max(VARYING_NEWTON_FRACTION * enough, rounding)
-            enough /= 1.0 + h * rising_rate(system, sqrt(work.start2))
+            enough /= 1.0 + h * rising_rate(system, sqrt(work.squared_start_speed))
     else:
-        first_guess(work, h)
-        # where friction is stiff a small error of the acceleration is a large one of the velocity, and so of the force
+        guess_from_last_step(work, h)
+        # Stiff friction turns a small error of the acceleration into a large one of velocity and force.
         enough /= 1.0 + h * decay_rate(system, contact)
-    code = moving_step(system, work, contact, h, enough)
+    code = solve_moving_step(system, work, contact, h, enough)
     if code == UNSOLVED and contact == SLIDING and system.axes == 2 and is_slow(system, work, h):
         guess_turning_slide(system, work, h)
-        code = moving_step(system, work, contact, h, enough)
+        code = solve_moving_step(system, work, contact, h, enough)
     return UNSOLVED if code == SOLVED and contact == SLIDING and turns_too_far(work) else code
 
 
 @compiled
-def event_within(system: System, work: Work, contact: int, demand: Demand, h: float) -> tuple[float, int]:
-    """Length of the step up to the first event inside it, 0 for one at its begin, and what the contact does then."""
+def cut_at_event(system: System, work: Workspace, contact: int, settings: RunSettings, h: float) -> tuple[float, int]:
+    """Return the length of the step up to its first event, 0 for one at its start, and the next contact."""
     if contact == REST:
-        return onset_within(system, work, h)
+        return cut_at_onset(system, work, h)
     if contact == SLIDING:
-        return slowing_within(system, work, h)
+        return cut_at_creep(system, work, h)
     if contact == STOPPING:
-        return break_within(system, work, demand, h)
-    return speeding_within(system, work, contact, h)
+        return cut_at_kink_or_creep(system, work, settings, h)
+    return cut_at_slide(system, work, contact, h)
 
 
 @compiled
-def counted(system: System, work: Work, contact: int, demand: Demand, h: float, since: float) -> int:
+def mark_counted_parts(
+    system: System, work: Workspace, contact: int, settings: RunSettings, h: float, since: float
+) -> int:
     """
-    Number of parts of the step that count for the peaks, with their ends in work.edges.
+    Mark the parts of the step that count for the peaks: their ends in work.edges; return their number.
 
-    These are rest, which is entered a little early, from `since` on, creep below v_reg, and sliding faster than the
-    cutoff. A creep that begins or ends a little above v_reg, as far as events are located, would have more friction
-    than a slide.
+    Rest counts from `since` on, creep below v_reg, sliding above the cutoff, and all other motion in full.
     """
+    # A phase of rest begins a little before the platform has stopped (`contact_after_stop`); that time is none of rest.
+    # A creep may begin or end above v_reg by the accuracy of an event, where its linear law has more friction than any
+    # slide. Both would add an acceleration to the peaks that the motion does not have.
     if contact == CREEPING:
-        level, start2 = system.v_reg * system.v_reg, speed2(system, work)
+        level, start2 = system.v_reg * system.v_reg, squared_speed_in_state(system, work)
         if max(start2, highest(row(work.stage, SPEED2))) > level:
             expand_speed(work, h, level)
-            return parts_beyond(system, work, SPEED, -1.0, start2 - level)
-    if demand.cutoff > 0.0 and contact == SLIDING:
-        level = demand.cutoff * demand.cutoff
+            return mark_parts(system, work, SPEED, -1.0, start2 - level)
+    if settings.cutoff > 0.0 and contact == SLIDING:
+        level = settings.cutoff * settings.cutoff
         expand_speed(work, h, level)
-        return parts_beyond(system, work, SPEED, 1.0, work.start2 - level)
-    if demand.cutoff > 0.0 and contact == STOPPING:
-        level = log(demand.cutoff)
+        return mark_parts(system, work, SPEED, 1.0, work.squared_start_speed - level)
+    if settings.cutoff > 0.0 and contact == STOPPING:
+        level = log(settings.cutoff)
         expand_level(work, row(work.levels, ()), level)
-        return parts_beyond(system, work, LEVEL, 1.0, work.log_speed + work.log_ratio - level)
+        return mark_parts(system, work, LEVEL, 1.0, work.log_speed + work.log_ratio - level)
     early = max(since - work.time, 0.0) if contact == REST else 0.0
     work.edges[0], work.edges[1] = early / h, 1.0
     return 1 if early < h else 0
 
 
 @compiled
-def after_step(
-    system: System, work: Work, contact: int, following: int, demand: Demand, h: float, factor: float
+def prepare_next_step(
+    system: System, work: Workspace, contact: int, following: int, settings: RunSettings, h: float, factor: float
 ) -> int:
-    """The length of the next step after one that was made, and what the contact does next."""
+    """Set the length of the next step after one that was committed; return the next state of the contact."""
     if contact == STOPPING:
-        after = after_stopping_step(system, work, demand, h, factor)
+        after = commit_stopping_step(system, work, settings, h, factor)
         return following if following == CREEPING else after
     if contact != SLIDING:
-        work.held = 0.0
+        work.hold_time = 0.0
     if following != contact:
         return following
     if contact == SLIDING:
-        adapt_slide(work, h, factor)
+        adapt_sliding_length(work, h, factor)
     else:
-        adapt(work, h, factor)
+        adapt_length(work, h, factor)
     return contact

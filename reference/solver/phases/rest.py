@@ -4,36 +4,42 @@ from __future__ import annotations
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.load import loaded
+from reference.solver.contact.load import scale_by_load
 from reference.solver.contact.platform import load_at_stages, rest_excess
-from reference.solver.events import excess_at, expand_drive, first_onset
+from reference.solver.events import excess_at, expand_drive, locate_onset
 from reference.solver.rows import put
-from reference.solver.step_control import begin
-from reference.solver.steps import rest_step
+from reference.solver.step_control import begin_from_state
+from reference.solver.steps import solve_rest_step
 from reference.solver.system import REST, SLIDING, System
-from reference.solver.work import REACTION, Work
+from reference.solver.work import REACTION, Workspace
 
-ONSET_EXCESS = 1e-12  # of the squared friction limit: how far past it the onset is located
-MIN_ONSET_EXCESS = 0.1 * ONSET_EXCESS  # a slide with less has no direction beyond rounding
-ONSET_DIFFERENCE = 1e-4  # of the onset: step of the difference quotient of the excess
-ONSET_ITERATIONS = 8
+# Excess over the condition for rest at an onset, as shares of the squared friction limit: a slide that begins with less
+# has no direction beyond rounding
+ONSET_EXCESS = 1e-12
+MIN_ONSET_EXCESS = 0.1 * ONSET_EXCESS
+ONSET_DIFFERENCE = 1e-4  # step of the difference quotient of the excess, as a share of the time to the onset
+ONSET_ITERATIONS = 8  # Newton's iterations for the onset
 
 
 @compiled
-def begin_rest(system: System, work: Work) -> float:
-    """Since when the platform is at rest, s."""
+def begin_rest(system: System, work: Workspace) -> float:
+    """Prepare a phase of rest; return since when the platform is at rest, s."""
     work.v[0, 0] = work.v[0, 1] = 0.0
-    begin(system, work, REST)
-    since = work.time + work.left
-    work.left = 0.0
+    begin_from_state(system, work, REST)
+    since = work.time + work.early_rest
+    work.early_rest = 0.0
     return since
 
 
 @compiled
-def onset_within(system: System, work: Work, h: float) -> tuple[float, int]:
-    """Length of the step, made again up to just past the onset of slip inside it; what the contact does then."""
-    onset = first_onset(system, work)
-    if onset > 1.0 or work.held > 0.0:
+def cut_at_onset(system: System, work: Workspace, h: float) -> tuple[float, int]:
+    """Solve a step of rest again up to just past the onset inside it; return its length and the next contact."""
+    # The slide that follows begins in the direction in which its acceleration does not turn it, which the excess over
+    # the friction limit decides. At the limit itself that direction is undefined, so the onset is located between
+    # MIN_ONSET_EXCESS and ONSET_EXCESS. The onset found on the polynomials of the long step is off by their error.
+    # Newton's method with a slope taken from them locates it on steps that end there.
+    onset = locate_onset(system, work)
+    if onset > 1.0 or work.hold_time > 0.0:
         return h, REST
     if onset <= 0.0:
         return 0.0, SLIDING
@@ -41,9 +47,10 @@ def onset_within(system: System, work: Work, h: float) -> tuple[float, int]:
     slope = (excess_at(system, work, onset) - excess_at(system, work, onset - width)) / (width * h)
     end = h * onset
     reaction: float = work.stage[REACTION, STAGES - 1]
-    limit = loaded(system, work.ground[3, STAGES - 1], reaction, system.friction * reaction) ** 2  # hardly changes
+    # The limit hardly changes in the iteration.
+    limit = scale_by_load(system, work.ground[3, STAGES - 1], reaction, system.friction * reaction) ** 2
     for _ in range(ONSET_ITERATIONS):
-        rest_step(system, work, end)
+        solve_rest_step(system, work, end)
         expand_drive(work)
         excess = excess_at(system, work, 1.0)
         if not slope > 0.0 or MIN_ONSET_EXCESS * limit < excess <= ONSET_EXCESS * limit:
@@ -54,7 +61,7 @@ def onset_within(system: System, work: Work, h: float) -> tuple[float, int]:
 
 
 @compiled
-def set_reaction(system: System, work: Work) -> None:
-    """The reaction at the stages of a step at rest."""
+def set_reaction(system: System, work: Workspace) -> None:
+    """Set the reaction at the stages of a step at rest."""
     _, reaction = rest_excess(system, load_at_stages(work))
     put(work.stage, REACTION, reaction)

@@ -6,23 +6,23 @@ from math import atan2, inf, log, sqrt
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import coefficient_slope, heading, rising_rate, sliding_speed2
-from reference.solver.contact.load import loaded
-from reference.solver.contact.platform import directed, load_in_state, rest_excess
-from reference.solver.contact.stop_arc import settled_direction, squared_total
-from reference.solver.events import first_crossing
+from reference.solver.contact.friction import coefficient_slope, heading, rising_rate, squared_sliding_speed
+from reference.solver.contact.load import scale_by_load
+from reference.solver.contact.platform import acceleration_along, load_in_state, rest_excess
+from reference.solver.contact.stop_arc import direction_at_stop, squared_absolute_acceleration
+from reference.solver.events import locate_level_crossing
 from reference.solver.ground import ground_at
-from reference.solver.peaks import take_limit
+from reference.solver.peaks import update_peak_by_limit
 from reference.solver.polynomial import NODES_ROW
-from reference.solver.rows import Row, as_many, lowest, put, row
+from reference.solver.rows import Row, broadcast_like, lowest, put, row
 from reference.solver.step_control import (
     ERROR_ORDER,
     MAX_LENGTH_FACTOR,
     MIN_STEP,
-    begin,
-    begin_with,
-    first_guess,
-    plain_length,
+    begin_from_state,
+    begin_with_acceleration,
+    guess_from_last_step,
+    propose_plain_length,
 )
 from reference.solver.system import (
     CREEPING,
@@ -32,84 +32,98 @@ from reference.solver.system import (
     SLIDING,
     SOLVED,
     UNSOLVED,
-    Demand,
     Load,
+    RunSettings,
     System,
 )
-from reference.solver.work import SPEED2, VELOCITY, Work
+from reference.solver.work import SPEED2, VELOCITY, Workspace
 
-MAX_FIRST_STEP = 0.57  # of the period (Demand.period): longest first step of a slide at a tolerance of 1 in a step
-CAUTIOUS_GROWTH = 2.0  # largest growth of a step that had to be shortened
-STOP_WITHIN_STEPS = 1.5  # steps: a slide that would stop within them is followed in stretched time,
-STOP_WITHIN_TIME = 0.05  # of the period: or within this time
-MAX_WAY_TO_STOP = 0.55  # of the time to the stop: a longer step comes too close to where the direction turns fast
-MAX_CHAIN_ANGLE = 0.5  # rad: most that the chain's fastest vibration may turn in the time that is left then
+# "Period" below is RunSettings.period, the time in which forces change.
+# Longest first step of a slide from rest, in periods, over the seventh root of the tolerance (ERROR_ORDER)
+MAX_FIRST_STEP = 0.57
+CAUTIOUS_GROWTH = 2.0  # largest growth of the step after one that had to be shortened
+# Stretched time begins where the slide would stop within STOP_WITHIN_STEPS steps or STOP_WITHIN_TIME periods, and the
+# chain's fastest vibration turns by no more than MAX_CHAIN_ANGLE, rad, until the stop.
+STOP_WITHIN_STEPS = 1.5
+STOP_WITHIN_TIME = 0.05
+MAX_CHAIN_ANGLE = 0.5
+# Longest step as a share of the time to the stop: a longer one comes too close to where the direction turns fast
+MAX_WAY_TO_STOP = 0.55
 MIN_TURN_COSINE = 0.3  # cosine of the largest turn of the velocity between two stages
-LEVEL_TOLERANCE = 1e-9  # of the squared speed: a slide this close to v_reg has come down to it
-NEAR_LEVEL_FACTOR = 1.25  # of the squared v_reg: a slide below it may pass v_reg between two stages
-# of the friction limit times the step: at a lower speed the direction follows the force
+LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from that of v_reg at which a slide has reached it
+NEAR_LEVEL_FACTOR = 1.25  # multiple of v_reg^2 below which a slide may pass v_reg between two stages
+# Share of the friction limit times the step below which the direction of a slide follows the force within the step
 STIFF_SPEED_FRACTION = 0.03
-MIN_ACCELERATION_FRACTION = 1e-12  # of the drive: a slide that begins has a direction
-BARELY_SLIPPING_EXCESS = 1e-4  # of the squared friction limit: a slide with less excess need not begin yet
-NEGLIGIBLE_STEP = 1e-6  # of the period, or of a step: sliding that cannot begin with a step this long moves nothing
-# likewise, of the time in which friction that depends on the speed answers to it
+MIN_ACCELERATION_FRACTION = 1e-12  # share of the drive that accelerates a slide at least, so that it has a direction
+BARELY_SLIPPING_EXCESS = 1e-4  # share of the squared friction limit below which a slide need not begin yet
+# A slide that cannot begin with a step of this share of the period, or of the time in which friction responds to the
+# speed, moves nothing: it is replaced by rest for NEGLIGIBLE_HOLD periods. A crossing this early in a step (share of
+# the step) means that the phase begins on the level.
+NEGLIGIBLE_STEP = 1e-6
 NEGLIGIBLE_RESPONSE = 1e-3
-NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP  # of the period: rest in place of such sliding
-MAX_LENGTH_RATIO = 3.0  # of the step before over one that failed: beyond it the former's polynomial is no guess
+NEGLIGIBLE_HOLD = 10.0 * NEGLIGIBLE_STEP
+MAX_LENGTH_RATIO = 3.0  # ratio of the last length over one that failed above which the last polynomial is no guess
 
 
 @compiled
-def speed2(system: System, work: Work) -> float:
-    """Squared sliding speed in the state x, v."""
-    square: float = sliding_speed2(system, work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1])
+def squared_speed_in_state(system: System, work: Workspace) -> float:
+    """Return the squared sliding speed in the state x, v, m^2/s^2."""
+    square: float = squared_sliding_speed(system, work.x[0, 0], work.x[0, 1], work.v[0, 0], work.v[0, 1])
     return square
 
 
 @compiled
-def begin_sliding(system: System, work: Work, demand: Demand) -> None:
-    """The accelerations of the state; at rest the direction of the slide, and its share in the peak."""
-    begin(system, work, SLIDING)
-    work.growth = MAX_LENGTH_FACTOR
-    work.start2 = speed2(system, work)
-    if work.start2 > 0.0:
+def begin_sliding(system: System, work: Workspace, settings: RunSettings) -> None:
+    """Prepare a phase of sliding; from rest, find its direction and the acceleration just after the onset."""
+    begin_from_state(system, work, SLIDING)
+    work.max_growth = MAX_LENGTH_FACTOR
+    work.squared_start_speed = squared_speed_in_state(system, work)
+    if work.squared_start_speed > 0.0:
         return
-    work.length = min(work.length, MAX_FIRST_STEP * demand.period * demand.tolerance ** (1.0 / ERROR_ORDER))
+    work.length = min(work.length, MAX_FIRST_STEP * settings.period * settings.tolerance ** (1.0 / ERROR_ORDER))
     ground = ground_at(system, work, work.time)
     load = load_in_state(system, work, ground)
     _, reaction = rest_excess(system, load)
     gx, gy = load.fx - reaction * load.px / system.radius, load.fy - reaction * load.py / system.radius
-    work.angle = settled_direction(system, load, atan2(gy, gx), 0.0)
-    if demand.cutoff == 0.0:
-        take_limit(work, PLATFORM, squared_total(system, load, work.angle, 1.0))
+    work.angle = direction_at_stop(system, load, atan2(gy, gx), 0.0)
+    if settings.cutoff == 0.0:
+        update_peak_by_limit(work, PLATFORM, squared_absolute_acceleration(system, load, work.angle, 1.0))
     ex, ey = heading(work.angle, system.axes)
-    ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
-    begin_with(system, work, ground, ax, ay, SLIDING)
+    ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)
+    begin_with_acceleration(system, work, ground, ax, ay, SLIDING)
 
 
 @compiled
-def sliding_length(system: System, work: Work, demand: Demand) -> float:
-    """Length of the next step, s; 0 where the slide is so near its stop that stretched time begins."""
-    h: float = plain_length(system, work, demand)
+def propose_sliding_length(system: System, work: Workspace, settings: RunSettings) -> float:
+    """Return the length of the next step, s; 0 where the slide is so near its stop that stretched time begins."""
+    # Close to a stop the direction of slip turns like a power of the speed (T6 of docs/theory.md), which no polynomial
+    # in time resolves. So a slide that would stop within a step or two goes on in stretched time (near_stop.py), unless
+    # the chain would vibrate in what is left: the chain is solved by iteration there. A step of a slide that stops
+    # later ends well before its stop; without MAX_WAY_TO_STOP a third of the plain steps of fig3-I missed the
+    # tolerance, up to 300 times over (docs/decisions/0001-stretched-time.md).
+    h: float = propose_plain_length(system, work, settings)
     vx, vy = work.v[0, 0], work.v[0, 1]
     speed = sqrt(vx * vx + vy * vy)
     if speed == 0.0:
         return h
     work.angle = atan2(vy, vx)
     braking = -(vx * work.a0[0, 0] + vy * work.a0[0, 1]) / speed
-    soon = speed < max(STOP_WITHIN_STEPS * h, STOP_WITHIN_TIME * demand.period) * braking
+    soon = speed < max(STOP_WITHIN_STEPS * h, STOP_WITHIN_TIME * settings.period) * braking
     if soon and system.fastest * speed <= MAX_CHAIN_ANGLE * braking:
         work.log_speed = log(speed)
         return 0.0
-    return min(h, max(MAX_WAY_TO_STOP * time_to_stop(work, speed, braking), MIN_STEP * demand.period))
+    return min(h, max(MAX_WAY_TO_STOP * time_to_stop(work, speed, braking), MIN_STEP * settings.period))
 
 
 @compiled
-def time_to_stop(work: Work, speed: float, braking: float) -> float:
-    """Time to the stop, s, if the deceleration, m/s^2, goes on changing as at the end of the step before."""
+def time_to_stop(work: Workspace, speed: float, braking: float) -> float:
+    """Return the time to the stop, s, if the deceleration, m/s^2, goes on changing as at the end of the last step."""
+    # With the deceleration b and its rate b', v - b t - b' t^2 / 2 = 0 at the stop. Its first root is
+    # 2 v / (b + sqrt(b^2 + 2 v b')), in the form without cancellation; `change` is v b' = -v . a'.
     change = 0.0
-    if work.old_length > 0.0:
+    if work.last_length > 0.0:
         for k in range(1, STAGES):
-            change -= k * (work.v[0, 0] * work.guess[0, k] + work.v[0, 1] * work.guess[1, k]) / work.old_length
+            change -= k * (work.v[0, 0] * work.guess[0, k] + work.v[0, 1] * work.guess[1, k]) / work.last_length
     square = braking * braking + 2.0 * change
     if square < 0.0 or braking + sqrt(square) <= 0.0:
         return inf
@@ -117,55 +131,53 @@ def time_to_stop(work: Work, speed: float, braking: float) -> float:
 
 
 @compiled
-def is_slow(system: System, work: Work, h: float) -> bool:
-    """Whether the direction of the slide follows the force within the step."""
+def is_slow(system: System, work: Workspace, h: float) -> bool:
+    """Return True if the direction of the slide follows the force within the step."""
     speed = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2)
     return speed < STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity
 
 
 @compiled
-def guess_slide(system: System, work: Work, h: float) -> None:
-    """Stage accelerations to start with; of a slow slide, what the drive leaves along the direction of its start."""
+def guess_slide(system: System, work: Workspace, h: float) -> None:
+    """Set the first guess of the stage accelerations; that of a slow slide along its direction at the start."""
     if not is_slow(system, work, h):
-        first_guess(work, h)
+        guess_from_last_step(work, h)
         return
     nodes = row(NODES_ROW, ())
     ex, ey = heading(work.angle, system.axes)
-    guess_along(system, work, h, as_many(ex, nodes), as_many(ey, nodes))
+    guess_along(system, work, h, broadcast_like(ex, nodes), broadcast_like(ey, nodes))
 
 
 @compiled
-def guess_turning_slide(system: System, work: Work, h: float) -> None:
+def guess_turning_slide(system: System, work: Workspace, h: float) -> None:
     """
-    Stage accelerations to start with, along the directions in which the drive at the stages does not turn a slow slide.
+    Set the first guess along the directions in which the drive at each stage does not turn a slow slide.
 
-    A light platform under a tower turns by hundreds of rad/s.
+    A light platform under a tower turns by hundreds of rad/s where it begins to slide.
     """
     free, ground, angle = work.free, work.ground, work.angle
     for k in range(STAGES):
         load = Load(
             work.x[0, 0], work.x[0, 1], free[0, k], free[1, k], ground[0, k], ground[1, k], ground[2, k], ground[3, k]
         )  # fmt: skip
-        angle = settled_direction(system, load, angle, 0.0)
+        angle = direction_at_stop(system, load, angle, 0.0)
         work.a[0, 0, k], work.a[0, 1, k] = heading(angle, system.axes)
     guess_along(system, work, h, row(work.a, (0, 0)), row(work.a, (0, 1)))
 
 
 @compiled
-def guess_along(system: System, work: Work, h: float, ex: Row, ey: Row) -> None:
-    """
-    Stage accelerations of a slow slide in the directions (ex, ey): what the drive leaves along them.
-
-    Where friction rises steeply with the speed, that is what a step of the linearized law makes of it: an iteration
-    that begins at a lower speed than the step's does not leave the steep part.
-    """
+def guess_along(system: System, work: Workspace, h: float, ex: Row, ey: Row) -> None:
+    """Set the stage accelerations of a slow slide in the directions (ex, ey) to those of the drive less friction."""
+    # Where friction rises steeply with the speed, an iteration that begins at a lower speed than the step's does not
+    # leave the steep part. Linearized about the start, friction damps the speed at the rate `damping`. An implicit
+    # Euler step of length nodes * h then has the acceleration at the start over 1 + nodes * h * damping.
     nodes, ground = row(NODES_ROW, ()), work.ground
     start = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2) if system.rate > 0.0 else 0.0
     damping = rising_rate(system, start)
     fx, fy = row(work.free, 0), row(work.free, 1)
-    px, py = as_many(work.x[0, 0], nodes), as_many(work.x[0, 1], nodes)
+    px, py = broadcast_like(work.x[0, 0], nodes), broadcast_like(work.x[0, 1], nodes)
     load = Load(px, py, fx, fy, row(ground, 0), row(ground, 1), row(ground, 2), row(ground, 3))
-    ax, ay, _, _ = directed(system, load, as_many(start, nodes), ex, ey)
+    ax, ay, _, _ = acceleration_along(system, load, broadcast_like(start, nodes), ex, ey)
     along = max(ax * ex + ay * ey, MIN_ACCELERATION_FRACTION * (abs(fx) + abs(fy)))
     along = along / (1.0 + nodes * (h * damping))
     put(work.a, (0, 0), along * ex)
@@ -173,8 +185,8 @@ def guess_along(system: System, work: Work, h: float, ex: Row, ey: Row) -> None:
 
 
 @compiled
-def turns_too_far(work: Work) -> bool:
-    """Whether the velocity turns too far between two stages to be a smooth slide."""
+def turns_too_far(work: Workspace) -> bool:
+    """Return True if the velocity turns too far between two stages to be a smooth slide."""
     bx, by = work.v[0, 0], work.v[0, 1]
     for k in range(STAGES):
         vx, vy = work.stage[VELOCITY, k], work.stage[VELOCITY + 1, k]
@@ -185,17 +197,17 @@ def turns_too_far(work: Work) -> bool:
 
 
 @compiled
-def barely_slips(system: System, work: Work) -> bool:
-    """Whether the drive exceeds the friction limit by so little that a slide need not begin yet."""
+def barely_slips(system: System, work: Workspace) -> bool:
+    """Return True if the drive exceeds the friction limit by so little that a slide need not begin yet."""
     load = load_in_state(system, work, ground_at(system, work, work.time))
     excess, reaction = rest_excess(system, load)
-    return excess <= BARELY_SLIPPING_EXCESS * loaded(system, load.k_t, reaction, system.friction * reaction) ** 2
+    return excess <= BARELY_SLIPPING_EXCESS * scale_by_load(system, load.k_t, reaction, system.friction * reaction) ** 2
 
 
 @compiled
-def after_failed_slide(system: System, work: Work, demand: Demand, h: float) -> tuple[int, int]:
-    """(SOLVED to go on, or UNSOLVED; what the contact does then) after a step that failed."""
-    shortest = NEGLIGIBLE_STEP * demand.period
+def recover_failed_slide(system: System, work: Workspace, settings: RunSettings, h: float) -> tuple[int, int]:
+    """Return (SOLVED to go on, or UNSOLVED; next state of the contact) after a step that failed."""
+    shortest = NEGLIGIBLE_STEP * settings.period
     if system.rate > 0.0:
         shortest = min(
             shortest, NEGLIGIBLE_RESPONSE / (abs(coefficient_slope(system, 0.0)) * system.mass_ratio * system.gravity)
@@ -203,22 +215,22 @@ def after_failed_slide(system: System, work: Work, demand: Demand, h: float) -> 
     if work.v[0, 0] == 0.0 and work.v[0, 1] == 0.0 and h < shortest:
         if not barely_slips(system, work):
             return UNSOLVED, SLIDING
-        work.held = NEGLIGIBLE_HOLD * demand.period
+        work.hold_time = NEGLIGIBLE_HOLD * settings.period
         return SOLVED, REST
-    work.growth = CAUTIOUS_GROWTH
-    work.old_length = 0.0 if work.old_length > MAX_LENGTH_RATIO * h else work.old_length
+    work.max_growth = CAUTIOUS_GROWTH
+    work.last_length = 0.0 if work.last_length > MAX_LENGTH_RATIO * h else work.last_length
     return SOLVED, SLIDING
 
 
 @compiled
-def slowing_within(system: System, work: Work, h: float) -> tuple[float, int]:
-    """Length of the step up to where the slide comes down to v_reg, 0 at its start; what the contact does then."""
+def cut_at_creep(system: System, work: Workspace, h: float) -> tuple[float, int]:
+    """Return the length of the step up to where the slide slows down to v_reg, 0 at its start, and the next contact."""
     if system.law != REGULARIZED:
         return h, SLIDING
     floor2 = (system.v_reg * (1.0 - LEVEL_TOLERANCE)) ** 2
     if lowest(row(work.stage, SPEED2)) < NEAR_LEVEL_FACTOR * floor2:
-        start = max(work.start2, floor2 * (1.0 + LEVEL_TOLERANCE))
-        slowed = first_crossing(system, work, row(work.stage, SPEED2), start, floor2)
+        start = max(work.squared_start_speed, floor2 * (1.0 + LEVEL_TOLERANCE))
+        slowed = locate_level_crossing(system, work, row(work.stage, SPEED2), start, floor2)
         if slowed < NEGLIGIBLE_STEP:
             return 0.0, CREEPING
         if slowed < 1.0 - NEGLIGIBLE_STEP:
@@ -227,9 +239,9 @@ def slowing_within(system: System, work: Work, h: float) -> tuple[float, int]:
 
 
 @compiled
-def adapt_slide(work: Work, h: float, factor: float) -> None:
-    """The length of the next step after one that was made."""
+def adapt_sliding_length(work: Workspace, h: float, factor: float) -> None:
+    """Set the length of the next step after one that was committed."""
     if h * factor > work.length or h == work.length:
-        work.length = h * min(factor, work.growth)
-    work.growth = MAX_LENGTH_FACTOR
-    work.start2 = work.stage[SPEED2, STAGES - 1]
+        work.length = h * min(factor, work.max_growth)
+    work.max_growth = MAX_LENGTH_FACTOR
+    work.squared_start_speed = work.stage[SPEED2, STAGES - 1]

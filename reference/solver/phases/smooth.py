@@ -5,37 +5,37 @@ from __future__ import annotations
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import decay_rate
-from reference.solver.events import first_crossing
-from reference.solver.phases.sliding import speed2
+from reference.solver.events import locate_level_crossing
+from reference.solver.phases.sliding import squared_speed_in_state
 from reference.solver.rows import highest, row
-from reference.solver.step_control import begin
+from reference.solver.step_control import begin_from_state
 from reference.solver.system import CREEPING, SLIDING, System
-from reference.solver.work import SPEED2, Work
+from reference.solver.work import SPEED2, Workspace
 
-LEVEL_TOLERANCE = 1e-9  # of the squared speed: creep this close to v_reg has reached it
-EARLY_CROSSING = 1e-6  # of a step: a crossing this early means that the phase begins on the level
-NEAR_LEVEL_FRACTION = 0.8  # of the squared v_reg: creep above it may pass v_reg between two stages
-MAX_FIRST_DECAY = 2.0  # of the velocity's times of decay: longest first step of creep
+LEVEL_TOLERANCE = 1e-9  # relative distance of the squared speed from that of v_reg at which creep has reached it
+EARLY_CROSSING = 1e-6  # share of a step before which a crossing means that the phase begins at v_reg
+NEAR_LEVEL_FRACTION = 0.8  # share of v_reg^2 above which creep may pass v_reg between two stages
+MAX_FIRST_DECAY = 2.0  # longest first step of creep, in times of decay of the velocity
 
 
 @compiled
-def begin_smooth(system: System, work: Work, contact: int) -> None:
-    """Creep begins with a step that its friction allows."""
-    begin(system, work, contact)
+def begin_smooth(system: System, work: Workspace, contact: int) -> None:
+    """Prepare a phase without a corner of friction; creep begins with a step that its friction allows."""
+    begin_from_state(system, work, contact)
     if contact == CREEPING:
         work.length = min(work.length, MAX_FIRST_DECAY / decay_rate(system, contact))
 
 
 @compiled
-def speeding_within(system: System, work: Work, contact: int, h: float) -> tuple[float, int]:
-    """Length of the step up to where creep reaches v_reg, 0 if it begins there; what the contact does then."""
+def cut_at_slide(system: System, work: Workspace, contact: int, h: float) -> tuple[float, int]:
+    """Return the length of the step up to where creep reaches v_reg, 0 if it begins there, and the next contact."""
     level = system.v_reg * system.v_reg
     if contact != CREEPING:
         return h, contact
     if highest(row(work.stage, SPEED2)) > NEAR_LEVEL_FRACTION * level:
-        start = min(speed2(system, work), level * (1.0 - LEVEL_TOLERANCE))
-        crossing = first_crossing(system, work, row(work.stage, SPEED2), start, level)
-        if crossing < EARLY_CROSSING and work.held == 0.0:
+        start = min(squared_speed_in_state(system, work), level * (1.0 - LEVEL_TOLERANCE))
+        crossing = locate_level_crossing(system, work, row(work.stage, SPEED2), start, level)
+        if crossing < EARLY_CROSSING and work.hold_time == 0.0:
             return 0.0, SLIDING
         if EARLY_CROSSING <= crossing < 1.0 - EARLY_CROSSING:
             return h * crossing, CREEPING

@@ -4,83 +4,93 @@ from __future__ import annotations
 
 from math import exp, log, pi, sqrt
 
-from reference.solver.chain import chain_acceleration
+from reference.solver.chain import set_chain_acceleration
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
 from reference.solver.contact.friction import SMALLEST_SPEED, heading
-from reference.solver.contact.platform import directed, load_in_state, rest_excess
-from reference.solver.contact.stop_arc import MAX_ROUNDING_TURN, arc_peak, settled_direction
-from reference.solver.events import first_crossing
+from reference.solver.contact.platform import acceleration_along, load_in_state, rest_excess
+from reference.solver.contact.stop_arc import MAX_ROUNDING_TURN, arc_peak, direction_at_stop
+from reference.solver.events import locate_level_crossing
 from reference.solver.ground import ground_at
-from reference.solver.peaks import SETTLED_FRACTION, take_limit
+from reference.solver.peaks import SETTLED_FRACTION, update_peak_by_limit
 from reference.solver.phases.sliding import STOP_WITHIN_STEPS, STOP_WITHIN_TIME
 from reference.solver.rows import lowest, row
-from reference.solver.step_control import MIN_STEP, begin_with, next_break
-from reference.solver.system import CREEPING, PLATFORM, REGULARIZED, REST, SLIDING, STOPPING, Demand, Load, System
-from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA, Work
+from reference.solver.step_control import MIN_STEP, begin_with_acceleration, next_kink
+from reference.solver.system import CREEPING, PLATFORM, REGULARIZED, REST, SLIDING, STOPPING, Load, RunSettings, System
+from reference.solver.work import ACROSS, ALONG, CLOCK, DIRECTION, RATIO, SIGMA, Workspace
 
-FIRST_STEP = 1.0  # change of direction or logarithm of the speed in the first step
-MAX_GROWTH = 2.0  # of the length beyond what fits the step before
-MIN_FIRST_ACCELERATION = 1e-3  # of the loading: the first step is no longer than it makes with this acceleration
-MAX_CHAIN_ANGLE = 0.7  # rad: most that the chain's fastest vibration may turn during one step
-# of the length of a plain step: time scale at which a slide that gathers speed leaves stretched time,
+# "Period" below is RunSettings.period, the time in which forces change; "the loading's velocity" is the size of the
+# loading's acceleration times the period over 2 pi.
+FIRST_STEP = 1.0  # change of the direction, rad, or of ln v in the first step
+# Share of the loading that accelerates the platform at least, where the length of the first step is chosen
+MIN_FIRST_ACCELERATION = 1e-3
+MAX_GROWTH = 2.0  # largest growth of a length beyond the one that would have met the tolerance in the last step
+MAX_CHAIN_ANGLE = 0.7  # rad, largest turn of the chain's fastest vibration in one step
+# A slide that gathers speed leaves stretched time where its speed over its acceleration exceeds this share of the
+# length of a plain step, and this share of the period.
 LEAVING_TIME_FRACTION = 0.3
-MIN_LEAVING_TIME = 0.05  # of the period (Demand.period): and its lower bound
-# of the loading's velocity times the root of the tolerance: below it a platform that friction can hold has stopped
+MIN_LEAVING_TIME = 0.05
+# Speed below which a platform that friction can hold may count as stopped, over the loading's velocity and the root of
+# the tolerance
 MAX_STOPPED_SPEED = 0.03
-MAX_DAMPED_JUMP = 0.01  # of the tolerance, in dampers: what rest may change in an acceleration by taking this speed
-MIN_FOLLOWED_SPEED = 1e-10  # of the loading's velocity: a stop whose arc decides the peak is followed down to it
-DECISIVE_ARC_FRACTION = 0.97  # of the peak so far: an arc that stays below it decides nothing
-# likewise for the bodies above, of their squared peaks: they feel the arc by its vertical acceleration alone
+# Change of an acceleration by the dampers when rest sets this speed to zero, as a share of the tolerance
+MAX_DAMPED_JUMP = 0.01
+# A stop whose arc decides a peak is followed down to this share of the loading's velocity. The arc decides nothing
+# below these shares: of the platform's peak so far, and of the squared peaks of the bodies above, which feel the arc by
+# its vertical acceleration alone.
+MIN_FOLLOWED_SPEED = 1e-10
+DECISIVE_ARC_FRACTION = 0.97
 DECISIVE_RISE_FRACTION = 0.999
-NEGLIGIBLE_RISE = 1e-9  # of a squared peak: what the arc adds to the end of the last step
-LEVEL_TOLERANCE = 1e-9  # of ln v: a slide this close to v_reg has come down to it
-EARLY_CROSSING = 1e-9  # of a step: a crossing this early means that the phase begins on the level
-# of the period times the root of the tolerance: time left at a stop within which forces count as constant
+NEGLIGIBLE_RISE = 1e-9  # share of a squared peak that the arc may add to the end of the last step without counting
+LEVEL_TOLERANCE = 1e-9  # distance of ln v from ln v_reg at which a slide has slowed down to v_reg
+EARLY_CROSSING = 1e-9  # share of a step before which a crossing means that the phase begins on the level
+# Time left to the stop within which forces count as constant, over the period and the root of the tolerance
 MAX_FROZEN_TIME = 0.01
-MAX_FRICTION_CHANGE = 1e-12  # of the rise of friction: while it changes by less down to rest, it counts as constant
-MIN_STEADY_TIMES = 2.0  # a slide at almost constant speed lasts: times those within which a slide counts as stopping
-MAX_STRAIGHT_TURN = 1e-6  # of the friction: a slide with a smaller sideways acceleration turns back on its own line
-# of the loading's velocity: below it a straight slide that friction cannot hold is at its turning point
+MAX_FRICTION_CHANGE = 1e-12  # share of the rise of friction that counts as no change down to rest
+# Duration of a slide at almost constant speed, as a multiple of the time within which a slide counts as stopping
+MIN_STEADY_TIMES = 2.0
+MAX_STRAIGHT_TURN = 1e-6  # sideways acceleration over friction below which a slide turns back on its own line
+# Share of the loading's velocity below which a straight slide that friction cannot hold is at its turning point
 MAX_TURNING_POINT_SPEED = 1e-12
-NEAR_STOP_NEWTON_FRACTION = 1e-3  # of the tolerance: change of the angle at which Newton's method ends
-# Time and place are integrals of v and v^2 over tau. Where forces stay constant no acceleration shows their error. With
-# these bounds on the change of ln v in one step it stays below 1e-8 of what is left of the slide at its start.
-MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # in the first step
+NEAR_STOP_NEWTON_FRACTION = 1e-3  # share of the tolerance at which the change of the angle ends Newton's method
+# Bounds on the change of ln v in one step. Time and position are integrals of v and v^2 over tau: where forces stay
+# constant no acceleration shows their error. With these bounds it stays below 1e-8 of what is left of the slide at the
+# start of the step.
+MAX_FIRST_LOG_SPEED_CHANGE = 2.0  # bound in the first step
 LOG_SPEED_CHANGE_GROWTH = 0.7  # growth of the bound per unit by which ln v has fallen since
 
 
 @compiled
-def begin_stopping(system: System, work: Work, demand: Demand) -> None:
-    """Accelerations in the state and the direction of the run, and a first step."""
+def begin_stopping(system: System, work: Workspace, settings: RunSettings) -> None:
+    """Prepare a phase in stretched time: the accelerations in the state and the length of the first step."""
     ground = ground_at(system, work, work.time)
-    chain_acceleration(system, work, ground)
+    set_chain_acceleration(system, work, ground)
     load = load_in_state(system, work, ground)
     ex, ey = heading(work.angle, system.axes)
-    ax, ay, _, ratio = directed(system, load, exp(work.log_speed), ex, ey)
-    begin_with(system, work, ground, ax, ay, STOPPING)
-    work.log_ratio, work.first_log_speed, work.fitting = log(ratio), work.log_speed, 0.0
-    work.stretched = FIRST_STEP / max(sqrt(ax * ax + ay * ay), MIN_FIRST_ACCELERATION * demand.unit)
+    ax, ay, _, ratio = acceleration_along(system, load, exp(work.log_speed), ex, ey)
+    begin_with_acceleration(system, work, ground, ax, ay, STOPPING)
+    work.log_ratio, work.first_log_speed, work.fitting_length = log(ratio), work.log_speed, 0.0
+    work.stretched_length = FIRST_STEP / max(sqrt(ax * ax + ay * ay), MIN_FIRST_ACCELERATION * settings.unit)
 
 
 @compiled
-def stretched_length(system: System, work: Work) -> float:
-    """Length of the next step in tau: the longest that keeps time and place, and the chain's vibration."""
+def propose_stretched_length(system: System, work: Workspace) -> float:
+    """Return the length of the next step in tau: the longest that resolves time, position and the chain's vibration."""
     ex, ey = heading(work.angle, system.axes)
     along = work.a0[0, 0] * ex + work.a0[0, 1] * ey
     change = MAX_FIRST_LOG_SPEED_CHANGE + LOG_SPEED_CHANGE_GROWTH * max(0.0, work.first_log_speed - work.log_speed)
-    if along > 0.0:  # the end of the step counts, not its start
+    if along > 0.0:  # a slide that gathers speed: the end of the step decides, not its start
         change /= 1.0 + LOG_SPEED_CHANGE_GROWTH
-    h = min(work.stretched, change / max(abs(along), 1e-300))
+    h = min(work.stretched_length, change / max(abs(along), 1e-300))
     return min(h, MAX_CHAIN_ANGLE / (system.fastest * exp(work.log_speed))) if system.fastest > 0.0 else h
 
 
 @compiled
-def break_within(system: System, work: Work, demand: Demand, h: float) -> tuple[float, int]:
-    """Length of the step up to the loading's next kink or to v_reg, 0 at its begin, and what the contact does then."""
-    limit = next_break(system, work, demand)
-    if work.turning[CLOCK, STAGES - 1] > limit + MIN_STEP * demand.period:
-        portion = first_crossing(system, work, row(work.turning, CLOCK), work.time, limit)
+def cut_at_kink_or_creep(system: System, work: Workspace, settings: RunSettings, h: float) -> tuple[float, int]:
+    """Return the length of the step up to the next kink or to v_reg, 0 at its start, and the next contact."""
+    limit = next_kink(system, work, settings)
+    if work.turning[CLOCK, STAGES - 1] > limit + MIN_STEP * settings.period:
+        portion = locate_level_crossing(system, work, row(work.turning, CLOCK), work.time, limit)
         if portion < 1.0 - EARLY_CROSSING:
             return h * portion, STOPPING
     if system.law != REGULARIZED:
@@ -88,7 +98,7 @@ def break_within(system: System, work: Work, demand: Demand, h: float) -> tuple[
     level = log(system.v_reg)
     if lowest(row(work.levels, ())) < level - LEVEL_TOLERANCE:
         start = max(work.log_speed + work.log_ratio, level)
-        portion = first_crossing(system, work, row(work.levels, ()), start, level - 0.5 * LEVEL_TOLERANCE)
+        portion = locate_level_crossing(system, work, row(work.levels, ()), start, level - 0.5 * LEVEL_TOLERANCE)
         if portion < EARLY_CROSSING:
             return 0.0, CREEPING
         if portion < 1.0 - EARLY_CROSSING:
@@ -97,40 +107,49 @@ def break_within(system: System, work: Work, demand: Demand, h: float) -> tuple[
 
 
 @compiled
-def after_stopping_step(system: System, work: Work, demand: Demand, h: float, factor: float) -> int:
-    """Commit time, direction and speed; what the contact does next."""
+def commit_stopping_step(system: System, work: Workspace, settings: RunSettings, h: float, factor: float) -> int:
+    """Commit time, direction and speed of a step near a stop; return the next state of the contact."""
+    # In stretched time a slide never reaches its stop: ln v falls without end. Three things end the phase. The platform
+    # counts as stopped (`contact_after_stop`). It gathers speed again, having passed its slowest point: then plain time
+    # resolves it once v / v' is a good part of a plain step. Or friction that rises with the speed balances the drive,
+    # so that the slide goes on at almost constant speed.
     last = STAGES - 1
     work.time, work.angle = work.turning[CLOCK, last], work.turning[DIRECTION, last]
     work.log_speed, work.log_ratio = work.turning[SIGMA, last], log(work.turning[RATIO, last])
-    # the motion becomes smoother towards the stop: what fits grows on as it did
-    growth = h * factor / work.fitting if work.fitting > 0.0 else 1.0
-    work.fitting = h * factor
-    work.stretched = work.fitting * min(max(growth, 1.0), MAX_GROWTH)
-    if work.time >= work.end - 10.0 * MIN_STEP * demand.period:
+    # The motion becomes smoother towards the stop, so the length that would meet the tolerance goes on growing.
+    growth = h * factor / work.fitting_length if work.fitting_length > 0.0 else 1.0
+    work.fitting_length = h * factor
+    work.stretched_length = work.fitting_length * min(max(growth, 1.0), MAX_GROWTH)
+    if work.time >= work.end - 10.0 * MIN_STEP * settings.period:
         return STOPPING
     if system.law != REGULARIZED:
-        contact = after_stop(system, work, demand)
+        contact = contact_after_stop(system, work, settings)
         if contact != STOPPING:
             work.v[0, 0] = work.v[0, 1] = 0.0
             return contact
     along, speed = work.turning[ALONG, last], exp(work.log_speed)
-    if along > 0.0 and speed > max(LEAVING_TIME_FRACTION * work.length, MIN_LEAVING_TIME * demand.period) * along:
+    if along > 0.0 and speed > max(LEAVING_TIME_FRACTION * work.length, MIN_LEAVING_TIME * settings.period) * along:
         work.length = min(work.length, speed / along)
         return SLIDING
-    # friction that rises with the speed may balance the force: such a slide goes on and does not stop
-    soon = MIN_STEADY_TIMES * max(STOP_WITHIN_STEPS * work.length, STOP_WITHIN_TIME * demand.period)
+    # Friction that rises with the speed may balance the drive: such a slide goes on and does not stop.
+    soon = MIN_STEADY_TIMES * max(STOP_WITHIN_STEPS * work.length, STOP_WITHIN_TIME * settings.period)
     return SLIDING if system.rate > 0.0 and along <= 0.0 and speed > soon * -along else STOPPING
 
 
 @compiled
-def take_arc(system: System, work: Work, load: Load, followed: bool) -> bool:
-    """Raise the peaks by those on the arc that is left; True if known well enough, or not to be `followed` further."""
+def update_peaks_by_arc(system: System, work: Workspace, load: Load, followed: bool) -> bool:
+    """Raise the peaks to those on the arc that is left; return False if the arc decides and may still be `followed`."""
+    # The direction still turns while the speed goes to zero, so every direction between the present one and the one in
+    # which it settles belongs to the motion (contact/stop_arc.py; docs/theory.md, supremum). The arc is computed with
+    # the forces of this instant. Where it decides a peak, the stop is followed down to MIN_FOLLOWED_SPEED first, so
+    # that the forces hardly change in what is left. The bodies above share the vertical acceleration of the platform;
+    # their horizontal ones stay.
     bodies, total, best = work.x.shape[0], work.total0, work.best
-    end = settled_direction(system, load, work.angle, MAX_ROUNDING_TURN)
+    end = direction_at_stop(system, load, work.angle, MAX_ROUNDING_TURN)
     arc = arc_peak(system, load, work.angle, end, SETTLED_FRACTION**2 * best[0], 1.0)
     if followed and arc > DECISIVE_ARC_FRACTION * DECISIVE_ARC_FRACTION * best[0]:
         return False
-    take_limit(work, PLATFORM, arc)
+    update_peak_by_limit(work, PLATFORM, arc)
     if bodies == 1 or system.small:
         return True
     vertical = arc_peak(system, load, work.angle, end, 0.0, 0.0)
@@ -139,36 +158,41 @@ def take_arc(system: System, work: Work, load: Load, followed: bool) -> bool:
         rises = vertical - total[i, 2] ** 2 > NEGLIGIBLE_RISE * best[i]
         if followed and rises and squared + vertical > DECISIVE_RISE_FRACTION * best[i]:
             return False
-        take_limit(work, i, squared + vertical)
+        update_peak_by_limit(work, i, squared + vertical)
     return True
 
 
 @compiled
-def after_stop(system: System, work: Work, demand: Demand) -> int:
-    """REST or SLIDING at a stop, STOPPING if it goes on; the time left of the slide is in work.left."""
-    unit = demand.unit * demand.period / (2.0 * pi)
+def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -> int:
+    """Return REST or SLIDING at a stop, STOPPING if it goes on; the time left of the slide is in work.early_rest."""
+    # A platform that friction can hold (excess <= 0) has stopped when the rest of the slide changes nothing: its speed
+    # and the time left are small (both bounds go with the root of the tolerance, since the way left is quadratic in
+    # them), dampers feel no jump, friction is that of rest, and the arc is known. Under a cutoff the arc does not
+    # count; the stop is followed to below v_c. A platform that friction cannot hold turns back if it goes straight
+    # against the drive. Otherwise its direction turns past the stop, and the slide goes on.
+    unit = settings.unit * settings.period / (2.0 * pi)
     speed = exp(work.log_speed)
-    if speed > MAX_STOPPED_SPEED * sqrt(demand.tolerance) * unit:
+    if speed > MAX_STOPPED_SPEED * sqrt(settings.tolerance) * unit:
         return STOPPING
-    if speed * system.damping_rate > MAX_DAMPED_JUMP * demand.tolerance * demand.unit:
+    if speed * system.damping_rate > MAX_DAMPED_JUMP * settings.tolerance * settings.unit:
         return STOPPING
     along, across = work.turning[ALONG, STAGES - 1], work.turning[ACROSS, STAGES - 1]
     load = load_in_state(system, work, ground_at(system, work, work.time))
     excess, reaction = rest_excess(system, load)
     if excess > 0.0:
         straight = abs(across) <= MAX_STRAIGHT_TURN * system.friction * reaction
-        if system.rate > 0.0:  # a slide along the drive slows down with it and does not turn
+        if system.rate > 0.0:  # the sign at rest decides: a slide along the drive slows down and does not turn
             ex, ey = heading(work.angle, system.axes)
-            ax, ay, _, _ = directed(system, load, 0.0, ex, ey)
+            ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)
             along = ax * ex + ay * ey
         return SLIDING if straight and along < 0.0 and speed < MAX_TURNING_POINT_SPEED * unit else STOPPING
     changing = system.rate * speed > MAX_FRICTION_CHANGE
-    if along >= 0.0 or speed > MAX_FROZEN_TIME * sqrt(demand.tolerance) * demand.period * -along or changing:
+    if along >= 0.0 or speed > MAX_FROZEN_TIME * sqrt(settings.tolerance) * settings.period * -along or changing:
         return STOPPING if speed > SMALLEST_SPEED else REST
-    if demand.cutoff == 0.0:
-        if not take_arc(system, work, load, speed > MIN_FOLLOWED_SPEED * unit):
+    if settings.cutoff == 0.0:
+        if not update_peaks_by_arc(system, work, load, speed > MIN_FOLLOWED_SPEED * unit):
             return STOPPING
-    elif speed > demand.cutoff:
+    elif speed > settings.cutoff:
         return STOPPING
-    work.left = -speed / along
+    work.early_rest = -speed / along
     return REST
