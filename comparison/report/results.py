@@ -16,6 +16,7 @@ from comparison.result_types import Part, Text
 from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.unanswered import Unanswered
+from comparison.verdicts import count_verdicts, word_counts
 
 SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
 VERSION: Literal[5] = 5  # grows when a key changes its meaning or goes
@@ -106,12 +107,9 @@ class Results(Part):
         measured = self.of("measured")
         if measured is None:
             return "this study has no measured peaks"
-        verdicts = [computed.exceeds for peak in measured for computed in peak.computed]
+        counts = count_verdicts(computed.verdict for peak in measured for computed in peak.computed)
         count = "1 measured peak stands" if len(measured) == 1 else f"{len(measured)} measured peaks stand"
-        beyond = (
-            f"{sum(verdict is True for verdict in verdicts)} of {len(verdicts)} differences exceed the uncertainties"
-        )
-        return f"{count} beside the models, and {beyond}"
+        return f"{count} beside the models, {word_counts(counts)}"
 
     @property
     def phased(self) -> list[SceneResult]:

@@ -1,7 +1,6 @@
 """Measured quantities beside what both sides compute, as data: a file, and what the report needs of it."""
 
 import math
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 from typing import Annotated, Any, NamedTuple
@@ -16,18 +15,15 @@ import reference
 from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import Array, result
+from comparison.verdicts import NOT_MET, Verdict, count_verdicts, judge, word_verdict
 from reference.measures.demands import ANSWERED
 from reference.problem import Scene, State, Trajectory
 
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
 COVERAGE = 2.0  # standard deviations of an expanded uncertainty
-VALID, LAW, INPUT, NONE = "within u_val", "law", "input", "no answer"
-MEANING = {
-    VALID: "the comparison error is within the uncertainties together",
-    LAW: "beyond them: no input explains it, so it is the friction law",
-    INPUT: "beyond them: an input outside its assumed range explains it",
-    NONE: "no value was computed",
-}
+LAW, INPUT, OPEN = "the friction law", "an input", "not explained"  # begin the explanation of what is not met
+DEGREES, CYCLE = "deg", "% of a cycle"
+ABSOLUTE = (DEGREES, CYCLE)  # units of which a share says nothing
 
 
 @result
@@ -38,7 +34,11 @@ class Comparison:
     error: Annotated[float | None, "E = S - D"]
     numerical: Annotated[float | None, "u_num, as the side states it"]
     validation: Annotated[float | None, "u_val, root of u_num^2 + u_input^2 + u_D^2"]
-    verdict: Annotated[str, "within u_val, law, input, no answer"]
+    verdict: Annotated[Verdict, "met: |E| is within u_val; not met; not compared: no E or no u_val"]
+
+    def __post_init__(self) -> None:
+        if self.verdict != judge(self.error, self.validation):
+            raise ValueError(f"verdict {self.verdict!r} contradicts E = {self.error} and u_val = {self.validation}")
 
 
 @result
@@ -52,8 +52,18 @@ class Quantity:
     measured: Annotated[float, "D"]
     data: Annotated[float, "u_D"]
     inputs: Annotated[float, "u_input"]
-    cause: Annotated[str, "what is behind an E beyond u_val; empty where there is none"]
+    cause: Annotated[str, "explanation of what is not met: the friction law, an input, or none found; empty where met"]
     sides: Annotated[Mapping[str, Comparison], "by side: equations, smoothed (with the engine's friction law), engine"]
+
+    @property
+    def base(self) -> float | None:
+        """Value to which an E is relative, None where a share of it says nothing."""
+        return None if self.unit in ABSOLUTE else self.measured
+
+    def word(self, side: str, explained: bool = False) -> str:
+        """Return the verdict on one side in words, with its explanation if asked."""
+        found = self.sides[side]
+        return word_verdict(found.verdict, found.error, self.base, self.unit, self.cause if explained else "")
 
 
 @result
@@ -77,10 +87,9 @@ class Validation:
     curves: Annotated[Sequence[Curve], "of the plots; only in the file of a user who has the measured files"]
     run: Annotated[Mapping[str, Any], "command, provenance"]
 
-    def counts(self) -> dict[str, int]:
+    def counts(self) -> dict[Verdict, int]:
         """Quantities of the equations and of the engine by verdict."""
-        seen = Counter(each.sides[side].verdict for each in self.quantities for side in (EQUATIONS, ENGINE))
-        return {verdict: seen[verdict] for verdict in MEANING}
+        return count_verdicts(each.sides[side].verdict for each in self.quantities for side in (EQUATIONS, ENGINE))
 
 
 STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "python -m comparison.validation")
@@ -166,13 +175,13 @@ def quantities(
     data: Data,
     answers: Mapping[str, Answer],
     varied: Sequence[Array],
-    explain: Callable[[int, float], tuple[str, str]],
+    explain: Callable[[int, float], str],
 ) -> list[Quantity]:
     """
     The table of one run.
 
     varied: by the equations, with each input changed by its uncertainty; u_input is the root of the sum of the squared
-    changes. explain: verdict and cause of quantity k, whose E exceeds this u_val.
+    changes. explain: why quantity k has an E beyond this u_val.
     """
     rows, inputs = [], np.sqrt(np.sum(np.square([each - answers[EQUATIONS].values for each in varied]), axis=0))
     for k, (name, unit, use) in enumerate(zip(data.names, data.units, data.use)):
@@ -182,11 +191,9 @@ def quantities(
         for side, (values, errors) in answers.items():
             error = float(values[k] - data.values[k])
             allowed = math.hypot(errors[k], inputs[k], data.uncertainty[k])
-            verdict = VALID
-            if not (math.isfinite(error) and math.isfinite(allowed)):
-                verdict = NONE
-            elif abs(error) > allowed:
-                verdict, cause = explain(k, allowed)
+            verdict = judge(error, allowed)
+            if verdict == NOT_MET and side != SMOOTHED:
+                cause = explain(k, allowed)
             value, off, numerical, limit = map(finite_or_none, (float(values[k]), error, float(errors[k]), allowed))
             sides[side] = Comparison(value, off, numerical, limit, verdict)
         measured, spread, propagated = (float(row[k]) for row in (data.values, data.uncertainty, inputs))
