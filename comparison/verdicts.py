@@ -34,7 +34,7 @@ def judge(error: float | None, allowed: float | None) -> Verdict:
 def word_error(error: float, stated: float | None, unit: str = "") -> str:
     """Return a comparison error in words: relative to the stated value, or with its unit where that is None or zero."""
     if stated:
-        return signed(error / abs(stated))
+        return signed(error / stated)
     size = f"{abs(error):.2g}"
     sign = "+" if error > 0.0 else "−" if error < 0.0 else ""
     return f"{sign}{size} {unit}".rstrip()

@@ -18,6 +18,7 @@ from comparison.verdicts import (
 BOTH = EQUATIONS, ENGINE
 ORDER: Sequence[Verdict] = (MET, NOT_MET, NOT_COMPARED)  # from the best to the worst
 HALF_RANGE = "half range"
+INSTANTS = "phase of the starts", "phase of the stops", "share of time at rest"
 FRAME, PENDULUM = "frame, ", "pendulum, "  # begin the names of the experiments
 
 
@@ -53,15 +54,16 @@ def name_run(each: Quantity) -> str:
 
 def word_fit(table: Validation, loaded: bool) -> str:
     """Return what friction of the frame was fitted to: "friction of the load, fitted at 250 g and 450 g"."""
-    fitted = frame_rows(table, False, "calibrated") + (frame_rows(table, True, "calibrated") if loaded else [])
+    laws = (False, True) if loaded else (False,)  # both laws have the first run in common
+    fitted = [each for law in laws for each in frame_rows(table, law, "calibrated")]
     runs = " and ".join(dict.fromkeys(map(name_run, fitted)))
     return f"{'friction of the load' if loaded else 'one friction ratio'}, fitted at {runs}"
 
 
-def word_predictions(table: Validation, loaded: bool, name: str = HALF_RANGE) -> str:
-    """Return the verdicts on one predicted quantity by one law, run by run: "at 350 g met (...), at 550 g ..."."""
-    rows = [each for each in frame_rows(table, loaded, "predicted") if each.name == name]
-    return ", ".join(f"at {name_run(each)} {word_quantity(each)}" for each in rows) or f"{NOT_COMPARED}: no other run"
+def word_runs(table: Validation, loaded: bool, use: str) -> str:
+    """Return the verdicts on the half range by one law, run by run: "at 350 g met (...), at 550 g not met (...)"."""
+    rows = [each for each in frame_rows(table, loaded, use) if each.name == HALF_RANGE]
+    return ", ".join(f"at {name_run(each)} {word_quantity(each)}" for each in rows) or f"{NOT_COMPARED}: no such run"
 
 
 def word_met_of(rows: Sequence[Quantity]) -> str:
@@ -70,12 +72,16 @@ def word_met_of(rows: Sequence[Quantity]) -> str:
 
 
 def word_validated(table: Validation) -> str:
-    """Return what the measured motions validate, and what not, in two sentences without the last full stop."""
+    """Return what the measured motions validate, and what not, without the last full stop."""
     loaded = [each for each in frame_rows(table, True, "predicted") if each.name == HALF_RANGE]
     held = bool(loaded) and all(verdict_on(each) == MET for each in loaded)
-    head = "Validated is one quantity of one experiment" if held else "Nothing is validated"
-    parts = [f"with {word_fit(table, law)}, it is {word_predictions(table, law)}" for law in (True, False)]
-    return f"{head}: the {HALF_RANGE} of a frame shaken against dry friction: {'; '.join(parts)}. No building has been compared"
+    head = "Validated is one quantity" if held else "Nothing is validated, not even one quantity"
+    load, ratio = (f"Predicted with {word_fit(table, law)}: {word_runs(table, law, 'predicted')}" for law in (True, False))
+    fitted = ", ".join(word_runs(table, law, "calibrated") for law in (False, True))
+    return (
+        f"{head}: the {HALF_RANGE} of a frame shaken against dry friction. {load}. In the runs of the fit: {fitted}. "
+        f"{ratio}. No building has been compared"
+    )
 
 
 def verdict_line(table: Validation) -> str:
@@ -91,18 +97,47 @@ def verdict_line(table: Validation) -> str:
 
 def readme_rows(table: Validation) -> list[str]:
     """Return the rows of README's table that are about measurements."""
-    rows = []
+    rows, checked = [], "| equations and engine | **measured**: "
     for law in (True, False):
-        predicted = word_met_of(frame_rows(table, law, "predicted"))
+        predicted = frame_rows(table, law, "predicted")
         rows.append(
-            f"| equations and engine | **measured**: a frame shaken against dry friction; {word_fit(table, law)} "
-            f"([all](docs/validation.md)) | {HALF_RANGE} {word_predictions(table, law)}; "
-            f"of all predicted values {predicted} met |"
+            f"{checked}a frame shaken against dry friction; {word_fit(table, law)} ([all](docs/validation.md)) "
+            f"| {HALF_RANGE} {word_runs(table, law, 'predicted')}; {word_met_of(predicted)} predicted values met, "
+            f"largest error: {word_largest(predicted)} |"
         )
-    swings = [each for each in table.quantities if each.experiment.startswith(PENDULUM)]
-    fitted, predicted = ([each for each in swings if each.use == use] for use in ("calibrated", "predicted"))
-    rows.append(
-        "| equations and engine | **measured**: a pendulum, its decay by dry friction and its period at large angles "
-        f"| of predicted values {word_met_of(predicted)} met, of fitted ones {word_met_of(fitted)} |"
+    return [
+        *rows,
+        f"{checked}a pendulum, its decay by dry friction and its period at large angles | {word_predicted_pendulum(table)} |",
+    ]
+
+
+def word_instants(table: Validation, experiment: str = f"{FRAME}450 g") -> str:
+    """
+    Return what a run says of starts, stops and rests, in one sentence without the full stop.
+
+    Where the share of time at rest is met and an instant is not, its reason is stated if both instants shift to the same
+    side: the share holds their difference alone.
+    """
+    rows = {each.name: each for each in table.quantities if each.experiment == experiment}
+    starts, stops, share = (rows[name] for name in INSTANTS)
+    words = f"{experiment}: starts {word_quantity(starts)}, stops {word_quantity(stops)}, {share.name} {word_quantity(share)}"
+    errors = [each.sides[worse_side(each)].error or 0.0 for each in (starts, stops)]
+    hidden = verdict_on(share) == MET and NOT_MET in (verdict_on(starts), verdict_on(stops))
+    alike = errors[0] * errors[1] > 0.0
+    return f"{words}, because starts and stops shift alike" if hidden and alike else words
+
+
+def word_predicted_pendulum(table: Validation) -> str:
+    """Return how many of the pendulum's predicted values are met: "none of the 7 predicted values of the pendulum is met"."""
+    rows = [each for each in table.quantities if each.experiment.startswith(PENDULUM) and each.use == "predicted"]
+    met = sum(verdict_on(each) == MET for each in rows)
+    count = f"{met or 'none'} of the {len(rows)} predicted values of the pendulum"
+    return f"{count} {'is' if met < 2 else 'are'} met"
+
+
+def word_largest(rows: Sequence[Quantity]) -> str:
+    """Return the largest relative error of some quantities and where it is: "rms about the mean at 550 g +13 %"."""
+    each = max(
+        (each for each in rows if each.base), key=lambda row: abs(row.sides[worse_side(row)].error or 0.0) / row.measured
     )
-    return rows
+    return f"{each.name} at {name_run(each)} {word_error(each.sides[worse_side(each)].error or 0.0, each.base)}"
