@@ -27,7 +27,7 @@ from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import statements
 from comparison.analyses.validation.command import compared
 from comparison.analyses.validation.table import STORED as MEASURED
-from comparison.analyses.validation.table import Quantity, recorded
+from comparison.analyses.validation.table import recorded
 from comparison.report.verification import CHECKS, Check
 from comparison.verdicts import NOT_COMPARED, NOT_MET, count_verdicts, judge, word_counts, word_verdict
 
@@ -57,11 +57,6 @@ def published() -> Benchmarks:
     return found
 
 
-def word_both(each: Quantity) -> str:
-    """Return the verdicts of both sides, one where they are alike."""
-    return " / ".join(dict.fromkeys(map(each.word, (EQUATIONS, ENGINE))))
-
-
 def measured_rows() -> list[str]:
     """Return one row for each quantity of LEADING: the comparison error of both codes against u_val."""
     stored = recorded()
@@ -75,7 +70,7 @@ def measured_rows() -> list[str]:
         rows.append(
             f"| the {each.name} of the {each.experiment}, {each.measured:.4g} {each.unit} | measurement ({each.use}) "
             f"| E = {found} {each.unit} (equations, engine) | u<sub>val</sub> = {sides[0].validation:.2g} {each.unit} "
-            f"| {word_both(each)} | `comparison.validation FOLDER` | {commit} |"
+            f"| {each.word_both()} | `comparison.validation FOLDER` | {commit} |"
         )
     return rows
 
@@ -83,13 +78,13 @@ def measured_rows() -> list[str]:
 def published_rows() -> list[str]:
     """Return one row for each side: how many of the published numbers it meets."""
     table, rows = published(), []
-    for side, name in ((EQUATIONS, "the equations"), (ENGINE, "the engine")):
+    for side, name in ((EQUATIONS, "the equations give"), (ENGINE, "the engine gives")):
         numbers = [row.numbers[side] for each in table.benchmarks for row in each.rows]
         counts = count_verdicts(number.verdict for number in numbers)
         why = dict.fromkeys(number.explanation or "not explained" for number in numbers if number.verdict == NOT_MET)
         verdict = "met" if counts["met"] == len(numbers) else f"not met: {'; '.join(why)}"
         rows.append(
-            f"| {name} give numbers published elsewhere | closed forms and other programs, [all](benchmarks.md) "
+            f"| {name} numbers published elsewhere | closed forms and other programs, [all](benchmarks.md) "
             f"| {word_counts(counts, 'number')} | the error of both | {verdict} | `comparison.benchmarks --mastodon FILE` "
             f"| {table.run['provenance']['commit'][:7]} |"
         )
@@ -151,7 +146,7 @@ def quantities() -> str:
         errors = [number for side in sides for number in (side.error, side.numerical)]
         shown = ["none" if n is None else f"{n:.2g}" for n in (each.data, each.inputs, *errors, sides[0].validation)]
         title = f"{each.experiment}: {each.name}, {each.unit}"
-        rows.append(f"| {' | '.join([title, each.use, f'{each.measured:.5g}', *shown, word_both(each)])} |")
+        rows.append(f"| {' | '.join([title, each.use, f'{each.measured:.5g}', *shown, each.word_both()])} |")
     return "\n".join([QUANTITIES, *rows])
 
 
@@ -160,7 +155,7 @@ def explanations() -> str:
     groups: dict[str, list[str]] = {}
     for each in recorded().quantities:
         if each.cause:
-            groups.setdefault(each.cause, []).append(f"{each.experiment}: {each.name}, {word_both(each)}")
+            groups.setdefault(each.cause, []).append(f"{each.experiment}: {each.name}, {each.word_both()}")
     return "\n".join(f"- {cause[0].upper()}{cause[1:]}.\n" + "\n".join(f"  - {row}" for row in rows) for cause, rows in groups.items())
 
 
@@ -178,8 +173,9 @@ def facts() -> str:
 def limits() -> str:
     """Return what the measured motions validate, and what they hide."""
     table = recorded()
-    texts = (statements.word_validated, statements.word_instants, statements.word_predicted_pendulum)
-    sentences = [make(table) for make in texts]
+    sentences = [statements.word_validated(table)]
+    sentences += [f"{statements.word_fit(table, law)}: {statements.word_motions(table, law)}" for law in (True, False)]
+    sentences += [statements.word_instants(table), statements.word_predicted_pendulum(table)]
     return "\n".join(f"- {text[0].upper()}{text[1:]}." for text in sentences)
 
 

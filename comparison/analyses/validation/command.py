@@ -75,8 +75,7 @@ def print_validation(console: Console, table: Validation) -> None:
         sides = [each.sides[side] for side in (EQUATIONS, ENGINE)]
         numbers = [number for side in sides for number in (side.error, side.numerical)] + [sides[0].validation]
         cells = [f"{each.data:.2g}", f"{each.inputs:.2g}", *("-" if n is None else f"{n:.2g}" for n in numbers)]
-        verdicts = " / ".join(dict.fromkeys(map(each.word, (EQUATIONS, ENGINE))))
-        lines.add_row(f"{each.experiment}: {each.name}, {each.unit}", f"{each.measured:.5g}", *cells, verdicts)
+        lines.add_row(f"{each.experiment}: {each.name}, {each.unit}", f"{each.measured:.5g}", *cells, each.word_both())
     console.print(lines)
     causes = [f"{each.experiment}, {each.name}: {each.cause}" for each in table.quantities if each.cause]
     for text in (*causes, *table.facts, *(f"input of the {each}" for each in table.inputs)):

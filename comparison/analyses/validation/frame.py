@@ -267,7 +267,7 @@ def compare(runs: Sequence[Shaken]) -> Found:
     rest = [(each, best) for each, best in zip(folded, own) if each is not first]
     if any(_slides(each) for each, _ in rest):
         parts.append(_compare_by_load(fitted, rest))
-    return table.joined([Found([], inputs, [], []), *parts])
+    return table.joined([Found([], inputs, [], [], []), *parts])
 
 
 def _slides(cycles: Cycles) -> bool:
@@ -291,7 +291,7 @@ def _compare_by_load(first: Fitted, rest: Sequence[tuple[Cycles, Setup]]) -> Fou
         f"frame: the friction ratios fitted to {first.cycles.run.name} and to {second.cycles.run.name} "
         f"grow as the load to the power {exponent:.3f}"
     )
-    found = [Found([], [_given_ratio(second)], [fact], [])]
+    found = [Found([], [_given_ratio(second)], [fact], [], [])]
     for cycles, own in rest if len(rest) > 1 else ():
         share = (math.log(cycles.run.weight) - begin) / (end - begin)
 
@@ -332,10 +332,13 @@ def _compare_run(
     lines = {"measured": cycles.mean} | {
         side: last_cycle(motions[side], cycles.frequency) for side in (EQUATIONS, ENGINE)
     }
+    off = float(np.std(lines[EQUATIONS] - cycles.mean))
+    middle = 0.5 * (cycles.mean.max() + cycles.mean.min())
     fact = (
         f"{title}: the friction ratio of this run alone is {own.ratio:.3f}; the motion over a cycle is then "
-        f"off by {np.std(best - cycles.mean):.3f} mm rms, and by {np.std(lines[EQUATIONS] - cycles.mean):.3f} mm with "
-        f"{setup.ratio:.3f}"
+        f"off by {np.std(best - cycles.mean):.3f} mm rms, and by {off:.3f} mm with {setup.ratio:.3f}; the plate is above "
+        f"its middle for {100.0 * np.mean(cycles.mean > middle):.0f} % of a cycle"
     )
+    residual = table.Residual(title, use, off / float(data.values[0]))
     axes, turn = ("phase of the base, deg", "top plate, mm"), np.arange(SAMPLES) * 360.0 / SAMPLES
-    return Found(rows, [], [fact], table.curves(title, axes, {name: (turn, y) for name, y in lines.items()}))
+    return Found(rows, [], [fact], [residual], table.curves(title, axes, {name: (turn, y) for name, y in lines.items()}))

@@ -75,7 +75,7 @@ def compare_decay(swing: Swing) -> Found:
     axes = ("number of the turning point", "angle, mrad")
     curves = table.curves("pendulum, decay", axes, {name: (numbers, y) for name, y in drawn.items()})
     given = [table.given(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named]
-    return Found(rows, given, [fact], curves)
+    return Found(rows, given, [fact], [], curves)
 
 
 def compare_large(swing: Swing) -> Found:
@@ -115,7 +115,7 @@ def compare_large(swing: Swing) -> Found:
         s: (np.array(ANGLES), answers[s].values) for s in (EQUATIONS, ENGINE)
     }
     axes = ("amplitude, rad", "half period, ms")
-    return Found(rows, [given], [fact], table.curves("pendulum, large angles", axes, drawn))
+    return Found(rows, [given], [fact], [], table.curves("pendulum, large angles", axes, drawn))
 
 
 def _motion(

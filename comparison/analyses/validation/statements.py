@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation.frame import LOADED
 from comparison.analyses.validation.table import Quantity, Validation
+from comparison.wording import percent
 from comparison.verdicts import (
     MET,
     NOT_COMPARED,
@@ -84,6 +85,13 @@ def word_validated(table: Validation) -> str:
     )
 
 
+def word_motions(table: Validation, loaded: bool) -> str:
+    """Return by how much the predicted motions of the frame are off as a whole, by one law of friction."""
+    rows = [each for each in table.residuals if each.use == "predicted" and each.experiment.endswith(LOADED) == loaded]
+    sizes = [f"{percent(each.share)} at {each.experiment.removeprefix(FRAME).removesuffix(LOADED)}" for each in rows]
+    return f"whole motion off by {', '.join(sizes)} (rms over the half range)"
+
+
 def verdict_line(table: Validation) -> str:
     """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
     rows = [(each, worse_side(each)) for each in table.quantities if verdict_on(each) == NOT_MET and each.base]
@@ -103,7 +111,7 @@ def readme_rows(table: Validation) -> list[str]:
         rows.append(
             f"{checked}a frame shaken against dry friction; {word_fit(table, law)} ([all](docs/validation.md)) "
             f"| {HALF_RANGE} {word_runs(table, law, 'predicted')}; {word_met_of(predicted)} predicted values met, "
-            f"largest error: {word_largest(predicted)} |"
+            f"largest error: {word_largest(predicted)}; {word_motions(table, law)} |"
         )
     return [
         *rows,

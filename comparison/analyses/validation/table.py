@@ -60,10 +60,19 @@ class Quantity:
         """Value to which an E is relative, None where a share of it says nothing."""
         return None if self.unit in ABSOLUTE else self.measured
 
-    def word(self, side: str, explained: bool = False) -> str:
-        """Return the verdict on one side in words, with its explanation if asked."""
+    def word(self, side: str) -> str:
+        """Return the verdict on one side in words."""
         found = self.sides[side]
-        return word_verdict(found.verdict, found.error, self.base, self.unit, self.cause if explained else "")
+        return word_verdict(found.verdict, found.error, self.base, self.unit)
+
+    def word_both(self) -> str:
+        """Return the verdicts on equations and engine in words, once where they are alike."""
+        one, two = (self.word(side) for side in (EQUATIONS, ENGINE))
+        if one == two:
+            return one
+        if self.sides[EQUATIONS].verdict == self.sides[ENGINE].verdict:
+            return f"{one.removesuffix(')')} / {two.split('(by ')[1]}"
+        return f"{one} / {two}"
 
 
 @result
@@ -78,12 +87,22 @@ class Curve:
 
 
 @result
+class Residual:
+    """How far a whole motion is off, which quantities of it alone do not show."""
+
+    experiment: Annotated[str, "the run, and the law of friction where it is of the load"]
+    use: Annotated[str, "calibrated or predicted"]
+    share: Annotated[float, "rms difference of the equations from the mean cycle, over the measured half range"]
+
+
+@result
 class Validation:
     """All measured quantities. Every uncertainty is expanded, about 95 %."""
 
     quantities: Annotated[Sequence[Quantity], "in the order of the experiments"]
     inputs: Annotated[Sequence[str], "of the computations, in sentences: value, uncertainty, unit, and who states them"]
     facts: Annotated[Sequence[str], "what else was found, in sentences"]
+    residuals: Annotated[Sequence[Residual], "of the runs of the frame"]
     curves: Annotated[Sequence[Curve], "of the plots; only in the file of a user who has the measured files"]
     run: Annotated[Mapping[str, Any], "command, provenance"]
 
@@ -114,6 +133,7 @@ class Found(NamedTuple):
     quantities: list[Quantity]
     inputs: list[str]
     facts: list[str]
+    residuals: list[Residual]
     curves: list[Curve]
 
 
