@@ -114,5 +114,6 @@ def test_what_is_not_known_exceeds_nothing():
     assert line == f"1 measured peak stands beside the models, {counts}"
     largest = "largest: fig3-I, mu of body 1, far, −25 %"
     assert verdict_line([found]) == counts.replace("1 not met", f"1 not met ({largest})")
-    drift = _beside(scene, stated.model_copy(update={"quantity": "drift", "value": 0.0}), [("a", {("drift", 1): (0.3, 0.1, "ok")})])
+    [none] = PLAIN.with_values({"measured": [peak("drift", 0.0, 0.1, 2)]}).measured
+    drift = _beside(scene, none, [("a", {("drift", 2): (0.3, 0.1, "ok")})])
     assert drift.word(drift.computed[0]) == "not met (by +0.3 m)"

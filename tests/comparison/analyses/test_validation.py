@@ -171,11 +171,14 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     for place, (grams, fitted) in ((-2, (250, 0.24)), (-1, (450, RATIO * 1.8**0.15))):
         source = f"fitted to the motion of the run with {grams} g; its scatter over the cycles"
         assert found.inputs[place] == f"frame: friction ratio {fitted:.5g} ± {spread:.2g} ({source})"
-    (plot, *_), titles = panels(Validation([], [], [], found.curves, {})), ("phase of the base, deg", "top plate, mm")
+    (plot, *_), titles = panels(Validation([], [], [], [], found.curves, {})), ("phase of the base, deg", "top plate, mm")
     assert (plot["title"], plot["plot"]["x"]["title"], plot["plot"]["y"]["title"]) == ("frame, 250 g", *titles)
     lines = {line["name"]: line["y"] for line in plot["plot"]["series"]}
     assert lines["measured"] == pytest.approx(cycle(frame.Setup(ratio=RATIO)).tolist(), abs=1e-9)
     assert lines["equations"] == pytest.approx(lines["measured"], abs=1e-3)
+    off = [8.0 * RATIO * (change**0.15 - 1.0) / math.sqrt(2.0) for change in (1.0, 1.4, 1.8)]
+    for residual, expected, row in zip(found.residuals, off, (first, constant, rows["frame, 450 g", "half range"])):
+        assert residual.share == pytest.approx(expected / row.measured, abs=1e-4), "rms over the half range"
     power = "fitted to frame, 250 g and to frame, 450 g grow as the load to the power 0.150"
     assert any(power in fact for fact in found.facts)
 
@@ -269,7 +272,6 @@ def test_page_and_terminal_have_the_recorded_table(capsys: pytest.CaptureFixture
         sides = [number for side in (equations, engine) for number in (side.error, side.numerical)]
         numbers = [f"{n:.2g}" for n in (each.data, each.inputs, *sides, equations.validation)]
         assert [measured, *numbers] in [cells[1:-1] for cells in lines]
-        assert equations.verdict == engine.verdict
         assert abs(engine.value - smoothed.value) <= engine.numerical + smoothed.numerical, each
 
 
