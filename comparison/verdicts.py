@@ -25,7 +25,7 @@ CLASSES: Mapping[Verdict, str] = {MET: "v-converged", NOT_MET: "v-FAILED", NOT_C
 
 
 def judge(error: float | None, allowed: float | None) -> Verdict:
-    """Return whether a comparison error is within what the uncertainties together allow; not compared without either."""
+    """Return whether an error is within what the uncertainties together allow; not compared where either is unknown."""
     if error is None or allowed is None or not (math.isfinite(error) and math.isfinite(allowed)):
         return NOT_COMPARED
     return MET if abs(error) <= allowed else NOT_MET

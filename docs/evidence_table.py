@@ -11,7 +11,6 @@ What the pages state from records: `python docs/evidence_table.py` writes it ane
 from __future__ import annotations
 
 import json
-import re
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
@@ -85,8 +84,8 @@ def published_rows() -> list[str]:
         verdict = "met" if counts["met"] == len(numbers) else f"not met: {'; '.join(why)}"
         rows.append(
             f"| {name} numbers published elsewhere | closed forms and other programs, [all](benchmarks.md) "
-            f"| {word_counts(counts, 'number')} | the error of both | {verdict} | `comparison.benchmarks --mastodon FILE` "
-            f"| {table.run['provenance']['commit'][:7]} |"
+            f"| {word_counts(counts, 'number')} | the error of both | {verdict} "
+            f"| `comparison.benchmarks --mastodon FILE` | {table.run['provenance']['commit'][:7]} |"
         )
     return rows
 
@@ -156,7 +155,10 @@ def explanations() -> str:
     for each in recorded().quantities:
         if each.cause:
             groups.setdefault(each.cause, []).append(f"{each.experiment}: {each.name}, {each.word_both()}")
-    return "\n".join(f"- {cause[0].upper()}{cause[1:]}.\n" + "\n".join(f"  - {row}" for row in rows) for cause, rows in groups.items())
+    return "\n".join(
+        f"- {cause[0].upper()}{cause[1:]}.\n" + "\n".join(f"  - {row}" for row in rows)
+        for cause, rows in groups.items()
+    )
 
 
 def counts() -> str:
@@ -197,10 +199,12 @@ def with_blocks(file: Path) -> str:
 
 def with_readme_rows(text: str) -> str:
     """Return the text of README with the rows about measurements and the published numbers in their places."""
-    rows = "\n".join(statements.readme_rows(recorded()))
-    text = re.sub(r"^\| equations and engine \| \*\*measured\*\*.*?$(\n\| equations and engine \| \*\*measured.*?$)*", lambda _: rows, text, flags=re.M)  # fmt: skip
-    short = "\n".join(published_short())
-    return re.sub(r"^\| benchmark \| published.*?(?=\n\n)", lambda _: short, text, flags=re.M | re.S)
+    lines = text.split("\n")
+    measured = [k for k, line in enumerate(lines) if line.startswith("|") and "**measured**" in line]
+    lines[measured[0] : measured[-1] + 1] = statements.readme_rows(recorded())
+    begin = next(k for k, line in enumerate(lines) if line.startswith("| benchmark |"))
+    lines[begin : lines.index("", begin)] = published_short()
+    return "\n".join(lines)
 
 
 def published_short() -> list[str]:

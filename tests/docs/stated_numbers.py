@@ -63,13 +63,55 @@ _like_for_like = re.search(r"\| fig3-II, 1e-3, 256 \|[^|]*\|[^|]*\| ([\d.e-]+),"
 assert _like_for_like
 
 STATED = (
-    Stated("closed forms of the equations", r"SciPy, event by event \| ([\d.e-]+);", _short(_largest(CLOSED_FORMS), 0), ("README.md",)),
-    Stated("closed forms of the engine", r"second order in its step \| ([\d.e-]+);", _short(_largest(CONTACT), 1), ("README.md",)),
-    Stated("order of the engine", r"2\.00 ± ([\d.]+)", f"{_largest(('without_stops_is_of_second_order',)):.2g}", ("README.md",)),
-    Stated("loops of a bearing", r"(?:loops agree|forces) within ([\d.]+) %", f"{100.0 * _largest(('loops_of_a_bearing',)):.1g}", ("README.md", "docs/reference.md")),
-    Stated("displacements of MASTODON", r"(\d of \d) displacements not met", f"{_off} of {len(_mastodon.rows)}", ("README.md",)),
-    Stated("like for like, fig3-II", r"256 random phases of `fig3-I` and of `fig3-II` \| ([\d.e-]+),", _like_for_like[1], ("README.md",)),
-    Stated("damping of the frame", r"damper C, ([\d.]+) % of critical", f"{100.0 * DAMPING:.2g}", ("docs/validation.md",)),
-    Stated("second harmonic of the base", r"second harmonic of ([\d.]+) % of the first", _in_facts(r"measured one, ([\d.]+) % of the first"), ("docs/validation.md",)),
-    Stated("runs of the fit", r"fitted to the runs with (\d+ and \d+ g)", " and ".join(re.findall(r"motion of the run with (\d+)", FACTS)) + " g", ("docs/validation.md",)),
-)  # fmt: skip
+    Stated(
+        "closed forms of the equations",
+        r"SciPy, event by event \| ([\d.e-]+);",
+        _short(_largest(CLOSED_FORMS), 0),
+        ("README.md",),
+    ),
+    Stated(
+        "closed forms of the engine",
+        r"second order in its step \| ([\d.e-]+);",
+        _short(_largest(CONTACT), 1),
+        ("README.md",),
+    ),
+    Stated(
+        "order of the engine",
+        r"2\.00 ± ([\d.]+)",
+        f"{_largest(('without_stops_is_of_second_order',)):.2g}",
+        ("README.md",),
+    ),
+    Stated(
+        "loops of a bearing",
+        r"(?:loops agree|forces) within ([\d.]+) %",
+        f"{100.0 * _largest(('loops_of_a_bearing',)):.1g}",
+        ("README.md", "docs/reference.md"),
+    ),
+    Stated(
+        "displacements of MASTODON",
+        r"(\d of \d) displacements not met",
+        f"{_off} of {len(_mastodon.rows)}",
+        ("README.md",),
+    ),
+    Stated(
+        "like for like, fig3-II",
+        r"256 random phases of `fig3-I` and of `fig3-II` \| ([\d.e-]+),",
+        _like_for_like[1],
+        ("README.md",),
+    ),
+    Stated(
+        "damping of the frame", r"damper C, ([\d.]+) % of critical", f"{100.0 * DAMPING:.2g}", ("docs/validation.md",)
+    ),
+    Stated(
+        "second harmonic of the base",
+        r"second harmonic of ([\d.]+) % of the first",
+        _in_facts(r"measured one, ([\d.]+) % of the first"),
+        ("docs/validation.md",),
+    ),
+    Stated(
+        "runs of the fit",
+        r"fitted to the runs with (\d+ and \d+ g)",
+        " and ".join(re.findall(r"motion of the run with (\d+)", FACTS)) + " g",
+        ("docs/validation.md",),
+    ),
+)

@@ -91,7 +91,9 @@ def test_what_is_said_to_be_validated_is_what_is_recorded() -> None:
 def test_every_check_of_the_evidence_is_met_within_the_limit_it_states() -> None:
     store = json.loads(evidence_table.STORE.read_text(encoding="utf-8"))
     for check in CHECKS:
-        found = store[check.test]
+        if (found := store.get(check.test)) is None:
+            assert evidence_table.check_row(check).split(" | ")[4] == "not compared", check
+            continue
         assert evidence_table.check_row(check).split(" | ")[4] == "met", check
         number = re.match(r"\d+(\.\d+)?(e-\d+)?", check.closeness)
         assert float(number[0]) == found["limit"] if number else found["limit"] == 1.0, check

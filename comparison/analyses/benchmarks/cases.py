@@ -265,7 +265,7 @@ def mastodon(path: Path) -> Case:
 
 
 def _refuse_other_input(path: Path, samples: Array) -> None:
-    """Raise SceneError unless the samples are those of MASTODON's test: the published numbers are of no other motion."""
+    """Raise SceneError unless the samples are those of MASTODON's test, of which alone the published numbers are."""
     if not samples[:, 1:].any(axis=0).all():
         rule = "must have accelerations along x, y and z: columns ax, ay and az"
         raise SceneError("command line", OPTION, str(path), rule)

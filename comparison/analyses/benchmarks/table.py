@@ -53,7 +53,9 @@ class Row:
     def __post_init__(self) -> None:
         for side, number in self.numbers.items():
             if number.verdict != self.judge(number.value, number.error):
-                raise ValueError(f"verdict {number.verdict!r} on {side} contradicts {number.value} and {self.published}")
+                raise ValueError(
+                    f"verdict {number.verdict!r} on {side} contradicts {number.value} and {self.published}"
+                )
 
     def judge(self, value: float | None, error: float | None) -> Verdict:
         """Return the verdict on a value with its error, but for rounding of the value."""

@@ -84,7 +84,7 @@ def unit_of_peak(peak: MeasuredPeak) -> str:
 
 
 def verdict_line(peaks: Sequence[MeasuredPeak]) -> str:
-    """Return the verdict of the section in one line: the counts, and the largest relative difference that is not met."""
+    """Return the verdict of the section in one line: counts, and the largest relative difference that is not met."""
     pairs = [(peak, computed) for peak in peaks for computed in peak.computed]
     off = [(peak, each) for peak, each in pairs if each.verdict == NOT_MET and peak.value]
     largest = max(off, key=lambda pair: abs(pair[1].difference / pair[0].value), default=None)

@@ -336,9 +336,11 @@ def _compare_run(
     middle = 0.5 * (cycles.mean.max() + cycles.mean.min())
     fact = (
         f"{title}: the friction ratio of this run alone is {own.ratio:.3f}; the motion over a cycle is then "
-        f"off by {np.std(best - cycles.mean):.3f} mm rms, and by {off:.3f} mm with {setup.ratio:.3f}; the plate is above "
-        f"its middle for {100.0 * np.mean(cycles.mean > middle):.0f} % of a cycle"
+        f"off by {np.std(best - cycles.mean):.3f} mm rms, and by {off:.3f} mm with {setup.ratio:.3f}; the plate is "
+        f"above its middle for {100.0 * np.mean(cycles.mean > middle):.0f} % of a cycle"
     )
     residual = table.Residual(title, use, off / float(data.values[0]))
     axes, turn = ("phase of the base, deg", "top plate, mm"), np.arange(SAMPLES) * 360.0 / SAMPLES
-    return Found(rows, [], [fact], [residual], table.curves(title, axes, {name: (turn, y) for name, y in lines.items()}))
+    return Found(
+        rows, [], [fact], [residual], table.curves(title, axes, {name: (turn, y) for name, y in lines.items()})
+    )

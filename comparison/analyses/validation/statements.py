@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation.frame import LOADED
 from comparison.analyses.validation.table import Quantity, Validation
-from comparison.wording import percent
 from comparison.verdicts import (
     MET,
     NOT_COMPARED,
@@ -15,6 +14,7 @@ from comparison.verdicts import (
     word_error,
     word_verdict,
 )
+from comparison.wording import percent
 
 BOTH = EQUATIONS, ENGINE
 ORDER: Sequence[Verdict] = (MET, NOT_MET, NOT_COMPARED)  # from the best to the worst
@@ -77,7 +77,9 @@ def word_validated(table: Validation) -> str:
     loaded = [each for each in frame_rows(table, True, "predicted") if each.name == HALF_RANGE]
     held = bool(loaded) and all(verdict_on(each) == MET for each in loaded)
     head = "Validated is one quantity" if held else "Nothing is validated, not even one quantity"
-    load, ratio = (f"Predicted with {word_fit(table, law)}: {word_runs(table, law, 'predicted')}" for law in (True, False))
+    load, ratio = (
+        f"Predicted with {word_fit(table, law)}: {word_runs(table, law, 'predicted')}" for law in (True, False)
+    )
     fitted = ", ".join(word_runs(table, law, "calibrated") for law in (False, True))
     return (
         f"{head}: the {HALF_RANGE} of a frame shaken against dry friction. {load}. In the runs of the fit: {fitted}. "
@@ -115,7 +117,8 @@ def readme_rows(table: Validation) -> list[str]:
         )
     return [
         *rows,
-        f"{checked}a pendulum, its decay by dry friction and its period at large angles | {word_predicted_pendulum(table)} |",
+        f"{checked}a pendulum, its decay by dry friction and its period at large angles "
+        f"| {word_predicted_pendulum(table)} |",
     ]
 
 
@@ -123,12 +126,13 @@ def word_instants(table: Validation, experiment: str = f"{FRAME}450 g") -> str:
     """
     Return what a run says of starts, stops and rests, in one sentence without the full stop.
 
-    Where the share of time at rest is met and an instant is not, its reason is stated if both instants shift to the same
-    side: the share holds their difference alone.
+    Where the share of time at rest is met and an instant is not, the reason is stated if both instants shift to the
+    same side: the share holds their difference alone.
     """
     rows = {each.name: each for each in table.quantities if each.experiment == experiment}
     starts, stops, share = (rows[name] for name in INSTANTS)
-    words = f"{experiment}: starts {word_quantity(starts)}, stops {word_quantity(stops)}, {share.name} {word_quantity(share)}"
+    named = {"starts": starts, "stops": stops, share.name: share}
+    words = f"{experiment}: " + ", ".join(f"{name} {word_quantity(each)}" for name, each in named.items())
     errors = [each.sides[worse_side(each)].error or 0.0 for each in (starts, stops)]
     hidden = verdict_on(share) == MET and NOT_MET in (verdict_on(starts), verdict_on(stops))
     alike = errors[0] * errors[1] > 0.0
@@ -136,7 +140,7 @@ def word_instants(table: Validation, experiment: str = f"{FRAME}450 g") -> str:
 
 
 def word_predicted_pendulum(table: Validation) -> str:
-    """Return how many of the pendulum's predicted values are met: "none of the 7 predicted values of the pendulum is met"."""
+    """Return how many of the pendulum's predicted values both sides meet, in a sentence without the full stop."""
     rows = [each for each in table.quantities if each.experiment.startswith(PENDULUM) and each.use == "predicted"]
     met = sum(verdict_on(each) == MET for each in rows)
     count = f"{met or 'none'} of the {len(rows)} predicted values of the pendulum"
@@ -146,6 +150,7 @@ def word_predicted_pendulum(table: Validation) -> str:
 def word_largest(rows: Sequence[Quantity]) -> str:
     """Return the largest relative error of some quantities and where it is: "rms about the mean at 550 g +13 %"."""
     each = max(
-        (each for each in rows if each.base), key=lambda row: abs(row.sides[worse_side(row)].error or 0.0) / row.measured
+        (each for each in rows if each.base),
+        key=lambda row: abs(row.sides[worse_side(row)].error or 0.0) / row.measured,
     )
     return f"{each.name} at {name_run(each)} {word_error(each.sides[worse_side(each)].error or 0.0, each.base)}"

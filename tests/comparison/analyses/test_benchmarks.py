@@ -18,7 +18,17 @@ from comparison.analyses.benchmarks import analysis, readings
 from comparison.analyses.benchmarks.analysis import Answer, BenchmarkTable, _benchmark, solve
 from comparison.analyses.benchmarks.cases import LIMITS, Case, Reading, cases, mastodon, published, shipped
 from comparison.analyses.benchmarks.command import main, print_benchmarks
-from comparison.analyses.benchmarks.table import FRICTION, MODEL, STORED, Benchmarks, Number, page, stated, verdict_line, with_error
+from comparison.analyses.benchmarks.table import (
+    FRICTION,
+    MODEL,
+    STORED,
+    Benchmarks,
+    Number,
+    page,
+    stated,
+    verdict_line,
+    with_error,
+)
 from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET
 
@@ -115,7 +125,11 @@ def test_a_number_is_met_within_both_errors():
 
 def test_a_file_whose_verdict_contradicts_its_numbers_is_refused(tmp_path):
     known = STORED.as_json(known_benchmarks())
-    for right, wrong in ((b'"met"', b'"not met"'), (b'"published": 2.0242', b'"published": 2.05'), (b'"met"', b'"law"')):
+    for right, wrong in (
+        (b'"met"', b'"not met"'),
+        (b'"published": 2.0242', b'"published": 2.05'),
+        (b'"met"', b'"law"'),
+    ):
         (tmp_path / STORED.name).write_bytes(known.replace(right, wrong))
         with pytest.raises(ValueError, match=r"not a table of benchmarks: .*run python -m comparison\.benchmarks"):
             STORED.load(tmp_path)
@@ -157,14 +171,21 @@ def test_every_number_stands_under_its_side(capsys):
     assert cells == ["frame", "isolation period, s", "2.0242", *numbers]
     row = "| isolation period | 2.0242 s ± 5e-05 | 2.02423 ± 2e-08 | met | 2.02425 ± 3e-08 | none | not compared |"
     assert row in page(table)
-    assert "| quantity | published | equations | verdict | equations with the engine's friction | engine | verdict |" in page(table)
+    assert (
+        "| quantity | published | equations | verdict | equations with the engine's friction | engine | verdict |"
+        in page(table)
+    )
 
 
 @pytest.mark.parametrize(
     ("number", "code", "said"),
     [
         (Number(2.0242, 1e-6, MET), 0, "2 met, 0 not met, 0 not compared"),
-        (Number(2.0, 1e-3, NOT_MET, FRICTION), 0, "1 met, 1 not met (largest: frame, isolation period, engine, −1.2 %),"),
+        (
+            Number(2.0, 1e-3, NOT_MET, FRICTION),
+            0,
+            "1 met, 1 not met (largest: frame, isolation period, engine, −1.2 %),",
+        ),
         (Number(2.0, 1e-3, NOT_MET, MODEL), 0, f"1 not met: {MODEL}."),
         (Number(2.0, 1e-3, NOT_MET), 1, "1 not met and not explained."),
         (Number(None, None, NOT_COMPARED), 1, "1 met, 0 not met, 1 not compared"),

@@ -19,7 +19,7 @@ from comparison.analyses.validation import frame, pendulum, table
 from comparison.analyses.validation.command import compared, main
 from comparison.analyses.validation.feature import panels
 from comparison.analyses.validation.files import DECAY, LARGE, Shaken, read_folder
-from comparison.analyses.validation.table import COVERAGE, LAW, Comparison, Quantity, Validation, recorded
+from comparison.analyses.validation.table import COVERAGE, LAW, Validation, recorded
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET
 
 MASS, STIFFNESS, DAMPING, RATIO = 3.0799, 1191.0, 0.6690, 0.24
@@ -171,7 +171,10 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
     for place, (grams, fitted) in ((-2, (250, 0.24)), (-1, (450, RATIO * 1.8**0.15))):
         source = f"fitted to the motion of the run with {grams} g; its scatter over the cycles"
         assert found.inputs[place] == f"frame: friction ratio {fitted:.5g} ± {spread:.2g} ({source})"
-    (plot, *_), titles = panels(Validation([], [], [], [], found.curves, {})), ("phase of the base, deg", "top plate, mm")
+    (plot, *_), titles = (
+        panels(Validation([], [], [], [], found.curves, {})),
+        ("phase of the base, deg", "top plate, mm"),
+    )
     assert (plot["title"], plot["plot"]["x"]["title"], plot["plot"]["y"]["title"]) == ("frame, 250 g", *titles)
     lines = {line["name"]: line["y"] for line in plot["plot"]["series"]}
     assert lines["measured"] == pytest.approx(cycle(frame.Setup(ratio=RATIO)).tolist(), abs=1e-9)
@@ -293,7 +296,7 @@ def make(folder: Path) -> Path:
         (lambda folder: savemat(folder / LARGE, dict.fromkeys(PARTS, 1.0)), "must be"),
         (lambda folder: [file.unlink() for file in folder.iterdir()], "holds none of the measured files"),
         (lambda folder: folder.rename(folder.with_name("other")), "must be a folder"),
-        (lambda folder: [save(make(folder / part), 350) for part in "ab"], "must hold each file once: also a/s_b_350g_x"),
+        (lambda folder: [save(make(folder / part), 350) for part in "ab"], "must hold each file once: also a/s_b_350"),
     ],
 )  # fmt: skip
 def test_wrong_files_end_in_one_line(tmp_path, capsys, spoil, said):

@@ -107,7 +107,10 @@ def test_counts_and_the_largest_error_are_those_of_the_record() -> None:
     off = statements.readme_rows(replace(recorded(), residuals=residuals))
     assert "whole motion off by 24 % at 350 g, 15 % at 550 g" in off[0]
     line = statements.verdict_line(recorded())
-    assert line == "88 comparisons: 35 met, 53 not met (largest: pendulum, decay, turning point 13, −137 %), 0 not compared"
+    assert (
+        line
+        == "88 comparisons: 35 met, 53 not met (largest: pendulum, decay, turning point 13, −137 %), 0 not compared"
+    )
     line = statements.verdict_line(changed("frame, 450 g", "half range", without_uncertainty))
     assert "35 met, 51 not met" in line
     assert line.endswith("2 not compared")
