@@ -175,7 +175,7 @@ def facts() -> str:
 def limits() -> str:
     """Return what the measured motions validate, and what they hide."""
     table = recorded()
-    sentences = [statements.word_validated(table)]
+    sentences = [statements.word_validated(table), statements.word_calibrated(table)]
     sentences += [f"{statements.word_fit(table, law)}: {statements.word_motions(table, law)}" for law in (True, False)]
     sentences += [statements.word_instants(table), statements.word_predicted_pendulum(table)]
     return "\n".join(f"- {text[0].upper()}{text[1:]}." for text in sentences)

