@@ -21,7 +21,7 @@ MEANING: Mapping[Verdict, str] = {
     NOT_MET: "it is not; “by” is the computed less the stated value, and an explanation follows where there is one",
     NOT_COMPARED: "no value was computed, or its uncertainty is not known",
 }
-CLASSES: Mapping[Verdict, str] = {MET: "v-converged", NOT_MET: "v-FAILED", NOT_COMPARED: "v-limit"}  # on the page
+CLASSES: Mapping[Verdict, str] = {MET: "v-converged", NOT_MET: "v-limit", NOT_COMPARED: "v-refused"}  # on the page
 
 
 def judge(error: float | None, allowed: float | None) -> Verdict:

@@ -151,14 +151,11 @@ def quantities() -> str:
 
 def explanations() -> str:
     """Return what is not met, by its explanation."""
-    groups: dict[str, list[str]] = {}
-    for each in recorded().quantities:
-        if each.cause:
-            groups.setdefault(each.cause, []).append(f"{each.experiment}: {each.name}, {each.word_both()}")
-    return "\n".join(
-        f"- {cause[0].upper()}{cause[1:]}.\n" + "\n".join(f"  - {row}" for row in rows)
-        for cause, rows in groups.items()
-    )
+    lines = []
+    for cause, rows in recorded().explanations().items():
+        lines.append(f"- {cause[0].upper()}{cause[1:]}.")
+        lines += [f"  - {each.experiment}: {each.name}, {each.word_both()}" for each in rows]
+    return "\n".join(lines)
 
 
 def counts() -> str:

@@ -77,7 +77,9 @@ def print_validation(console: Console, table: Validation) -> None:
         cells = [f"{each.data:.2g}", f"{each.inputs:.2g}", *("-" if n is None else f"{n:.2g}" for n in numbers)]
         lines.add_row(f"{each.experiment}: {each.name}, {each.unit}", f"{each.measured:.5g}", *cells, each.word_both())
     console.print(lines)
-    causes = [f"{each.experiment}, {each.name}: {each.cause}" for each in table.quantities if each.cause]
+    causes = []
+    for cause, rows in table.explanations().items():
+        causes.append(f"{cause} ({'; '.join(f'{each.experiment}, {each.name}' for each in rows)})")
     for text in (*causes, *table.facts, *(f"input of the {each}" for each in table.inputs)):
         console.print(f"{text[0].upper()}{text[1:]}.", soft_wrap=True)
     console.print(f"{word_counts(table.counts())}.", soft_wrap=True)

@@ -34,12 +34,12 @@ def verdict_on(each: Quantity) -> Verdict:
 
 
 def word_quantity(each: Quantity) -> str:
-    """Return the worse verdict with the numbers behind it: "met (E = +1.4 %, u_val 2.2 %)", "not met (by +12 %)"."""
+    """Return the worse verdict with the numbers behind it: "met (E = +1.4 %, within 2.2 %)", "not met (by +12 %)"."""
     found = each.sides[worse_side(each)]
     if found.verdict != MET or found.error is None or found.validation is None:
         return word_verdict(found.verdict, found.error, each.base, each.unit)
     allowed = word_error(found.validation, each.base, each.unit).removeprefix("+")
-    return f"{found.verdict} (E = {word_error(found.error, each.base, each.unit)}, u_val {allowed})"
+    return f"{found.verdict} (E = {word_error(found.error, each.base, each.unit)}, within {allowed})"
 
 
 def frame_rows(table: Validation, loaded: bool, use: str) -> list[Quantity]:

@@ -106,6 +106,14 @@ class Validation:
     curves: Annotated[Sequence[Curve], "of the plots; only in the file of a user who has the measured files"]
     run: Annotated[Mapping[str, Any], "command, provenance"]
 
+    def explanations(self) -> dict[str, list[Quantity]]:
+        """Quantities that are not met, by their explanation."""
+        groups: dict[str, list[Quantity]] = {}
+        for each in self.quantities:
+            if each.cause:
+                groups.setdefault(each.cause, []).append(each)
+        return groups
+
     def counts(self) -> dict[Verdict, int]:
         """Quantities of the equations and of the engine by verdict."""
         return count_verdicts(each.sides[side].verdict for each in self.quantities for side in (EQUATIONS, ENGINE))

@@ -39,10 +39,10 @@ def without_uncertainty(found: Comparison) -> Comparison:
 
 
 PLANTED = {
-    "met for not met": (("frame, 450 g", of_error(0.1)), "at 450 g met (E = +0.77 %, u_val 2.7 %)"),
+    "met for not met": (("frame, 450 g", of_error(0.1)), "at 450 g met (E = +0.77 %, within 2.7 %)"),
     "not met for met": (("frame, 550 g" + LOADED, of_error(10.0)), "at 550 g not met (by +6.8 %)"),
     "sign": (("frame, 550 g", of_error(-1.0)), "at 550 g not met (by −12 %)"),
-    "sign of what is met": (("frame, 350 g" + LOADED, of_error(-1.0)), "at 350 g met (E = −1.4 %, u_val 2.2 %)"),
+    "sign of what is met": (("frame, 350 g" + LOADED, of_error(-1.0)), "at 350 g met (E = −1.4 %, within 2.2 %)"),
     "missing uncertainty": (("frame, 350 g" + LOADED, without_uncertainty), "at 350 g not compared"),
 }
 
@@ -60,7 +60,7 @@ def test_the_runs_of_the_fit_are_judged_as_well() -> None:
     words = statements.word_calibrated
     assert words(recorded()).endswith("fitted to: at 250 g not met (by +2.6 %), at 450 g not met (by +4.2 %)")
     assert words(changed("frame, 250 g", "half range", of_error(0.1))).endswith(
-        "at 250 g met (E = +0.26 %, u_val 1.6 %), at 450 g not met (by +4.2 %)"
+        "at 250 g met (E = +0.26 %, within 1.6 %), at 450 g not met (by +4.2 %)"
     )
     assert words(changed("frame, 450 g" + LOADED, "half range", without_uncertainty)).endswith("at 450 g not compared")
 
