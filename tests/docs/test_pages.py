@@ -16,9 +16,13 @@ import numpy as np
 import pytest
 from pages import PAGES, ROOT
 from PIL import Image
+from stated_numbers import STATED, Stated, numbers_of
 
+from comparison.analyses.benchmarks.table import page as benchmarks_page
+from comparison.analyses.validation import statements
 from comparison.analyses.validation.table import recorded
 from comparison.report.results import VALIDATED
+from comparison.report.verification import CHECKS
 from reference.problem import Scene
 
 DOCS = ROOT / "docs"
@@ -57,32 +61,70 @@ def test_the_keys_that_the_guide_shows_make_a_scene() -> None:
     assert scene.isolator.travel == 0.3
 
 
-def test_the_numbers_from_outside_are_those_of_their_page() -> None:
+def test_the_numbers_from_outside_are_those_of_their_record() -> None:
     page = (DOCS / "benchmarks.md").read_text(encoding="utf-8")
-    rows = [line for line in page.split("\n## ")[0].splitlines() if line.startswith("|")]
+    assert page == benchmarks_page(evidence_table.published())
+    rows = evidence_table.published_short()
     assert len(rows) == 2 + 5
     assert "\n".join(rows) in README
+    assert "/" not in evidence_table.published().run["command"], "of no machine"
 
 
-def test_the_page_of_evidence_has_the_table_that_its_command_writes() -> None:
-    page = (DOCS / "evidence.md").read_text(encoding="utf-8")
-    assert evidence_table.with_table(page) == page
-    assert page.index("|") > page.index(evidence_table.BEGIN)
+@pytest.mark.parametrize("page", evidence_table.BLOCKS, ids=lambda page: page.name)
+def test_a_page_of_evidence_has_what_its_command_writes(page: Path) -> None:
+    assert evidence_table.with_blocks(page) == page.read_text(encoding="utf-8")
+
+
+def test_the_readme_has_the_measurements_of_their_record() -> None:
+    assert evidence_table.with_readme_rows(README) == README
+    assert all(row in README for row in statements.readme_rows(recorded()))
 
 
 def test_what_is_said_to_be_validated_is_what_is_recorded() -> None:
-    found = {(each.experiment, each.name): each for each in recorded().quantities}
-    half, rest = (found["frame, 450 g", name] for name in ("half range", "share of time at rest"))
-    row = next(line for line in README.splitlines() if "**measured**" in line)
-    errors = [100.0 * half.sides[side].error / half.measured for side in ("equations", "engine")]
-    shares = [rest.sides[side].error for side in ("equations", "engine")]
-    assert f"half range {max(map(abs, errors)):.1f} %, beyond it" in row
-    assert f"time at rest {max(map(abs, shares)):.1f} % of a cycle, within u" in row
-    for side, error in zip(("equations", "engine"), errors):
-        assert f"half range at nearly twice the load {error:.1f} % too large" in VALIDATED
-        assert (half.sides[side].verdict, rest.sides[side].verdict) == ("law", "within u_val")
-        assert f"within its uncertainty, {rest.sides[side].validation:.1f} % of a cycle" in VALIDATED
-        assert abs(rest.sides[side].error) < 0.2, "of a cycle, in percent"
+    assert statements.word_validated(recorded()) == VALIDATED
+    for page in (README, *(page.read_text(encoding="utf-8") for page in evidence_table.BLOCKS)):
+        for line in re.findall(r".*\bvalidated\b.*", page, flags=re.IGNORECASE):
+            allowed = ("Validated is one quantity", "what is validated, and what is not", "isolated")
+            assert any(words in line or words in line.lower() for words in allowed), line
+
+
+def test_every_check_of_the_evidence_is_met_within_the_limit_it_states() -> None:
+    store = json.loads(evidence_table.STORE.read_text(encoding="utf-8"))
+    for check in CHECKS:
+        if (found := store.get(check.test)) is None:
+            assert evidence_table.check_row(check).split(" | ")[4] == "not compared", check
+            continue
+        assert evidence_table.check_row(check).split(" | ")[4] == "met", check
+        number = re.match(r"\d+(\.\d+)?(e-\d+)?", check.closeness)
+        assert float(number[0]) == found["limit"] if number else found["limit"] == 1.0, check
+
+
+def test_a_check_beyond_its_limit_is_not_met(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    check = CHECKS[0]
+    for value, verdict in ((2e-7, "not met (by +2e-07)"), (1e-8, "met")):
+        store = tmp_path / "evidence.json"
+        store.write_text(json.dumps({check.test: {"value": value, "limit": 1e-7, "commit": "a", "date": "b"}}))
+        monkeypatch.setattr(evidence_table, "STORE", store)
+        assert evidence_table.check_row(check).split(" | ")[4] == verdict
+    assert evidence_table.check_row(CHECKS[1]).split(" | ")[4] == "not compared"
+
+
+@pytest.mark.parametrize("stated", STATED, ids=lambda stated: stated.what)
+def test_one_thing_has_one_number_on_all_pages(stated: Stated) -> None:
+    found = numbers_of(stated, {page: page.read_text(encoding="utf-8") for page in PAGES})
+    assert {page.relative_to(ROOT).as_posix() for page, _ in found} >= set(stated.pages), "where it stands"
+    for page, number in found:
+        assert number == stated.value, page
+
+
+@pytest.mark.parametrize("stated", STATED, ids=lambda stated: stated.what)
+def test_a_second_number_for_one_thing_is_seen(stated: Stated) -> None:
+    text = (ROOT / stated.pages[0]).read_text(encoding="utf-8")
+    place = next(re.finditer(stated.words, text))
+    digit = next(k for k in range(*place.span(1)) if text[k] in "123456789")
+    other = text[:digit] + str(int(text[digit]) % 9 + 1) + text[digit + 1 :]
+    [(_, number), *_] = numbers_of(stated, {DOCS: other})
+    assert number != stated.value
 
 
 def anchors(page: Path) -> set[str]:

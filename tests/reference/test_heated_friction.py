@@ -83,7 +83,7 @@ def summed(law: DryFriction, step: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("column", range(4), ids=["V", "P", "T", "PTV"])
-def test_the_law_meets_the_published_loops_of_a_bearing(column):
+def test_the_law_meets_the_published_loops_of_a_bearing(column, within):
     """P has no effect under the weight. T has the published factor 0.789 in place of 0.79."""
     law, heated = LAWS[column in (1, 2)], column > 1
     factor = 0.789 / 0.79 * summed(law, 5e-3) if heated else np.ones(300)
@@ -91,7 +91,7 @@ def test_the_law_meets_the_published_loops_of_a_bearing(column):
         velocity = 0.1 * np.pi * np.cos(np.pi * (time - 1.0))
         friction = np.sign(velocity) * law.at(abs(velocity)) * factor[round((time - 1.0) / 5e-3)]
         spring = 1e-3 * place / np.sqrt(RADIUS**2 - (1e-3 * place) ** 2)
-        assert LOAD * (friction + spring) == pytest.approx(forces[column], rel=6e-3 if heated else 5e-4)
+        within(abs(LOAD * (friction + spring) / forces[column] - 1.0), 6e-3 if heated else 5e-4)
 
 
 def test_what_the_published_sum_of_heat_tends_to_is_solved():

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from comparison.analyses.benchmarks.cases import Case, Reading
-from comparison.analyses.benchmarks.table import Benchmark, Benchmarks, Number, Row, Verdict
+from comparison.analyses.benchmarks.table import FRICTION, MODEL, Benchmark, Benchmarks, Number, Row
 from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
@@ -18,6 +18,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
 from comparison.study.study import Study
+from comparison.verdicts import MET, NOT_MET
 from reference.measures.demands import ANSWERED
 from reference.problem import State, Trajectory
 
@@ -26,7 +27,6 @@ TOLERANCES = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}
 SAMPLES = 100_001  # instants at which the equations are read
 SECONDS = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # predicted cost
 LIMIT = 300.0  # s of processor time of one task
-ROUNDING = 1e-12  # relative
 
 
 @dataclass(frozen=True)
@@ -118,25 +118,19 @@ def _row(case: Case, place: int, answers: Mapping[str, Answer]) -> Row:
         if len(answer.values) == len(case.published):
             numbers[side] = answer.values[place], answer.errors[place]
 
-    def verdict(side: str) -> Verdict:
-        value, error = numbers[side]
-        if not math.isfinite(value + error):
-            return Verdict.NONE
-        if within(value - row.published, error + row.uncertainty, value):
-            return Verdict.MET
+    def number(side: str) -> Number:
+        value, error = map(finite_or_none, numbers[side])
+        verdict = row.judge(value, error)
+        return Number(value, error, verdict, explain(side) if verdict == NOT_MET else "")
+
+    def explain(side: str) -> str:
         if case.difference:
-            return Verdict.MODEL
-        smoothed, its_error = numbers[SMOOTHED]  # the equations with the engine's friction law
-        alike = side == ENGINE and within(value - smoothed, error + its_error, value)
-        return Verdict.FRICTION if alike else Verdict.OFF
+            return MODEL
+        (value, error), (smoothed, its_error) = numbers[side], numbers[SMOOTHED]
+        same = replace(row, published=smoothed, uncertainty=its_error, numbers={})
+        return FRICTION if side != EQUATIONS and same.judge(value, error) == MET else ""
 
-    found = {side: (finite_or_none(value), finite_or_none(error)) for side, (value, error) in numbers.items()}
-    return replace(row, numbers={side: Number(*pair, verdict(side)) for side, pair in found.items()})
-
-
-def within(difference: float, allowed: float, value: float) -> bool:
-    """Whether a difference is allowed, but for rounding of the value."""
-    return abs(difference) <= allowed + ROUNDING * abs(value)
+    return replace(row, numbers={side: number(side) for side in numbers})
 
 
 def _failed(question: tuple[Case, str], failed: TaskResult) -> Answer:

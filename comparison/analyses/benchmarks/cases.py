@@ -216,6 +216,9 @@ READ_TO = 3.0  # mm, from the published loops
 RADIUS = 2.2352  # m
 HEAVY = 6285710.0  # N, of the pendulum
 LASTING = 8.0  # s of 50: later displacements are smaller
+SAMPLES, STEP = 5002, 0.01  # of their input; the step in s, of all samples but the first
+PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, of their input along x, y and z
+ROUNDED = 1e-3  # relative, by how much a copy of their input in other units or digits may be off
 LIMITS = (-432.0, 330.0, -197.0, 152.0)  # mm: smallest and largest along x, then along y
 FRICTION = {
     "slow": 0.03 * 0.789 / 0.79,  # theirs has k_T = 0.789 (0.7^(0.02 T) + 0.4)
@@ -235,14 +238,12 @@ def mastodon(path: Path) -> Case:
         raise SceneError("command line", OPTION, str(path), reason) from None
     except RecordError as error:
         raise SceneError("command line", OPTION, str(path), str(error)) from None
-    if not samples[:, 1:].any(axis=0).all():
-        rule = "must have accelerations along x, y and z: columns ax, ay and az"
-        raise SceneError("command line", OPTION, str(path), rule)
+    _refuse_other_input(path, samples)
     scene = Scene.model_validate(
         {
             "title": "MASTODON: friction pendulum under three-directional shaking",
             "name": "mastodon",
-            "duration": min(LASTING, float(samples[-1, 0])),
+            "duration": LASTING,
             "isolator": {"radius": RADIUS, "friction": FRICTION},
             "bodies": [{"mass": HEAVY / GRAVITY}],
             "excitation": {"record": {"time": samples[:, 0], "acceleration": samples[:, 1:]}},
@@ -261,3 +262,21 @@ def mastodon(path: Path) -> Case:
         difference="their bearing is elastic up to 1 mm, and its restoring force N y / sqrt(R² - y²) lies between "
         "those of the exact and the small equations. The small equations give -429 to 329 and -199 to 151 mm",
     )
+
+
+def _refuse_other_input(path: Path, samples: Array) -> None:
+    """Raise SceneError unless the samples are those of MASTODON's test, of which alone the published numbers are."""
+    if not samples[:, 1:].any(axis=0).all():
+        rule = "must have accelerations along x, y and z: columns ax, ay and az"
+        raise SceneError("command line", OPTION, str(path), rule)
+
+    def words(count: int, step: float, peaks: Sequence[float] | Array) -> str:
+        return f"{count} samples every {step:.4g} s with peaks of " + ", ".join(f"{peak:.4g}" for peak in peaks)
+
+    step, peaks = float(np.median(np.diff(samples[:, 0]))), np.abs(samples[:, 1:]).max(axis=0)
+    if len(samples) != SAMPLES or not np.allclose([step, *peaks], [STEP, *PEAKS], rtol=ROUNDED, atol=0.0):
+        rule = (
+            f"must be the input of MASTODON's test fp_isolator_seismic_PTV, {words(SAMPLES, STEP, PEAKS)} m/s^2; "
+            f"it has {words(len(samples), step, peaks)}"
+        )
+        raise SceneError("command line", OPTION, str(path), rule)

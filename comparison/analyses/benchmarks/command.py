@@ -14,7 +14,7 @@ from rich.console import Console
 
 from comparison.analyses.benchmarks.analysis import MODELS, BenchmarkTable
 from comparison.analyses.benchmarks.cases import Case, cases, mastodon
-from comparison.analyses.benchmarks.table import PAGE, STORED, Benchmarks, Verdict, page, with_error
+from comparison.analyses.benchmarks.table import PAGE, STORED, Benchmarks, page, with_error, word_explanations
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed, run_facts
@@ -22,6 +22,7 @@ from comparison.cli.terminal import new_table
 from comparison.runner.output import destination, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
+from comparison.verdicts import NOT_COMPARED
 from reference.problem import SceneError
 
 DIGITS = 6  # of a number on the terminal
@@ -56,25 +57,24 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     print_benchmarks(console, table)
     console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by comparison.run shows them.")
-    counts = table.counts()
-    return 1 if counts[Verdict.OFF] or counts[Verdict.NONE] else 0
+    return 1 if table.explained()[""] or table.counts()[NOT_COMPARED] else 0
 
 
 def print_benchmarks(console: Console, table: Benchmarks) -> None:
-    """A row for every published number, what is explained, and the counts."""
-    lines = new_table("scene", "quantity", "published", "equations", "", "engine", "")
+    """A row for every published number, the differences of the models, the counts and the explanations."""
+    lines = new_table("scene", "quantity", "published", "equations", "verdict", "engine", "verdict")
     for each in table.benchmarks:
         for row in each.rows:
             cells = [f"{row.published:g}"]
             for side in (EQUATIONS, ENGINE):
-                cells += [with_error(row.numbers[side], DIGITS), row.numbers[side].verdict]
+                cells += [with_error(row.numbers[side], DIGITS), row.word(side)]
             lines.add_row(each.name, ", ".join(filter(None, (row.quantity, row.unit))), *cells)
     console.print(lines)
     for each in table.benchmarks:
         if each.difference:
             console.print(f"{each.name}: {each.difference}", soft_wrap=True)
-    counts = ", ".join(f"{count} {name}" for name, count in table.counts().items())
-    console.print(f"{sum(table.counts().values())} numbers: {counts}.", soft_wrap=True)
+    for sentence in word_explanations(table):
+        console.print(f"{sentence}.", soft_wrap=True)
 
 
 def _chosen(only: str, mastodon_input: Path | None) -> list[Case]:

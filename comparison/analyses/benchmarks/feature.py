@@ -1,15 +1,8 @@
 """External benchmarks: in the report."""
 
-from comparison.analyses.benchmarks.table import MEANING, STORED, Benchmarks, Verdict, stated, with_error
+from comparison.analyses.benchmarks.table import STORED, Benchmarks, stated, with_error, word_explanations
 from comparison.report.section import Feature, Section
-
-COLORS = {
-    Verdict.MET: "v-converged",
-    Verdict.FRICTION: "v-refused",
-    Verdict.MODEL: "v-limit",
-    Verdict.OFF: "v-FAILED",
-    Verdict.NONE: "v-FAILED",
-}  # class of each verdict
+from comparison.verdicts import CLASSES
 
 FEATURE = Feature(
     "benchmarks",
@@ -21,8 +14,8 @@ FEATURE = Feature(
         "External benchmarks",
         "python -m comparison.benchmarks makes it, beside the report; the next run of the study shows it",
         lambda report, figures: {
-            "benchmark_verdicts": MEANING,
-            "benchmark_colors": COLORS,
+            "benchmark_sentences": word_explanations,
+            "benchmark_colors": CLASSES,
             "stated": stated,
             "with_error": with_error,
         },

@@ -1,10 +1,8 @@
 """Published numbers beside what both sides compute, as data: a file, and what the report needs of it."""
 
 import math
-from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
-from enum import StrEnum
 from importlib import resources
 from typing import Annotated, Any
 
@@ -13,27 +11,22 @@ import jinja2
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.json_file import StoredFile
 from comparison.result_types import result
+from comparison.verdicts import (
+    NOT_MET,
+    Verdict,
+    count_verdicts,
+    judge,
+    word_counts_and_largest,
+    word_error,
+    word_verdict,
+)
 
 FILE, PAGE = "benchmarks.json", "benchmarks.md"
 
 
-class Verdict(StrEnum):
-    """What a difference from a published number is."""
-
-    MET = "met"
-    FRICTION = "friction"
-    MODEL = "model"
-    OFF = "NOT MET"
-    NONE = "no answer"
-
-
-MEANING = {
-    Verdict.MET: "within the error of ours and of theirs together",
-    Verdict.FRICTION: "beyond them, but the equations with the engine's friction, linear below v_reg, give the same",
-    Verdict.MODEL: "the source models something else, which the row names",
-    Verdict.OFF: "beyond both errors, and not explained",
-    Verdict.NONE: "no value was computed",
-}
+ROUNDING = 1e-12  # relative, of a computed value
+FRICTION = "the engine's friction law, linear below v_reg: the equations with it give the same"
+MODEL = "the source models something else, which its benchmark names"
 
 
 @result
@@ -42,9 +35,8 @@ class Number:
 
     value: Annotated[float | None, "in the unit of the published number; null without an answer"]
     error: Annotated[float | None, "estimated absolute error; null where it is not known"]
-    verdict: Verdict
-    """met: within both errors; friction: the equations with the engine's friction law give the same; model: the source
-    models something else; NOT MET: neither; no answer: no value"""
+    verdict: Annotated[Verdict, "met: within both errors; not met; not compared: no value, or no error"]
+    explanation: Annotated[str, "why it is not met; empty where it is met, or where nothing explains it"] = ""
 
 
 @result
@@ -57,6 +49,30 @@ class Row:
     uncertainty: Annotated[float, "absolute, as published or half of the last digit; 0 for an exact number"]
     numbers: Mapping[str, Number] = field(default_factory=dict)
     """by side: equations, smoothed (the equations with the engine's friction law), engine"""
+
+    def __post_init__(self) -> None:
+        for side, number in self.numbers.items():
+            if number.verdict != self.judge(number.value, number.error):
+                raise ValueError(
+                    f"verdict {number.verdict!r} on {side} contradicts {number.value} and {self.published}"
+                )
+
+    def judge(self, value: float | None, error: float | None) -> Verdict:
+        """Return the verdict on a value with its error, but for rounding of the value."""
+        if value is None or error is None:
+            return judge(value, error)
+        return judge(value - self.published, error + self.uncertainty + ROUNDING * abs(value))
+
+    def error_of(self, side: str) -> float | None:
+        """Return the comparison error of a side, None without a value."""
+        value = self.numbers[side].value
+        return None if value is None else value - self.published
+
+    def word(self, side: str, explained: bool = False) -> str:
+        """Return the verdict on one side in words, with its explanation if asked."""
+        number = self.numbers[side]
+        why = (number.explanation or "not explained") if explained else ""
+        return word_verdict(number.verdict, self.error_of(side), self.published, self.unit, why)
 
 
 @result
@@ -81,12 +97,34 @@ class Benchmarks:
     benchmarks: Annotated[Sequence[Benchmark], "one per scene"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
-    def counts(self) -> dict[str, int]:
-        """Numbers of the equations and of the engine by verdict, from the best to the worst, zeros included."""
-        seen = Counter(
-            row.numbers[side].verdict for each in self.benchmarks for row in each.rows for side in (EQUATIONS, ENGINE)
-        )
-        return {verdict.value: seen[verdict] for verdict in Verdict}
+    def counts(self) -> dict[Verdict, int]:
+        """Numbers of the equations and of the engine by verdict."""
+        return count_verdicts(number.verdict for _, _, _, number in self.judged())
+
+    def explained(self) -> dict[str, int]:
+        """How many of the numbers that are not met each explanation has, "" for those that have none."""
+        found = [number.explanation for _, _, _, number in self.judged() if number.verdict == NOT_MET]
+        return {why: found.count(why) for why in (FRICTION, MODEL, "")}
+
+    def judged(self) -> Iterator[tuple[Benchmark, Row, str, Number]]:
+        """Every number that has a verdict: of the equations and of the engine."""
+        for each in self.benchmarks:
+            for row in each.rows:
+                for side in (EQUATIONS, ENGINE):
+                    yield each, row, side, row.numbers[side]
+
+
+def verdict_line(table: Benchmarks) -> str:
+    """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
+    off = [(row, side, each) for each, row, side, number in table.judged() if number.verdict == NOT_MET]
+    off = [each for each in off if each[0].published]
+    largest = max(off, key=lambda each: abs((each[0].error_of(each[1]) or 0.0) / each[0].published), default=None)
+    where = ""
+    if largest:
+        row, side, each = largest
+        size = word_error(row.error_of(side) or 0.0, row.published, row.unit)
+        where = f"{each.name}, {row.quantity}, {side}, {size}"
+    return word_counts_and_largest(table.counts(), where, "published number")
 
 
 STORED = StoredFile(FILE, Benchmarks, "a table of benchmarks", "python -m comparison.benchmarks")
@@ -100,9 +138,16 @@ def page(table: Benchmarks) -> str:
     """benchmarks.md: five numbers, one of each kind, the counts, and every number by its benchmark."""
     text = (resources.files("comparison.analyses.benchmarks") / "page.md.j2").read_text(encoding="utf-8")
     short = [(each, each.rows[place]) for name, place in SHORT for each in table.benchmarks if each.name == name]
-    shown = {"meaning": MEANING, "counts": table.counts(), "stated": stated, "with_error": with_error}
+    shown = {"word_explanations": word_explanations, "stated": stated, "with_error": with_error}
     made: str = jinja2.Template(text, trim_blocks=True).render(table=table, short=short, **shown)
     return made
+
+
+def word_explanations(table: Benchmarks) -> list[str]:
+    """Return one sentence for the counts, and one for each explanation that any number has."""
+    found = table.explained()
+    sentences = [verdict_line(table), *(f"{count} not met: {why}" for why, count in found.items() if why and count)]
+    return [*sentences, f"{found['']} not met and not explained"]
 
 
 def with_error(number: Number, digits: int = MOST_DIGITS) -> str:

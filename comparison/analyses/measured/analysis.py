@@ -1,8 +1,8 @@
 """
 Measured peaks of the scenes beside what every model computes at the phases of the test, with both errors.
 
-The difference of a model from a measurement is known to exceed their uncertainties where |D| > u + e: u of the
-measurement, e of the computation. That of the input (motion, masses, stiffness, friction) is not in either.
+A measured peak is met where |D| <= u + e: D is the computed less the measured value, u the uncertainty of the
+measurement, e the error of the computation. That of the input (motion, masses, stiffness, friction) is not in either.
 """
 
 import math
@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, Any
 
 import xarray as xr
+from pydantic import computed_field
 
 from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Number, Phases, Text, result
@@ -17,7 +18,19 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, chain_of
 from comparison.study.study import Study
+from comparison.verdicts import (
+    MET,
+    NOT_COMPARED,
+    NOT_MET,
+    Verdict,
+    count_verdicts,
+    judge,
+    word_counts_and_largest,
+    word_error,
+    word_verdict,
+)
 from reference.measures import Estimate, demands
+from reference.measures.peak_demands import unit_of
 from reference.problem import Outcome, Scene
 from reference.problem.measured import OF_BODIES, Measured
 
@@ -39,6 +52,12 @@ class ComputedPeak:
     exceeds: Annotated[bool | None, "whether its size exceeds uncertainty and error together; null if not known"]
     status: Annotated[str, "how the motion ended, or why it lacks this value"]
 
+    @computed_field  # type: ignore[prop-decorator]
+    @property
+    def verdict(self) -> Verdict:
+        """Met: the difference is within both together; not met; not compared."""
+        return NOT_COMPARED if self.exceeds is None else NOT_MET if self.exceeds else MET
+
 
 @result
 class MeasuredPeak:
@@ -52,6 +71,29 @@ class MeasuredPeak:
     uncertainty: Annotated[float, "its absolute uncertainty, as the scene states it"]
     source: Annotated[Text, "where it is from, as the scene states it"]
     computed: Annotated[Sequence[ComputedPeak], "one per model that has the quantity"]
+
+    def word(self, computed: ComputedPeak) -> str:
+        """Return the verdict on one model in words."""
+        why = "" if computed.verdict != NOT_COMPARED else f": {computed.status}"
+        return word_verdict(computed.verdict, computed.difference, self.value, unit_of_peak(self)) + why
+
+
+def unit_of_peak(peak: MeasuredPeak) -> str:
+    """Return the unit of a measured quantity, empty for the amplification factor."""
+    return "" if peak.quantity == "mu" else unit_of(peak.quantity)
+
+
+def verdict_line(peaks: Sequence[MeasuredPeak]) -> str:
+    """Return the verdict of the section in one line: counts, and the largest relative difference that is not met."""
+    pairs = [(peak, computed) for peak in peaks for computed in peak.computed]
+    off = [(peak, each) for peak, each in pairs if each.verdict == NOT_MET and peak.value]
+    largest = max(off, key=lambda pair: abs(pair[1].difference / pair[0].value), default=None)
+    where = ""
+    if largest:
+        peak, each = largest
+        place = f"{peak.quantity} of body {peak.body}" if peak.body else peak.quantity
+        where = f"{peak.scene}, {place}, {each.model}, {word_error(each.difference, peak.value)}"
+    return word_counts_and_largest(count_verdicts(each.verdict for _, each in pairs), where)
 
 
 def phases_of(peak: Measured) -> tuple[float, float]:
@@ -116,8 +158,8 @@ def _beside(scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[As
         if asked in known:
             value, error, status = known[asked]
             difference = value - peak.value
-            decided = math.isfinite(difference) and math.isfinite(error)
-            exceeds = abs(difference) > peak.uncertainty + error if decided else None
+            verdict = judge(difference, peak.uncertainty + error)
+            exceeds = None if verdict == NOT_COMPARED else verdict == NOT_MET
             computed.append(ComputedPeak(model, value, error, difference, exceeds, status))
     phases = (math.nan, math.nan) if peak.phases is None else phases_of(peak)
     return MeasuredPeak(scene.name, *asked, phases, peak.value, peak.uncertainty, peak.source or "", computed)

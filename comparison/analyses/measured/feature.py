@@ -2,6 +2,7 @@
 
 from comparison.analyses.measured.analysis import MeasuredPeak, MeasuredPeaks
 from comparison.report.section import Feature, Section
+from comparison.verdicts import CLASSES
 from reference.measures.peak_demands import QUANTITIES, unit_of
 
 FEATURE = Feature(
@@ -15,6 +16,7 @@ FEATURE = Feature(
         lambda report, figures: {
             "measured_titles": {"mu": "amplification factor"} | {key: text for key, (text, _) in QUANTITIES.items()},
             "measured_units": {"mu": ""} | {key: unit_of(key) for key in QUANTITIES},
+            "measured_classes": CLASSES,
         },
         folded=False,
     ),

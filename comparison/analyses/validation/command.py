@@ -14,12 +14,13 @@ from rich.console import Console
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import frame, pendulum
 from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE, read_folder
-from comparison.analyses.validation.table import MEANING, NONE, STORED, Validation, joined, recorded
+from comparison.analyses.validation.table import STORED, Validation, joined, recorded
 from comparison.cli.arguments import CommandParser, command, writing
 from comparison.cli.terminal import new_table
 from comparison.runner.environment import provenance
 from comparison.runner.output import destination, publish, refuse_foreign_files
 from comparison.runner.progress import wide_console
+from comparison.verdicts import NOT_COMPARED, word_counts
 
 
 @command
@@ -51,7 +52,7 @@ def main(argv: Sequence[str]) -> int:
     print_validation(console, table)
     console.print(f"Table: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by comparison.run shows it.")
-    return 1 if table.counts()[NONE] else 0
+    return 1 if table.counts()[NOT_COMPARED] else 0
 
 
 def compared(folder: Path) -> Validation:
@@ -74,11 +75,11 @@ def print_validation(console: Console, table: Validation) -> None:
         sides = [each.sides[side] for side in (EQUATIONS, ENGINE)]
         numbers = [number for side in sides for number in (side.error, side.numerical)] + [sides[0].validation]
         cells = [f"{each.data:.2g}", f"{each.inputs:.2g}", *("-" if n is None else f"{n:.2g}" for n in numbers)]
-        verdicts = " / ".join(dict.fromkeys(side.verdict for side in sides))
-        lines.add_row(f"{each.experiment}: {each.name}, {each.unit}", f"{each.measured:.5g}", *cells, verdicts)
+        lines.add_row(f"{each.experiment}: {each.name}, {each.unit}", f"{each.measured:.5g}", *cells, each.word_both())
     console.print(lines)
-    causes = [f"{each.experiment}, {each.name}: {each.cause}" for each in table.quantities if each.cause]
+    causes = []
+    for cause, rows in table.explanations().items():
+        causes.append(f"{cause} ({'; '.join(f'{each.experiment}, {each.name}' for each in rows)})")
     for text in (*causes, *table.facts, *(f"input of the {each}" for each in table.inputs)):
         console.print(f"{text[0].upper()}{text[1:]}.", soft_wrap=True)
-    counts = "; ".join(f"{count} {verdict} ({MEANING[verdict]})" for verdict, count in table.counts().items())
-    console.print(f"{2 * len(table.quantities)} comparisons: {counts}.", soft_wrap=True)
+    console.print(f"{word_counts(table.counts())}.", soft_wrap=True)

@@ -6,11 +6,11 @@ from typing import Any
 from comparison.analyses.panels import panel
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
-from comparison.analyses.validation.table import INPUT, LAW, MEANING, NONE, STORED, VALID, Validation
+from comparison.analyses.validation.table import STORED, Validation
 from comparison.report.plots import Panel
 from comparison.report.section import Feature, Section
+from comparison.verdicts import CLASSES, MEANING
 
-COLORS = {VALID: "v-converged", LAW: "v-limit", INPUT: "v-refused", NONE: "v-FAILED"}  # class of each verdict
 LOOKS: dict[str, dict[str, Any]] = {
     "measured": {"color": "ink", "width": 2.4},
     EQUATIONS: {"color": 0},
@@ -46,7 +46,7 @@ FEATURE = Feature(
         lambda report, figures: {
             "validation_panels": panels,
             "validation_verdicts": MEANING,
-            "validation_colors": COLORS,
+            "validation_colors": CLASSES,
             "validation_sources": (FRAME_SOURCE, PENDULUM_SOURCE),
         },
     ),

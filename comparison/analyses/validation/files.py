@@ -59,7 +59,12 @@ def read_folder(folder: Path) -> Measured:
     """The measured files in a folder and in the folders directly in it. Raises SceneError, one line."""
     if not folder.is_dir():
         raise wrong_file(folder, "must be a folder with the measured files")
-    files = {file.name: file for file in sorted([*folder.glob("*.mat"), *folder.glob("*/*.mat")])}
+    files: dict[str, Path] = {}
+    for file in sorted([*folder.glob("*.mat"), *folder.glob("*/*.mat")]):
+        if file.name in files:
+            rule = f"must hold each file once: also {files[file.name].relative_to(folder)}; leave one of them"
+            raise wrong_file(file, rule)
+        files[file.name] = file
     named = [match for name in files if (match := FRAME.fullmatch(name))]
     plates, bases = ({match[1]: files[match[0]] for match in named if match[2] == axis} for axis in "xy")
     for grams in plates.keys() ^ bases.keys():

@@ -1,5 +1,9 @@
 """
-The shaken frame: one friction ratio is fitted to the motion of one run, the other runs are predicted.
+The shaken frame: the runs are predicted by friction that is fitted to others.
+
+By the constant law one friction ratio is fitted to the motion of one run, and all others are predicted. By friction of
+the load the ratio is a power of the load, as `load_exponent` has it: it is fitted to the motions of two runs, and the
+others are predicted.
 
 With y the motion of the base, z that of the top plate, both absolute, and r w g the friction of the disc of mass w,
 
@@ -21,7 +25,7 @@ from scipy.optimize import least_squares
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import table
 from comparison.analyses.validation.files import Shaken, wrong_file
-from comparison.analyses.validation.table import COVERAGE, INPUT, LAW, SIDES, Answer, Found
+from comparison.analyses.validation.table import COVERAGE, CYCLE, DEGREES, INPUT, LAW, OPEN, SIDES, Answer, Found
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
@@ -36,10 +40,11 @@ WIDTH = 4  # samples to either side of a velocity
 REGULARIZATION = 1e-4  # m/s, of the engine
 TOLERANCE = 1e-3  # of the engine
 FIRST = 0.250  # kg, weight of the disc in the run that the ratio is fitted to, if the folder has it
-SECOND = 0.450  # kg, in the run that the dependence of the ratio on the load is fitted to, likewise
+SECOND = 0.450  # kg, in the second run that friction of the load is fitted to, if the folder has it
+LOADED = ", friction of the load"  # behind the name of a run
 STEP = 0.005  # of ratio and scale, for slopes
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
-UNITS = ("mm", "mm", "%", "deg", "deg")
+UNITS = ("mm", "mm", CYCLE, DEGREES, DEGREES)
 
 
 class Setup(NamedTuple):
@@ -210,55 +215,97 @@ def fit(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]:
     return setup, scatter
 
 
+class Fitted(NamedTuple):
+    """
+    A run with the friction ratio of its motion.
+
+    spread: of the ratio, by the scatter over the cycles. changed: fitted again with each input of REFITTED changed by
+    its uncertainty. shifted: fitted with the base motion that the run of the constant ratio fits best.
+    """
+
+    cycles: Cycles
+    setup: Setup
+    spread: float
+    changed: list[Setup]
+    shifted: Setup
+
+    def variations(self) -> list[Setup]:
+        """Setups with each input changed by its uncertainty."""
+        heavier = self.setup._replace(disc=self.setup.disc + ASSUMED["disc"][0])
+        return [self.setup._replace(ratio=self.setup.ratio + self.spread), heavier, *self.changed]
+
+
+def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> Fitted:
+    """Fit the friction ratio of a run; shift: base motion of `shifted`, None to fit that of this run."""
+    setup, scatter = fit(cycles, start, "ratio")
+    spread = COVERAGE * float(scatter[:, 0].std(ddof=1))
+    changes = ({name: getattr(setup, name) + ASSUMED[name][0]} for name in REFITTED)
+    changed = [fit(cycles, setup._replace(**change), "ratio")[0] for change in changes]
+    if shift is None:
+        shifted, _ = fit(cycles, setup, "ratio", "scale")
+    else:
+        shifted, _ = fit(cycles, setup._replace(scale=shift.scale), "ratio")
+    return Fitted(cycles, setup, spread, changed, shifted)
+
+
 def compare(runs: Sequence[Shaken]) -> Found:
-    """All runs of a folder: the ratio is fitted to one, the others are predicted."""
+    """Compare all runs of a folder: by one ratio, and by friction of the load where there are runs to predict."""
     folded = [fold(run) for run in runs]
     first = min(folded, key=lambda cycles: (abs(cycles.run.weight - FIRST) > 1e-9, cycles.run.weight))
-    setup, scatter = fit(first, Setup(), "ratio")
-    spread = COVERAGE * float(scatter[:, 0].std(ddof=1))
-    other, _ = fit(first, setup, "ratio", "scale")
-    varied = [setup._replace(ratio=setup.ratio + spread), setup._replace(disc=setup.disc + ASSUMED["disc"][0])]
-    for name in REFITTED:
-        varied.append(fit(first, setup._replace(**{name: getattr(setup, name) + ASSUMED[name][0]}), "ratio")[0])
-    own = [fit(each, setup, "ratio")[0] for each in folded]
-    parts = [
-        _compare_run(each, "calibrated" if each is first else "predicted", setup, varied, other, best)
-        for each, best in zip(folded, own)
-    ]
-    parts += _with_friction_of_the_load(first, folded, setup, varied, other, own)
+    fitted = fit_run(first, Setup())
+    setup, varied = fitted.setup, fitted.variations()
+    own = [setup if each is first else fit(each, setup, "ratio")[0] for each in folded]
     inputs = [
         table.given(f"frame: {name}", getattr(setup, key), size, unit, source)
         for key, (size, name, unit, source) in ASSUMED.items()
     ]
-    source = f"fitted to the motion of the run with {1e3 * first.run.weight:g} g; its scatter over the cycles"
-    inputs.append(table.given("frame: friction ratio", setup.ratio, spread, "", source))
-    return table.joined([Found([], inputs, [], []), *parts])
-
-
-def _with_friction_of_the_load(
-    first: Cycles, folded: Sequence[Cycles], setup: Setup, varied: Sequence[Setup], other: Setup, own: Sequence[Setup]
-) -> list[Found]:
-    """Friction that is a power of the load, as `load_exponent` has it, fitted to two runs; all others predicted."""
+    inputs.append(_given_ratio(fitted))
+    parts = [
+        _compare_run(each, "calibrated" if each is first else "predicted", setup, varied, fitted.shifted, best)
+        for each, best in zip(folded, own)
+    ]
     rest = [(each, best) for each, best in zip(folded, own) if each is not first]
-    moving = [pair for pair in rest if read_cycle(pair[0].mean, pair[0].frequency)[2] < 100.0]
-    if not moving:
-        return []
-    second, fitted = min(moving, key=lambda pair: abs(pair[0].run.weight - SECOND))
-    exponent = math.log(fitted.ratio / setup.ratio) / math.log(second.run.weight / first.run.weight)
+    if any(_slides(each) for each, _ in rest):
+        parts.append(_compare_by_load(fitted, rest))
+    return table.joined([Found([], inputs, [], [], []), *parts])
+
+
+def _slides(cycles: Cycles) -> bool:
+    return bool(read_cycle(cycles.mean, cycles.frequency)[2] < 100.0)
+
+
+def _given_ratio(fitted: Fitted) -> str:
+    source = f"fitted to the motion of the run with {1e3 * fitted.cycles.run.weight:g} g; its scatter over the cycles"
+    return table.given("frame: friction ratio", fitted.setup.ratio, fitted.spread, "", source)
+
+
+def _compare_by_load(first: Fitted, rest: Sequence[tuple[Cycles, Setup]]) -> Found:
+    """Friction that is a power of the load, fitted to two runs; the others are predicted."""
+    sliding = [cycles for cycles, _ in rest if _slides(cycles)]
+    chosen = min(sliding, key=lambda cycles: abs(cycles.run.weight - SECOND))
+    second = fit_run(chosen, first.setup, first.shifted)
+    one, two = first.setup.ratio, second.setup.ratio
+    begin, end = (math.log(each.cycles.run.weight) for each in (first, second))
+    exponent = math.log(two / one) / (end - begin)
     fact = (
-        f"frame: a friction ratio that grows as the load to the power {exponent:.3f} meets the motion of both "
-        f"{first.run.name} and {second.run.name}"
+        f"frame: the friction ratios fitted to {first.cycles.run.name} and to {second.cycles.run.name} "
+        f"grow as the load to the power {exponent:.3f}"
     )
-    found = [Found([], [], [fact], [])]
-    for each, best in rest:
-        if each is not second:
-            factor = (each.run.weight / first.run.weight) ** exponent
-            at, others, explained = (
-                [one._replace(ratio=factor * one.ratio) for one in group] for group in ([setup], varied, [other])
-            )
-            title = ", friction of the load"
-            found.append(_compare_run(each, "predicted", at[0], others, explained[0], best, title))
-    return found
+    found = [Found([], [_given_ratio(second)], [fact], [], [])]
+    for cycles, own in rest if len(rest) > 1 else ():
+        share = (math.log(cycles.run.weight) - begin) / (end - begin)
+
+        def between(setup: Setup, low: float, high: float, share: float = share) -> Setup:
+            return setup._replace(ratio=low * (high / low) ** share)
+
+        pairs = zip([*first.changed, first.shifted], [*second.changed, second.shifted])
+        *changed, shifted = (between(low, low.ratio, high.ratio) for low, high in pairs)
+        setup = between(first.setup, one, two)
+        scattered = [between(setup, one + first.spread, two), between(setup, one, two + second.spread)]
+        heavier = setup._replace(disc=setup.disc + ASSUMED["disc"][0])
+        use = "calibrated" if cycles is chosen else "predicted"
+        found.append(_compare_run(cycles, use, setup, [*scattered, heavier, *changed], shifted, own, LOADED))
+    return table.joined(found)
 
 
 def _compare_run(
@@ -272,23 +319,28 @@ def _compare_run(
     answers = {side: read(cycles, motion) for side, motion in motions.items()}
     by_input, by_ratio = (np.abs(solve(cycles, each) - data.values) for each in (other, own))
 
-    def explain(k: int, allowed: float) -> tuple[str, str]:
+    def explain(k: int, allowed: float) -> str:
         shift = f"a base motion of {100.0 * (other.scale - 1.0):+.1f} % and ratio {other.ratio:.3f}"
         if by_input[k] <= allowed:
-            return INPUT, f"gone with {shift}"
+            return f"{INPUT}: gone with {shift}"
         if by_ratio[k] <= allowed:
-            return LAW, f"gone with the ratio of this run, {own.ratio:.3f}: the ratio depends on the load"
-        return LAW, f"gone neither with the ratio of this run, {own.ratio:.3f}, nor with {shift}"
+            return f"{LAW}: gone with the ratio of this run, {own.ratio:.3f}, so the ratio depends on the load"
+        return f"{OPEN}: gone neither with the ratio of this run, {own.ratio:.3f}, nor with {shift}"
 
     rows = table.quantities(title, data, answers, [solve(cycles, each) for each in varied], explain)
     best = last_cycle(compute(EQUATIONS, cycles, own), cycles.frequency)
     lines = {"measured": cycles.mean} | {
         side: last_cycle(motions[side], cycles.frequency) for side in (EQUATIONS, ENGINE)
     }
+    off = float(np.std(lines[EQUATIONS] - cycles.mean))
+    middle = 0.5 * (cycles.mean.max() + cycles.mean.min())
     fact = (
         f"{title}: the friction ratio of this run alone is {own.ratio:.3f}; the motion over a cycle is then "
-        f"off by {np.std(best - cycles.mean):.3f} mm rms, and by {np.std(lines[EQUATIONS] - cycles.mean):.3f} mm with "
-        f"{setup.ratio:.3f}"
+        f"off by {np.std(best - cycles.mean):.3f} mm rms, and by {off:.3f} mm with {setup.ratio:.3f}; the plate is "
+        f"above its middle for {100.0 * np.mean(cycles.mean > middle):.0f} % of a cycle"
     )
+    residual = table.Residual(title, use, off / float(data.values[0]))
     axes, turn = ("phase of the base, deg", "top plate, mm"), np.arange(SAMPLES) * 360.0 / SAMPLES
-    return Found(rows, [], [fact], table.curves(title, axes, {name: (turn, y) for name, y in lines.items()}))
+    return Found(
+        rows, [], [fact], [residual], table.curves(title, axes, {name: (turn, y) for name, y in lines.items()})
+    )

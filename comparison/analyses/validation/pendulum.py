@@ -13,7 +13,7 @@ from scipy.special import ellipk
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import table
 from comparison.analyses.validation.files import DECAY, LARGE, Swing, wrong_file
-from comparison.analyses.validation.table import COVERAGE, INPUT, LAW, SIDES, Answer, Data, Found
+from comparison.analyses.validation.table import COVERAGE, INPUT, LAW, OPEN, SIDES, Answer, Data, Found
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
@@ -63,8 +63,8 @@ def compare_decay(swing: Swing) -> Found:
     motions = {side: compute(side, nominal) for side in SIDES}
     answers = {side: table.answer(motion, read, len(data.names)) for side, motion in motions.items()}
     varied = [read(compute(EQUATIONS, nominal + change)) for change in np.diag(uncertain)]
-    cause = "friction before sliding gives way like a spring, which Coulomb's law lacks"
-    rows = table.quantities("pendulum, decay", data, answers, varied, lambda k, allowed: (LAW, cause))
+    cause = f"{LAW}: friction before sliding gives way like a spring, which Coulomb's law lacks (not computed)"
+    rows = table.quantities("pendulum, decay", data, answers, varied, lambda k, allowed: cause)
     named = zip(("half period", "loss of a half swing", "first angle"), nominal, uncertain, ("s", "rad", "rad"))
     source = f"fitted to the first {HALF} half periods and {COULOMB} half swings, and its scatter"
     fact = (
@@ -75,7 +75,7 @@ def compare_decay(swing: Swing) -> Found:
     axes = ("number of the turning point", "angle, mrad")
     curves = table.curves("pendulum, decay", axes, {name: (numbers, y) for name, y in drawn.items()})
     given = [table.given(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named]
-    return Found(rows, given, [fact], curves)
+    return Found(rows, given, [fact], [], curves)
 
 
 def compare_large(swing: Swing) -> Found:
@@ -100,10 +100,10 @@ def compare_large(swing: Swing) -> Found:
     answers = {side: compute(side, half) for side in SIDES}
     again, varied, small = (compute(EQUATIONS, *each).values for each in ((other,), (half + scatter,), (half, "small")))
 
-    def explain(k: int, allowed: float) -> tuple[str, str]:
+    def explain(k: int, allowed: float) -> str:
         if abs(again[k] - data.values[k]) <= allowed:
-            return INPUT, f"gone with the half period fitted at {REFITTED} rad, where friction weighs less"
-        return LAW, f"not gone with the half period fitted at {REFITTED} rad"
+            return f"{INPUT}: gone with the half period fitted at {REFITTED} rad, where friction weighs less"
+        return f"{OPEN}: not gone with the half period fitted at {REFITTED} rad"
 
     rows = table.quantities("pendulum, large angles", data, answers, [varied], explain)
     off = zip(100.0 * (small / data.values - 1.0), ANGLES)
@@ -115,7 +115,7 @@ def compare_large(swing: Swing) -> Found:
         s: (np.array(ANGLES), answers[s].values) for s in (EQUATIONS, ENGINE)
     }
     axes = ("amplitude, rad", "half period, ms")
-    return Found(rows, [given], [fact], table.curves("pendulum, large angles", axes, drawn))
+    return Found(rows, [given], [fact], [], table.curves("pendulum, large angles", axes, drawn))
 
 
 def _motion(

@@ -1,7 +1,6 @@
 """Measured quantities beside what both sides compute, as data: a file, and what the report needs of it."""
 
 import math
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 from typing import Annotated, Any, NamedTuple
@@ -16,18 +15,15 @@ import reference
 from comparison.analyses.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import Array, result
+from comparison.verdicts import NOT_MET, Verdict, count_verdicts, judge, word_verdict
 from reference.measures.demands import ANSWERED
 from reference.problem import Scene, State, Trajectory
 
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
 COVERAGE = 2.0  # standard deviations of an expanded uncertainty
-VALID, LAW, INPUT, NONE = "within u_val", "law", "input", "no answer"
-MEANING = {
-    VALID: "the comparison error is within the uncertainties together",
-    LAW: "beyond them: no input explains it, so it is the friction law",
-    INPUT: "beyond them: an input outside its assumed range explains it",
-    NONE: "no value was computed",
-}
+LAW, INPUT, OPEN = "the friction law", "an input", "not explained"  # begin the explanation of what is not met
+DEGREES, CYCLE = "deg", "% of a cycle"
+ABSOLUTE = (DEGREES, CYCLE)  # units of which a share says nothing
 
 
 @result
@@ -38,7 +34,11 @@ class Comparison:
     error: Annotated[float | None, "E = S - D"]
     numerical: Annotated[float | None, "u_num, as the side states it"]
     validation: Annotated[float | None, "u_val, root of u_num^2 + u_input^2 + u_D^2"]
-    verdict: Annotated[str, "within u_val, law, input, no answer"]
+    verdict: Annotated[Verdict, "met: |E| is within u_val; not met; not compared: no E or no u_val"]
+
+    def __post_init__(self) -> None:
+        if self.verdict != judge(self.error, self.validation):
+            raise ValueError(f"verdict {self.verdict!r} contradicts E = {self.error} and u_val = {self.validation}")
 
 
 @result
@@ -52,8 +52,27 @@ class Quantity:
     measured: Annotated[float, "D"]
     data: Annotated[float, "u_D"]
     inputs: Annotated[float, "u_input"]
-    cause: Annotated[str, "what is behind an E beyond u_val; empty where there is none"]
+    cause: Annotated[str, "explanation of what is not met: the friction law, an input, or none found; empty where met"]
     sides: Annotated[Mapping[str, Comparison], "by side: equations, smoothed (with the engine's friction law), engine"]
+
+    @property
+    def base(self) -> float | None:
+        """Value to which an E is relative, None where a share of it says nothing."""
+        return None if self.unit in ABSOLUTE else self.measured
+
+    def word(self, side: str) -> str:
+        """Return the verdict on one side in words."""
+        found = self.sides[side]
+        return word_verdict(found.verdict, found.error, self.base, self.unit)
+
+    def word_both(self) -> str:
+        """Return the verdicts on equations and engine in words, once where they are alike."""
+        one, two = (self.word(side) for side in (EQUATIONS, ENGINE))
+        if one == two:
+            return one
+        if self.sides[EQUATIONS].verdict == self.sides[ENGINE].verdict:
+            return f"{one.removesuffix(')')} / {two.split('(by ')[1]}"
+        return f"{one} / {two}"
 
 
 @result
@@ -68,19 +87,36 @@ class Curve:
 
 
 @result
+class Residual:
+    """How far a whole motion is off, which quantities of it alone do not show."""
+
+    experiment: Annotated[str, "the run, and the law of friction where it is of the load"]
+    use: Annotated[str, "calibrated or predicted"]
+    share: Annotated[float, "rms difference of the equations from the mean cycle, over the measured half range"]
+
+
+@result
 class Validation:
     """All measured quantities. Every uncertainty is expanded, about 95 %."""
 
     quantities: Annotated[Sequence[Quantity], "in the order of the experiments"]
     inputs: Annotated[Sequence[str], "of the computations, in sentences: value, uncertainty, unit, and who states them"]
     facts: Annotated[Sequence[str], "what else was found, in sentences"]
+    residuals: Annotated[Sequence[Residual], "of the runs of the frame"]
     curves: Annotated[Sequence[Curve], "of the plots; only in the file of a user who has the measured files"]
     run: Annotated[Mapping[str, Any], "command, provenance"]
 
-    def counts(self) -> dict[str, int]:
+    def explanations(self) -> dict[str, list[Quantity]]:
+        """Quantities that are not met, by their explanation."""
+        groups: dict[str, list[Quantity]] = {}
+        for each in self.quantities:
+            if each.cause:
+                groups.setdefault(each.cause, []).append(each)
+        return groups
+
+    def counts(self) -> dict[Verdict, int]:
         """Quantities of the equations and of the engine by verdict."""
-        seen = Counter(each.sides[side].verdict for each in self.quantities for side in (EQUATIONS, ENGINE))
-        return {verdict: seen[verdict] for verdict in MEANING}
+        return count_verdicts(each.sides[side].verdict for each in self.quantities for side in (EQUATIONS, ENGINE))
 
 
 STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "python -m comparison.validation")
@@ -105,6 +141,7 @@ class Found(NamedTuple):
     quantities: list[Quantity]
     inputs: list[str]
     facts: list[str]
+    residuals: list[Residual]
     curves: list[Curve]
 
 
@@ -166,13 +203,13 @@ def quantities(
     data: Data,
     answers: Mapping[str, Answer],
     varied: Sequence[Array],
-    explain: Callable[[int, float], tuple[str, str]],
+    explain: Callable[[int, float], str],
 ) -> list[Quantity]:
     """
     The table of one run.
 
     varied: by the equations, with each input changed by its uncertainty; u_input is the root of the sum of the squared
-    changes. explain: verdict and cause of quantity k, whose E exceeds this u_val.
+    changes. explain: why quantity k has an E beyond this u_val.
     """
     rows, inputs = [], np.sqrt(np.sum(np.square([each - answers[EQUATIONS].values for each in varied]), axis=0))
     for k, (name, unit, use) in enumerate(zip(data.names, data.units, data.use)):
@@ -182,11 +219,9 @@ def quantities(
         for side, (values, errors) in answers.items():
             error = float(values[k] - data.values[k])
             allowed = math.hypot(errors[k], inputs[k], data.uncertainty[k])
-            verdict = VALID
-            if not (math.isfinite(error) and math.isfinite(allowed)):
-                verdict = NONE
-            elif abs(error) > allowed:
-                verdict, cause = explain(k, allowed)
+            verdict = judge(error, allowed)
+            if verdict == NOT_MET and side != SMOOTHED:
+                cause = explain(k, allowed)
             value, off, numerical, limit = map(finite_or_none, (float(values[k]), error, float(errors[k]), allowed))
             sides[side] = Comparison(value, off, numerical, limit, verdict)
         measured, spread, propagated = (float(row[k]) for row in (data.values, data.uncertainty, inputs))

@@ -9,7 +9,7 @@ from known_analyses import collected
 
 import reference
 from comparison.analyses.measured import analysis
-from comparison.analyses.measured.analysis import MeasuredPeaks, _beside
+from comparison.analyses.measured.analysis import MeasuredPeaks, _beside, verdict_line
 from comparison.report.results import Results
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, RESOLVED, SMALL, TRANSLATIONAL
 from comparison.study.study import Study
@@ -108,5 +108,12 @@ def test_what_is_not_known_exceeds_nothing():
     found = _beside(scene, stated, [(key, {("mu", 1): (*numbers, "ok")}) for key, numbers in known.items()])
     assert [each.exceeds for each in found.computed] == [False, True, None], "0.15 < 0.1 + 0.1 < 0.25"
     assert [each.difference for each in found.computed[:2]] == pytest.approx([0.15, -0.25])
+    assert [found.word(each) for each in found.computed] == ["met", "not met (by −25 %)", "not compared: ok"]
     line = Results.measurements.fget(SimpleNamespace(of={"measured": [found]}.get))
-    assert line.endswith("1 of 3 differences exceed the uncertainties")
+    counts = "3 comparisons: 1 met, 1 not met, 1 not compared"
+    assert line == f"1 measured peak stands beside the models ({counts})"
+    largest = "largest: fig3-I, mu of body 1, far, −25 %"
+    assert verdict_line([found]) == counts.replace("1 not met", f"1 not met ({largest})")
+    [none] = PLAIN.with_values({"measured": [peak("drift", 0.0, 0.1, 2)]}).measured
+    drift = _beside(scene, none, [("a", {("drift", 2): (0.3, 0.1, "ok")})])
+    assert drift.word(drift.computed[0]) == "not met (by +0.3 m)"
