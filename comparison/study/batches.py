@@ -14,7 +14,6 @@ from comparison.study.models import Model
 from comparison.wording import exception_line
 from reference.problem import Outcome, Scene
 
-
 LARGEST_MU = 1e12  # far above mu of any building, and so small that no sum of squares of mu or of a ratio overflows
 USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET  # of our own models: mu counts with the larger error that is stated
 
@@ -117,7 +116,7 @@ def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None
     infinite or above LARGEST_MU: its status becomes "value out of range".
     """
     with np.errstate(invalid="ignore"):
-        absurd = ((mu < 0.0) | (mu > LARGEST_MU) | (error > LARGEST_MU)).any(axis=1)
+        absurd = np.any((mu < 0.0) | (mu > LARGEST_MU) | (error > LARGEST_MU), axis=1).tolist()
     for point, outcome in enumerate(status):
         stated = own and outcome == USABLE_WITH_ERROR and np.isfinite(error[point]).all()
         usable = outcome.startswith(Outcome.OK) or stated

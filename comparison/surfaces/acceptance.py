@@ -55,7 +55,7 @@ class Limit:
 
 def checked_limits(comparisons: Sequence[BodyComparison], lacking: Sequence[Unanswered]) -> list[Limit]:
     """Return every limit of the scenes of a study, compared with what was found, in the order of scenes and keys."""
-    limits = []
+    limits: list[Limit] = []
     for scene, bodies in groupby(comparisons, lambda comparison: comparison.scene):
         gaps = [gap for gap in lacking if gap.scene == scene.name]
         limits += _checked(list(bodies), gaps)

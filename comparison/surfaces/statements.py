@@ -115,7 +115,7 @@ def name_engine(title: str) -> str:
 
 
 def word_engine(row: Difference, title: str, like: str) -> str:
-    """Return how far an engine of the user is from the equations that it solves, and whether by more than the errors."""
+    """Return how far an engine of the user is from the equations that it solves, and whether the errors explain it."""
     known, axis = row.asked - row.unanswered, row.phases_per_axis
     if not known:
         return f"{name_engine(title)} and the {like} have no value in common: not compared."
