@@ -181,7 +181,7 @@ def word_unchecked(unchecked: Mapping[str, Sequence[str]]) -> str:
     """Return which pairs of models of which scenes no limit holds; "" where all are checked."""
     lacking = sorted((tuple(pairs), scene) for scene, pairs in unchecked.items() if pairs)
     groups = [(pairs, [scene for _, scene in group]) for pairs, group in groupby(lacking, lambda each: each[0])]
-    listed = "; ".join(f"{' and '.join(pairs)} of {_some(scenes)}" for pairs, scenes in groups)
+    listed = "; ".join(f"{', '.join(pairs)} of {_some(scenes)}" for pairs, scenes in groups)
     return f"not checked, as no limit is stated: {listed}" if listed else ""
 
 
