@@ -120,9 +120,7 @@ def pages() -> list[Path]:
 
 if __name__ == "__main__":
     if len(sys.argv) > 1:
-        RECORD.write_text(
-            json.dumps(record(Path(sys.argv[1])), ensure_ascii=False, indent=1) + "\n", encoding="utf-8"
-        )
+        RECORD.write_text(json.dumps(record(Path(sys.argv[1])), ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
     recorded = json.loads(RECORD.read_text(encoding="utf-8"))
     for page in pages():
         page.write_text(with_passages(page.read_text(encoding="utf-8"), recorded), encoding="utf-8")

@@ -125,7 +125,8 @@ def word_engine(row: Difference, title: str, like: str) -> str:
         under = where or " under the record"
         return f"{name_engine(title)} differs from the {like} by {signed(row.largest)}{under}: {verdict}."
     places = f"{f'{known} of ' if row.unanswered else ''}{axis} × {axis} initial phases"
-    lacking = f", as {row.unanswered} phase pairs lack a usable value" if row.unanswered else ""
+    pairs = "1 phase pair lacks" if row.unanswered == 1 else f"{row.unanswered} phase pairs lack"
+    lacking = f", as {pairs} a usable value" if row.unanswered else ""
     mean = difference(row.mean, row.error)
     sizes = f"{mean} in the mean over {places}{lacking}, and by {signed(row.largest)} at most,{where}"
     return f"{name_engine(title)} differs from the {like} by {sizes}: {verdict}."
@@ -136,7 +137,7 @@ def word_engine_verdict(row: Difference, title: str) -> str:
     what = "agreement within twice the errors"
     if row.agrees is None:
         return f"{what} not compared, as {title} does not state every error"
-    times = "more than both errors, which are zero" if math.isinf(row.ratio) else f"{row.ratio:.3g} u_D"
+    times = "more than both errors, which are zero" if math.isinf(row.ratio) else f"{row.ratio:.3g} times both errors"
     return f"{what} met (at most {times})" if row.agrees else f"{what} not met (by {times}, 2 allowed)"
 
 

@@ -313,10 +313,12 @@ def test_a_status_that_is_not_ok_is_no_value_for_headline_and_gate(
     assert [row["asked"] - row["unanswered"] for row in rows] == ([counted] * 2 if counted else [])
     gaps = {gap["model"]: gap["points"] for gap in summary_of(run.report)["unanswered"]}
     assert gaps == ({} if counted == ALL else {"mine": ALL - counted})
+    share = summary_of(run.report)["scenes"][0]["models"]["mine"]["cap_share"]
+    assert (share is None) is (function != "ok_after_all"), "nor has its motion a size"
     if "not_converged" in function:
         assert "the engine's status is 'not converged'" in run.err
     if function == "once_not_converged":
-        assert "over 3 of 2 × 2 initial phases, as 1 phase pairs lack a usable value, and by 0 % at most" in run.out
+        assert "over 3 of 2 × 2 initial phases, as 1 phase pair lacks a usable value, and by 0 % at most" in run.out
 
 
 @pytest.mark.parametrize(
@@ -353,6 +355,19 @@ def test_an_engine_without_limits_must_agree_within_twice_the_errors(
     case = '<testcase classname="limited" name="acceptance.mine.ratio = 2 by default"'
     assert case + (" />" if not body_lines else ">") in junit
     assert junit.count('<skipped message="not checked, as no limit is stated"') == (3 if not limits else 2)
+
+
+@pytest.mark.parametrize(
+    ("function", "engine", "count"), [("once_not_converged", "smooth", 1), ("with_error", "failing_point", 0)]
+)
+def test_missing_values_of_an_engine_break_the_gate_of_a_scene_without_limits(
+    function: str, engine: str, count: int, command: Callable[..., Run], tmp_path: Path
+) -> None:
+    """Those of Exudyn do not: no limit is stated."""
+    words = ["--grid", "4", *ONLY, "--check", "--model", f"mine=user_engines:{function}"]
+    run = command(limited_scene(tmp_path, ""), *words, hierarchy=fake_hierarchy(engine))
+    line = "limit broken: limited: acceptance.failed: 1 points without an answer (mine 1 of 16), 0 allowed by default"
+    assert (run.code, run.err.count(line), run.err.count("acceptance.failed")) == (count, count, count)
 
 
 def test_a_value_of_ours_counts_by_its_status_and_its_error() -> None:
