@@ -192,7 +192,7 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
         if supplied.side == "user" and supplied.key not in left_out:
             like = partner_of(supplied, scene, hierarchy)
             if like.key not in left_out:
-                sentence = f"the {like.title} against a user-supplied engine: what it solves is not known here"
+                sentence = f"the {like.title} against an engine of yours, which is said to solve the same"
                 title = f"{supplied.title}, against the {like.title}"
                 of_users.append(Pair(supplied.key, title, sentence, like, supplied, like))
     return of_users + pairs

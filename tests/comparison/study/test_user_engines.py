@@ -41,6 +41,7 @@ from comparison.surfaces.headline import headline
 from comparison.surfaces.surfaces import surface_tasks
 from comparison.surfaces.unanswered import compared_study, unanswered
 from comparison.surfaces.waterfall import waterfall
+from comparison.wording import percent
 from reference.problem import Outcome, SceneError, load_scene
 
 ONLY = ("--only", "differences")  # what the limits are held to, without pictures
@@ -89,6 +90,24 @@ def test_the_engine_of_the_documentation_appears_in_the_report(
     assert not shown["models"]["mine"]["surface"]
     rows = [row for row in summary_of(run.report)["scenes"][0]["differences"] if row["pair"] == "mine"]
     assert [(row["first"], row["ratio"] <= 1.0, row["not_ok"]) for row in rows] == [("small-regularised", True, 0)] * 2
+
+
+@pytest.mark.long
+def test_the_engine_of_the_documentation_is_off_by_what_the_page_says() -> None:
+    """4 x 4 phases of fig3-I are four motions and their mirror images."""
+    text = " ".join(DOCS.read_text(encoding="utf-8").split())
+    (code,) = re.findall(r"```python\n(.*?)```", DOCS.read_text(encoding="utf-8"), re.DOTALL)
+    names: dict[str, object] = {}
+    exec(code, names)
+    phases = [(a, b) for a in (0.0, 0.5 * np.pi) for b in (0.0, 0.5 * np.pi)]
+    mu, error = names["amplification"](SCENE, np.array(phases))  # type: ignore[operator]
+    of_laws = {model.key: reference.amplification(SCENE, phases, **model.settings) for model in EQUATIONS}  # type: ignore[arg-type]
+    off = {key: np.abs(mu / law.mu - 1.0).max(axis=0) for key, law in of_laws.items()}
+    small = off.pop("small-regularised")
+    assert f"off by at most {percent(small[0])} (μ<sub>1</sub>) and {100.0 * small[1]:.1g} % (μ<sub>2</sub>)" in text
+    assert (error / mu == pytest.approx(1e-3)) and 0.2 < small[0] / 1e-3 < 0.3, "a quarter of the stated error"
+    for key, (platform, _) in off.items():
+        assert f"{percent(platform)} (`{key}`)" in text
 
 
 PLAIN, FORM = "mine=user_engines:plain", "must be NAME=module:function[@KEY], as mine=my_engine:amplification"
