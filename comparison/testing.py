@@ -1,6 +1,7 @@
-"""A gate for the tests of users: do the equations and the engine agree about a scene?"""
+"""A gate for the tests of users: do the equations and an engine, Exudyn or the user's own, agree about a scene?"""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from reference.problem import Scene, load_scene
 from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_whole_number
 
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
-ENGINE = "engine"  # key and title of the user's engine
+ENGINE, ENGINE_TITLE = "engine", "your engine"  # key and title of the user's engine
 
 
 def assert_consistent(
@@ -35,7 +36,7 @@ def assert_consistent(
     failed: int = 0,
 ) -> None:
     """
-    Raise AssertionError where the equations and the engine differ by more than their errors and a limit.
+    Raise AssertionError where the equations and an engine differ by more than their errors and a limit.
 
     Parameters
     ----------
@@ -45,16 +46,16 @@ def assert_consistent(
         Limits on the relative difference of mu_i with the same geometry and friction law on both sides: on its median
         over the phases, and on its largest value, for each body.
     total, total_maximum : float, optional
-        The same for the difference between the paper's printed equations and the most complete engine model.
+        The same for the difference between the paper's printed equations and the most complete model of Exudyn.
     grid : int
         Phases per axis.
     tolerance : float
-        Relative error asked of the engine.
+        Relative error asked of Exudyn, and of your engine.
     engine : callable, optional
         A function of your own, as `--model` takes it (docs/other-engines.md). The limits like_for_like are then on its
         difference from the equations with its law.
-    law : {"regularised", "small", "exact", "resolved"}
-        Key of that model of the equations, as after "@" in `--model`.
+    law : {"regularised", "small-regularised", "resolved", "small-resolved", "exact", "small"}
+        Key of the equations that your engine solves, as after "@" in `--model`.
     failed : int
         Phase pairs without a value that are allowed, of the models that are compared together.
 
@@ -62,7 +63,8 @@ def assert_consistent(
     ------
     AssertionError
         With one line for each limit that is broken: body, phase pair, both values and their errors. Also where more
-        phase pairs than allowed have no value, and where none has both.
+        phase pairs than allowed have no value, and where none has both. A status of your engine that does not begin
+        with "ok" is no value.
     SceneError, ValueError
         For a scene that cannot be used, an argument outside its range, or no limit at all.
 
@@ -94,7 +96,7 @@ def assert_consistent(
     with_total = any(name.startswith("total") for name in stated)
     hierarchy = [*(with_softened_bars(MODEL_HIERARCHY, (scene,)) if with_total else MODEL_HIERARCHY)]
     if engine is not None:
-        hierarchy.append(user_model(ENGINE, {"function": engine}, law))
+        hierarchy.append(replace(user_model(ENGINE, {"function": engine}, law), title=ENGINE_TITLE))
     pairs = {pair.key: pair for pair in pairs_of(scene, hierarchy)}
     alike = "like-for-like" if engine is None else ENGINE
     asked = {name: pairs.get("total" if name.startswith("total") else alike) for name in stated}

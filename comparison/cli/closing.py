@@ -15,6 +15,7 @@ from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.study.levels import StudyLevel
 from comparison.surfaces.headline import Headline
+from comparison.surfaces.statements import word_unchecked
 from comparison.wording import percent, signed
 from reference.problem import builtin_scenes, example_scenes
 
@@ -37,13 +38,13 @@ def print_faults(results: Results) -> None:
 
 
 def print_check(results: Results) -> None:
-    """On standard error, as the last lines of a run with --check: broken limits, and the scenes without limits."""
+    """On standard error, as the last lines of a run with --check: broken limits, and what has no limit."""
     lines = [f"limit broken: {alert.scene}: {alert.text}" for alert in results.broken]
-    unlimited = [scene.name for scene in results.scenes if not scene.limits]
-    if len(unlimited) == len(results.scenes):
+    rest = word_unchecked(results.unchecked)
+    if not results.limits:
         lines.append("--check: no scene states [acceptance] limits: nothing was checked")
-    elif unlimited:
-        lines.append(f"--check: {', '.join(unlimited)}: no limits are stated under [acceptance]: nothing was checked")
+    elif rest:
+        lines.append(f"--check: {rest}")
     sys.stdout.flush()  # in a file that takes both outputs, too, these lines are the last
     for line in lines:
         print(line, file=sys.stderr)

@@ -66,7 +66,7 @@ def parsed(argv: Sequence[str]) -> Options:
         plan=words.plan,
         fresh=words.fresh,
         full=words.full,
-        max_work=_optional("--max-work", words.max_work, 1.0, 1e12, "steps of the engine for a phase pair"),
+        max_work=_optional("--max-work", words.max_work, 1.0, 1e12, "steps of Exudyn for a phase pair"),
         scheduler=words.scheduler,
         selection=Selection.of((scene for family in families for scene in family.scenes), only, skip, also),
         models=user_models(words.model, words.model_limit, words.scheduler),
@@ -132,7 +132,7 @@ def _parser() -> CommandParser:
     parser.add_argument(
         "--max-work",
         metavar="STEPS",
-        help="most steps that the engine may take for a phase pair (default 2e6); a scene that needs more is refused "
+        help="most steps that Exudyn may take for a phase pair (default 2e6); a scene that needs more is refused "
         "before any step",
     )
     add_models(parser)

@@ -25,7 +25,7 @@ SCRIPT = "phase-resonance"
 COLLECTIONS = 50_000, 20, 100
 
 COMMANDS = {  # module whose `main` is the command, and what it does
-    "run": ("comparison.run", "compare the equations with the engine and write the report"),
+    "run": ("comparison.run", "compare the equations with Exudyn and write the report"),
     "claims": (
         "comparison.analyses.claims.command",
         "the paper's statements about its figures in both readings of (5.1)",

@@ -11,7 +11,7 @@ from comparison.report.section import Feature, Findings, Report
 from comparison.study.analyses import ANALYSES
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from comparison.surfaces.acceptance import checked_limits
+from comparison.surfaces.acceptance import checked_limits, unchecked_pairs
 from comparison.surfaces.alerts import Alert, alerts
 from comparison.surfaces.body_comparison import BodyComparison, body_comparisons
 from comparison.surfaces.budget import budget
@@ -91,6 +91,7 @@ def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequen
         "models": {model.key: _model(study, surfaces, scene, model) for model in models_of(scene, study.hierarchy)},
         "headlines": [headline(*each) for each in zip(comparisons, waterfalls)],
         "waterfalls": waterfalls,
+        "unchecked": unchecked_pairs(study, scene),
         "distributions": [] if scene.recorded else distributions(study, surfaces, scene),
         "grid_maxima": grid_maxima(study, surfaces, scene),
         "values": _values(study, surfaces, scene) if scene.recorded else [],

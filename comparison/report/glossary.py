@@ -23,10 +23,10 @@ GLOSSARY = {
     "geometry": "The whole sphere instead of its small-vibration form: equations (3.9)-(3.13).",
     "regularized friction": "Friction that grows linearly with the speed below v_reg = 1 mm/s, as engines "
     "have it, instead of friction that sticks.",
-    "elastic contact": "The engine's contact gives way a little; that of the equations is rigid.",
+    "elastic contact": "Exudyn's contact gives way a little; that of the equations is rigid.",
     "turning of the bodies": "Bodies may turn, overturning shifts load between the supports, and supports may lift "
     "off. The paper assumes that no body turns.",
-    "other phases": "The engine is computed on fewer phases than the equations. This is what the means of the "
+    "other phases": "Exudyn is computed on fewer phases than the equations. This is what the means of the "
     "effects on their finer grids leave of the total: sampling, no effect.",
     "two codes": "Equations and Exudyn, given the same geometry and the same friction law: the largest difference "
     "over all phases. Met: within the errors that both state.",

@@ -15,6 +15,7 @@ from comparison.report.scene_result import SceneResult
 from comparison.result_types import Part, Text
 from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.alerts import Alert
+from comparison.surfaces.statements import word_gate
 from comparison.surfaces.unanswered import Unanswered
 from comparison.verdicts import count_verdicts, word_counts
 
@@ -102,6 +103,16 @@ class Results(Part):
     def broken(self) -> list[Alert]:
         """The broken acceptance limits, one alert for each body."""
         return [alert for alert in self.alerts if alert.kind == "limit"]
+
+    @property
+    def gate(self) -> str:
+        """Whether the acceptance limits hold, and what has none."""
+        return word_gate(len(self.limits), len(self.broken), self.unchecked)
+
+    @property
+    def unchecked(self) -> dict[str, list[str]]:
+        """By scene, the pairs of models that no limit is on."""
+        return {scene.name: scene.unchecked for scene in self.scenes}
 
     @property
     def measurements(self) -> str:

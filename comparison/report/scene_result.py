@@ -64,7 +64,9 @@ class SceneResult(Part):
     grid_maxima: list[GridMaximum] = Field(description="one per model and body")
     values: list[RecordValue]
     """one per model and body under a recorded motion; empty for a scene with phases"""
-    limits: list[Limit] = Field(description="every acceptance limit that the scene states")
+    limits: list[Limit]
+    """every acceptance limit that the scene states, and those that an engine of the user has by default"""
+    unchecked: list[str] = Field(description="pairs of models that are compared without any limit on their difference")
 
     def of(self, key: str) -> Any:
         """What a feature found of the scene."""

@@ -14,6 +14,9 @@ from comparison.study.models import Model
 from comparison.wording import exception_line
 from reference.problem import Outcome, Scene
 
+LARGEST_MU = 1e12  # far above mu of any building, and so small that no sum of squares of mu or of a ratio overflows
+USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET  # of our own models: mu counts with the larger error that is stated
+
 
 @dataclass(frozen=True)
 class Batch:
@@ -104,6 +107,25 @@ def imported(path: str) -> Any:
     return getattr(import_module(module), name)
 
 
+def drop_unusable(mu: Array, error: Array, status: list[str], own: bool) -> None:
+    """
+    Make NaN of every answer that is none, in place: mu and error (M, N), status (M).
+
+    An answer counts if its status begins with "ok". Of our `own` models it counts, too, where the tolerance is not met
+    and the error is stated. No answer counts with a value that is negative, or with a value or an error that is
+    infinite or above LARGEST_MU: its status becomes "value out of range".
+    """
+    with np.errstate(invalid="ignore"):
+        absurd = np.any((mu < 0.0) | (mu > LARGEST_MU) | (error > LARGEST_MU), axis=1).tolist()
+    for point, outcome in enumerate(status):
+        stated = own and outcome == USABLE_WITH_ERROR and np.isfinite(error[point]).all()
+        usable = outcome.startswith(Outcome.OK) or stated
+        if usable and absurd[point]:
+            status[point] = Outcome.VALUE_OUT_OF_RANGE.value
+        if absurd[point] or not usable:
+            mu[point] = error[point] = np.nan
+
+
 def refusal_of(scene: Scene, model: Model, tolerance: float, full: bool = False) -> str:
     """Why a model would refuse every phase pair of a scene, told without computing one; empty if it would not."""
     if model.refusal is None or not model.applies(scene):
@@ -119,12 +141,14 @@ def execute_batch(batch: Batch) -> BatchResult:
         parts = (found.mu, found.error, found.instant, found.displacement)
         mu, error, instant, displacement = (np.array(part, dtype=float) for part in parts)
         status = [str(outcome) for outcome in found.status]
-        result = BatchResult(mu, error, status, instant, float(found.cost), "", displacement)
+        error_message = str(getattr(found, "error_message", ""))
+        result = BatchResult(mu, error, status, instant, float(found.cost), error_message, displacement)
         if not batch.fits(result):
             points, bodies = batch.points, len(batch.scene.bodies)
             raise ValueError(f"{batch.amplification} answered {mu.shape} for {points} phases and {bodies} bodies")
     except Exception as exception:
         return batch.without_result(Outcome.SOLVER_FAILED, exception_line(exception))
+    drop_unusable(mu, error, status, own=not batch.group)
     wrong = batch.ok_without_numbers(mu, error, status)
     for index in wrong:
         status[index] = Outcome.SOLVER_FAILED.value

@@ -14,7 +14,9 @@ from reference.problem import Scene
 SECONDS: Mapping[str, float] = {
     "small": 0.0005,
     "exact": 0.0005,
+    "small-resolved": 0.0005,
     "resolved": 0.0005,
+    "small-regularised": 0.001,
     "regularised": 0.001,
     "translational": 0.06,
     "spatial": 0.22,

@@ -174,15 +174,14 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
     models = [model for model in asked if model.key not in left_out]
     first, last = models[0], models[-1]
     printed = "the paper's printed equations" if first is asked[0] else f"the {first.title}"
-    equations = [model for model in models_of(scene, hierarchy) if model.side == "reference"]
     reference = [model for model in asked if model.side == "reference"][-1]
     engine = next((model for model in asked if model.side == "engine"), None)
     complete = last is asked[-1] and engine is not None
-    other = "the most complete engine model" if complete else f"the {last.title}"
+    other = "the most complete model of Exudyn" if complete else f"the {last.title}"
     pairs = [Pair("total", "total", f"{printed} against {other}", first, last, first)]
     if engine is not None and engine in models:  # else it does not meet the tolerance, fit the budget, or answer
         if engine is not last and first is asked[0]:
-            sentence = f"{printed} against the engine under the paper's own assumption that no body turns"
+            sentence = f"{printed} against Exudyn under the paper's own assumption that no body turns"
             pairs.append(Pair("translational", "translational", sentence, first, engine, first))
         if reference in models:
             sentence = "same geometry and same friction law on both sides: this gap must close"
@@ -191,12 +190,25 @@ def pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str]
     of_users = []
     for supplied in models_of(scene, hierarchy):
         if supplied.side == "user" and supplied.key not in left_out:
-            like = next((model for model in equations if model.key == supplied.like), reference)
+            like = partner_of(supplied, scene, hierarchy)
             if like.key not in left_out:
-                sentence = f"the {like.title} against a user-supplied engine: what it solves is not known here"
+                sentence = f"the {like.title} against an engine of yours, which is said to solve the same"
                 title = f"{supplied.title}, against the {like.title}"
                 of_users.append(Pair(supplied.key, title, sentence, like, supplied, like))
     return of_users + pairs
+
+
+def partner_of(engine: Model, scene: Scene, hierarchy: Sequence[Model]) -> Model:
+    """
+    Return the model of the reference that solves what the engine of the user does.
+
+    Where no friction is dry, every law is the same: the partner is then the model that applies and has its geometry.
+    """
+    equations = [model for model in models_of(scene, hierarchy) if model.side == "reference"]
+    same = [model for model in equations if model.key == engine.like]
+    solved = [model.assumptions["equations"] for model in MODEL_HIERARCHY if model.key == engine.like]
+    alike = [model for model in equations if model.assumptions["equations"] in solved]
+    return (same or alike or equations)[-1]
 
 
 def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:

@@ -14,6 +14,7 @@ import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -21,7 +22,9 @@ from typing import Any
 import numpy as np
 
 from comparison.result_types import Array
+from comparison.study.batches import LARGEST_MU, drop_unusable
 from comparison.study.models import MODEL_HIERARCHY, Model
+from comparison.wording import shortened
 from reference.problem import Amplification, Outcome, Scene
 
 CALLED_THROUGH = "comparison.study.user_models:amplification"
@@ -32,9 +35,17 @@ TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one pha
 ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it
 OURS, INSTALLED = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
 UNKNOWN_ERROR = np.nan  # of an engine that states none
+LONGEST_STATUS = 60  # letters of a status of its own words that a message repeats
 
 
-def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> Amplification:
+@dataclass(frozen=True)
+class EngineAnswer(Amplification):
+    """What a user-supplied engine answers. error_message: statuses in its own words; "" without any."""
+
+    error_message: str = ""
+
+
+def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> EngineAnswer:
     """What a supplied function answers, in the form of `multibody.amplification`, asked with the settings it names."""
     with quiet():
         function = user_function(engine["function"])
@@ -133,7 +144,7 @@ def _named_by(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict
     return {key: value for key, value in settings.items() if key in names}
 
 
-def _read(answer: Any, points: int, bodies: int, seconds: float) -> Amplification:
+def _read(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer:
     """An answer of any accepted form: an object with `mu`, an array mu, or a tuple (mu, error)."""
     if hasattr(answer, "mu"):
         mu, parts = answer.mu, {name: getattr(answer, name, None) for name in ("error", "instant", "displacement")}
@@ -147,9 +158,17 @@ def _read(answer: Any, points: int, bodies: int, seconds: float) -> Amplificatio
         parts, outcomes = {"error": rest[0] if rest else None}, None
     shapes = {"mu": (points, bodies), "error": (points, bodies), "instant": (points,), "displacement": (points,)}
     arrays = {name: _array(name, {"mu": mu, **parts}.get(name), shape) for name, shape in shapes.items()}
-    arrays["mu"][~np.isfinite(arrays["mu"]) | (arrays["mu"] < 0.0)] = np.nan
-    arrays["error"][~(arrays["error"] >= 0.0) | np.isnan(arrays["mu"])] = UNKNOWN_ERROR
-    return Amplification(status=np.array(_outcomes(outcomes, arrays["mu"])), cost=seconds, **arrays)
+    mu, error = arrays["mu"], arrays["error"]
+    error[~(error >= 0.0)] = UNKNOWN_ERROR
+    status, error_message = _outcomes(outcomes, points)
+    drop_unusable(mu, error, status, own=False)
+    lacking = np.isnan(mu).any(axis=1)
+    for point in np.flatnonzero(lacking).tolist():
+        status[point] = Outcome.SOLVER_FAILED.value if status[point] == Outcome.OK else status[point]
+    for name in ("instant", "displacement"):
+        arrays[name][~((arrays[name] >= 0.0) & (arrays[name] <= LARGEST_MU))] = np.nan
+    arrays["displacement"][lacking] = np.nan
+    return EngineAnswer(status=np.array(status), cost=seconds, error_message=error_message, **arrays)
 
 
 def _array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
@@ -161,21 +180,20 @@ def _array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
         raise TypeError(f"the engine's {name} has {array.dtype} in place of real numbers")
     if array.shape != shape:
         raise ValueError(f"the engine's {name} has shape {array.shape}, asked: {shape}")
-    return array.astype(float)
+    with np.errstate(over="ignore"):  # longer numbers may be infinite in double precision
+        return array.astype(float)
 
 
-def _outcomes(stated: Sequence[Any] | None, mu: Array) -> list[str]:
-    """The engine's outcomes where they are known ones; a point without a value is never ok."""
-    points = len(mu)
+def _outcomes(stated: Sequence[Any] | None, points: int) -> tuple[list[str], str]:
+    """The outcomes that the engine states, "solver failed" in place of its own words, and a message with these."""
     texts = ["ok"] * points if stated is None else [str(text) for text in stated]
     if len(texts) != points:
         raise ValueError(f"the engine's status has {len(texts)} entries, asked: {points}")
-    known = {outcome.value: outcome for outcome in Outcome}
-    outcomes = [known.get(text, Outcome.OK if text.startswith("ok") else Outcome.SOLVER_FAILED) for text in texts]
-    return [
-        (Outcome.SOLVER_FAILED if outcome is Outcome.OK and not np.isfinite(values).all() else outcome).value
-        for outcome, values in zip(outcomes, mu)
-    ]
+    known = {outcome.value: outcome.value for outcome in Outcome}
+    own_words = dict.fromkeys(text for text in texts if text not in known and not text.startswith(Outcome.OK))
+    messages = [f"the engine's status is {shortened(text, LONGEST_STATUS)!r}" for text in own_words]
+    otherwise = (Outcome.OK if text.startswith(Outcome.OK) else Outcome.SOLVER_FAILED for text in texts)
+    return [known.get(text, other.value) for text, other in zip(texts, otherwise)], "; ".join(messages)
 
 
 def _processor_time() -> float:

@@ -1,4 +1,4 @@
-"""The limits that a scene states before the run, compared with what was found."""
+"""The limits of a study, stated by its scenes or held by every engine of the user, compared with what was found."""
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
@@ -7,13 +7,17 @@ from typing import Annotated
 
 from pydantic import computed_field
 
-from comparison.result_types import Number, Text, result
-from comparison.study.models import pairs_of
+from comparison.result_types import Number, Phases, Text, result
+from comparison.study.models import models_of, pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.budget import closure
+from comparison.surfaces.differences import AGREEMENT, Difference
+from comparison.surfaces.statements import word_breach
 from comparison.surfaces.unanswered import Unanswered
 from reference.problem import Scene
+
+NAN = float("nan")
 
 
 @result
@@ -23,25 +27,24 @@ class Breach:
     body: Annotated[int, "number of the body; 0 where the limit is of the scene"]
     found: Annotated[Number, "value that exceeds the limit; null without one"]
     reason: Annotated[Text, "why there is no value, or what was counted; empty otherwise"] = ""
+    largest: Annotated[Number, "largest difference, signed, where the limit is on one; null otherwise"] = NAN
+    phases: Annotated[Phases, "(alpha1, alpha2) of it, rad"] = (NAN, NAN)
 
 
 @result
 class Limit:
-    """An acceptance limit that the scene states, compared with the results."""
+    """An acceptance limit, compared with the results."""
 
     scene: Annotated[Text, "name of the scene"]
     key: Annotated[str, "as written below acceptance"]
     allowed: Annotated[float, "largest value that holds it"]
     breaches: Annotated[tuple[Breach, ...], "where it is broken; empty if it holds"]
+    default: Annotated[bool, "whether it holds for an engine of the user of which the scene states no limit"] = False
 
     @property
     def broken_texts(self) -> list[str]:
         """One text for each breach, without the scene."""
-        return [
-            f"{f'body {breach.body}: ' if breach.body else ''}acceptance.{self.key}: "
-            f"{breach.reason or f'{breach.found:.3g} found'}, {self.allowed:g} allowed"
-            for breach in self.breaches
-        ]
+        return [word_breach(self, breach) for breach in self.breaches]
 
     @computed_field  # type: ignore[prop-decorator]
     @property
@@ -51,45 +54,66 @@ class Limit:
 
 
 def checked_limits(comparisons: Sequence[BodyComparison], lacking: Sequence[Unanswered]) -> list[Limit]:
-    """Every limit that the scenes of a study state, compared with what was found, in the order of scenes and keys."""
-    limits = []
+    """Return every limit of the scenes of a study, compared with what was found, in the order of scenes and keys."""
+    limits: list[Limit] = []
     for scene, bodies in groupby(comparisons, lambda comparison: comparison.scene):
         gaps = [gap for gap in lacking if gap.scene == scene.name]
-        checked = _breaches(list(bodies), gaps)
-        limits += [Limit(scene.name, key, allowed, tuple(breaches)) for key, allowed, breaches in checked]
+        limits += _checked(list(bodies), gaps)
     return limits
 
 
-def _breaches(
-    bodies: Sequence[BodyComparison], gaps: Sequence[Unanswered]
-) -> Iterator[tuple[str, float, list[Breach]]]:
-    """Key, limit and what breaks it, of every limit that the scene states."""
+def unchecked_pairs(study: Study, scene: Scene) -> list[str]:
+    """Return the keys of the pairs of models that are compared on a scene without any limit on their difference."""
+    stated = [(pair, measure) for _, pair, measure, _ in scene.acceptance.differences()]
+    limited = {_same(study, scene, pair) for pair, _ in stated} | set(_engines_without_limits(study, scene))
+    return [pair.key for pair in study.pairs(scene) if pair.key not in limited]
+
+
+def _engines_without_limits(study: Study, scene: Scene) -> list[str]:
+    """Keys of the engines of the user of which the scene states no limit: they must agree with their like."""
+    stated = {pair for _, pair, _, _ in scene.acceptance.differences()}
+    models = models_of(scene, study.hierarchy)
+    return [model.key for model in models if model.side == "user" and model.key not in stated]
+
+
+def _checked(bodies: Sequence[BodyComparison], gaps: Sequence[Unanswered]) -> Iterator[Limit]:
+    """Every limit of a scene."""
     study, scene = bodies[0].study, bodies[0].scene
     stated, rows = scene.acceptance, [row for body in bodies for row in body.rows.values()]
-    for key, pair, measure, allowed in stated.differences():
+    engines = _engines_without_limits(study, scene)
+    defaults = [(f"{key}.ratio", key, "ratio", AGREEMENT) for key in engines]
+    for key, pair, measure, allowed in (*stated.differences(), *defaults):
         compared = [row for row in rows if row.pair == _same(study, scene, pair)]
         if any(row.asked > row.unanswered for row in compared):
             missing = "an error estimate is missing" if measure == "ratio" else "no phase pair to compare"
-            yield key, allowed, _beyond([(row.body, getattr(row, measure)) for row in compared], allowed, missing)
+            breaches = _beyond([(row.body, getattr(row, measure), row) for row in compared], allowed, missing)
         else:
-            reason = f"nothing to compare ({_why_not(study, scene, pair, gaps)})"
-            yield key, allowed, [Breach(0, float("nan"), reason)]
+            breaches = (Breach(0, NAN, f"nothing to compare ({_why_not(study, scene, pair, gaps)})"),)
+        yield Limit(scene.name, key, allowed, breaches, pair in engines)
     if stated.closure is not None:
-        remainders = [(body.body, closure(body)) for body in bodies]
-        yield "closure", stated.closure, _beyond(remainders, stated.closure)
-    if (allowed_points := stated.failures) is not None:
-        lacks = {gap: gap.points + gap.unusable for gap in gaps}
+        remainders = [(body.body, closure(body), None) for body in bodies]
+        yield Limit(scene.name, "closure", stated.closure, _beyond(remainders, stated.closure))
+    allowed_points = 0 if engines and stated.failures is None else stated.failures
+    if allowed_points is not None:
+        counted = [gap for gap in gaps if stated.failures is not None or gap.model in engines]
+        lacks = {gap: gap.points + gap.unusable for gap in counted}
         count = sum(lacks.values())
         models = ", ".join(f"{gap.title} {points} of {gap.asked}" for gap, points in lacks.items())
-        excess = f"{count} points without an answer ({models})"
-        yield "failed", allowed_points, [Breach(0, count, excess)] if count > allowed_points else []
+        excess = Breach(0, count, f"{count} points without an answer ({models})")
+        yield Limit(
+            scene.name, "failed", allowed_points, (excess,) if count > allowed_points else (), stated.failures is None
+        )
 
 
 def _beyond(
-    values: Sequence[tuple[int, float]], allowed: float, missing: str = "no phase pair to compare"
-) -> list[Breach]:
+    values: Sequence[tuple[int, float, Difference | None]], allowed: float, missing: str = "no phase pair to compare"
+) -> tuple[Breach, ...]:
     """The bodies whose value is not within the limit; no value is not within any, for the reason `missing`."""
-    return [Breach(body, value, missing if isnan(value) else "") for body, value in values if not value <= allowed]
+    return tuple(
+        Breach(body, value, missing if isnan(value) else "", *((row.largest, row.phases) if row else ()))
+        for body, value, row in values
+        if not value <= allowed
+    )
 
 
 def _same(study: Study, scene: Scene, pair: str) -> str:

@@ -16,6 +16,12 @@ from comparison.surfaces.unanswered import Unanswered
 NEARLY_ALL = 0.9  # of the travel, that a reader must know of
 WIDE = 0.5  # of rho: a displacement of the platform from the middle that a reader must know of
 
+STATED_BROKEN = "read the cause of the difference, then correct the scene or the limit in its [acceptance] table"
+DEFAULT_BROKEN = (
+    "name the equations that your engine solves (docs/other-engines.md), let it state an error that holds, or state "
+    "limits of its own in the table of its name below acceptance"
+)
+
 
 class Alert(Part):
     """What a reader must know before trusting a number."""
@@ -75,7 +81,7 @@ def _broken(limits: Sequence[Limit]) -> list[Alert]:
             kind="limit",
             scene=limit.scene,
             text=text,
-            help="read the cause of the difference, then correct the scene or the limit in its [acceptance] table",
+            help=DEFAULT_BROKEN if limit.default else STATED_BROKEN,
         )
         for limit in limits
         for text in limit.broken_texts

@@ -1,5 +1,6 @@
 """How far two models' surfaces lie apart, in numbers: one row per scene, pair of models and body."""
 
+import math
 from typing import Annotated, Any
 
 import numpy as np
@@ -9,6 +10,8 @@ from comparison.study.study import nested_grids
 from comparison.surfaces.model_difference import RESOLVED, ModelDifference
 from comparison.surfaces.sampling import known_mean, sampling_error
 from reference.measures.distribution import fractile
+
+AGREEMENT = 2.0  # largest |D| in units of u_D of two models that agree: beyond it one of their errors is false
 
 
 @result
@@ -68,6 +71,16 @@ class Difference(DifferenceStatistics):
     def error(self) -> float:
         """Error of the mean, numerical and of sampling; NaN where one is not known."""
         return float(np.hypot(self.numerical_error, self.sampling_error))
+
+    @property
+    def largest(self) -> float:
+        """Signed size of the largest absolute one, which is at `phases`."""
+        return self.low if abs(self.low) > abs(self.high) else self.high
+
+    @property
+    def agrees(self) -> bool | None:
+        """Whether the models agree within their errors wherever both have a value; None where an error is unknown."""
+        return None if math.isnan(self.ratio) else self.ratio <= AGREEMENT
 
     @property
     def mean_is_resolved(self) -> bool:

@@ -6,10 +6,11 @@ from dataclasses import replace
 from typing import Annotated
 
 from comparison.result_types import Number, Phases, Text, result
-from comparison.study.models import Model, chain_of, smooth
+from comparison.study.models import Model, chain_of, models_of, partner_of, smooth
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.differences import Difference
-from comparison.surfaces.statements import word_engine, word_headline
+from comparison.surfaces.statements import name_engine, word_engine, word_engine_without_values, word_headline
+from comparison.surfaces.surfaces import outcome_counts
 from comparison.surfaces.waterfall import NAN, Waterfall
 
 NAMED = 0.2  # share of the total: an effect above it is named as a cause; share of an effect: an interaction is stated
@@ -143,19 +144,34 @@ def headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
         causes=tuple(effect.effect for effect in causes),
         main_cause=main_cause_of(effects, causes),
         like_for_like=alike.maximum if alike else NAN,
-        like_for_like_met=None if alike is None or math.isnan(alike.ratio) else alike.ratio <= 2.0,
+        like_for_like_met=alike.agrees if alike else None,
         supremum_mean=supremum.mean if supremum else NAN,
         supremum_error=supremum.error if supremum else NAN,
         supremum_maximum=supremum.high if supremum else NAN,
         supremum_phases=supremum.high_phases if supremum else (NAN, NAN),
-        engines=tuple(
-            word_engine(comparison.rows[pair.key], pair.second.title, pair.first.title)
-            for pair in comparison.pairs
-            if pair.second.side == "user"
-        ),
+        engines=engine_sentences(comparison),
         sentence="",
     )
     return replace(numbers, sentence=word_headline(numbers))
+
+
+def engine_sentences(comparison: BodyComparison) -> tuple[str, ...]:
+    """Return a sentence for each engine of the user, also for one without a value to compare."""
+    study, scene = comparison.study, comparison.scene
+    compared, left_out = {pair.key: pair for pair in comparison.pairs}, study.left_out(scene)
+    sentences = []
+    for engine in models_of(scene, study.hierarchy):
+        if engine.side != "user":
+            continue
+        if engine.key in compared:
+            like = compared[engine.key].first
+            sentences.append(word_engine(comparison.rows[engine.key], engine.title, like.title))
+            continue
+        like = partner_of(engine, scene, study.hierarchy)
+        lacking, name = (engine, name_engine(engine.title)) if engine.key in left_out else (like, f"the {like.title}")
+        outcomes = outcome_counts(comparison.surfaces, scene.name, lacking)
+        sentences.append(word_engine_without_values(engine.title, like.title, name, outcomes))
+    return tuple(sentences)
 
 
 def effects_of(comparison: BodyComparison) -> tuple[Effect, ...]:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import groupby
 from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 from comparison.wording import degrees, difference, more_or_less, percent, signed
 
 if TYPE_CHECKING:
+    from comparison.surfaces.acceptance import Breach, Limit
     from comparison.surfaces.differences import Difference
     from comparison.surfaces.headline import Effect, Headline
 
 
 SAME = 1e-6  # share of mu: the error asked of the equations
+NAMED = 4  # scenes that a sentence names one by one
 
 
 def word_headline(numbers: Headline) -> str:
@@ -83,14 +86,15 @@ def word_effect(effect: Effect) -> str:
 
 def word_agreement(numbers: Headline) -> str:
     """Return how far the two codes lie apart where they solve the same equations with the same friction law."""
-    if math.isnan(numbers.like_for_like) or numbers.engines:
+    if math.isnan(numbers.like_for_like):
         return ""
     verdict = {
         True: "agree within their errors, to",
         False: "differ beyond their errors, by up to",
         None: "differ, with an unknown error, by up to",
     }[numbers.like_for_like_met]
-    return f"Given the same equations and friction law the two codes {verdict} {percent(numbers.like_for_like)}."
+    codes = "the equations and Exudyn" if numbers.engines else "the two codes"
+    return f"Given the same equations and friction law {codes} {verdict} {percent(numbers.like_for_like)}."
 
 
 def word_supremum(numbers: Headline) -> str:
@@ -105,18 +109,87 @@ def word_supremum(numbers: Headline) -> str:
     return f"The literal supremum is {mean} higher in the mean, up to {percent(numbers.supremum_maximum)}."
 
 
+def name_engine(title: str) -> str:
+    """Return how a sentence names an engine of the user, which Exudyn stands beside."""
+    return f"{title} (your engine)"
+
+
 def word_engine(row: Difference, title: str, like: str) -> str:
-    """Return how far an engine of the user is from the equations with its friction law."""
-    known, axis = row.asked - row.unanswered, math.isqrt(row.asked)
+    """Return how far an engine of the user is from the equations that it solves, and whether the errors explain it."""
+    known, axis = row.asked - row.unanswered, row.phases_per_axis
     if not known:
-        return f"{title} and the {like} have no value in common."
+        return f"{name_engine(title)} and the {like} have no value in common: not compared."
+    verdict = word_engine_verdict(row, title)
+    where = "" if math.isnan(row.phases[0]) else f" at ({', '.join(map(degrees, row.phases))})"
+    if axis == 1:
+        under = where or " under the record"
+        return f"{name_engine(title)} differs from the {like} by {signed(row.largest)}{under}: {verdict}."
     places = f"{f'{known} of ' if row.unanswered else ''}{axis} × {axis} initial phases"
-    where = ", ".join(degrees(phase) for phase in row.phases)
+    pairs = "1 phase pair lacks" if row.unanswered == 1 else f"{row.unanswered} phase pairs lack"
+    lacking = f", as {pairs} a usable value" if row.unanswered else ""
     mean = difference(row.mean, row.error)
-    grid = f" (mean {mean} over {places}; largest at ({where}))" if axis > 1 else ""
-    # an unknown error explains no difference
-    how = "agrees within the errors, to {}, with" if row.ratio <= 1.0 else "differs by up to {} from"
-    return f"{title} {how.format(percent(row.maximum))} the {like}{grid}."
+    sizes = f"{mean} in the mean over {places}{lacking}, and by {signed(row.largest)} at most,{where}"
+    return f"{name_engine(title)} differs from the {like} by {sizes}: {verdict}."
+
+
+def word_engine_verdict(row: Difference, title: str) -> str:
+    """Return whether an engine of the user agrees with its partner wherever both have a value."""
+    what = "agreement within twice the errors"
+    if row.agrees is None:
+        return f"{what} not compared, as {title} does not state every error"
+    times = "more than both errors, which are zero" if math.isinf(row.ratio) else f"{row.ratio:.3g} times both errors"
+    return f"{what} met (at most {times})" if row.agrees else f"{what} not met (by {times}, 2 allowed)"
+
+
+def word_engine_without_values(title: str, like: str, lacking: str, outcomes: Mapping[str, int]) -> str:
+    """Return that an engine of the user is not compared; lacking: which of the two has no usable value."""
+    counts = ", ".join(f"{count} × {outcome}" for outcome, count in outcomes.items() if outcome != "ok")
+    why = counts or "errors above half of the values"
+    return f"{name_engine(title)} is not compared with the {like}: no usable value by {lacking} ({why})."
+
+
+def word_breach(limit: Limit, breach: Breach) -> str:
+    """Return where, by which value and how a limit is broken; without the scene."""
+    body = f"body {breach.body}: " if breach.body else ""
+    found = breach.reason or f"{breach.found:.3g} found"
+    text = f"{body}acceptance.{limit.key}: {found}, {limit.allowed:g} allowed"
+    if not limit.default:
+        return text
+    where = "" if math.isnan(breach.phases[0]) else f" at ({', '.join(map(degrees, breach.phases))})"
+    largest = "" if math.isnan(breach.largest) else f"; largest difference {signed(breach.largest)}{where}"
+    return f"{text} by default{largest}"
+
+
+def word_gate(limits: int, broken: int, unchecked: Mapping[str, Sequence[str]]) -> str:
+    """
+    Return whether the limits hold, and what has none.
+
+    limits, broken: their numbers. unchecked: by scene, the pairs of models without a limit.
+    """
+    if not limits:
+        return "No scene states acceptance limits: nothing was checked."
+    rest = word_unchecked(unchecked)
+    if broken:
+        held = f"{broken} acceptance limit{' is' if broken == 1 else 's are'} broken."
+    elif rest:
+        held = f"{limits} acceptance limit{' holds' if limits == 1 else 's hold'}."
+    else:
+        held = "Every acceptance limit holds."
+    return f"{held} {_capitalize(rest)}." if rest else held
+
+
+def word_unchecked(unchecked: Mapping[str, Sequence[str]]) -> str:
+    """Return which pairs of models of which scenes no limit holds; "" where all are checked."""
+    lacking = sorted((tuple(pairs), scene) for scene, pairs in unchecked.items() if pairs)
+    groups = [(pairs, [scene for _, scene in group]) for pairs, group in groupby(lacking, lambda each: each[0])]
+    listed = "; ".join(f"{', '.join(pairs)} of {_some(scenes)}" for pairs, scenes in groups)
+    return f"not checked, as no limit is stated: {listed}" if listed else ""
+
+
+def _some(names: Sequence[str]) -> str:
+    """The first of many names, and how many more there are."""
+    rest = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    return f"{', '.join(names[:NAMED])}{rest}"
 
 
 def word_verdict(headlines: Sequence[Headline], measured: str) -> str:

@@ -1,11 +1,11 @@
 """
 MuJoCo: a sphere that slides on a plane under a chain, held back by springs. Needs `pip install mujoco`.
 
-    python -m comparison.run fig3-I --grid 4 --model MuJoCo=examples.engines.mujoco_slider:amplification@resolved
+    python -m comparison.run fig3-I --grid 4 --model MuJoCo=examples.engines.mujoco_slider:amplification@small-resolved
 
-What it cannot express: a sphere inside a sphere (the restoring force is that of springs, m_sum g x/R), and friction
-linear in the velocity. Its contacts are soft constraints, whose own smoothing decides what happens within a few ms of a
-stop, and with it mu_1.
+What it cannot express: a sphere inside a sphere (the restoring force is that of springs, m_sum g x/R, as in the small
+equations), and friction linear in the velocity. Its contacts are soft constraints, whose own smoothing decides what
+happens within a few ms of a stop, and with it mu_1.
 """
 
 from __future__ import annotations

@@ -1,11 +1,12 @@
 """
 OpenSees: single friction pendulum or flat slider bearing under a chain. Needs `pip install openseespy`.
 
-    python -m comparison.run fig3-I --grid 4 --model OpenSees=examples.engines.opensees:amplification@resolved
+    python -m comparison.run fig3-I --grid 4 --model OpenSees=examples.engines.opensees:amplification@small-resolved
 
 What its bearing cannot express: the sphere (its restoring force is N x/R) and friction linear in the velocity (it is a
-spring up to `KNEE`, and slides from there). A plastic spring truly rests: the nearest law is the set-valued one,
-`resolved`, without the limits at stops that no step shows. Where a slide ends the spring is struck, which mu_1 feels.
+spring up to `KNEE`, and slides from there). A plastic spring truly rests: the nearest partner is `small-resolved`, with
+the set-valued law and without the limits at stops that no step shows. Where a slide ends the spring is struck, which
+mu_1 feels.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """
 SciPy on equations written out by hand: a chain on a sphere, friction linear below v_reg. Needs nothing more.
 
-    python -m comparison.run fig3-I --grid 4 --model SciPy=examples.engines.scipy_equations:amplification
+    python -m comparison.run fig3-I --grid 4 --model SciPy=examples.engines.scipy_equations:amplification@regularised
 
 Newton-Euler; the vertical motion of the platform follows from the sphere and carries the mass of all bodies.
 `method` and `rtol` are for trying.

@@ -5,6 +5,8 @@ from fake_models import errors_in
 
 from comparison.study.batches import execute_batch
 from comparison.study.study import Study
+from comparison.surfaces.body_comparison import body_comparisons
+from comparison.surfaces.differences import Difference
 from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import load_scene
 
@@ -16,6 +18,12 @@ def solved(study: Study) -> xr.Dataset:
     """The surfaces of a study."""
     batches = study.batches()
     return labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+
+
+def difference_rows(study: Study, surfaces: xr.Dataset) -> list[Difference]:
+    """The rows of the pairs that answer the question, in the order of bodies and pairs."""
+    bodies = body_comparisons(study, surfaces)
+    return [comparison.rows[pair.key] for comparison in bodies for pair in comparison.pairs]
 
 
 def planted_study(

@@ -139,3 +139,40 @@ def as_reference(scene: Scene, phases: np.ndarray) -> np.ndarray:
     import reference
 
     return 1.001 * reference.amplification(scene, phases, regularization=1e-3).mu
+
+
+def saying(status: str) -> Callable[[Scene, np.ndarray], SimpleNamespace]:
+    """An engine that calls every point so: values nine times too large, with a small error."""
+
+    def engine(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
+        mu = 9.0 * plain(scene, phases)
+        return SimpleNamespace(mu=mu, error=1e-3 * mu, status=[status] * len(mu), displacement=[9.0] * len(mu))
+
+    return engine
+
+
+not_converged, tolerance_not_met = saying("not converged"), saying("tolerance not met")
+ok_after_all = saying("ok after 17 iterations")
+
+
+def once_not_converged(scene: Scene, phases: np.ndarray) -> SimpleNamespace:
+    """Values that say nothing at the first phase pair, those of `plain` elsewhere."""
+    mu, first = plain(scene, phases), (phases == 0.0).all(axis=1)
+    status = np.where(first, "not converged", "ok")
+    return SimpleNamespace(mu=np.where(first[:, None], 9.0 * mu, mu), error=1e-3 * mu, status=status)
+
+
+huge = answering(lambda mu: np.full_like(mu, 1e308))
+large = answering(lambda mu: np.full_like(mu, 1e300))
+infinite = answering(lambda mu: np.full_like(mu, np.inf))
+no_number = answering(lambda mu: np.full_like(mu, np.nan))
+negative = answering(lambda mu: -mu)
+lowest = answering(lambda mu: np.full_like(mu, -1.7e308))
+longer = answering(lambda mu: np.full(mu.shape, np.longdouble("1e4000")))
+huge_error = answering(lambda mu: (mu, np.full_like(mu, 1e308)))
+infinite_error = answering(lambda mu: (mu, np.full_like(mu, np.inf)))
+wide = answering(
+    lambda mu: SimpleNamespace(mu=mu, error=1e-3 * mu, displacement=[1e308] * len(mu), instant=[np.inf] * len(mu))
+)
+at_the_end_of_the_range = answering(lambda mu: np.full_like(mu, 9e11))
+tiny = answering(lambda mu: np.full_like(mu, 5e-324))

@@ -8,6 +8,8 @@ from register import Mistake
 SURFACES = "comparison/surfaces/"
 WORDS = SURFACES + "statements.py"
 SAID = ("tests/comparison/surfaces/test_statements.py",)
+OF_ENGINES = ("tests/comparison/surfaces/test_engine_statements.py",)
+ENGINES = ("tests/comparison/study/test_user_engines.py",)
 HEADLINE = ("tests/comparison/surfaces/test_headline.py",)
 WATERFALL = ("tests/comparison/surfaces/test_waterfall.py",)
 SAMPLING = ("tests/comparison/surfaces/test_sampling.py",)
@@ -119,13 +121,48 @@ MISTAKES = (
             ("tests/comparison/surfaces/test_statements.py::test_the_verdict_finds_the_worst_phase_pair_below_zero",)),
     Mistake(WORDS, "known = [each for each in headlines if math.isfinite(each.mean) and each.first != each.second]",
             "known = [each for each in headlines if each.first != each.second]", "A missing mean is the largest.", SAID),
-    # word_engine
-    Mistake(WORDS, 'how = "agrees within the errors, to {}, with" if row.ratio <= 1.0',
-            'how = "agrees within the errors, to {}, with" if not row.ratio > 1.0', "An unknown error explains a difference.", SAID),
-    Mistake(WORDS, "    mean = difference(row.mean, row.error)\n    grid", "    mean = difference(row.high, row.error)\n    grid",
-            "An engine's largest difference is called the mean.", SAID),
-    Mistake(WORDS, 'places = f"{f\'{known} of \' if row.unanswered else \'\'}', 'places = f"{\'\'}',
-            "An engine's missing values are not said.", SAID),
+    # name_engine, word_engine, word_engine_verdict, word_engine_without_values
+    Mistake(WORDS, 'return f"{title} (your engine)"', 'return f"the engine"', "A sentence does not say which engine.", OF_ENGINES),
+    Mistake(WORDS, "and by {signed(row.largest)} at most", "and by {signed(row.mean)} at most",
+            "The mean of an engine of the user is called its largest difference.", OF_ENGINES),
+    Mistake(WORDS, "and by {signed(row.largest)} at most", "and by {percent(row.maximum)} at most",
+            "The largest difference of an engine of the user has no sign.", OF_ENGINES),
+    Mistake(WORDS, "    mean = difference(row.mean, row.error)\n    sizes", "    mean = signed(row.mean)\n    sizes",
+            "The mean of an engine of the user has no error.", OF_ENGINES),
+    Mistake(WORDS, "known, axis = row.asked - row.unanswered, row.phases_per_axis", "known, axis = row.asked, row.phases_per_axis",
+            "Phase pairs whose status is not ok are counted as compared.", OF_ENGINES),
+    Mistake(WORDS, "places = f\"{f'{known} of ' if row.unanswered else ''}{axis} × {axis}", "places = f\"{f'{known} of ' if row.unanswered else ''}{8} × {8}",
+            "An engine of the user is said to have another grid.", OF_ENGINES),
+    Mistake(WORDS, "    lacking = f\", as {pairs} a usable value\" if row.unanswered else \"\"\n", "    lacking = \"\"\n",
+            "Missing values of an engine of the user are not said.", OF_ENGINES),
+    Mistake(WORDS, "if row.agrees is None:", "if row.agrees is None and row.unanswered:", "An unknown error is called not met.", OF_ENGINES),
+    Mistake(WORDS, "if row.agrees else f\"{what} not met", "if row.ratio else f\"{what} not met", "Not met is called met.", OF_ENGINES),
+    Mistake(WORDS, "not met (by {times}, 2 allowed)", "not met", "By how much a verdict is not met is not said.", OF_ENGINES),
+    Mistake(WORDS, "not compared with the {like}: no usable value by {lacking} ({why}).", "not compared with the {like}: no usable value by the {like} ({why}).",
+            "The partner is blamed for an engine without values.", OF_ENGINES),
+    Mistake(WORDS, 'why = counts or "errors above half of the values"', 'why = counts', "Why an engine is not compared is not said.", OF_ENGINES),
+    Mistake(WORDS, 'codes = "the equations and Exudyn" if numbers.engines else "the two codes"', 'codes = "the two codes"',
+            "Three codes are called two.", SAID),
+    Mistake(SURFACES + "headline.py", "word_engine(comparison.rows[engine.key], engine.title, like.title)",
+            "word_engine(comparison.rows[\"like-for-like\"], engine.title, like.title)",
+            "The difference of Exudyn stands for that of an engine of the user.", ENGINES),
+    Mistake(SURFACES + "headline.py", "like = compared[engine.key].first\n", "like = comparison.total_pair.first\n",
+            "A sentence names another partner.", ENGINES),
+    Mistake(SURFACES + "headline.py", "if engine.key in left_out else (like,", "if engine.key not in left_out else (like,",
+            "The partner is said to lack the values of an engine of the user.", ENGINES),
+    # word_breach, word_gate, word_unchecked
+    Mistake(WORDS, 'largest = "" if math.isnan(breach.largest) else', 'largest = "" if True else',
+            "A limit that holds by default does not say how far the engine is.", OF_ENGINES),
+    Mistake(WORDS, "found = breach.reason or f", "found = f", "A missing error is called a ratio.", OF_ENGINES),
+    Mistake(WORDS, "largest difference {signed(breach.largest)}", "largest difference {percent(abs(breach.largest))}",
+            "The largest difference of a broken limit has no sign.", OF_ENGINES),
+    Mistake(WORDS, "    elif rest:\n        held", "    elif rest and not limits:\n        held",
+            "Every limit is said to hold where something was not checked.", OF_ENGINES),
+    Mistake(WORDS, "{_capitalize(rest)}.\" if rest else held", "{_capitalize(rest)}.\" if rest and broken else held",
+            "What was not checked is not said.", OF_ENGINES),
+    Mistake(WORDS, "for scene, pairs in unchecked.items() if pairs)", "for scene, pairs in unchecked.items())",
+            "A scene that is checked is called unchecked.", OF_ENGINES),
+    Mistake(WORDS, "and {len(names) - NAMED} more", "and {len(names)} more", "More scenes are unchecked than there are.", OF_ENGINES),
     # headline: the numbers behind the words
     Mistake(SURFACES + "headline.py", "NAMED = 0.2", "NAMED = 0.3", "An effect of a quarter is not named.", HEADLINE),
     Mistake(SURFACES + "headline.py", "NAMED = 0.2", "NAMED = 0.15", "An effect of a sixth is named.", HEADLINE),
@@ -143,7 +180,10 @@ MISTAKES = (
             "An effect in another order is called an interaction.", HEADLINE),
     Mistake(SURFACES + "headline.py", "supremum_maximum=supremum.high if", "supremum_maximum=supremum.maximum - 1.0 if",
             "The largest literal supremum is another number.", NUMBERS),
-    Mistake(SURFACES + "headline.py", "alike.ratio <= 2.0", "alike.ratio <= 2e6", "Codes that differ agree.", HEADLINE),
+    Mistake(SURFACES + "differences.py", "AGREEMENT = 2.0", "AGREEMENT = 2e6", "Codes that differ agree.", HEADLINE),
+    Mistake(SURFACES + "differences.py", "AGREEMENT = 2.0", "AGREEMENT = 3.1", "Three times the errors are agreement.", ENGINES),
+    Mistake(SURFACES + "differences.py", "return self.low if abs(self.low) > abs(self.high) else self.high", "return self.high",
+            "The largest difference is never below zero.", OF_ENGINES),
     # differences
     Mistake(SURFACES + "model_difference.py", "size=(mu(pair.second) - mu(pair.first)) / scale",
             "size=(mu(pair.first) - mu(pair.second)) / scale", "Every difference has the wrong sign.", WATERFALL),

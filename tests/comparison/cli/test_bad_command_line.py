@@ -17,7 +17,7 @@ WRONG = [
     (["--tolerance", "nan"], "command line: --tolerance = nan: must be a number"),
     (["--budget", "0"], "command line: --budget = 0.0: must be a number from 1 to 1e+07, s of the whole"),
     (["--amplitude", "inf"], "command line: --amplitude = inf: must be a number from 1e-12 to 1e+06, m/s^2"),
-    (["--max-work", "0.5"], "command line: --max-work = 0.5: must be a number from 1 to 1e+12, steps of the engine"),
+    (["--max-work", "0.5"], "command line: --max-work = 0.5: must be a number from 1 to 1e+12, steps of Exudyn"),
     (["--gri", "3"], "command line: unrecognized arguments: --gri"),
     (["--grid"], "command line: argument --grid: expected one argument"),
     (["fig9"], "fig9: scene = 'fig9': No such file or directory; give a TOML file or one of fig3-I"),

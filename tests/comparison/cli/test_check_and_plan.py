@@ -12,7 +12,7 @@ from fake_models import fake_hierarchy
 from places import limited_scene, scene_text
 from report_texts import page_of
 from runs import Run, no_executor
-from studies import solved
+from studies import difference_rows, solved
 
 import reference
 from comparison.cli.options import parsed
@@ -20,24 +20,26 @@ from comparison.runner.processes import cores
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit, checked_limits
-from comparison.surfaces.differences import differences
+from comparison.surfaces.body_comparison import body_comparisons
 from comparison.surfaces.unanswered import unanswered
 
+UNCHECKED = "--check: not checked, as no limit is stated: total, translational of fig3-I\n"
 SMALL = ["fig3-I", "--grid", "2", "--only", "differences"]
 
 
 def limits_of(study: Study, surfaces: xr.Dataset) -> list[Limit]:
     """The limits of a study, compared with its surfaces."""
-    return checked_limits(study, surfaces, differences(study, surfaces), unanswered(study, surfaces))
+    return checked_limits(body_comparisons(study, surfaces), unanswered(study, surfaces))
 
 
 def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callable[..., Run], tmp_path: Path) -> None:
     within = command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=5e-5))  # the scene allows a median of 1e-4
-    assert (within.code, within.err) == (0, "")
+    assert (within.code, within.err) == (0, UNCHECKED)
     run = command(*SMALL, "--check", hierarchy=fake_hierarchy(gap=5e-4))
     assert run.code == 1
     assert run.err.splitlines() == [  # 5e-4 is within the maximum of 1e-3 that is allowed
-        f"limit broken: fig3-I: body {body}: acceptance.median: 0.0005 found, 0.0001 allowed" for body in (1, 2)
+        *(f"limit broken: fig3-I: body {body}: acceptance.median: 0.0005 found, 0.0001 allowed" for body in (1, 2)),
+        UNCHECKED.strip(),
     ]
     unchecked = command(*SMALL, hierarchy=fake_hierarchy(gap=5e-4))
     assert unchecked.code == 0
@@ -46,7 +48,8 @@ def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callabl
     alone = command(plain, *SMALL[1:], "--check")
     assert (alone.code, alone.err) == (0, "--check: no scene states [acceptance] limits: nothing was checked\n")
     beside = command(plain, *SMALL, "--check", hierarchy=fake_hierarchy(gap=5e-5))
-    assert beside.err == "--check: plain: no limits are stated under [acceptance]: nothing was checked\n"
+    everything = "total, translational, like-for-like of plain"
+    assert beside.err == f"{UNCHECKED.strip()}; {everything}\n"
 
 
 @pytest.mark.parametrize(
@@ -86,20 +89,20 @@ def test_plan_counts_the_work_and_computes_and_writes_nothing(command: Callable[
     assert (run.code, run.report.exists()) == (0, False)
     rows = [line.split() for line in run.out.splitlines() if line.split()[:1] in (["fig3-I"], ["fig4-viscous"])]
     assert [row[-3:] for row in rows] == [
-        *[["256", "256", "1e-06"]] * 4, ["256", "256", "1e-03"], ["16", "16", "1e-03"],
+        *[["256", "256", "1e-06"]] * 6, ["256", "256", "1e-03"], ["16", "16", "1e-03"],
         *[["256", "256", "1e-06"]] * 2, ["256", "256", "1e-03"], ["16", "16", "1e-03"],
     ]  # fmt: skip
     text = " ".join(run.out.split())
     assert "Analyses (tasks): held-out phases (0), pictures (chosen by the surfaces)." in text
     assert "Level 1 of 3: equations 16 x 16 phases, translational engine 8 x 8 phases, spatial engine 4 x 4" in text
     # 16 x 16 phase pairs at 0.06 s and 4 x 4 at 0.22 s of both scenes, the equations, two analyses, modules and report
-    points = 256 * (2 * 0.06 + 2 * 2 * 0.0005 + 0.0005 + 0.001) + 16 * 2 * 0.22
+    points = 256 * (2 * 0.06 + 2 * 2 * 0.0005 + 2 * 0.0005 + 2 * 0.001) + 16 * 2 * 0.22
     seconds = 4.0 + (points + 2 * 3.0 + 2 * 3.5) / 2 + 4.0
     assert f"Roughly {seconds:.0f} s with 2 workers and 20 s for compiling on a new installation" in text
     mirrored = command("fig3-I", *words[2:], "--only", "differences", hierarchy=MODEL_HIERARCHY).out
-    (small,) = (line.split() for line in mirrored.splitlines() if "small equations" in line)
+    (small,) = (line.split() for line in mirrored.splitlines() if "small equations, v_reg" in line)
     assert small[-3:] == ["256", "64", "1e-06"]
-    points = 64 * (3 * 0.0005 + 0.001 + 0.06 + 0.22)  # a quarter of them
+    points = 64 * (4 * 0.0005 + 2 * 0.001 + 0.06 + 0.22)  # a quarter of them
     assert f"Roughly {4.0 + (points + 3.0 + 3.5) / 2 + 4.0:.0f} s with" in mirrored
 
 
@@ -174,7 +177,7 @@ def test_the_worst_body_breaks_a_limit_whichever_it_is(limit: str, body: int) ->
     surfaces["mu"].loc[{"model": "translational", "body": body}] *= 1.021
     surfaces["mu"].loc[{"model": "translational", "body": body, "alpha1": 0.0, "alpha2": 0.0}] *= 1.01
     found = [limit for limit in limits_of(study, surfaces) if limit.breaches]
-    rows = {(row.pair, row.body): getattr(row, limit) for row in differences(study, surfaces)}
+    rows = {(row.pair, row.body): getattr(row, limit) for row in difference_rows(study, surfaces)}
     breaches = [(breach.body, breach.found) for each in found for breach in each.breaches]
     assert ([each.key for each in found], breaches) == ([limit], [(body, rows["like-for-like", body])])
     at_it = scene.with_values({"acceptance": {limit: rows["like-for-like", body]}})

@@ -2,6 +2,7 @@
 
 import re
 from fractions import Fraction
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,9 +11,18 @@ from known_analyses import answering, with_engine_off_by
 
 import reference
 from comparison.study.batches import execute_batch
+from comparison.study.user_models import LAWS
 from comparison.testing import assert_consistent
 from reference.problem import Scene, SceneError
 
+LAW_SETTINGS: dict[str, dict[str, Any]] = {
+    "small": {"equations": "small"},
+    "exact": {},
+    "small-resolved": {"equations": "small", "cutoff": 1e-3},
+    "resolved": {"cutoff": 1e-3},
+    "small-regularised": {"equations": "small", "regularization": 1e-3},
+    "regularised": {"regularization": 1e-3},
+}
 SHORT = reference.load_scene("fig3-I").with_values({"duration": 2.0})
 BARS = {"bodies.1.period": None, "bodies.1.bars": {"count": 4, "bending_stiffness": 0.8, "length": 1.0}}
 
@@ -36,11 +46,12 @@ def test_what_is_within_limits_or_errors_passes(
 def test_a_broken_limit_names_body_phase_values_and_errors(monkeypatch: pytest.MonkeyPatch, limit: str) -> None:
     with_engine_off_by(monkeypatch, 1.01)
     kind, maximum = limit.removesuffix("_maximum"), limit.endswith("maximum")
-    first, second = ("small", "spatial engine") if kind == "total" else ("exact", "translational engine")
+    first, second = "exact equations, v_reg", "translational engine"
+    if kind == "total":
+        first, second = "small equations, as integrated", "spatial engine"
     assert failure(**{limit: 1e-3}) == [
         f"fig3-I, body {body}: {kind}: {'maximum' if maximum else 'median'} difference 0.01, allowed 0.001; largest "
-        f"0.01 at (0.0000, 0.0000) rad: {first} equations{'' if kind == 'total' else ', v_reg'} 2 ± 1e-06, "
-        f"{second} 2.02 ± 1e-06"
+        f"0.01 at (0.0000, 0.0000) rad: {first} 2 ± 1e-06, {second} 2.02 ± 1e-06"
         for body in (1, 2)
     ]
     assert "; largest 0.01 under the record: " in failure("synthetic-pair", **{limit: 1e-3})[0]
@@ -76,29 +87,49 @@ def test_points_without_a_usable_value_fail_unless_they_are_allowed(monkeypatch:
     assert ["only values with errors above half of them" in line for line in gaps] == [True, True]
 
 
-def off_by(factor: float, missing: int = 0):  # type: ignore[no-untyped-def]
-    """An engine of the user that is off from the exact equations, without a value at so many of four phase pairs."""
+def off_by(factor: float, law: str, missing: int = 0, status: str = "ok"):  # type: ignore[no-untyped-def]
+    """
+    An engine of the user that is off from the equations of a law by a factor.
+
+    At so many of four phase pairs it has no value; status: what it says of the first.
+    """
     asked = []
 
     def engine(scene, phases, regularization, tolerance):  # type: ignore[no-untyped-def]
         asked.append(regularization)
-        result = reference.amplification(scene, phases, regularization=regularization, tolerance=1e-6)
-        return factor * result.mu if len(asked) > missing else np.full_like(result.mu, np.nan)
+        mu = factor * reference.amplification(scene, phases, **LAW_SETTINGS[law], tolerance=1e-6).mu
+        first = len(asked) == 1
+        return SimpleNamespace(mu=mu if len(asked) > missing else np.nan * mu, status=[status if first else "ok"])
 
     return engine
 
 
-@pytest.mark.parametrize("law", ["regularised", "exact"])
+@pytest.mark.parametrize("law", LAWS)
 def test_a_user_engine_is_compared_with_the_equations_of_its_law(law: str) -> None:
     limits = {"like_for_like": 1e-4, "like_for_like_maximum": 1e-4, "grid": 2, "law": law}
-    assert_consistent(SHORT, **limits, engine=off_by(1.0))
-    lines = failure(SHORT, **limits, engine=off_by(1.021))
+    assert_consistent(SHORT, **limits, engine=off_by(1.0, law))
+    lines = failure(SHORT, **limits, engine=off_by(1.021, law))
     assert len(lines) == 4, "median and maximum of two bodies"
-    assert all("difference 0.021, allowed 0.0001" in line and "engine " in line for line in lines)
+    assert all("difference 0.021, allowed 0.0001" in line and "your engine " in line for line in lines)
     assert all(line.endswith(" (error unknown)") for line in lines)
-    *_, line = failure(SHORT, **limits, engine=off_by(1.0, missing=1))
-    assert re.fullmatch(r"fig3-I: engine: no value at 1 of 4 phase pairs: .*; 0 allowed", line)
-    assert_consistent(SHORT, **limits, engine=off_by(1.0, missing=1), failed=1)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_no_other_law_is_taken_for_that_of_an_engine(law: str) -> None:
+    scene = SHORT.with_values({"duration": 6.0})  # with stops, which tell the readings apart
+    for other in [other for other in LAWS if other != law]:
+        lines = failure(scene, like_for_like_maximum=1e-4, grid=2, law=other, engine=off_by(1.0, law))
+        assert "your engine" in lines[0]
+
+
+@pytest.mark.parametrize(("missing", "status"), [(1, "ok"), (0, "not converged"), (0, "tolerance not met")])
+def test_a_status_that_is_not_ok_is_no_value(missing: int, status: str) -> None:
+    limits = {"like_for_like": 1e-4, "like_for_like_maximum": 1e-4, "grid": 2}
+    engine = {"missing": missing, "status": status}
+    gap, *why = failure(SHORT, **limits, engine=off_by(1.0, "regularised", **engine))
+    assert re.fullmatch(r"fig3-I: your engine: no value at 1 of 4 phase pairs: .*; 0 allowed", gap)
+    assert why == (["the engine's status is 'not converged'"] if status == "not converged" else [])
+    assert_consistent(SHORT, **limits, engine=off_by(1.0, "regularised", **engine), failed=1)
 
 
 def test_an_engine_that_raises_fails_with_file_line_and_message() -> None:
@@ -117,7 +148,7 @@ def test_an_engine_that_raises_fails_with_file_line_and_message() -> None:
         ({"grid": Fraction(1, 1000)}, "grid = Fraction(1, 1000): must be a whole number from 1 to 512"),
         ({"grid": True}, "grid = True: must be a whole number from 1 to 512"),
         ({"tolerance": "1"}, "tolerance = '1': must be finite and positive, from 1e-10 to 0.1"),
-        ({"law": "spatial"}, "law = 'spatial': must be one of small, exact, resolved, regularised"),
+        ({"law": "spatial"}, "law = 'spatial': must be one of small, exact, small-resolved, resolved, small-"),
         ({"failed": -1}, "failed = -1: must be a whole number from 0"),
         ({"like_for_like": None}, "no limit: give one of like_for_like, like_for_like_maximum, total, total_maximum"),
         ({"total_maximum": -1.0}, "total_maximum = -1.0: "),
@@ -134,8 +165,8 @@ def test_a_wrong_argument_of_the_gate_is_one_line(arguments: dict[str, Any], rul
     ("scene", "limit", "models"),
     [
         (SHORT, "like_for_like", {"regularised": 1e-6, "translational": 1e-3}),
-        (SHORT, "total", {"small": 1e-6, "spatial": 1e-3}),
-        (SHORT.with_values(BARS), "total", {"small": 1e-6, "softened-spatial": 1e-3}),
+        (SHORT, "total", {"small-resolved": 1e-6, "spatial": 1e-3}),
+        (SHORT.with_values(BARS), "total", {"small-resolved": 1e-6, "softened-spatial": 1e-3}),
     ],
 )
 def test_only_the_models_that_a_limit_needs_are_computed(

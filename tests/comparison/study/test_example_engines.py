@@ -1,5 +1,6 @@
 """Every engine of examples/engines gives mu of the equations as closely as its page says; where it is installed."""
 
+import re
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -9,23 +10,24 @@ import pytest
 from places import ROOT
 
 import reference
+from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.user_models import amplification
 from reference.problem import load_scene
 
 PHASES = np.array([(0.0, 0.0), (2.0, 0.5)])
 
 
-@pytest.mark.parametrize(
-    ("name", "settings", "law", "close"),
-    [
-        ("scipy_equations", {"tolerance": 1e-2}, {"regularization": 1e-3}, (3e-3, 3e-4)),
-        ("opensees", {"step": 2e-3}, {"equations": "small", "cutoff": 1e-3}, (0.5, 5e-3)),
-        ("siconos_moreau", {"step": 4e-3}, {"cutoff": 1e-3}, (0.1, 5e-4)),
-        ("solve_nivp_slider", {"step": 8e-3}, {"cutoff": 1e-3}, (0.1, 5e-4)),
-        ("nosnoc_slider", {"step": 0.04}, {"cutoff": 1e-3}, (0.2, 0.07)),
-        ("mujoco_slider", {"step": 1e-3}, {"equations": "small", "cutoff": 1e-3}, (0.05, 5e-4)),
-    ],
-)
+EXAMPLES: list[tuple[str, dict[str, Any], dict[str, Any], tuple[float, float]]] = [
+    ("scipy_equations", {"tolerance": 1e-2}, {"regularization": 1e-3}, (3e-3, 3e-4)),
+    ("opensees", {"step": 2e-3}, {"equations": "small", "cutoff": 1e-3}, (0.5, 5e-3)),
+    ("siconos_moreau", {"step": 4e-3}, {"cutoff": 1e-3}, (0.1, 5e-4)),
+    ("solve_nivp_slider", {"step": 8e-3}, {"cutoff": 1e-3}, (0.1, 5e-4)),
+    ("nosnoc_slider", {"step": 0.04}, {"cutoff": 1e-3}, (0.2, 0.07)),
+    ("mujoco_slider", {"step": 1e-3}, {"equations": "small", "cutoff": 1e-3}, (0.05, 5e-4)),
+]
+
+
+@pytest.mark.parametrize(("name", "settings", "law", "close"), EXAMPLES)
 def test_an_example_gives_mu_of_the_equations_with_its_law(
     name: str,
     settings: dict[str, Any],
@@ -54,5 +56,11 @@ def test_the_page_of_other_engines_lists_every_example() -> None:
     for file in files:
         assert f"(../examples/engines/{file.name})" in page, file.name
         text = file.read_text(encoding="utf-8")
-        assert f"=examples.engines.{file.stem}:amplification" in text
+        (like,) = re.findall(rf"=examples\.engines\.{file.stem}:amplification@(\S+)\n", text)
+        assert f"(../examples/engines/{file.name}) | " in page
+        (row,) = [line for line in page.splitlines() if f"engines/{file.name})" in line]
+        assert f"| `@{like}` |" in row
+        (asked,) = [law for name, _, law, _ in EXAMPLES if name == file.stem]
+        (partner,) = [model for model in MODEL_HIERARCHY if model.key == like]
+        assert partner.settings == {"equations": "exact", "regularization": None, **asked}, "what it is tested against"
         assert len(text.splitlines()) <= 130, "short"
