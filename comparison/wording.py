@@ -28,9 +28,9 @@ def percent(value: float) -> str:
     """A share in percent with two digits."""
     if not math.isfinite(value):
         return "none"
-    if value < 0.0:
+    if value <= -1e-6:
         return f"−{percent(-value)}"
-    if 0.0 < value < 1e-6:
+    if 0.0 < abs(value) < 1e-6:
         return "< 0.0001 %"
     return f"{100.0 * value:.0f} %" if value >= 0.1 else f"{100.0 * value:.2g} %"
 

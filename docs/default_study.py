@@ -45,7 +45,11 @@ def record(report: Path) -> dict[str, Any]:
     """Return what pages need of the report of a default study."""
     summary = json.loads((report / "summary.json").read_text(encoding="utf-8"))
     results = StudyResults.model_validate(summary)
-    leads = {each.key: each.section.lead(results) for each in FEATURES if each.section and each.section.lead}
+    leads = {
+        each.key: each.section.lead(results)
+        for each in FEATURES
+        if each.section and each.section.lead and each.section.present(results)
+    }
     kept = ("body", "pair", "first", "second", "base", "reading", "mean", "numerical_error", "sampling_error")
     rows = [
         {"scene": scene["name"], **{name: row[name] for name in kept}, "grids": row["grids"]}
@@ -70,7 +74,7 @@ def headlines(known: Mapping[str, Any]) -> list[Headline]:
 def answers(known: Mapping[str, Any]) -> str:
     """Return the table of the first screen."""
     lines = [
-        "| scene | body | Exudyn against the paper's equations, as integrated: mean, range | causes, share of the mean | "
+        "| scene | body | Exudyn against the paper's equations, as integrated: mean, range | causes | "
         "same equations and friction law | literal supremum above as integrated: mean, largest |",
         "|---|---|---|---|---|---|",
     ]

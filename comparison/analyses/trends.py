@@ -14,6 +14,7 @@ import numpy as np
 
 from comparison.result_types import Array, Number, Text, result
 from comparison.surfaces.model_difference import RESOLVED
+from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, Verdict, count_verdicts, word_counts
 
 NONE: Array = np.empty((0, 1))  # sizes and errors where nothing has a value
 KNOWN = 1.0 / RESOLVED  # largest error of a value that enters the fit, as its fraction
@@ -87,6 +88,26 @@ def trend(
     return Trend(
         scene, body, what, tuple(parameter), medians, *slope, expected, error_message or _verdict(slope, expected)
     )
+
+
+def word_trends(trends: Sequence[Trend]) -> str:
+    """Return how many exponents that theory gives are met, and the first that is not."""
+    expected = [each for each in trends if each.expected is not None]
+    verdicts = {id(each): _judge(each) for each in expected}
+    missed = [each for each in expected if verdicts[id(each)] == NOT_MET]
+    where = ""
+    if missed:
+        each = missed[0]
+        found = f"{each.exponent:.2f} ± {each.uncertainty:.2f} for {each.expected:g}"
+        where = f"{each.scene}, body {each.body}, {each.what}, {found}"
+    words = word_counts(count_verdicts(verdicts.values()), "expected exponent")
+    return f"{words} (first: {where})" if where else words
+
+
+def _judge(each: Trend) -> Verdict:
+    if each.verdict == f"like the power {each.expected:g}":
+        return MET
+    return NOT_MET if each.verdict == f"not like the power {each.expected:g}" else NOT_COMPARED
 
 
 def _verdict(slope: Slope, expected: float | None) -> str:

@@ -14,7 +14,7 @@ from markupsafe import Markup
 from comparison.analyses.motions.page_data import packed, packed_motions
 from comparison.report.glossary import explained, term
 from comparison.report.page_data import page_data
-from comparison.report.results import VALIDATED, Results
+from comparison.report.results import VALIDATED_BRIEFLY, Results
 from comparison.report.section import Report
 from comparison.report.surface_sections import applied_models
 from comparison.surfaces.alerts import Alert
@@ -71,7 +71,7 @@ def is_drawn(bars: Waterfall) -> bool:
 def measured_sentence(results: Results) -> str:
     """Return what measurements say, without the full stop."""
     measured = "" if results.of("measured") is None else f"; {results.measurements}"
-    return f"{VALIDATED}{measured}"
+    return f"{VALIDATED_BRIEFLY}{measured}"
 
 
 def lead_lines(report: Report) -> list[tuple[str, str]]:

@@ -21,7 +21,7 @@ from stated_numbers import STATED, Stated, numbers_of
 from comparison.analyses.benchmarks.table import page as benchmarks_page
 from comparison.analyses.validation import statements
 from comparison.analyses.validation.table import recorded
-from comparison.report.results import VALIDATED
+from comparison.report.results import VALIDATED, VALIDATED_BRIEFLY
 from comparison.report.verification import CHECKS
 from reference.problem import Scene
 
@@ -82,6 +82,7 @@ def test_the_readme_has_the_measurements_of_their_record() -> None:
 
 def test_what_is_said_to_be_validated_is_what_is_recorded() -> None:
     assert statements.word_validated(recorded()) == VALIDATED
+    assert statements.word_validated_briefly(recorded()) == VALIDATED_BRIEFLY
     for page in (README, *(page.read_text(encoding="utf-8") for page in evidence_table.BLOCKS)):
         for line in re.findall(r".*\bvalidated\b.*", page, flags=re.IGNORECASE):
             allowed = ("Validated is one quantity", "what is validated, and what is not", "isolated")

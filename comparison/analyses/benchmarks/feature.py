@@ -1,6 +1,6 @@
 """External benchmarks: in the report."""
 
-from comparison.analyses.benchmarks.table import STORED, Benchmarks, stated, with_error, word_explanations
+from comparison.analyses.benchmarks.table import STORED, Benchmarks, stated, verdict_line, with_error, word_explanations
 from comparison.report.section import Feature, Section
 from comparison.verdicts import CLASSES
 
@@ -19,6 +19,7 @@ FEATURE = Feature(
             "stated": stated,
             "with_error": with_error,
         },
+        verdict=lambda results: verdict_line(results.of("benchmarks")),
         verifies=True,
     ),
 )

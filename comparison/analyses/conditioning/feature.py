@@ -97,7 +97,6 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
     return {
         "conditioning_panels": conditioning_panels(curves),
         "conditioning_tables": conditioning_tables(curves),
-        "conditioning_line": conditioning_line(curves),
     }
 
 
@@ -110,5 +109,6 @@ FEATURE = Feature(
         "Conditioning of the literal supremum",
         "python -m comparison.run makes it, of scenes with phases and dry friction",
         _context,
+        lead=lambda results: conditioning_line(results.of("conditioning") or ()),
     ),
 )

@@ -2,7 +2,7 @@
 
 from comparison.analyses.convergence.analysis import Convergence
 from comparison.analyses.panels import trend_panels
-from comparison.analyses.trends import Trend
+from comparison.analyses.trends import Trend, word_trends
 from comparison.report.section import Feature, Section
 
 FEATURE = Feature(
@@ -14,6 +14,7 @@ FEATURE = Feature(
         "Convergence of friction law and contact",
         "python -m comparison.run makes it, of scenes with phases",
         lambda report, figures: {"trend_panels": trend_panels},
+        verdict=lambda results: word_trends(results.of("convergence")),
         verifies=True,
     ),
 )

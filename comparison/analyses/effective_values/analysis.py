@@ -1,5 +1,7 @@
 """What each model really computed with, read back from one of its motions and not from its inputs."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Annotated, Any
 
@@ -12,6 +14,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, chain_of
 from comparison.study.study import Study
+from comparison.wording import percent
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, exponents, ground_acceleration
 from reference.problem.friction import LEAST_LOAD
 
@@ -37,6 +40,19 @@ class Effective:
     """coefficient of the damper of the top link along x, N s/m; null without dampers, and where bodies turn"""
     stiffness: Annotated[Number, "of the top link along x, N/m; null where it is not given by bars"] = float("nan")
     error_message: Annotated[Text, "why there are no values, or empty"] = ""
+
+
+def word_effective(values: Sequence[Effective]) -> str:
+    """Return how far the values read back lie at most from those that the scenes state."""
+    known = {each.scene: each for each in values if each.model == "scene"}
+    parts = []
+    for name, words in (("radius", "radius"), ("friction", "friction"), ("mass", "total mass")):
+        pairs = [(getattr(each, name), getattr(known[each.scene], name)) for each in values if each.model != "scene"]
+        apart = [
+            abs(found / meant - 1.0) for found, meant in pairs if math.isfinite(found) and meant not in (0.0, math.inf)
+        ]
+        parts.append(f"{words} {percent(max(apart))}" if apart else f"{words} not compared")
+    return f"largest departures from what the scenes state: {', '.join(parts)}"
 
 
 def stated(scene: Scene) -> Effective:

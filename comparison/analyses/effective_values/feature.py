@@ -1,6 +1,13 @@
 """Effective values: in the report."""
 
-from comparison.analyses.effective_values.analysis import PHASES, Effective, EffectiveValues, ForcedRatio, forced_ratios
+from comparison.analyses.effective_values.analysis import (
+    PHASES,
+    Effective,
+    EffectiveValues,
+    ForcedRatio,
+    forced_ratios,
+    word_effective,
+)
 from comparison.report.section import Feature, Findings, SceneField, Section
 from reference.problem import Scene
 
@@ -24,6 +31,7 @@ FEATURE = Feature(
             "phases": PHASES,
         },
         verifies=True,
+        verdict=lambda results: word_effective([each for scene in results.scenes for each in scene.of("effective")]),
         template="effective_values/section.html.j2",
     ),
 )

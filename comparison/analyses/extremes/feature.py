@@ -27,5 +27,6 @@ FEATURE = Feature(
         },
         draw=_draw,
         verifies=True,
+        verdict=lambda results: results.of("extremes").count_line,
     ),
 )

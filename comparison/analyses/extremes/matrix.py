@@ -67,6 +67,12 @@ class Matrix:
         seen = Counter(entry.verdict for row in self.rows for entry in row.entries.values())
         return {verdict.value: seen[verdict] for verdict in Verdict}
 
+    @property
+    def count_line(self) -> str:
+        """The counts in one line."""
+        counts = self.counts()
+        return f"{sum(counts.values())} cells: {', '.join(f'{n} {verdict}' for verdict, n in counts.items())}"
+
     def groups(self) -> list[list[Extreme]]:
         """The rows that share a quantity."""
         return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]

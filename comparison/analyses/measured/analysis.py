@@ -16,7 +16,7 @@ from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Number, Phases, Text, result
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
-from comparison.study.models import Model, chain_of
+from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.verdicts import (
     MET,
@@ -139,7 +139,9 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
         """One for each scene, phase pair of a test, and model."""
         for scene in study.scenes:
             for phases in dict.fromkeys(map(phases_of, scene.measured or ())):
-                for model in chain_of(scene, study.hierarchy):
+                for model in models_of(scene, study.hierarchy):
+                    if model.side == "user":
+                        continue
                     yield scene, model, model.tolerance(study.tolerance), phases, _asked(scene, phases, model)
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredPeak] | None:

@@ -1,6 +1,6 @@
 """Measured peaks: in the report."""
 
-from comparison.analyses.measured.analysis import MeasuredPeak, MeasuredPeaks
+from comparison.analyses.measured.analysis import MeasuredPeak, MeasuredPeaks, verdict_line
 from comparison.report.section import Feature, Section
 from comparison.verdicts import CLASSES
 from reference.measures.peak_demands import QUANTITIES, unit_of
@@ -18,6 +18,7 @@ FEATURE = Feature(
             "measured_units": {"mu": ""} | {key: unit_of(key) for key in QUANTITIES},
             "measured_classes": CLASSES,
         },
+        verdict=lambda results: verdict_line(results.of("measured")),
         folded=False,
     ),
 )

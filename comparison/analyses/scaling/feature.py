@@ -2,7 +2,7 @@
 
 from comparison.analyses.panels import trend_panels
 from comparison.analyses.scaling.analysis import Scaling
-from comparison.analyses.trends import Trend
+from comparison.analyses.trends import Trend, word_trends
 from comparison.report.section import Feature, Section
 
 FEATURE = Feature(
@@ -14,6 +14,7 @@ FEATURE = Feature(
         "Scaling test",
         "python -m comparison.run makes it, of scenes with phases and without heated friction",
         lambda report, figures: {"trend_panels": trend_panels},
+        verdict=lambda results: word_trends(results.of("scaling")),
         verifies=True,
     ),
 )

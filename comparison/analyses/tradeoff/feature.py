@@ -35,6 +35,12 @@ def draw_growth(path: Path, measured: MeasuredGrowth) -> None:
     draw_panels(path, f"{measured.title} ({measured.scene}): cost", growth_panels(measured.series), 4)
 
 
+def word_trades(trades: Sequence[Trade]) -> str:
+    """Return what was measured: speed has no verdict."""
+    settings = sum(len(trade.entries) for trade in trades)
+    return f"{settings} settings measured in {len(trades)} scene{'' if len(trades) == 1 else 's'}; speed has no verdict"
+
+
 def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
     """For each question, which method meets which error in the least time: one that estimates its error, if any."""
     answers = []
@@ -140,6 +146,7 @@ FEATURE = Feature(
         _context,
         draw=_draw,
         verifies=True,
+        verdict=lambda results: word_trades(results.of("tradeoff") or ()),
         shows=("tradeoff", "growth"),
     ),
 )

@@ -6,6 +6,7 @@ from typing import Any
 from comparison.analyses.panels import panel
 from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
+from comparison.analyses.validation.statements import verdict_line
 from comparison.analyses.validation.table import STORED, Validation
 from comparison.report.plots import Panel
 from comparison.report.section import Feature, Section
@@ -49,5 +50,6 @@ FEATURE = Feature(
             "validation_colors": CLASSES,
             "validation_sources": (FRAME_SOURCE, PENDULUM_SOURCE),
         },
+        verdict=lambda results: verdict_line(results.of("validation")),
     ),
 )

@@ -82,6 +82,18 @@ def word_validated(table: Validation) -> str:
     return f"{head}: {what}, {load}; {ratio}. No building has been compared"
 
 
+def word_validated_briefly(table: Validation) -> str:
+    """Return the same in one sentence for a first screen, without the full stop."""
+    met = {}
+    for loaded in (True, False):
+        rows = [each for each in frame_rows(table, loaded, "predicted") if each.name == HALF_RANGE]
+        met[loaded] = word_met_of(rows)
+    return (
+        f"measured was the {HALF_RANGE} of a frame shaken against dry friction: met at {met[True]} predicted loads with "
+        f"friction of the load, at {met[False]} with one friction ratio; no building has been compared"
+    )
+
+
 def word_calibrated(table: Validation) -> str:
     """Return the verdicts on the half range in the runs that friction is fitted to, without the full stop."""
     runs = ", ".join(word_runs(table, law, "calibrated") for law in (False, True))

@@ -42,7 +42,7 @@ def test_the_results_have_every_curve_and_step_of_a_family(file: Path) -> None:
     assert [engine.mean[0], engine.mean[2]] == pytest.approx([3.03, 3.03])
     steps = {(step.model, step.body): step for step in results.families[0].steps}
     assert [steps["total", 1].size[0], steps["total", 2].size[2]] == pytest.approx([0.01, 0.01])
-    assert steps["translational", 1].real == (True, False, True)
+    assert steps["translational", 1].resolved == (True, False, True)
 
 
 def test_demands_of_all_phases_go_before_stored_motions(file: Path) -> None:

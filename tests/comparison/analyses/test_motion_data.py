@@ -122,7 +122,7 @@ def test_at_the_largest_difference_of_every_body_its_own_model_moves() -> None:
     moving = {(model.key, place.row, place.column) for _, model, _, place, _ in Motions().arguments(study, surfaces)}
     assert {("spatial", 3, 9), ("translational", 5, 2), ("translational", 0, 0), ("spatial", 0, 0)} <= moving
     assert not {("translational", 3, 9), ("spatial", 5, 2)} & moving
-    assert {("small", *place) for place in places} <= moving, "the equations move everywhere"
+    assert {("small-resolved", *place) for place in places} <= moving, "the equations move everywhere"
     stride = study.strides["spatial"]
     assert stride > 1
     assert {(row % stride, column % stride) for key, row, column in moving if key == "spatial"} == {(0, 0)}

@@ -12,7 +12,7 @@ from comparison.analyses.worst_phases import analysis
 from comparison.analyses.worst_phases.feature import _kind
 from comparison.runner.task import unfinished
 from comparison.runner.task_results import TaskResults
-from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, TRANSLATIONAL
+from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, SPATIAL, TRANSLATIONAL
 from comparison.study.study import Study
 from reference.phase_maximum import GRID
 from reference.problem import Amplification, Outcome, Scene
@@ -24,13 +24,14 @@ def study_of(*scenes: Scene) -> Study:
     return Study(scenes, 4, 1e-3, MODEL_HIERARCHY)
 
 
-def test_exact_and_like_equations_are_searched_for_every_body() -> None:
-    searched = [task.argument[1:5] for task in analysis.WorstPhases().tasks(study_of(SHORT))]
-    assert [(model.key, body) for model, _, quantity, body in searched if quantity == "amplification"] == [
-        (key, body) for key in ("exact", "regularised") for body in (1, 2)
+def test_small_equations_in_both_readings_and_like_equations_are_searched_for_every_body() -> None:
+    searched = [task.argument[1:6] for task in analysis.WorstPhases().tasks(study_of(SHORT))]
+    assert [(model.key, body) for model, _, _, quantity, body in searched if quantity == "amplification"] == [
+        (key, body) for key in ("small", "small-resolved", "regularised") for body in (1, 2)
     ]
-    assert [(model.key, body) for model, _, quantity, body in searched if quantity == "displacement"] == [("exact", 1)]
-    engines = {engine.key for model, engine, _, _ in searched if engine is not None and model.key == "regularised"}
+    others = [(model.key, body) for model, _, _, quantity, body in searched if quantity == "displacement"]
+    assert others == [("exact", 1)]
+    engines = {engine.key for model, engine, *_ in searched if engine is not None and model.key == "regularised"}
     assert engines == {"translational"}
 
 
@@ -79,10 +80,12 @@ def test_the_engine_is_asked_where_its_ratio_says(monkeypatch: pytest.MonkeyPatc
 
 
 def test_what_a_largest_value_is_stands_beside_it() -> None:
-    beside = "the engine's largest value beside the phases above, "
+    beside = "beside the worst phases of the equations"
     for known, words in (
-        ({"kind": "nearby", "at_start": 1.25}, f"{beside}where it has 1.25"),
-        ({"kind": "nearby"}, f"{beside}at which it has none"),
+        ({"kind": "nearby", "value": 1.5, "at_start": 1.25}, beside),
+        ({"kind": "nearby", "value": 1.25, "at_start": 1.25}, "at the worst phases of the equations"),
+        ({"kind": "nearby"}, f"{beside}, at which it has none"),
+        ({"kind": "grid", "value": 1.5}, "at a phase pair of its grid"),
         ({"reason": "step limit"}, "step limit"),
     ):
         assert _kind(analysis.Worst("fig3-I", "exact", "amplification", 1, **known)) == words  # type: ignore[arg-type]
@@ -116,8 +119,8 @@ def test_searches_begin_at_the_hills_of_what_they_search() -> None:
     )
     tasks = analysis.WorstPhases().tasks(study, surfaces)
     for task in tasks:
-        shift = 0 if task.argument[3] == "displacement" else 1 + task.argument[4]
-        assert task.argument[6].tolist() == [[alpha[5], alpha[9 + shift]]]
+        shift = 0 if task.argument[4] == "displacement" else 1 + task.argument[5]
+        assert task.argument[7].tolist() == [[alpha[5], alpha[9 + shift]]]
 
 
 def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:
@@ -129,3 +132,21 @@ def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:
     assert len(rows) == len(tasks) + 2  # the engine's rows
     assert all(row.reason == f"{Outcome.TIME_LIMIT}: took too long" and row.phases == analysis.NOWHERE for row in rows)
     assert EXACT.key in {row.model for row in rows}
+
+
+@pytest.mark.parametrize(("grid", "kind", "value"), [(1.9, "nearby", 2.0), (2.1, "grid", 2.1)])
+def test_the_spatial_engine_has_the_larger_of_its_grid_and_the_worst_phases(
+    grid: float, kind: str, value: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its surface is not smooth, so that no search is made on it."""
+
+    def steady(scene, phases, **settings):  # type: ignore[no-untyped-def]
+        mu = np.full((len(phases), 2), 2.0)
+        return Amplification(mu, 0.01 * mu, np.full(len(phases), "ok"), np.full(len(phases), math.nan), 0.0)
+
+    monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", lambda path: steady)
+    worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.2, 1e-6, (1.0, 2.0), "smooth")
+    found = analysis._larger_of_grid_and_worst(worst, SHORT, (SPATIAL, grid, 0.03, (0.5, 0.25)), 1e-3)
+    assert (found.model, found.kind, found.value) == ("spatial", kind, pytest.approx(value))
+    assert found.phases == ((1.0, 2.0) if kind == "nearby" else (0.5, 0.25))
+    assert found.error == pytest.approx(0.02 if kind == "nearby" else 0.03)
