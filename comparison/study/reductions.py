@@ -54,7 +54,7 @@ def _of(study: Study, scene: Scene) -> Iterator[tuple[str, str, str]]:
         others = [model for model in study.hierarchy if model not in models]
         laws = [m for m in others if m.settings.get("regularization") is not None or "cutoff" in m.settings]
         if laws:
-            yield "laws of friction", _titles(laws, models), no_friction(scene).reason
+            yield "laws of friction", _titles(laws, study.hierarchy), no_friction(scene).reason
     for what, decided, setting, values in LEFT_OUT:
         concerned = [model for model in models if model.settings.get(setting) in values]
         if concerned and (reduction := decided(scene)):

@@ -65,7 +65,7 @@ def test_every_grid_and_every_level_is_part_of_the_next(grid: int) -> None:
 def test_the_first_level_is_coarse_and_the_last_is_whole() -> None:
     models = [*MODEL_HIERARCHY, user_model("mine", {"function": "user_engines:plain"})]
     first, second, last = (level.study for level in registry.levels(Study((load_scene("fig3-I"),), 48, 1e-3, models)))
-    grids = [[len(study.axis(model)) for model in study.hierarchy[3:]] for study in (first, second, last)]
+    grids = [[len(study.axis(model)) for model in study.hierarchy[5:]] for study in (first, second, last)]
     assert grids == [[16, 8, 4, 8], [48, 16, 8, 8], [48, 16, 16, 8]]
     why = "follows at a later level of the study"
     later = [{key for key in study.absent if study.absent[key] == why} for study in (first, second)]
@@ -194,17 +194,19 @@ def test_the_time_left_follows_from_the_work_so_far(
 
 def test_work_is_counted_once_in_phase_pairs_and_tasks_of_its_weight() -> None:
     said: list[tuple[str, float]] = []
-    display = Display(100.0, 1, lambda display: said.append((display.text.split(",")[0], display.done)))
+    display = Display(100.0, 1, lambda display: said.append((display.text.rsplit(",", 1)[0], display.done)))
     tasks = [Task(math.sqrt, number, "roots", seconds) for number, seconds in ((1.0, 1.0), (4.0, 4.0))]
     batches = surface_tasks(Study(SCENES[:1], 2, 1e-3, fake_hierarchy(batch=3)[:1]))
-    runner = Runner(TaskResults(), 1, ThreadPoolExecutor, display, {"roots": 10.0, "small equations": 40.0})
+    runner = Runner(
+        TaskResults(), 1, ThreadPoolExecutor, display, {"roots": 10.0, "small equations, literal supremum": 40.0}
+    )
     for _ in range(2):  # a later level has the work of the earlier one
         runner.run([*tasks, *batches])
     assert display.total == 100.0
     assert runner.results.parts["roots"].seconds == sum(runner.results[task].cost for task in tasks) > 0.0
     assert said == [
-        ("small equations: 3 of 4 phase pairs", 30.0),
-        ("small equations: 4 of 4 phase pairs", 40.0),
+        ("small equations, literal supremum: 3 of 4 phase pairs", 30.0),
+        ("small equations, literal supremum: 4 of 4 phase pairs", 40.0),
         ("roots: 1 of 2 tasks", 48.0),  # the longest first
         ("roots: 2 of 2 tasks", 50.0),
     ]

@@ -111,7 +111,7 @@ def test_what_is_left_out_is_listed_once_with_its_reason() -> None:
     scene = short(isolator={"friction": 0.0}).with_values({"bodies": [platform]})
     assert [(row.what, row.models) for row in reductions(Study((scene,), GRID, 1e-3))] == [
         ("mirrored phases, all but 1/4", "all models"),
-        ("laws of friction", "resolved, regularised"),
+        ("laws of friction", "small-resolved, resolved, small-regularised, regularised"),
         ("every run but one per harmonic", "small"),
         ("rotations, all supports but one", "spatial"),
     ]
@@ -160,7 +160,9 @@ def test_the_equations_are_asked_for_more(asked: float, of_equations: float) -> 
     assert {batch.model: dict(batch.settings) for batch in Study((short(),), 1, asked).batches()} == {
         "small": {**equations, "equations": "small"},
         "exact": equations,
+        "small-resolved": {**equations, "equations": "small", "cutoff": 1e-3},
         "resolved": {**equations, "cutoff": 1e-3},
+        "small-regularised": {**equations, "equations": "small", "regularization": 1e-3},
         "regularised": {**equations, "regularization": 1e-3},
         "translational": {"model": "translational", "regularization": 1e-3, "tolerance": asked},
         "spatial": {"model": "spatial", "regularization": 1e-3, "tolerance": asked},
