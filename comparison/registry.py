@@ -14,7 +14,6 @@ from comparison.analyses.convergence import feature as convergence
 from comparison.analyses.demands import feature as demands
 from comparison.analyses.effective_values import feature as effective_values
 from comparison.analyses.ensemble import feature as ensemble
-from comparison.analyses.errata import feature as errata
 from comparison.analyses.extremes import feature as extremes
 from comparison.analyses.families import feature as families
 from comparison.analyses.measured import feature as measured
@@ -58,7 +57,6 @@ FEATURES: tuple[Feature, ...] = (
     OUTCOMES,
     MODELS,
     claims.FEATURE,
-    errata.FEATURE,
     assumptions.FEATURE,
     measured.FEATURE,
     validation.FEATURE,

@@ -45,7 +45,7 @@ reference: reference/test_heated_friction.py
     test_a_heated_motion_is_that_of_constant_steps
   friction that heat lowers: loops of a bearing published for MASTODON | 6e-3 of the force, 5e-4 without heat |
     test_the_law_meets_the_published_loops_of_a_bearing
-reference: comparison/analyses/test_errata.py
+reference: reference/test_printed_matrices.py
   the matrices (3.9)-(3.13) written from the print, errata corrected | 1e-4, peaks read every 2 ms |
     test_the_mended_matrices_are_the_exact_equations
 reference: comparison/analyses/test_benchmarks.py

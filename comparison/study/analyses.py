@@ -19,7 +19,6 @@ ANALYSES = (
     "motions",
     "worst_phases",
     "claims",
-    "errata",
     "assumptions",
     "measured",
     "validation",
@@ -31,7 +30,7 @@ ANALYSES = (
     "demands",
 )
 ON_REQUEST = ("demands",)  # made only where they are named: they cost more than the surfaces
-OF_THE_PAPER = ("claims", "errata")  # analyses that concern the paper's own scenes
+OF_THE_PAPER = ("claims",)  # analyses that concern the paper's own scenes
 NEEDS = {"motions": "surfaces"}  # the motions are shown below the surfaces
 
 
@@ -79,7 +78,7 @@ class Selection:
         skip: Sequence[str] | None,
         also: Sequence[str] | None = None,
     ) -> Selection:
-        """What the command line asks for, else each scene file; claims and errata of others only if named."""
+        """What the command line asks for, else each scene file; claims of others only if named."""
         by_scene, unnamed, on_request = {}, set(OF_THE_PAPER), set(ON_REQUEST)
         for scene in scenes:
             for key, listed in scene.analyses:

@@ -21,7 +21,6 @@ SECONDS: Mapping[str, float] = {
     "translational": 0.06,
     "spatial": 0.22,
     "effective values": 1.0,
-    "errata": 1.2,
     "scaling": 0.1,
     "conditioning": 4.0,
     "convergence": 1.5,

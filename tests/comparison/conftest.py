@@ -11,7 +11,6 @@ from fake_models import fake_hierarchy, known_motions
 from known_analyses import analyses_are, known_others
 from runs import Here, Run, quick_figure, quick_figures
 
-from comparison.analyses.errata.analysis import Effect, with_effects
 from comparison.cli import user_models
 from comparison.run import main
 from comparison.study.models import Model
@@ -60,14 +59,10 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def _write_finished(place: Path) -> None:
-    effects = [
-        Effect("fig3-I", 0, ((0.5, -0.25), (float("nan"), 0.125))),
-        Effect("fig3-I", 1, error_message="it broke"),
-    ]
     words = ["fig3-I", "fig4-viscous", "--grid", "4", "--jobs", "2", "--out", str(place)]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(pairs, "draw_pair", quick_figure)  # what they show is tested elsewhere
-        analyses_are(patch, errata=with_effects(effects), motions=known_motions, **known_others())
+        analyses_are(patch, motions=known_motions, **known_others())
         assert main(words, _spatial_named(fake_hierarchy()), ThreadPoolExecutor) == 0
 
 

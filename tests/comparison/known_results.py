@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
+from comparison.analyses.assumptions.trials import DURATION, DirectionTrial
 from comparison.analyses.assumptions.validity import (
     ASSUMPTIONS,
-    DURATION,
     PHASES,
     AssumptionCell,
     Validity,
-    Variation,
     ranges,
 )
+from comparison.analyses.assumptions.variations import TURNED_LINK, Variation
 from comparison.analyses.benchmarks import table as benchmarks
 from comparison.analyses.ensemble import result as ensemble
 from comparison.analyses.extremes import matrix as extremes
@@ -30,6 +30,7 @@ from comparison.analyses.tradeoff.trade import Entry as Setting
 from comparison.analyses.validation import table as validation
 from comparison.analyses.worst_phases.analysis import Worst
 from comparison.runner.output import publish
+from comparison.study.models import AS_INTEGRATED
 from reference.problem import load_scene
 
 MADE = {"command": "made <by a test>", "began": "then", "seconds": 1.0, "compute_seconds": 1.0, "jobs": 1,
@@ -59,18 +60,25 @@ MEASURED = [MeasuredPeak("fig3-I", "mu", 1, (1.0, 2.0), 4.0, 0.25, "run 7", COMP
 
 
 def known_assumptions() -> Validity:
-    """Rings and heights of which the last ones tell, and bodies off the axis or turned; every number differs."""
+    """Rings and heights of which the last ones tell, an offset in its worst direction, a blind angle."""
     scene, cells = load_scene("fig3-I"), []
     usual = [Variation(ring, height) for ring in (0.5, 1.0, 2.0) for height in (0.5, 1.0)]
-    uneven = [Variation(offset=0.1), Variation(offset=0.3), Variation(yaw=0.2), Variation(supports=3)]
-    for number, variation in enumerate([*usual, *uneven, Variation(bars="softening")]):
-        sizes = [0.0013 * (1.7 * number + 1.0) * (1.0 + 0.5 * pair) for pair in range(3)]
+    uneven = [Variation(offset=size, direction=1.5) for size in (0.1, 0.3)]
+    for number, variation in enumerate([*usual, *uneven, Variation(supports=3), Variation(bars="softening")]):
+        sizes = [0.0013 * (1.7 * number + 1.0) * (1.0 + 0.5 * pair) for pair in range(2)]
         change = tuple((size, -0.83 * size) for size in sizes)
         uncertainty = tuple((1e-4 * (1 + number), 2e-4 * (1 + number)) for _ in sizes)
-        cells.append(AssumptionCell(scene.name, variation, change, uncertainty, ("ok",) * 3, cost=0.1 * number))
-    none = ((float("nan"),) * 2,) * 3
-    cells.append(AssumptionCell(scene.name, Variation(height=3.0), none, none, ("rim reached",) * 3, "it <broke>"))
-    return Validity(ASSUMPTIONS, tuple(map(tuple, PHASES)), DURATION, tuple(cells), tuple(ranges(scene, cells)))
+        cells.append(AssumptionCell(scene.name, variation, change, uncertainty, ("ok",) * 2, cost=0.1 * number))
+    none = ((float("nan"),) * 2,) * 2
+    cells.append(AssumptionCell(scene.name, Variation(height=3.0), none, none, ("rim reached",) * 2, "it <broke>"))
+    tried = (("offset", Variation(offset=0.1), ""), ("offset", uneven[0], ""), ("yaw", Variation(yaw=0.2), TURNED_LINK))
+    directions = [
+        DirectionTrial(scene.name, key, variation, *(((), ()) if blind else ((0.01 * n, -0.07), (0.002, 0.001))), blind,
+                       variation is uneven[0])
+        for n, (key, variation, blind) in enumerate(tried, start=1)
+    ]  # fmt: skip
+    of_scene = tuple(ranges(scene, cells, directions))
+    return Validity(ASSUMPTIONS, AS_INTEGRATED, PHASES, DURATION, tuple(cells), tuple(directions), of_scene)
 
 
 def fake(model: str, finer: str = "") -> Column:

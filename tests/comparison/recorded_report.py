@@ -36,7 +36,6 @@ from runs import Here, quick_figures
 import comparison.run
 from comparison.analyses.ensemble import result as ensemble
 from comparison.analyses.ensemble.analysis import FRACTILES
-from comparison.analyses.errata.analysis import ERRATA, Effect
 from comparison.cli import reports, user_models
 from comparison.runner import progress
 from comparison.study import user_models as called
@@ -60,8 +59,6 @@ LONG_NUMBER = re.compile(r"-?\d\.\d{8,}(?:e[-+]\d+)?")
 LONGEST = 600  # letters of an item on one line
 FEW = {"motions": 2, "demands": 4}  # items of long lists
 PAGES = "index.html", "verification.html"
-EFFECTS = Effect("fig3-I", 0, ((0.5, -0.25), (None, 0.125))), Effect("fig3-I", 1, error_message="it <broke>")
-ERRATA_FOUND = [replace(each, effects=EFFECTS[:number]) for number, each in enumerate(ERRATA[:3])]
 DEMANDS: list[tuple[str, int | None]] = [
     *((name, None) for name in ("displacement", "base_shear", "residual", "support_force_min", "uplift")),
     *((name, body) for name in ("acceleration", "drift", "torsion") for body in (1, 2)),
@@ -199,7 +196,7 @@ def recorded_lines(folder: Path) -> list[str]:
     """The lines of both reports, and of the figures of the first."""
     with pytest.MonkeyPatch.context() as patch:
         figures = figures_are_told(patch)
-        known = {"motions": distinct_motions, "worst_phases": SEARCHED, "measured": MEASURED, "errata": ERRATA_FOUND}
+        known = {"motions": distinct_motions, "worst_phases": SEARCHED, "measured": MEASURED}
         known |= {"assumptions": known_assumptions(), "demands": known_demand_surfaces, **known_others()}
         analyses_are(patch, **known)
         patch.setattr(reports, "PATIENCE", math.inf)  # no level before the last has a report, and no line tells the

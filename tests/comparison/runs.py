@@ -9,7 +9,6 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from comparison.analyses.assumptions import figure as assumptions
 from comparison.surfaces.figures import pairs, paper
 
 SMALL = ["fig3-I", "--grid", "2"]
@@ -54,8 +53,7 @@ def no_picture(path: Path, *rest: object) -> None:
 
 
 def quick_figures(patch: pytest.MonkeyPatch) -> None:
-    """Every picture of the surfaces and of the assumptions is one dot."""
-    patch.setattr(assumptions, "draw_assumptions", quick_figure)
+    """Every picture of the surfaces is one dot."""
     patch.setattr(pairs, "draw_pair", quick_figure)
     patch.setattr(paper, "draw_paper_figure", quick_figure)
 

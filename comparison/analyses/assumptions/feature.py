@@ -1,56 +1,80 @@
 """How far the assumptions of the paper carry: in the report."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.assumptions.validity import AssumptionCell, Assumptions, Validity, uneven_lines
-from comparison.report.drawings import drawing_task, drawn
+from comparison.analyses.assumptions.statements import (
+    assumption_lines,
+    describe_direction,
+    describe_verdict,
+    largest_change,
+    range_cell,
+)
+from comparison.analyses.assumptions.trials import WITHIN
+from comparison.analyses.assumptions.validity import Assumptions, Validity, line_of
+from comparison.analyses.assumptions.variations import Axis
+from comparison.analyses.panels import panel
+from comparison.report.plots import Panel, plain
+from comparison.report.results import Results
 from comparison.report.section import Feature, Report, Section
-from comparison.runner.output import made_by
-from comparison.runner.task import Task
-from comparison.surfaces.figures.file_names import figure_file
-from comparison.surfaces.figures.pictures import Files, inlined, smaller
 from reference.problem import Scene
 
-
-def draw_assumption_figure(varied: tuple[Scene, Sequence[AssumptionCell]]) -> Files:
-    """PNG and PDF of a scene and its cells. Runs inside a worker process."""
-    from comparison.analyses.assumptions.figure import draw_assumptions  # matplotlib: only what draws needs it
-
-    scene, cells = varied
-    return tuple(made_by(lambda folder: draw_assumptions(folder / figure_name(scene), scene, cells)).items())
-
-
-def figure_name(scene: Scene) -> str:
-    """File name of the figure of one scene."""
-    return figure_file(scene.name, "assumptions")
+AXES: dict[Axis, str] = {
+    "ring": "radius of the ring of supports, m",
+    "height": "heights of the bodies, times the stated ones",
+    "oval": "narrowing of the ring along its worst direction, share of its radius",
+    "offset": "offset of bodies in the worst direction, m",
+    "yaw": "angle of bodies and links in the worse sense, rad",
+}
+BANDS = [{"from": -100.0 * share, "to": 100.0 * share, "text": f"within {100.0 * share:g} %"} for share in WITHIN]
 
 
-def _varied(report: Report) -> list[tuple[Scene, Sequence[AssumptionCell]]]:
-    """The scenes whose assumptions were varied, with their cells."""
+def assumption_panels(found: Validity, scene: Scene) -> list[Panel]:
+    """Return one panel per line of variations that tells: the largest change of every mu over what varies."""
+    told = {each.key for each in found.ranges if each.scene == scene.name and not each.no_effect}
+    panels = []
+    for key in (key for key in AXES if key in told):
+        line = sorted(line_of(scene, found.cells, key), key=lambda pair: pair[0])
+        unit = (scene.support_radius or 0.0) if key in ("ring", "offset") else 1.0
+        places, series = [unit * size for size, _ in line], []
+        for body in range(1, len(scene.bodies) + 1):
+            changes = [largest_change(found, cell, body) for _, cell in line]
+            low, middle, high = (
+                plain([100.0 * (change.size + side * change.error) for change in changes]) for side in (-1.0, 0.0, 1.0)
+            )
+            bars = {"x": places, "y": middle, "low": low, "high": high, "color": body - 1, "marks": True}
+            series.append({"name": f"μ_{body}", **bars})
+        axes = {"title": AXES[key], "log": key == "ring"}, {"title": "largest change of μ_i, %"}
+        label = f"{scene.name}: largest change of every mu, {found.reading}, over {AXES[key]}"
+        panels.append(panel(AXES[key].split(",")[0], label, *axes, series, bands=BANDS))
+    return panels
+
+
+def section_context(report: Report, figures: Path) -> Mapping[str, Any]:
+    """Return what the template reads, for every scene whose assumptions were tried."""
     found: Validity | None = report.results.of("assumptions")
-    cells = found.cells if found else ()
-    of_scenes = [(scene, [cell for cell in cells if cell.scene == scene.name]) for scene in report.study.scenes]
-    return [(scene, of_scene) for scene, of_scene in of_scenes if of_scene]
+    shown = []
+    for scene in report.study.scenes if found else ():
+        assert found is not None
+        if any(cell.scene == scene.name for cell in found.cells):
+            tried = [describe_direction(scene, each) for each in found.directions if each.scene == scene.name]
+            shown.append(
+                {
+                    "title": scene.title,
+                    "name": scene.name,
+                    "panels": assumption_panels(found, scene),
+                    "lines": assumption_lines(found, scene),
+                    "directions": tried,
+                }
+            )
+    return {"assumption_scenes": shown, "range_cell": range_cell, "within": WITHIN}
 
 
-def _tasks(report: Report) -> list[Task]:
-    return [drawing_task(draw_assumption_figure, pair) for pair in _varied(report)]
-
-
-def _draw(figures: Path, report: Report) -> None:
-    for task in _tasks(report):
-        for name, content in drawn(report, task):
-            (figures / name).write_bytes(content)
-
-
-def _context(report: Report, figures: Path) -> Mapping[str, Any]:
-    pictures = []
-    for scene, cells in _varied(report):
-        picture, lines = inlined(smaller((figures / figure_name(scene)).read_bytes())), uneven_lines(scene, cells)
-        pictures.append({"title": scene.title, "name": scene.name, "picture": picture, "lines": lines})
-    return {"assumption_pictures": pictures}
+def assumption_verdict(results: Results) -> str:
+    """Return the line beside the title of the section; "" where no assumption was tried."""
+    found: Validity | None = results.of("assumptions")
+    return describe_verdict(found) if found else ""
 
 
 FEATURE = Feature(
@@ -61,8 +85,7 @@ FEATURE = Feature(
     section=Section(
         "How far the paper's assumptions hold",
         "no scene with phases says where its supports are and how high and large its bodies, as the spatial model asks",
-        _context,
-        _tasks,
-        _draw,
+        section_context,
+        verdict=assumption_verdict,
     ),
 )

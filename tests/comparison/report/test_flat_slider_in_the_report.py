@@ -5,7 +5,6 @@ import math
 import pytest
 
 from comparison.analyses.effective_values.analysis import read_back
-from comparison.analyses.errata.analysis import MEASURES, measured
 from comparison.study.models import MODEL_HIERARCHY, models_of
 from multibody.film import make_drawing
 from reference import demands, trajectory
@@ -23,11 +22,6 @@ def test_every_motion_shows_a_plane_and_its_friction(model):
         assert values.radius == math.inf
         assert values.friction == pytest.approx(0.1, rel=2e-3)
     assert values.mass == pytest.approx(2.0, rel=1e-6)
-
-
-def test_errata_that_are_infinite_on_a_plane_are_left_out():
-    effects = [measured((FLAT, number)) for number in MEASURES]
-    assert {(len(effect.change), effect.error_message) for effect in effects} == {(0, ""), (2, "")}
 
 
 def test_a_film_of_a_flat_slider_draws_a_straight_line():

@@ -13,8 +13,6 @@ from rich.console import Console
 from runs import RUN, Run
 from studies import solved
 
-from comparison.analyses.assumptions.figure import draw_assumptions
-from comparison.analyses.assumptions.validity import FEW, AssumptionCell
 from comparison.analyses.panels import draw_panels, panel
 from comparison.registry import report_of
 from comparison.report.junit import junit
@@ -60,13 +58,10 @@ def test_bars_and_consoles_print_brackets(capsys: pytest.CaptureFixture[str]) ->
 
 def test_dollars_in_a_title_are_letters_of_every_figure(tmp_path: Path) -> None:
     scene = load_scene("fig3-I").with_values({"title": r"x $\frac{$ y"})
-    sizes = ((0.01, 0.01),) * 3
-    cells = [AssumptionCell(scene.name, variation, sizes, sizes, ("ok",) * 3) for variation in FEW]
-    draw_assumptions(tmp_path / "assumptions.png", scene, cells)
     axes = {"title": "a$b$", "ticks": [[0.0, r"$\frac{$"]]}, {"title": "$"}
     odd = panel("$c$", "", *axes, [{"name": "$d", "x": [0.0], "y": [1.0]}])
     draw_panels(tmp_path / "family.png", scene.title, [odd])
-    assert all((tmp_path / f"{name}.png").stat().st_size > 0 for name in ("assumptions", "family"))
+    assert (tmp_path / "family.png").stat().st_size > 0
 
 
 def test_junit_and_summary_are_well_formed_for_any_name() -> None:

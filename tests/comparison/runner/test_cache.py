@@ -28,7 +28,6 @@ from runs import no_executor
 
 import multibody.models.engine
 from comparison.analyses.claims.table import paper_complete
-from comparison.analyses.errata.analysis import Effect
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.registry import ANALYSES, first_tasks
 from comparison.runner.cache import MAGIC, Cache, Key
@@ -184,9 +183,17 @@ def another_motion(task: tuple[object, ...]) -> StoredMotion:
     return motion(task)
 
 
-def broken(task: object) -> tuple[Effect, ...]:
+@dataclass(frozen=True)
+class Finding:
+    """A result that may name a fault."""
+
+    scene: str
+    error_message: str = ""
+
+
+def broken(task: object) -> tuple[Finding, ...]:
     calls.append(task)
-    return Effect("s", 0), Effect("s", 1, error_message="it broke")
+    return Finding("s"), Finding("s", "it broke")
 
 
 def _run(task: Task, folder: Path, make: Callable[[int], Executor] = ThreadPoolExecutor) -> TaskResults:
@@ -214,7 +221,7 @@ def test_an_answer_is_kept_to_the_last_bit_and_a_damaged_one_is_mended(tmp_path:
 
 
 def test_what_names_a_fault_is_tried_again_by_the_next_run(tmp_path: Path) -> None:
-    task = Task(broken, 1, "errata", 0.1)
+    task = Task(broken, 1, "scaling test", 0.1)
     calls.clear()
     results = _run(task, tmp_path)
     assert results[task].value[1].error_message == "it broke"
@@ -226,14 +233,14 @@ def test_a_task_that_fails_has_its_reason_and_costs_no_other(tmp_path: Path) -> 
     def on_failure(argument: object, failed: TaskResult) -> object:
         return argument, failed.outcome, failed.error_message
 
-    tasks = [Task(raises, "1", "errata", 0.3), Task(doubled, str(tmp_path / "2"), "errata", 0.1)]
+    tasks = [Task(raises, "1", "scaling test", 0.3), Task(doubled, str(tmp_path / "2"), "scaling test", 0.1)]
     results = TaskResults(Cache(tmp_path))
     Runner(results, 2, process_pool).run(tasks)
     failed = "1", Outcome.SOLVER_FAILED, "RuntimeError: singular"
     assert [results.value(task, on_failure) for task in tasks] == [failed, 2]
     assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[:1], "the next run tries them again"
     assert len(list(tmp_path.glob("*/*.result"))) == 1, "no file is left of them"
-    assert results.parts["errata"].tasks == 2
+    assert results.parts["scaling test"].tasks == 2
 
 
 def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
@@ -242,7 +249,7 @@ def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
     assert paper_complete(study)
     assert len({task.key for task in tasks}) == len(tasks)
     assert {task.stage for task in tasks} == {
-        "effective values", "errata", "conditioning", "scaling test", "convergence", "assumptions",
+        "effective values", "conditioning", "scaling test", "convergence", "assumptions",
     }  # fmt: skip
     assert not paper_complete(Study(study.scenes[:1], 6, 1e-3))
 

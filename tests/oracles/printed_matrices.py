@@ -2,7 +2,7 @@
 The matrix form (3.9)-(3.13), (3.15) as the paper prints it, erratum by erratum, to measure what each erratum costs.
 
 Written from the print and not from the reference, whose equations it must give once every erratum is corrected.
-Friction grows linearly with the speed below DEFAULT_V_REG (a lubricated contact needs no such limit), so that an
+Friction grows linearly with the speed below V_REG (a lubricated contact needs no such limit), so that an
 ordinary integrator can follow it; this is for the size of an effect, not for surfaces.
 """
 
@@ -11,13 +11,13 @@ from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from comparison.result_types import Array
-from comparison.study.models import DEFAULT_V_REG
 from reference.problem import GRAVITY, Scene, ground_peak
 from reference.problem.excitation import acceleration_of_ground
 
+Array = NDArray[np.float64]
+V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity
 WRONG_SPRING = "(3.12) c_24 with k^x"
 WRONG_DAMPING = "(3.15) h_12, h_21 without rho, h_22 with xi''"
 RELATIVE, ABSOLUTE = 1e-6, 1e-9
@@ -126,7 +126,7 @@ def _accelerations(fixed: _Fixed, q: Array, v: Array, ground: Array) -> Array:
     speed = math.sqrt(vx**2 + vy**2 + (vx * p + vy * r) ** 2)  # (3.8)
     w = _w(x, y, vx, vy, delta)
     friction = float(fixed.scene.dry_friction.at(speed)) if fixed.varies else fixed.friction
-    over_speed = friction if fixed.lubricated else friction / max(speed, DEFAULT_V_REG)
+    over_speed = friction if fixed.lubricated else friction / max(speed, V_REG)
     s = over_speed * rho  # mu rho / v, (3.14) included
 
     own = m * (delta - s * (vx * p + vy * r))  # the first two rows of M, which is diagonal but for them

@@ -1,0 +1,206 @@
+"""What is said of the assumptions: every sentence is worded here from a result with reading, base, sign and error."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from comparison.analyses.assumptions.trials import WITHIN, DirectionTrial
+from comparison.analyses.assumptions.validity import AssumptionCell, Validity, ValidityRange, line_of
+from comparison.analyses.assumptions.variations import DIRECTED, FIRST_SIZE, UNDER_LOAD, Axis, Variation
+from comparison.wording import difference, percent
+from reference.problem import Scene
+
+NO_EFFECT = "no effect by symmetry"
+Base = Literal["the translational model", "the stated spatial model"]
+TRANSLATIONAL: Base = "the translational model"
+STATED: Base = "the stated spatial model"
+SHARE = WITHIN[0]  # of mu_i: a larger change shows an assumption false
+
+
+@dataclass(frozen=True)
+class Change:
+    """The change of one mu at the phase pair where it is largest: signed size, error, reading and base."""
+
+    scene: str
+    body: int
+    size: float
+    error: float
+    phases: tuple[float, float]
+    reading: str
+    base: Base
+    no_effect: str = ""
+
+    @property
+    def verdict(self) -> str:
+        """Return "met", "not met (by ...)" or "not compared" for an effect of at most SHARE."""
+        if self.no_effect or not math.isfinite(self.size + self.error):
+            return "not compared"
+        excess = abs(self.size) + self.error - SHARE
+        return "met" if excess <= 0.0 else f"not met (by {percent(excess)})"
+
+
+def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: AssumptionCell | None = None) -> Change:
+    """Return the change of mu of one body of largest size, against the stated spatial model where that is given."""
+    sizes, errors = (np.array(rows)[:, body - 1] for rows in (cell.change, cell.uncertainty))
+    base = TRANSLATIONAL
+    if stated is not None:
+        before, its_error = (np.array(rows)[: len(sizes), body - 1] for rows in (stated.change, stated.uncertainty))
+        if len(before) < len(sizes):  # a control at one phase pair: symmetry says that the others are alike
+            before, its_error = np.full_like(sizes, before[0]), np.full_like(sizes, its_error[0])
+        sizes, errors = (1.0 + sizes) / (1.0 + before) - 1.0, np.hypot(errors, its_error)
+        base = STATED
+    place = int(np.argmax(np.abs(sizes)))  # NaN comes first: then nothing is claimed
+    return Change(
+        cell.scene, body, float(sizes[place]), float(errors[place]), found.phases[place], found.reading, base,
+        cell.no_effect,
+    )  # fmt: skip
+
+
+def describe_change(change: Change) -> str:
+    """Return what changes, by how much with sign and error, in which reading, against what and where."""
+    if change.no_effect:
+        return f"mu_{change.body}: {NO_EFFECT}"
+    if not math.isfinite(change.size):
+        return f"mu_{change.body}: not compared, a phase pair has no value"
+    first, second = change.phases
+    size = difference(change.size, change.error)
+    return (
+        f"mu_{change.body} ({change.reading}) changes by {size} against {change.base}, at ({first:g}, {second:g}) rad"
+    )
+
+
+WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
+    "ring": ("at no ring tried, up to {fails:g} m", "", "with rings from {holds:g} m", "no longer at {fails:g} m",
+             "every smaller one tried too"),
+    "height": ("at no heights tried", "at zero heights", "with heights up to {holds:g} times the stated ones",
+               "no longer at {fails:g} times", "the largest tried"),
+    "oval": ("at none of the ovals tried, not even the stated ring", "with the ring as stated",
+             "with the ring narrowed by up to {holds:.2g} of its radius along {direction:.0f} degrees",
+             "no longer by {fails:.2g}", "the most tried"),
+    "offset": ("at none of the offsets tried, not even the stated ones", "with centers of mass as stated",
+               "with centers of mass moved by up to {holds:.2g} m towards {direction:.0f} degrees",
+               "no longer by {fails:.2g} m", "the largest tried"),
+    "yaw": ("at none of the angles tried, not even the stated ones", "with bodies and links as stated",
+            "with bodies and links turned by up to {holds:.2g} rad {sense}", "no longer by {fails:.2g} rad",
+            "the largest tried"),
+}  # fmt: skip
+# of a line of variations: where nothing holds; where only its zero holds; what holds; what does not; where all holds
+
+
+def describe_range(validity: ValidityRange) -> str:
+    """Return where mu_i stays within a share of the translational result, or that symmetry makes every trial blind."""
+    none, zero, holds, fails, every = WORDS[validity.key]
+    name = f"mu_{validity.body}"
+    if validity.no_effect:
+        return f"{name} over {VARIED[validity.key]}: {NO_EFFECT}, which is no evidence ({validity.no_effect})"
+    if validity.holds is None:
+        where = none
+    else:
+        where = f"{zero if validity.holds == 0.0 else holds}, {every if validity.fails is None else fails}"
+    place = math.degrees(validity.direction or 0.0)
+    sense = "counterclockwise" if (validity.direction or 0.0) > 0.0 else "clockwise"
+    values = {**vars(validity), "direction": place, "sense": sense}
+    return f"{name} stays within {100.0 * validity.share:g} % {where.format(**values)}"
+
+
+VARIED: dict[Axis, str] = {
+    "ring": "the radius of the ring", "height": "the heights", "oval": "an oval ring", "offset": "offsets of bodies",
+    "yaw": "turned bodies and links",
+}  # fmt: skip
+
+
+def range_cell(validity: ValidityRange) -> str:
+    """Return what a table holds of a range: the limit and what fails beyond it, or that no trial can tell."""
+    if validity.no_effect:
+        return NO_EFFECT
+    if validity.holds is None:
+        return "no value tried"
+    holds, every = f"{validity.holds:.3g}", " (all tried)" if validity.fails is None else f", not {validity.fails:.3g}"
+    return f"{'≥' if validity.key == 'ring' else '≤'} {holds}{every}"
+
+
+def describe_variation(scene: Scene, variation: Variation) -> str:
+    """Return what an uneven variation does to the scene."""
+    radius, towards = scene.support_radius or 0.0, f"{math.degrees(variation.direction):.0f} degrees"
+    parts = [f"ring narrowed by {variation.oval:.2g} of its radius along {towards}"] if variation.oval else []
+    if variation.offset:
+        parts.append(f"bodies above the platform {variation.offset * radius:.2g} m off the axis towards {towards}")
+    if variation.yaw:
+        parts.append(f"bodies above the platform and their links turned by {variation.yaw:.2g} rad")
+    return " and ".join(parts)
+
+
+def describe_direction(scene: Scene, trial: DirectionTrial) -> str:
+    """Return what one trial of a direction changed at one phase pair, or that symmetry makes it blind."""
+    what = describe_variation(scene, trial.variation)
+    if trial.no_effect:
+        return f"{what}: {NO_EFFECT}"
+    changes = (
+        f"mu_{body} {difference(size, error)}"
+        for body, (size, error) in enumerate(zip(trial.change, trial.uncertainty), start=1)
+    )
+    return f"{what}: {', '.join(changes)}{' (the worst)' if trial.worst else ''}"
+
+
+def describe_uneven(found: Validity, scene: Scene) -> list[str]:
+    """Return one line per assumption that has directions: what its first size changes in the worst of them."""
+    lines = []
+    for key in DIRECTED:
+        trials = [each for each in found.directions if (each.scene, each.key) == (scene.name, key)]
+        sizes = dict(line_of(scene, found.cells, key))
+        first, stated = sizes.get(FIRST_SIZE[key]), sizes.get(0.0)
+        if first is None or stated is None:
+            continue
+        bodies = range(1, len(scene.bodies) + 1)
+        changes = "; ".join(describe_change(largest_change(found, first, body, stated)) for body in bodies)
+        telling = sum(not trial.no_effect for trial in trials)
+        worst = f", the worst of {telling} directions" if telling else ""
+        lines.append(f"{describe_variation(scene, first.variation)}{worst}: {changes}")
+    return lines
+
+
+def describe_shortening(loaded: Sequence[AssumptionCell]) -> list[str]:
+    """Return one line on assumption (iv): what it changes that bars shorten; none without both of UNDER_LOAD."""
+    if len(loaded) != len(UNDER_LOAD):
+        return []
+    softened, shortened = (1.0 + np.array(cell.change) for cell in loaded)
+    change = np.abs(shortened / softened - 1.0).max(axis=0)
+    error = np.hypot(*(np.array(cell.uncertainty) for cell in loaded)).max(axis=0)
+    if not np.isfinite(change).all():
+        return ["no value says what it changes that bars shorten as they sway"]
+    numbers = [f"{100.0 * size:.2g} ± {100.0 * about:.1g} %" for size, about in zip(change, error)]
+    changes = ", ".join(f"mu_{body} by up to {text}" for body, text in enumerate(numbers, start=1))
+    return [f"bars that shorten as they sway, and not only soften under the weight, change {changes}"]
+
+
+def assumption_lines(found: Validity, scene: Scene) -> list[str]:
+    """Return the lines below the plots of a scene: what symmetry makes blind, the worst trials, bars under load."""
+    blind = {each.key: each for each in found.ranges if each.scene == scene.name and each.no_effect}
+    lines = [f"{VARIED[key]}: {NO_EFFECT}, which is no evidence ({each.no_effect})" for key, each in blind.items()]
+    loaded = [cell for cell in found.cells if cell.scene == scene.name and cell.variation in UNDER_LOAD]
+    return lines + describe_uneven(found, scene) + describe_shortening(loaded)
+
+
+def stated_changes(found: Validity, scene: str) -> list[Change]:
+    """Return the change of mu of every body by turning, in the scene as stated; none if it was not tried."""
+    stated = next((cell for cell in found.cells if (cell.scene, cell.variation) == (scene, Variation())), None)
+    return [largest_change(found, stated, body + 1) for body in range(len(stated.change[0]))] if stated else []
+
+
+def describe_verdict(found: Validity) -> str:
+    """Return one line: whether mu bears assumption (vi), that no body turns, in every scene as stated."""
+    parts = []
+    for scene in dict.fromkeys(cell.scene for cell in found.cells):
+        changes = stated_changes(found, scene)
+        if not changes:
+            continue
+        worst = max(changes, key=lambda change: np.nan_to_num(abs(change.size) + change.error, nan=np.inf))
+        reason = NO_EFFECT if worst.no_effect else "no value"
+        if math.isfinite(worst.size) and not worst.no_effect:
+            reason = f"mu_{worst.body} {difference(worst.size, worst.error)}"
+        parts.append(f"{scene} {worst.verdict}: {reason}")
+    about = f"Bodies that turn leave mu_i ({found.reading}) within {percent(SHARE)} of {TRANSLATIONAL}"
+    return f"{about}: {'; '.join(parts)}." if parts else ""

@@ -1,0 +1,186 @@
+"""Trials of the assumptions: the engine's two models for a variation, or along the worst direction of one."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import product
+from typing import Annotated
+
+import numpy as np
+
+from comparison.analyses.assumptions.variations import (
+    FIRST_SIZE,
+    LARGEST_SIZE,
+    SMALLEST_SIZE,
+    Axis,
+    Variation,
+    blind_by_symmetry,
+    trials_of,
+    with_size,
+)
+from comparison.result_types import Array, Number, Phases, Text, result
+from comparison.runner.task import TaskResult
+from comparison.study.batches import imported
+from comparison.study.models import Model
+from reference.problem import Scene, SceneError, untilted
+
+DURATION = 6.0  # s: the loading is strongest in its first seconds
+WITHIN = (0.01, 0.05)  # of mu_i
+CLOSE_ENOUGH = 0.2 * WITHIN[0]  # relative error of mu_i that says whether it stays within: no smaller one is asked for
+DIRECTION_PHASES = ((2.0, 0.7),)  # rad: directions are told apart at one phase pair
+DIRECTION_V_REG = 1e-2  # m/s: ten times that of the study, at a third of its cost; which direction is worst is the same
+CLOSE = 1.25  # ratio of the first size that fails to the last that holds: between closer ones none is tried
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A variation, None for the translational model: mu (M, N), errors, statuses and cost, s."""
+
+    variation: Variation | None
+    mu: Array
+    error: Array
+    status: tuple[str, ...]
+    error_message: str
+    cost: float
+
+    def __post_init__(self) -> None:
+        if self.mu.ndim != 2 or self.error.shape != self.mu.shape or len(self.status) != len(self.mu):
+            raise ValueError(f"mu {self.mu.shape}, error {self.error.shape}, {len(self.status)} statuses")
+
+
+@result
+class DirectionTrial:
+    """One direction in which an assumption was tried, at one phase pair and a larger v_reg, to find the worst."""
+
+    scene: Annotated[Text, "name of the scene"]
+    key: Annotated[Axis, "what varies"]
+    variation: Annotated[Variation, "what is varied, in which direction"]
+    change: Annotated[tuple[Number, ...], "relative change of mu against the stated spatial model, by body"]
+    uncertainty: Annotated[tuple[Number, ...], "of the change, the two error estimates together, by body"]
+    no_effect: Annotated[Text, "why symmetry leaves the trial without effect, so that it is no evidence; else empty"]
+    worst: Annotated[bool, "whether the sizes of the variation are tried in this direction"]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one task found: its trials, the directions that it tried first, and what went wrong, or ""."""
+
+    trials: tuple[Trial, ...]
+    directions: tuple[DirectionTrial, ...] = ()
+    error_message: str = ""
+
+
+# scene, translational and spatial model, what is tried, relative tolerance, phase pairs, number of sizes along an axis
+Arguments = tuple[Scene, tuple[Model, Model], Variation | tuple[Axis, ...] | None, float, tuple[Phases, ...], int]
+
+
+def answer_trials(task: Arguments) -> Answer:
+    """Try one variation, or sizes of some axes in their worst directions. Runs inside a worker process."""
+    scene, (translational, spatial), what, tolerance, phases, sizes = task
+    short, pairs = scene.with_values({"duration": min(scene.duration, DURATION)}), np.array(phases)
+    if what is None:
+        return Answer((amplification_of(short, translational, None, tolerance, pairs),))
+    if isinstance(what, Variation):
+        checked = pairs[:1] if blind_by_symmetry(short, what) else pairs  # one pair controls what symmetry says
+        return Answer((amplification_of(short, spatial, what, tolerance, checked),))
+    plain = amplification_of(short, translational, None, tolerance, pairs)
+    directions = find_worst_directions(short, spatial, what)
+    trials: list[Trial] = []
+    for key, worst in ((each.key, each.variation) for each in directions if each.worst):
+        trials += follow_direction(short, spatial, key, worst, plain, tolerance, pairs, sizes)
+    return Answer(tuple(trials), directions, next((each.error_message for each in trials if each.error_message), ""))
+
+
+def amplification_of(
+    scene: Scene, model: Model, variation: Variation | None, tolerance: float, phases: Array, **settings: object
+) -> Trial:
+    """Return mu of a model for a variation of a scene."""
+    varied = scene if variation is None else variation.of(scene)
+    whole = {"full": True} if untilted(varied) else {}  # a check of assumption (vi) must not make use of it
+    asked = {**model.settings, **{key: value for key, value in settings.items() if key in model.settings}}
+    found = imported(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
+    return Trial(variation, found.mu, found.error, tuple(map(str, found.status)), "", float(found.cost))
+
+
+def find_worst_directions(scene: Scene, spatial: Model, keys: Sequence[Axis]) -> tuple[DirectionTrial, ...]:
+    """
+    Try one size of every axis in every direction; the worst is that of the largest change of any body.
+
+    A direction that symmetry makes blind is listed and not computed.
+    """
+    ask = partial(amplification_of, scene, spatial, tolerance=CLOSE_ENOUGH, phases=np.array(DIRECTION_PHASES),
+                  regularization=DIRECTION_V_REG)  # fmt: skip
+    stated, found = None, []
+    for key in keys:
+        of_key = []
+        for variation in trials_of(scene, key):
+            reason = blind_by_symmetry(scene, variation)
+            change: tuple[float, ...] = ()
+            uncertainty: tuple[float, ...] = ()
+            if not reason:
+                stated = stated or ask(variation=None)
+                change, uncertainty = (tuple(rows[0].tolist()) for rows in change_of(ask(variation=variation), stated))
+            of_key.append(DirectionTrial(scene.name, key, variation, change, uncertainty, reason, False))
+        telling = [trial for trial in of_key if not trial.no_effect]
+        worst = max(telling, key=lambda trial: np.nan_to_num(np.abs(trial.change), nan=np.inf).max(), default=None)
+        found += [replace(trial, worst=trial is worst) for trial in of_key]
+    return tuple(found)
+
+
+def follow_direction(
+    scene: Scene, spatial: Model, key: Axis, worst: Variation, plain: Trial, tolerance: float, phases: Array, sizes: int
+) -> Iterator[Trial]:
+    """Try sizes in one direction: after the first where a limit is still wide."""
+    tried: list[tuple[float, Array]] = []
+    size: float | None = FIRST_SIZE[key]
+    while size is not None and len(tried) < sizes:
+        variation = with_size(worst, key, size)
+        try:
+            trial = amplification_of(scene, spatial, variation, tolerance, phases)
+        except SceneError:
+            if not tried:
+                raise
+            return  # the scene can be no more uneven: a support would carry nothing
+        change, uncertainty = change_of(trial, plain)
+        tried.append((size, (np.abs(change) + uncertainty).max(axis=0)))
+        yield trial
+        size = next_size(tried, SMALLEST_SIZE[key], LARGEST_SIZE[key])
+
+
+def next_size(tried: Sequence[tuple[float, Array]], smallest: float, largest: float) -> float | None:
+    """
+    Return the size that is tried next: smaller while one limit is not reached, then between, then larger; None if none.
+
+    tried: sizes, each with the largest change of mu of every body, uncertainty included, NaN for no value.
+    """
+    between, smaller, larger = [], [], []
+    for body, share in product(range(len(tried[0][1])), WITHIN):
+        fails = min((size for size, change in tried if not change[body] <= share), default=math.inf)
+        holds = max((size for size, change in tried if change[body] <= share and size < fails), default=0.0)
+        if fails == math.inf:
+            larger.append(min(2.0 * holds, largest))
+        elif holds == 0.0:
+            smaller.append(0.5 * fails)
+        elif fails > CLOSE * holds:
+            between.append((fails / holds, math.sqrt(fails * holds)))
+    if smaller and max(smaller) >= smallest:
+        return max(smaller)
+    if between:
+        return max(between)[1]
+    return next((size for size in sorted(larger) if size > max(tried)[0]), None) if larger else None
+
+
+def change_of(trial: Trial, plain: Trial) -> tuple[Array, Array]:
+    """Return the relative change (M, N) of mu against the first of the phase pairs of another trial, and its error."""
+    base, error = plain.mu[: len(trial.mu)], plain.error[: len(trial.mu)]
+    return trial.mu / base - 1.0, np.hypot(trial.error, error) / base
+
+
+def without_answer(task: Arguments, failed: TaskResult) -> Answer:
+    """Return a trial without values that says why."""
+    scene, _, what, _, phases, _ = task
+    tried = [trials_of(scene, key)[-1] for key in what] if isinstance(what, tuple) else [what]
+    nothing, statuses = np.full((len(phases), len(scene.bodies)), np.nan), (failed.outcome.value,) * len(phases)
+    lost = (Trial(each, nothing, nothing, statuses, failed.error_message, 0.0) for each in tried)
+    return Answer(tuple(lost), (), failed.error_message)

@@ -1,0 +1,164 @@
+"""What is varied to try the paper's assumptions, in which directions, and where symmetry makes a trial blind."""
+
+import itertools
+import math
+from dataclasses import replace
+from typing import Annotated, Any, Literal
+
+import numpy as np
+
+from comparison.result_types import result
+from reference.problem import Scene, half_turn, mirror_symmetric, own_axes, planar
+
+ROUNDING = 1e-9  # of the radius of the ring, or of a right angle: what is that close is in the plane
+TURNED_LINK = "links equally stiff along x and y below square boxes: turned, they are the same"
+ONE_PLANE = "loading and bodies are their own mirror images about the plane of the motion: nothing turns out of it"
+
+
+@result
+class Variation:
+    """The scene with another ring of supports and other heights, uneven, or on loaded bars."""
+
+    ring: Annotated[float, "radius of the ring, as a multiple of the stated one"] = 1.0
+    height: Annotated[float, "heights of the bodies, as multiples of the stated ones"] = 1.0
+    supports: Annotated[int | None, "number of supports; null for the stated one"] = None
+    oval: Annotated[float, "share by which the ring of supports is narrowed along the direction"] = 0.0
+    offset: float = 0.0
+    """distance by which centers of mass above the platform are moved in the direction, over the radius of the ring"""
+    direction: Annotated[float, "direction of `oval` and of `offset`, rad from the x axis"] = 0.0
+    yaw: Annotated[float, "angle by which bodies above the platform and their links are turned, rad"] = 0.0
+    bars: Literal["softening", "shortening"] | None = None
+    """what the weight above does to bars that give way: softening or shortening; null as stated"""
+
+    @property
+    def is_uneven(self) -> bool:
+        """Whether supports leave the circle, centers of mass the axis, or bodies and links their common directions."""
+        return self.oval != 0.0 or self.offset != 0.0 or self.yaw != 0.0
+
+    def of(self, scene: Scene) -> Scene:
+        """Return the scene with this variation."""
+        radius, stated = float(scene.support_radius or np.nan), scene.isolator.supports
+        along = np.array([math.cos(self.direction), math.sin(self.direction)])
+        values: dict[str, Any] = {"isolator.supports": self.supports or stated, "isolator.ring": radius * self.ring}
+        if isinstance(stated, list) and self.supports is None:
+            values = {"isolator.supports": self.ring * np.array(stated)}
+        if self.oval:
+            narrowed = np.array(scene.support_places) @ (np.eye(2) - self.oval * np.outer(along, along))
+            values = {"isolator.supports": self.ring * narrowed, "isolator.ring": None}
+        for number, body in enumerate(scene.bodies):
+            values[f"bodies.{number}.height"] = float(body.height or 0.0) * self.height
+            if number and self.offset:
+                values[f"bodies.{number}.offset"] = scene.offsets[number] + self.offset * radius * along
+            if number and self.yaw:
+                values[f"bodies.{number}.yaw"] = float(scene.yaws[number] + self.yaw)
+            if self.bars and body.bars is not None:
+                gives_way = body.bars.axial_stiffness is not None
+                values[f"bodies.{number}.bars.load_effect"] = self.bars if gives_way else "softening"
+        return scene.with_values(values)
+
+
+FEW = (
+    *(Variation(ring=ring) for ring in (0.5, 1.0, 2.0)),
+    Variation(height=0.0),
+)
+MANY = (
+    *(Variation(ring, height) for ring in (0.5, 1.0, 2.0, 4.0, 8.0) for height in (0.0, 0.25, 0.5, 1.0)),
+    *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # on the narrowest ring the scenes would topple
+    Variation(supports=3),
+)
+UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # of scenes whose bars give way
+
+Axis = Literal["ring", "height", "oval", "offset", "yaw"]
+DIRECTED: tuple[Axis, ...] = ("oval", "offset", "yaw")  # tried in several directions first
+FIRST_SIZE = {
+    "oval": 0.5,  # of the radius of the ring
+    "offset": 0.1,  # of the radius of the ring, a twentieth of the width: what codes take for accidental
+    "yaw": 0.2,  # rad
+}
+SMALLEST_SIZE = {"oval": 0.5, "offset": 0.025, "yaw": 0.05}  # where none holds yet, no smaller one is tried
+LARGEST_SIZE = {"oval": 0.5, "offset": 0.4, "yaw": math.pi / 4.0}  # larger: other buildings, or they lift off
+DIRECTIONS = 4  # that no symmetry of the scene makes equivalent, in half a turn
+
+
+def with_size(variation: Variation, key: Axis, size: float) -> Variation:
+    """Return the variation with another size in the same direction; that of a yaw is its sign."""
+    changes: dict[str, Any] = {key: math.copysign(size, getattr(variation, key))}
+    return replace(variation, **changes)
+
+
+def trials_of(scene: Scene, key: Axis) -> list[Variation]:
+    """
+    Variations of one assumption in directions that the scene's symmetries leave different, of which one is the worst.
+
+    An offset has a full turn of directions and an oval half a one. A half turn of the loading makes opposite offsets
+    equivalent, mirror images about both axes or about the plane of the motion make a quarter of a turn enough. An angle
+    has two directions and is tried at two sizes.
+    """
+    size = FIRST_SIZE[key]
+    if key == "yaw":
+        return [Variation(yaw=part * size) for part in (1.0, -1.0, 0.5, -0.5)]
+    plane = plane_of_symmetry(scene)
+    if plane is not None:  # an offset along the plane is blind
+        start, turn, count = plane, math.pi / 2.0, DIRECTIONS + 1
+    elif own_axes(scene) and mirror_symmetric(scene):
+        start, turn, count = 0.0, math.pi / 2.0, DIRECTIONS
+    else:
+        opposite = key == "oval" or bool(half_turn(scene))
+        count = DIRECTIONS if opposite else 2 * DIRECTIONS
+        start, turn = 0.0, (math.pi if opposite else 2.0 * math.pi) * (1.0 - 1.0 / count)
+    directions = (start + turn * step / (count - 1) for step in range(count))
+    sized: dict[str, Any] = {key: size}
+    return [Variation(direction=direction, **sized) for direction in directions]
+
+
+def blind_by_symmetry(scene: Scene, variation: Variation) -> str:
+    """Return why symmetry leaves mu of the spatial model as that of the translational one; "" where it does not."""
+    if variation.bars is not None or any(link is not None for link in scene.bar_links):
+        return ""  # bars that bend tilt what stands on them, in a plane as well
+    if variation.yaw and replace(variation, yaw=0.0) == Variation() and turned_links_are_the_same(scene):
+        return TURNED_LINK
+    if scene.isolator.support_stiffness is not None or scene.dry_friction.by_load:
+        return ""  # unequal loads of the supports tilt the platform, or change the friction
+    return "" if plane_of_symmetry(variation.of(scene)) is None else ONE_PLANE
+
+
+def turned_links_are_the_same(scene: Scene) -> bool:
+    """Whether links and boxes above the platform look the same at every angle about the vertical."""
+    links = itertools.chain(scene.stiffness, scene.damping)
+    return all(x == y for x, y in links) and all(body.size is None or is_square(body.size) for body in scene.bodies[1:])
+
+
+def is_square(size: Any) -> bool:
+    """Whether a box is as long as it is wide."""
+    return bool(size[0] == size[1])
+
+
+def plane_of_symmetry(scene: Scene) -> float | None:
+    """
+    Return the direction, rad, of the vertical plane about which loading, links and bodies are mirror images; or None.
+
+    The motion of a scene at rest stays in it, whatever the places of the supports. Their loads are in balance with
+    what overturns in the plane, so that friction in proportion to them, all along the plane, has no moment about the
+    vertical; and its sum is that of the whole weight, as in translation.
+    """
+    if not planar(scene) or scene.support_places is None:
+        return None
+    horizontal = scene.amplitudes[:2]
+    if not horizontal.any():
+        return None
+    along = horizontal[:, np.abs(horizontal).sum(axis=0).argmax()]
+    along = along / np.hypot(*along)
+    across = np.array([-along[1], along[0]])
+    direction = math.atan2(along[1], along[0])
+    reach = float(np.abs(scene.support_places).max())
+    centered = bool((np.abs(scene.offsets @ across) <= ROUNDING * reach).all())
+    boxes = all(
+        body.size is None or is_square(body.size) or is_multiple(direction - yaw, math.pi / 2.0)
+        for body, yaw in zip(scene.bodies, scene.yaws)
+    )
+    return direction if centered and boxes else None
+
+
+def is_multiple(angle: float, unit: float) -> bool:
+    """Whether an angle is a whole number of units, to rounding."""
+    return abs(angle / unit - round(angle / unit)) <= ROUNDING

@@ -1,1 +1,0 @@
-"""Effect of the errata of the paper."""
