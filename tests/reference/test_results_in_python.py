@@ -70,7 +70,7 @@ def test_a_motion_is_labeled_with_units(motion):
     of = {"m": "position", "m/s": "velocity", "m/s^2": "absolute_acceleration peak ground", "W": "friction_power"}
     of |= {"N": "contact_force isolator_force support_force", "s": "time"}
     assert_units(data, of)
-    assert (data.attrs["scene"], data.attrs["status"]) == ("fig4-dry", "ok")
+    assert (data.attrs["scene"], data.attrs["status"]) == ("fig4-dry[duration=3]", "ok")
     assert np.isin(np.linspace(0.0, 3.0, 215), motion.time).all(), "64 instants in 0.9 s, and those of the steps"
     assert data["support_force"].shape == (len(motion.time), 0), "the equations have no single supports"
 
@@ -129,7 +129,8 @@ def test_a_terminal_and_a_notebook_show_scene_surface_and_motion(motion):
     assert repr(one) == "<Amplification of 1 phase pair: mu_1 = 1 ± 0.01, mu_2 = 2.25 ± 0.2, 1 ok>"
     far = 1e3 * np.linalg.norm(motion.position[:, :, :2], axis=2).max(axis=0)
     head = f"{len(motion.time)} instants to 3 s, {len(motion.stick)} rests, platform at most {far[0]:.4g} mm off, ok"
-    assert repr(motion) == f"<Trajectory of fig4-dry: {head}>"
+    law = "set-valued Coulomb friction; literal supremum"
+    assert repr(motion) == f"<Trajectory of fig4-dry[duration=3]: {head}; {law}>"
     rows = [[str(n + 1), f"{far[n]:.4g}", f"{motion.peak[n]:.5g}"] for n in range(2)]
     assert cells(motion._repr_html_().removesuffix("</tbody></table>")) == rows
     scene = chain(0.4, 0.07, (3.0, 2.0), [(150.0, 110.0)], duration=7.0)

@@ -23,7 +23,7 @@ def test_effects_come_in_order_and_a_measure_that_fails_is_named(monkeypatch: py
     def breaks(scene: Scene) -> np.ndarray:
         raise RuntimeError("singular")
 
-    half = (lambda scene: scene.name == "fig3-I"), (lambda scene: np.full((2, 2), 1.5)), whole
+    half = (lambda scene: scene.name.startswith("fig3-I[")), (lambda scene: np.full((2, 2), 1.5)), whole
 
     monkeypatch.setattr(errata, "ERRATA", [MeasuredErratum(where, "p", "c", "w") for where in "abc"])
     monkeypatch.setattr(errata, "MEASURES", {0: half, 2: (lambda scene: True, breaks, whole)})
