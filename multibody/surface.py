@@ -143,7 +143,7 @@ def amplification(
         pairs,
         displacement,
         scene_name=stated.name,
-        model=f"{model} model of the engine",
+        model=f"Exudyn, {model} model",
         reading=reading_of(scene, regularization),
         law=describe_law(scene, regularization),
     ).reshaped(leading)
@@ -153,15 +153,15 @@ def amplification(
         nothing = np.where(np.isfinite(found.mu), 0.0, np.nan)
         return replace(found, regularization_effect=nothing, displacement_effect=nothing[..., 0])
     assert regularization is not None  # refused with dry friction
-    asked = {"loading": loading, "full": full, "levels": levels, "max_work": max_work}
+    asked: dict[str, Any] = {"loading": loading, "full": full, "levels": levels, "max_work": max_work}
     finer = amplification(scene, phases, model, FINER * regularization, tolerance, **asked)
-    effect = finer.mu - found.mu
+    effect, slip = finer.mu - found.mu, finer.displacement - found.displacement
     return replace(
         found,
         cost=found.cost + finer.cost,
-        law=describe_law(scene, regularization, effect=effect),
+        law=describe_law(scene, regularization, effect=(effect, slip)),
         regularization_effect=effect,
-        displacement_effect=finer.displacement - found.displacement,
+        displacement_effect=slip,
     )
 
 

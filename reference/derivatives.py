@@ -272,7 +272,11 @@ def _derivative(line: _Line) -> Estimates:
         """Its central difference, half the jump of slope at the value, and the error of either."""
         high, low = (line.at(value + sign * step) for sign in (1.0, -1.0))
         error = (high.error + low.error + 2.0 * middle.error) / (2.0 * step)
-        return (high.value - low.value) / (2.0 * step), (high.value + low.value - 2.0 * middle.value) / (2.0 * step), error
+        return (
+            (high.value - low.value) / (2.0 * step),
+            (high.value + low.value - 2.0 * middle.value) / (2.0 * step),
+            error,
+        )
 
     slopes, errors = [], []
     for step in (share * abs(value) for share in STEPS):

@@ -47,15 +47,17 @@ def draw_surface(grid: tuple[Array, Array], height: Array, label: str, title: st
     axes = _new_axes("3d") if axes is None else axes
     if axes.name == "3d":
         first, second = np.meshgrid(*grid, indexing="ij")
-        image = axes.plot_surface(first, second, height, cmap=COLORS, rcount=200, ccount=200, linewidth=0.2)  # type: ignore[attr-defined]
+        ends = {"vmin": np.nanmin(height), "vmax": np.nanmax(height)}  # its faces have means of their corners
+        image = axes.plot_surface(first, second, height, cmap=COLORS, rcount=200, ccount=200, linewidth=0.2, **ends)  # type: ignore[attr-defined]
         axes.set_zlabel(label)  # type: ignore[attr-defined]
         axes.figure.colorbar(image, ax=axes, label=label, shrink=0.6, pad=0.12)
     else:
         image = axes.pcolormesh(*grid, height.T, cmap=COLORS, shading="nearest")
         axes.figure.colorbar(image, ax=axes, label=label)
         axes.set_aspect("equal")
-    axes.set_xlabel(r"$\alpha_1$, rad")
-    axes.set_ylabel(r"$\alpha_2$, rad")
+    pad = 10.0 if axes.name == "3d" else 4.0  # points: beside a surface tick labels are wide
+    axes.set_xlabel(r"$\alpha_1$, rad", labelpad=pad)
+    axes.set_ylabel(r"$\alpha_2$, rad", labelpad=pad)
     for axis, phases in zip((axes.xaxis, axes.yaxis), grid):
         _mark_quarter_turns(axis, float(np.ptp(phases)))
     axes.set_title(title, fontsize="medium")

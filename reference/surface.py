@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import numba
 import numpy as np
@@ -139,7 +140,7 @@ def amplification(
     flat = not full and rest_condition == "consistent" and planar(scene).allowed  # (4.6) as printed knows directions
     moving, axes = (in_plane(scene), 1) if flat else (scene, 2)
     system, demand = checked_demand(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
-    basis = {
+    basis: dict[str, Any] = {
         "scene_name": scene.name,
         "model": f"{equations} equations",
         "reading": reading_of(scene, regularization, cutoff),

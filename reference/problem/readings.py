@@ -13,7 +13,6 @@ LITERAL_SUPREMUM = "literal supremum"
 """The limit of vanishing slip speed under the set-valued law, which no integration reaches."""
 FINER = 0.1
 """Second v_reg over the first where the effect of regularization is estimated: nine tenths of one in proportion."""
-NO_EFFECT = np.empty(0)
 
 
 def reading_of(scene: Scene, regularization: float | None, cutoff: float | None = None) -> str:
@@ -24,7 +23,10 @@ def reading_of(scene: Scene, regularization: float | None, cutoff: float | None 
 
 
 def describe_law(
-    scene: Scene, regularization: float | None, cutoff: float | None = None, effect: NDArray[np.float64] = NO_EFFECT
+    scene: Scene,
+    regularization: float | None,
+    cutoff: float | None = None,
+    effect: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> str:
     """
     Law of friction of a result, and what its error leaves out.
@@ -34,8 +36,8 @@ def describe_law(
     scene : Scene
     regularization, cutoff : float or None, m/s
         v_reg and v_c.
-    effect : ndarray, (...)
-        What a tenth of v_reg changes in mu, where that was computed.
+    effect : tuple of ndarray, optional
+        What a tenth of v_reg changes in mu and in the displacement, m, where that was computed.
 
     Returns
     -------
@@ -56,8 +58,8 @@ def describe_law(
         peak = LITERAL_SUPREMUM if cutoff is None else f"{AS_INTEGRATED}, v_c = {cutoff:g} m/s"
         return f"set-valued {kind} friction; {peak}"
     law = f"regularized below v_reg = {regularization:g} m/s: the error leaves out what this changes against set-valued"
-    known = np.abs(effect[np.isfinite(effect)])
-    if not known.size:
+    if effect is None or not all(np.isfinite(part).any() for part in effect):
         return f"{law} friction"
-    finer = regularization * FINER
-    return f"{law} friction; from there to v_reg = {finer:g} m/s mu changes by up to {known.max():.2g}"
+    factor, displacement = (f"{np.nanmax(np.abs(part)):.2g}" for part in effect)
+    changes = f"mu changes by up to {factor} and the displacement by up to {displacement} m"
+    return f"{law} friction; from there to v_reg = {FINER * regularization:g} m/s {changes}"

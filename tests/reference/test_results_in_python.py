@@ -79,6 +79,12 @@ def test_a_surface_is_drawn_with_its_heights_where_they_belong(surface):
     axes = surface.plot(body=2)
     assert (axes.name, axes.get_xlabel(), axes.get_ylabel()) == ("3d", r"$\alpha_1$, rad", r"$\alpha_2$, rad")
     assert "mu_{2}" in axes.get_zlabel()
+    (bar,) = (other for other in axes.figure.axes if other is not axes)
+    assert (bar.get_ylabel(), *bar.get_ylim()) == (axes.get_zlabel(), surface.mu[:, 1].min(), surface.mu[:, 1].max())
+    assert axes.get_title() == "fig4-dry[duration=3], body 2\nexact equations, literal supremum"
+    axes.figure.canvas.draw()
+    names = {label.get_text() for label in axes.get_xticklabels()}
+    assert {"0", "π/2", "π"} <= names, "quarter turns, and no numbers that look like names of phases"
     low, high = axes.get_zlim()
     assert low <= surface.mu[:, 1].min() < surface.mu[:, 1].max() <= high
     flat = surface.plot(axes=plt.figure().add_subplot())
@@ -134,7 +140,7 @@ def test_a_terminal_and_a_notebook_show_scene_surface_and_motion(motion):
     rows = [[str(n + 1), f"{far[n]:.4g}", f"{motion.peak[n]:.5g}"] for n in range(2)]
     assert cells(motion._repr_html_().removesuffix("</tbody></table>")) == rows
     scene = chain(0.4, 0.07, (3.0, 2.0), [(150.0, 110.0)], duration=7.0)
-    scene = scene.with_values({"title": "a < b", "bodies.1.damping": [5.0, 6.0]})
+    scene = scene.with_values({"title": "a < b", "bodies.1.damping": [5.0, 6.0], "name": "scene"})
     assert repr(scene) == "<Scene scene: 2 bodies, 5 kg, radius 0.4 m, two-frequency motion, 7 s>"
     table = scene._repr_html_().removesuffix("</tbody></table>")
     assert "7 s: a &lt; b; friction coefficient at most 0.07</p>" in table
