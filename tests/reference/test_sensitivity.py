@@ -112,6 +112,8 @@ def test_what_is_strongly_curved_is_no_kink_but_is_said() -> None:
 def test_noise_within_the_errors_is_no_kink() -> None:
     found = along_friction(lambda friction: 2.0 * friction + 1e-4 * np.sin(1e6 * friction), error=1e-4)
     assert np.isnan(found.kink.value)
+    curved = along_friction(lambda friction: np.sin(400.0 * friction), error=2e-2)
+    assert np.isnan(curved.kink.value), "an interval that errors keep wide shows no kink"
 
 
 def test_a_sentence_about_a_kink_says_place_sides_and_what_is_there() -> None:
