@@ -17,6 +17,7 @@ from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
 from reference.problem import Accuracy, Scene, State, Trajectory, checked_phase, ground_acceleration
 from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_state
+from reference.problem.readings import describe_law
 from reference.problem.scene import takes_scene
 
 # Largest number of steps of a single run, which is held in memory whole.
@@ -71,7 +72,9 @@ def trajectory(
     Notes
     -----
     The instants are the engine's own, closer at stops. They miss the largest accelerations, which `peak` has. They are
-    those of the finest run, as in `amplification`.
+    those of the finest run, as in `amplification`. `law` of the result names the law of friction. Dry friction below
+    v_reg is creep: a motion just below the limit of friction slips further than under the set-valued law, and no error
+    covers that. A second motion with a smaller v_reg shows it.
 
     Examples
     --------
@@ -89,7 +92,8 @@ def trajectory(
         built = assemble(scene, model, regularization, loading=loading, contact_force=True)
         pair = PhasePair(scene, built, checked, initial)
         point = refine(pair, tolerance, keep=True, max_work=max_work)
-    motion = _make_trajectory(pair, point.finest, point.outcome, point.instant)
+    law = describe_law(scene, regularization)
+    motion = replace(_make_trajectory(pair, point.finest, point.outcome, point.instant), law=law)
     if not point.coarser:
         return motion
     coarser = tuple(_make_trajectory(pair, run, run.outcome, np.nan) for run, _ in point.coarser)
@@ -181,7 +185,8 @@ def single_run(
             count = round(scene.duration / checked_number("step", step, allowed))
             residual = 1e-3 * newton if residual is None else residual
             run = point.run_constant_step(count, penetration, newton, residual, integrator, discontinuous)
-    return _make_trajectory(point, run, run.outcome, run.instant * built.units.time)
+    motion = _make_trajectory(point, run, run.outcome, run.instant * built.units.time)
+    return replace(motion, law=describe_law(scene, regularization))
 
 
 def _check_initial(scene: Scene, initial: State | None) -> State | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from reference.problem import (
     planar_chain,
 )
 from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE, checked_number
+from reference.problem.readings import FINER, describe_law, reading_of
 from reference.problem.scene import takes_scene
 
 Array = NDArray[np.float64]
@@ -44,6 +45,7 @@ def amplification(
     levels: Sequence[Level] | None = None,
     max_work: float = MAX_WORK,
     softened: bool = False,
+    regularization_effect: bool = False,
 ) -> Amplification:
     """
     Compute the dynamic amplification factors mu_i of (5.1) with the engine.
@@ -71,6 +73,10 @@ def amplification(
         Steps of the engine that a point may take. A scene that needs more is refused before any step (`refusal`).
     softened : bool
         Take links given by `bars` as soft as the weight that they carry makes them (`Scene.softened`).
+    regularization_effect : bool
+        Compute every point with a tenth of v_reg, too, and give the change of mu and of the displacement as an estimate
+        of what regularization does: `regularization_effect` (..., N) and `displacement_effect` (...), m, of the result.
+        mu itself stays that of v_reg.
 
     Returns
     -------
@@ -92,7 +98,9 @@ def amplification(
     after such an impact on.
 
     The error is estimated from runs at two or more levels. It covers step, contact stiffness, iteration, reading of the
-    peaks and rounding, and not what the model itself leaves out.
+    peaks and rounding, and not what the model itself leaves out. That is first of all the law of friction, which `law`
+    of the result names: dry friction is linear below v_reg, so mu is "as integrated" (`reading`), and a platform just
+    below the limit of friction creeps. `regularization_effect` estimates what this changes.
 
     Examples
     --------
@@ -101,7 +109,7 @@ def amplification(
     >>> multibody.amplification(scene, [(0.3, 1.1)]).status.tolist()
     ['ok']
     """
-    scene = scene.softened() if softened else scene
+    stated, scene = scene, scene.softened() if softened else scene
     pairs, leading = flat_phases(phases)
     tolerance = checked_number("tolerance", tolerance, TOLERANCE)
     max_work = checked_number("max_work", max_work, WORK)
@@ -125,7 +133,36 @@ def amplification(
                 if np.isfinite(point.peaks).all():
                     displacement[m] = point.finest.max_displacement * reduced.built.units.length
     cost, cap_share = time.process_time() - clock, displacement / scene.radius
-    return Amplification(mu, error, status, instant, cost, cap_share, pairs, displacement).reshaped(leading)
+    found = Amplification(
+        mu,
+        error,
+        status,
+        instant,
+        cost,
+        cap_share,
+        pairs,
+        displacement,
+        scene_name=stated.name,
+        model=f"Exudyn, {model} model",
+        reading=reading_of(scene, regularization),
+        law=describe_law(scene, regularization),
+    ).reshaped(leading)
+    if not regularization_effect:
+        return found
+    if not found.reading:  # v_reg has no effect without dry friction
+        nothing = np.where(np.isfinite(found.mu), 0.0, np.nan)
+        return replace(found, regularization_effect=nothing, displacement_effect=nothing[..., 0])
+    assert regularization is not None  # refused with dry friction
+    asked: dict[str, Any] = {"loading": loading, "full": full, "levels": levels, "max_work": max_work}
+    finer = amplification(scene, phases, model, FINER * regularization, tolerance, **asked)
+    effect, slip = finer.mu - found.mu, finer.displacement - found.displacement
+    return replace(
+        found,
+        cost=found.cost + finer.cost,
+        law=describe_law(scene, regularization, effect=(effect, slip)),
+        regularization_effect=effect,
+        displacement_effect=slip,
+    )
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,7 @@ PhaseMaximum    what `worst_phases` returns
 Demands         what `demands` returns
 PeakDemands     what `peak_demands` returns
 Estimates       arrays of numbers and their errors
+Sensitivity     what `sensitivity` returns for each key
 EffectiveIsolator  what `effective_isolator` returns
 FloorSpectra    what `floor_spectra` returns
 Estimate        a number and its error
@@ -93,7 +94,7 @@ from reference.problem.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from reference.demand_surface import peak_demands
-    from reference.derivatives import sensitivity
+    from reference.derivatives import Sensitivity, sensitivity
     from reference.motion import trajectory
     from reference.natural_modes import damped_modes, modes
     from reference.phase_maximum import PhaseMaximum, worst_phases
@@ -101,6 +102,7 @@ if TYPE_CHECKING:
 
 LOADED_ON_FIRST_USE = {
     "PhaseMaximum": "reference.phase_maximum",
+    "Sensitivity": "reference.derivatives",
     "amplification": "reference.surface",
     "damped_modes": "reference.natural_modes",
     "modes": "reference.natural_modes",
@@ -123,6 +125,7 @@ __all__ = [
     "PhaseMaximum",
     "Scene",
     "SceneError",
+    "Sensitivity",
     "State",
     "Trajectory",
     "amplification",

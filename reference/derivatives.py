@@ -1,27 +1,112 @@
-"""Derivatives of a computed quantity with respect to values of the scene, by either side."""
+"""Derivatives of a computed quantity with respect to values of the scene, by either side, and kinks beside them."""
 
 from __future__ import annotations
 
+import multiprocessing
+import sys
+import time
 from collections.abc import Callable, Sequence
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from reference.measures import Estimate, Estimates
 from reference.problem import Amplification, Scene
+from reference.problem.changed_values import value_at
 from reference.problem.ranges import brief
 from reference.problem.scene import takes_scene
 
-STEPS = (1e-3, 4e-3, 1.6e-2)  # of the value; each derivative also takes twice its step
+Array = NDArray[np.float64]
+Quantity = Callable[[Scene], Any]
 
-Quantity = Callable[[Scene], "Amplification | Estimates | Estimate"]
+STEPS = (1e-3, 4e-3, 1.6e-2)  # shares of the value; each derivative also takes twice its step
+SHARES = (-0.05, -0.01, 0.01, 0.05)  # of the value: its finite changes
+RUNS_PER_KEY = 4 * len(STEPS) + len(SHARES)
+# Least departure of a mean slope from the derivative, over the largest slope, at which a kink is looked for: a power
+# of the value departs by less over 5 % of it, up to the tenth power
+CONTRADICTION = 0.05
+MAX_HALVINGS = 12
+KINK_WIDTH = 1e-4  # of the value: an interval in which a kink is known well enough
+# Part of the change of slope, or of the jump, that remains in the last interval: of a smooth curve less remains
+LEAST_REMAINDER = 0.25
+LEAST_SHRINKING = 0.125  # of the first interval: errors hide a kink that is known no better
+PROGRESS_AFTER = 2.0  # s
+
+
+@dataclass(frozen=True)
+class Sensitivity(Estimates):
+    """
+    Derivative of a quantity with respect to one value of the scene.
+
+    Attributes
+    ----------
+    value, error : ndarray, (...)
+        The derivative, in the unit of the quantity per unit of the key, in the shape of the quantity; its error.
+    key : str
+    at : float
+        Value of the key in the scene.
+    change : Estimates, (4, ...)
+        Changes of the quantity where the value changes by -5, -1, 1 and 5 % (`SHARES`); NaN where the changed scene
+        has no answer.
+    reading : str
+        Which reading of (5.1) the quantity has: "as integrated" or "literal supremum"; "both agree" without dry
+        friction; "not stated" by a quantity that does not say.
+    law : str
+        Law of friction of the quantity, and what its error leaves out; "" where it is not stated.
+    kink : Estimate
+        Value of the key, within 5 % of `at`, at which the quantity has a kink or a jump; its error is half the interval
+        in which it was found. NaN without one.
+    slopes : tuple of float
+        Slope of the quantity below and beyond the kink. NaN without one.
+    jump : float
+        Change of the quantity at `kink`. 0 at a kink.
+    warning : str
+        What the derivative does not tell, in one line; "" where the finite changes agree with it.
+    """
+
+    key: str
+    at: float
+    change: Estimates
+    reading: str
+    law: str
+    kink: Estimate
+    slopes: tuple[float, float]
+    jump: float
+    warning: str
+
+    def __repr__(self) -> str:
+        if np.size(self.value) == 1:
+            slope = f"{float(np.squeeze(self.value)):.6g} ± {float(np.squeeze(self.error)):.1g}"
+        else:
+            slope = f"{np.nanmin(self.value):.4g} to {np.nanmax(self.value):.4g} ± {np.nanmax(self.error):.1g}"
+        law = "" if not self.law or self.reading in self.law else f"; {self.law}"
+        said = f"; {self.warning}" if self.warning else ""
+        basis = self.law if self.reading in self.law else f"reading of (5.1): {self.reading}"
+        return f"<Sensitivity to {self.key} at {self.at:g}: {slope}; {basis}{law}{said}>"
+
+
+class _Numbers(NamedTuple):
+    value: Array
+    error: Array
+    reading: str
+    law: str
+
+
+class _Corner(NamedTuple):
+    """Where the slope of a number changes: between `low` and `high`, from one slope to another, with a jump or 0."""
+
+    low: float
+    high: float
+    slopes: tuple[float, float]
+    jump: float
 
 
 @takes_scene
-def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[str, Estimates]:
+def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[str, Sensitivity]:
     """
-    Derivatives of a quantity with respect to numbers in the scene, by central differences.
+    Derivatives of a quantity with respect to numbers in the scene, by central differences, and kinks beside them.
 
     Parameters
     ----------
@@ -29,16 +114,19 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
     keys : sequence of str
         Dotted keys of numbers other than zero, as in `Scene.with_values`: ``["isolator.friction", "bodies.1.mass"]``.
     quantity : callable
-        Takes a scene and returns an `Amplification`, whose mu is meant, an `Estimates` or an `Estimate`: any quantity
-        of either side. It is called thirteen times for each key.
+        Takes a scene and returns anything that has a value and an error, of either side: an `Amplification`, whose mu
+        is meant, a `PhaseMaximum`, an `Estimate` or `Estimates` as `Demands` and `PeakDemands` hold, another object
+        with the attributes `value` and `error`, several of these, or a pair (value, error) of numbers or arrays. It is
+        called once for the scene and sixteen times for each key, and up to fourteen times more where a kink is located.
 
     Returns
     -------
-    dict of str to Estimates
+    dict of str to Sensitivity
         By key: the derivative in the quantity's unit per unit of the value, in the shape of the quantity. Its error is
         that of the difference (what the last order of extrapolation changes), of a kink within the step, and of the
         quantity over the step; of three steps, 0.1 to 1.6 % of the value, the one with the smallest error is taken.
-        NaN where a run has no answer.
+        NaN where a run has no answer. Beside it the changes of the quantity over 1 % and 5 % of the value, either way.
+        `reading` and `law` say which reading of (5.1) and which law of friction the numbers have.
 
     Raises
     ------
@@ -48,6 +136,16 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
         For a key whose value is no number, or zero.
     TypeError
         For keys that are no list, and a quantity that returns something else, as an array without errors.
+
+    Notes
+    -----
+    A quantity of a stick-slip motion has kinks. A derivative holds up to the next one only, and its error does not show
+    one that lies beyond its step. So the mean slope over 1 % and over 5 % of the value is compared with the derivative.
+    Where they differ by more than their errors and a twentieth of the largest slope, the place is halved to 1e-4 of the
+    value and named in `warning`: `kink` is the value of the key there, `slopes` are the slopes on both sides. Of an
+    array that is done for the element that differs most. Beyond 5 % nothing is looked for.
+
+    After two seconds each key writes a line to standard error with the time that is left.
 
     Examples
     --------
@@ -60,40 +158,125 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
     """
     if isinstance(keys, str):
         raise TypeError(f"keys = {brief(keys)}: must be a list of keys, [{keys!r}]")
-    found = {}
+    tables, values = scene.model_dump(exclude_none=True), {}
     for key in keys:
-        value = _value(scene, key)
+        value = value_at(tables, key)
         if isinstance(value, bool) or not isinstance(value, int | float) or value == 0:
             scene.with_values({key: value})  # refuses an unknown key with the nearest ones
             raise ValueError(f"keys: {key} is {value!r} in this scene: must be a number other than zero")
-        found[key] = _derivative(scene, key, float(value), quantity)
+        values[key] = float(value)
+    progress = _Progress(RUNS_PER_KEY * len(values))
+    middle = _numbers(quantity(scene)) if values else None
+    found = {}
+    for number, (key, value) in enumerate(values.items(), start=1):
+        progress.start(f"sensitivity to {key}, key {number} of {len(values)}")
+        assert middle is not None
+        found[key] = _sensitivity(_Line(scene, key, value, quantity, middle, progress))
     return found
 
 
-def _value(scene: Scene, key: str) -> Any:
-    """What the scene holds under a dotted key; None if nothing."""
-    place: Any = scene.model_dump(exclude_none=True)
-    for part in key.split("."):
-        if isinstance(place, dict):
-            place = place.get(part)
-        else:
-            place = (
-                place[int(part)] if isinstance(place, list) and part.isdecimal() and int(part) < len(place) else None
-            )
-    return place
+class _Progress:
+    """A line on standard error for each key, with the time that is left, once all have taken PROGRESS_AFTER."""
+
+    def __init__(self, runs: int) -> None:
+        self._began, self._left, self._done, self._spent = time.monotonic(), runs, 0, 0.0
+        self._line = ""
+
+    def start(self, line: str) -> None:
+        self._line = line
+
+    def count(self, seconds: float) -> None:
+        """Take in one run and its time."""
+        self._left, self._done, self._spent = max(self._left - 1, 0), self._done + 1, self._spent + seconds
+        shown = multiprocessing.parent_process() is None and sys.stderr is not None
+        if self._line and shown and time.monotonic() - self._began > PROGRESS_AFTER:
+            left = self._left * self._spent / self._done
+            print(f"{self._line}: about {max(left, 1.0):.0f} s left", file=sys.stderr, flush=True)
+            self._line = ""
 
 
-def _derivative(scene: Scene, key: str, value: float, quantity: Quantity) -> Estimates:
+class _Line:
+    """The quantity along one key of the scene, with all that is known of it by the value of the key."""
+
+    def __init__(
+        self, scene: Scene, key: str, value: float, quantity: Quantity, middle: _Numbers, progress: _Progress
+    ) -> None:
+        self.scene, self.key, self.value, self.middle = scene, key, value, middle
+        self._quantity, self._progress = quantity, progress
+        self.known: dict[float, _Numbers] = {value: middle}
+
+    def at(self, value: float) -> _Numbers:
+        """The quantity of the scene with this value."""
+        if value not in self.known:
+            began = time.monotonic()
+            self.known[value] = _numbers(self._quantity(self.scene.with_values({self.key: value})))
+            self._progress.count(time.monotonic() - began)
+        return self.known[value]
+
+    def answer_at(self, value: float) -> _Numbers:
+        """The same, NaN where the scene with this value is none or has no answer."""
+        try:
+            return self.at(value)
+        except ValueError:
+            nothing = np.full_like(self.middle.value, np.nan)
+            self.known[value] = self.middle._replace(value=nothing, error=nothing)
+            return self.known[value]
+
+
+def _sensitivity(line: _Line) -> Sensitivity:
+    """The derivative, the finite changes, and the kink that makes them contradict each other."""
+    derivative, middle = _derivative(line), line.middle
+    moved = [line.answer_at(line.value * (1.0 + share)) for share in SHARES]
+    change = Estimates(
+        np.array([each.value - middle.value for each in moved]), np.array([each.error + middle.error for each in moved])
+    )
+    place, departure, contradicted = _contradiction(derivative, change, line.value)
+    corner = None if place is None else _locate_corner(line, place)
+    nowhere = float("nan")
+    kink, slopes, jump = Estimate(nowhere, nowhere), (nowhere, nowhere), 0.0
+    warning = ""
+    if corner is not None:
+        kink = Estimate(float(0.5 * (corner.low + corner.high)), float(0.5 * (corner.high - corner.low)))
+        slopes, jump = corner.slopes, corner.jump
+        warning = describe_kink(line.key, line.value, kink, slopes, jump)
+    elif contradicted:
+        warning = f"the mean slope over 5 % of {line.key} departs by {departure:.2g} from the derivative: no kink found"
+    agree = "both agree" if middle.law else "not stated"
+    about = middle.reading or agree, middle.law
+    return Sensitivity(
+        derivative.value, derivative.error, line.key, line.value, change, *about, kink, slopes, jump, warning
+    )
+
+
+def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, float], jump: float = 0.0) -> str:
+    """
+    Say where a quantity has a kink or a jump, and how far the derivative holds.
+
+    Examples
+    --------
+    >>> describe_kink("isolator.friction", 0.1, Estimate(0.1004, 5e-6), (-15.1, 10.0))
+    'kink at isolator.friction = 0.1004 ± 5e-06 (+0.4 %): slope -15.1 below and 10 beyond it'
+    """
+    kind = f"jump by {jump:.3g}" if jump else "kink"
+    far = 100.0 * (kink.value / at - 1.0)
+    digits = max(1, 1 + int(np.floor(np.log10(abs(kink.value) / kink.error))))
+    place = f"{key} = {kink.value:.{digits}g} ± {kink.error:.1g} ({far:+.2g} %)"
+    return f"{kind} at {place}: slope {slopes[0]:.3g} below and {slopes[1]:.3g} beyond it"
+
+
+def _derivative(line: _Line) -> Estimates:
     """The derivative from the step with the smallest error."""
-    middle, middle_error = _numbers(quantity(scene))
+    middle, value = line.middle, line.value
 
-    def difference(step: float) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    def difference(step: float) -> tuple[Array, Array, Array]:
         """Its central difference, half the jump of slope at the value, and the error of either."""
-        (high, high_error), (low, low_error) = (
-            _numbers(quantity(scene.with_values({key: value + sign * step}))) for sign in (1.0, -1.0)
+        high, low = (line.at(value + sign * step) for sign in (1.0, -1.0))
+        error = (high.error + low.error + 2.0 * middle.error) / (2.0 * step)
+        return (
+            (high.value - low.value) / (2.0 * step),
+            (high.value + low.value - 2.0 * middle.value) / (2.0 * step),
+            error,
         )
-        error = (high_error + low_error + 2.0 * middle_error) / (2.0 * step)
-        return (high - low) / (2.0 * step), (high + low - 2.0 * middle) / (2.0 * step), error
 
     slopes, errors = [], []
     for step in (share * abs(value) for share in STEPS):
@@ -105,9 +288,113 @@ def _derivative(scene: Scene, key: str, value: float, quantity: Quantity) -> Est
     return Estimates(*(np.take_along_axis(np.array(rows), best, axis=0)[0] for rows in (slopes, errors)))
 
 
-def _numbers(found: Amplification | Estimates | Estimate) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    if not isinstance(found, Amplification | Estimates | Estimate):
-        kinds = "an Amplification, an Estimates or an Estimate, which have errors"
-        raise TypeError(f"quantity: returns {brief(found)}: must return {kinds}")
-    value = found.mu if isinstance(found, Amplification) else found.value
-    return np.asarray(value, dtype=float), np.asarray(found.error, dtype=float)
+def _contradiction(derivative: Estimates, change: Estimates, value: float) -> tuple[int | None, float, bool]:
+    """
+    Where finite changes and derivative contradict each other most.
+
+    Returns the element of the flattened quantity at which a kink is to be looked for, None without one, the departure
+    of the mean slope over 5 % there, and whether it is larger than the errors.
+    """
+    steps = np.abs(value) * np.array(SHARES[len(SHARES) // 2 :])
+    below, above = (np.reshape(part, (len(steps), -1)) for part in np.split(change.value, 2))
+    low_error, high_error = (np.reshape(part, (len(steps), -1)) for part in np.split(change.error, 2))
+    below, low_error, sign = below[::-1], low_error[::-1], np.sign(value)  # from the nearest on
+    mean = sign * (above - below) / (2.0 * steps[:, None])
+    mean_error = (high_error + low_error) / (2.0 * steps[:, None])
+    slope, slope_error = np.ravel(derivative.value), np.ravel(derivative.error)
+    one_sided = np.abs([above, below]) / steps[:, None]
+    largest = np.maximum(np.nanmax(one_sided, axis=(0, 1), initial=0.0), np.abs(slope))
+    departure = np.abs(mean - slope)
+    beyond = departure - mean_error - slope_error
+    uncertain = np.nan_to_num(slope_error - CONTRADICTION * largest, nan=-1.0)
+    excess = np.nan_to_num(beyond - CONTRADICTION * largest, nan=-1.0).max(axis=0, initial=-1.0)
+    score = np.maximum(excess, uncertain) / np.where(largest > 0.0, largest, 1.0)
+    if not (score > 0.0).any():
+        return None, 0.0, False
+    place = int(score.argmax())
+    return place, float(np.nan_to_num(departure[-1, place])), bool(excess[place] > 0.0)
+
+
+def _locate_corner(line: _Line, place: int) -> _Corner | None:
+    """The kink or jump of one element within the finite changes; None where its slope changes smoothly or in noise."""
+
+    def point(at: float) -> tuple[float, float, float]:
+        numbers = line.answer_at(at)
+        return at, float(np.ravel(numbers.value)[place]), float(np.ravel(numbers.error)[place])
+
+    points = [each for each in (point(at) for at in sorted(line.known)) if np.isfinite(each).all()]
+    if len(points) < 4:
+        return None
+    x, f, e = np.array(points).T
+    slope, error = np.diff(f) / np.diff(x), (e[1:] + e[:-1]) / np.diff(x)
+    turn = np.abs(np.diff(slope)) - error[1:] - error[:-1]  # at the points between two intervals
+    node = 1 + int(turn.argmax())
+    if not turn[node - 1] > 0.0:
+        return None
+    low, high = points[node - 1], points[node + 1]
+    if node == 1:  # no slope is known on the far side: that of a small part of the outer interval
+        low = point(x[0] + 0.1 * (x[1] - x[0]))
+    if node == len(points) - 2:
+        high = point(x[-1] - 0.1 * (x[-1] - x[-2]))
+    below = slope[node - 2] if node > 1 else (low[1] - f[0]) / (low[0] - x[0])
+    beyond = slope[node + 1] if node < len(points) - 2 else (f[-1] - high[1]) / (x[-1] - high[0])
+    turned, gapped, width = float(beyond - below), _gap(low, high, below, beyond), high[0] - low[0]
+    for _ in range(MAX_HALVINGS):
+        if high[0] - low[0] <= KINK_WIDTH * abs(line.value):
+            break
+        middle = point(0.5 * (low[0] + high[0]))
+        left, right = ((b[1] - a[1]) / (b[0] - a[0]) for a, b in ((low, middle), (middle, high)))
+        if not np.isfinite(left + right):
+            return None
+        noise = (low[2] + 2.0 * middle[2] + high[2]) / (middle[0] - low[0])
+        apart = max(abs(left - below), abs(right - beyond))
+        if apart <= noise < 0.1 * abs(beyond - below):  # both halves are straight: the kink is at the middle
+            near = max(noise / abs(beyond - below) * (high[0] - low[0]), 0.5 * KINK_WIDTH * abs(line.value))
+            low = middle[0] - near, middle[1] - below * near, middle[2]
+            high = middle[0] + near, middle[1] + beyond * near, middle[2]
+            break
+        if noise > 0.2 * apart:
+            break
+        if abs(left - below) >= abs(right - beyond):
+            high, beyond = middle, right
+        else:
+            low, below = middle, left
+    if high[0] - low[0] > LEAST_SHRINKING * width:
+        return None
+    gap, slopes = _gap(low, high, below, beyond), (float(below), float(beyond))
+    if abs(gap) > max(LEAST_REMAINDER * abs(gapped), 10.0 * (low[2] + high[2])):
+        return _Corner(low[0], high[0], slopes, gap)
+    return _Corner(low[0], high[0], slopes, 0.0) if abs(beyond - below) > LEAST_REMAINDER * abs(turned) else None
+
+
+def _gap(low: tuple[float, ...], high: tuple[float, ...], below: float, beyond: float) -> float:
+    """What is left of the change between two points by the mean of the slopes outside them."""
+    return float(high[1] - low[1] - 0.5 * (below + beyond) * (high[0] - low[0]))
+
+
+def _numbers(found: Any) -> _Numbers:
+    """Value and error of whatever a quantity returns, with its reading of (5.1) and its law of friction."""
+    several = isinstance(found, tuple | list) and len(found) > 0
+    parts = list(found) if several else [found]
+    numbers: Any = None
+    if isinstance(found, Amplification):
+        numbers = found.mu, found.error
+    elif all(hasattr(part, "value") and hasattr(part, "error") for part in parts):
+        numbers = [part.value for part in parts], [part.error for part in parts]
+        numbers = numbers if several else (found.value, found.error)
+    elif isinstance(found, tuple) and len(found) == 2:
+        numbers = found
+    else:
+        raise _not_taken(found)
+    try:
+        value, error = (np.asarray(part, dtype=float) for part in numbers)
+    except (TypeError, ValueError):
+        raise _not_taken(found) from None
+    if value.shape != error.shape or not value.size:
+        raise _not_taken(found)
+    return _Numbers(value, error, getattr(parts[0], "reading", ""), getattr(parts[0], "law", ""))
+
+
+def _not_taken(found: Any) -> TypeError:
+    kinds = "an Amplification, an object with value and error, several of these, or a pair (value, error)"
+    return TypeError(f"quantity: returns {brief(found)}: must return {kinds}")

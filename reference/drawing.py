@@ -9,6 +9,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
@@ -37,20 +38,51 @@ def verbatim(text: str) -> str:
     return text.replace("$", r"\$")
 
 
-def draw_surface(grid: tuple[Array, Array], height: Array, label: str, axes: Axes | None) -> Axes:
-    """A surface (A, B) over alpha_1 (A,) and alpha_2 (B,), rad; as a map on axes without the projection "3d"."""
+def draw_surface(grid: tuple[Array, Array], height: Array, label: str, title: str, axes: Axes | None) -> Axes:
+    """
+    Draw heights (A, B) over alpha_1 (A,) and alpha_2 (B,), rad, under a title, with a color bar that has the label.
+
+    A surface on axes with the projection "3d", a map on other ones.
+    """
     axes = _new_axes("3d") if axes is None else axes
     if axes.name == "3d":
         first, second = np.meshgrid(*grid, indexing="ij")
-        axes.plot_surface(first, second, height, cmap=COLORS, rcount=200, ccount=200, linewidth=0.2)  # type: ignore[attr-defined]
+        ends = {"vmin": np.nanmin(height), "vmax": np.nanmax(height)}  # its faces have means of their corners
+        image = axes.plot_surface(first, second, height, cmap=COLORS, rcount=200, ccount=200, linewidth=0.2, **ends)  # type: ignore[attr-defined]
         axes.set_zlabel(label)  # type: ignore[attr-defined]
+        axes.figure.colorbar(image, ax=axes, label=label, shrink=0.6, pad=0.12)
     else:
         image = axes.pcolormesh(*grid, height.T, cmap=COLORS, shading="nearest")
         axes.figure.colorbar(image, ax=axes, label=label)
         axes.set_aspect("equal")
-    axes.set_xlabel(r"$\alpha_1$, rad")
-    axes.set_ylabel(r"$\alpha_2$, rad")
+    pad = 10.0 if axes.name == "3d" else 4.0  # points: beside a surface tick labels are wide
+    axes.set_xlabel(r"$\alpha_1$, rad", labelpad=pad)
+    axes.set_ylabel(r"$\alpha_2$, rad", labelpad=pad)
+    for axis, phases in zip((axes.xaxis, axes.yaxis), grid):
+        _mark_quarter_turns(axis, float(np.ptp(phases)))
+    axes.set_title(title, fontsize="medium")
     return axes
+
+
+def _mark_quarter_turns(axis: Axis, span: float) -> None:
+    """Set the ticks of an axis in rad to multiples of pi / 2, written as "π/2"; none of them on a short axis."""
+    from matplotlib.ticker import FuncFormatter, MultipleLocator  # loaded on first use
+
+    if 0.9 * np.pi <= span <= 8.0 * np.pi:
+        axis.set_major_locator(MultipleLocator(0.5 * np.pi))
+        axis.set_major_formatter(FuncFormatter(lambda phase, _: in_half_turns(phase)))
+
+
+def in_half_turns(phase: float) -> str:
+    """
+    Write a multiple of pi / 2.
+
+    >>> [in_half_turns(quarters * np.pi / 2.0) for quarters in (-1, 0, 1, 2, 3, 4)]
+    ['-π/2', '0', 'π/2', 'π', '3π/2', '2π']
+    """
+    quarters = round(2.0 * phase / np.pi)
+    number, half = (quarters, "/2") if quarters % 2 else (quarters // 2, "")
+    return f"{number}π{half}".replace("1π", "π") if number in (-1, 1) else f"{number}π{half}" if number else "0"
 
 
 def draw_motion(

@@ -20,6 +20,7 @@ from reference.problem import (
     loading_period,
 )
 from reference.problem.ranges import checked_array, checked_state
+from reference.problem.readings import describe_law
 from reference.problem.scene import takes_scene
 from reference.solver.error_estimate import (
     DIFFERENCE_FRACTION,
@@ -74,7 +75,8 @@ def trajectory(
     Trajectory
         A motion that ends early has samples up to `instant`, and a status that says why. `stick` holds the intervals of
         rest, or of creep below v_reg. `peak` has the largest accelerations, which the samples miss. `accuracy` has a
-        second run with a looser tolerance; where that would end early, the motion itself has a tighter one.
+        second run with a looser tolerance; where that would end early, the motion itself has a tighter one. `law` names
+        the law of friction, which no error covers: `peak` is the literal supremum under the set-valued law.
 
     Raises
     ------
@@ -96,19 +98,20 @@ def trajectory(
     if initial is not None:
         x, v = checked_state(initial, bodies, system.radius, scene.isolator.travel)
         settings = settings._replace(unit=settings.unit + _initial_acceleration_bound(system, x, v))
+    law = describe_law(scene, regularization)
     if not loads_are_finite(system):
         nothing = np.full(bodies, np.nan)
         no_run = _RecordedRun(Outcome.NON_FINITE_LOAD, 0.0, allocate_record(0, bodies), nothing, nothing, system)
-        return _sample_trajectory(scene, pair, system, no_run, asked)
+        return replace(_sample_trajectory(scene, pair, system, no_run, asked), law=law)
     run = _record_run(system, pair, x, v, settings)
-    motion = _sample_trajectory(scene, pair, system, run, asked)
+    motion = replace(_sample_trajectory(scene, pair, system, run, asked), law=law)
     if run.outcome != Outcome.OK:
         return motion
     other = _record_run(run.system, pair, x, v, settings._replace(tolerance=TOLERANCE_RATIO * settings.tolerance))
     if other.outcome != Outcome.OK:  # such as a motion close to the rim: a tighter run decides, and shows the error
         tighter = max(settings.tolerance / TOLERANCE_RATIO, MIN_STEP_TOLERANCE)
         run, other = _record_run(run.system, pair, x, v, settings._replace(tolerance=tighter)), run
-        motion = _sample_trajectory(scene, pair, system, run, asked)
+        motion = replace(_sample_trajectory(scene, pair, system, run, asked), law=law)
         if run.outcome != Outcome.OK:
             return motion
     floor = MIN_ERROR_FRACTION * settings.tolerance + ROUNDING_ERROR

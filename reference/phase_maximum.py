@@ -22,6 +22,7 @@ from reference.measures.local_search import (
 )
 from reference.problem import Scene, checked_phases
 from reference.problem.ranges import checked_choice
+from reference.problem.readings import describe_law, reading_of
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene
 from reference.problem.symmetry import distinct, half_turns
@@ -56,6 +57,10 @@ class PhaseMaximum:
         Local maxima of the grid from which a search started, and searches that ended at the maximum.
     evaluations : int
         Phase pairs that were computed.
+    reading : str
+        Which reading of (5.1) a factor has, as of `Amplification`. "" of a displacement, which is the same in both.
+    law : str
+        Law of friction, and what the error leaves out of it.
     """
 
     value: float
@@ -67,6 +72,8 @@ class PhaseMaximum:
     climbs: int
     reached: int
     evaluations: int
+    reading: str = ""
+    law: str = ""
 
 
 @takes_scene
@@ -107,6 +114,8 @@ def worst_phases(
 
     Notes
     -----
+    As of `amplification`, the default is the literal supremum of (5.1), and ``cutoff=1e-3`` gives mu as integrated.
+
     The maximum is global as far as the grid has a local maximum near it. `climbs`, `reached` and `runner_up` say what
     supports it.
     The denominator of (5.1) has kinks, and there mu has edges: the largest mu_2 of fig3-I stands on one.
@@ -161,4 +170,6 @@ def worst_phases(
         climbs=sum(search.count for search in searches),
         reached=best.count,
         evaluations=surface.evaluations,
+        reading=reading_of(scene, regularization, cutoff) if quantity == "amplification" else "",
+        law=describe_law(scene, regularization, cutoff),
     )

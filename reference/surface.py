@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import numba
 import numpy as np
@@ -32,6 +33,7 @@ from reference.problem.ranges import (
     checked_choice,
     checked_number,
 )
+from reference.problem.readings import describe_law, reading_of
 from reference.problem.scene import takes_scene
 from reference.solver.error_estimate import NOT_MET, RunPeaks, peaks_with_error
 from reference.solver.system import (
@@ -81,6 +83,8 @@ def amplification(
     """
     Amplification factors mu_i of (5.1) by the paper's equations, from rest, with error estimates.
 
+    By default mu is the literal supremum of (5.1). ``cutoff=1e-3`` gives mu as integrated.
+
     Parameters
     ----------
     scene : Scene
@@ -93,8 +97,9 @@ def amplification(
     tolerance : float
         Relative error asked of every mu.
     cutoff : float, optional, m/s
-        v_c of the resolved peak: only rest and sliding faster than v_c count. None takes the supremum with its
-        one-sided limits. With the set-valued law only.
+        v_c: mu as integrated, the resolved peak, in which only rest and sliding faster than v_c count. 1e-3 is what
+        steps of about 1 ms resolve. None: the literal supremum with its one-sided limits, which no integration reaches.
+        With the set-valued law only.
     rest_condition : {"consistent", "printed"}
         "printed" takes (4.6) as it stands in the paper.
     full : bool
@@ -117,6 +122,10 @@ def amplification(
     ends where mu, the largest displacement and the outcome can no longer change, unless `full`. Statuses are the values
     of `Outcome`: "ok"; "tolerance not met", with mu and its larger error; the others come with mu NaN.
 
+    `reading` of the result says which reading of (5.1) it has, "literal supremum" or "as integrated"; `law` names the
+    law of friction. The error is numerical: it leaves out what another law changes. With `regularization` a motion has
+    no supremum at a stop, and mu is as integrated. Under viscous friction, and without friction, both readings agree.
+
     Examples
     --------
     >>> import reference
@@ -131,12 +140,18 @@ def amplification(
     flat = not full and rest_condition == "consistent" and planar(scene).allowed  # (4.6) as printed knows directions
     moving, axes = (in_plane(scene), 1) if flat else (scene, 2)
     system, demand = checked_demand(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
+    basis: dict[str, Any] = {
+        "scene_name": scene.name,
+        "model": f"{equations} equations",
+        "reading": reading_of(scene, regularization, cutoff),
+        "law": describe_law(scene, regularization, cutoff),
+    }
     count, bodies = len(pairs), len(scene.bodies)
     mu, error = np.full((count, bodies), np.nan), np.full((count, bodies), np.nan)
     instant, displacement = np.full(count, np.nan), np.full(count, np.nan)
     status = np.full(count, Outcome.NON_FINITE_LOAD.value, dtype=f"U{max(map(len, Outcome))}")
     if not loads_are_finite(system):
-        return Amplification(mu, error, status, np.zeros(count), 0.0, phases=pairs).reshaped(shape)
+        return Amplification(mu, error, status, np.zeros(count), 0.0, phases=pairs, **basis).reshaped(shape)
 
     summed = system.small and not full and linear(scene).allowed
 
@@ -171,7 +186,7 @@ def amplification(
         with ThreadPoolExecutor(threads) as pool:
             cost = sum(pool.map(solve, parts(count, PARTS_PER_THREAD * threads)))
     share = displacement / scene.radius
-    return Amplification(mu, error, status, instant, cost, share, pairs, displacement).reshaped(shape)
+    return Amplification(mu, error, status, instant, cost, share, pairs, displacement, **basis).reshaped(shape)
 
 
 def superposed(scene: Scene, system: System, phases: Array, demand: RunSettings) -> RunPeaks:

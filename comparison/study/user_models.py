@@ -157,7 +157,9 @@ def _read(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer
             raise TypeError(f"the engine returned a tuple of {1 + len(rest)}: give mu, (mu, error) or an object")
         parts, outcomes = {"error": rest[0] if rest else None}, None
     shapes = {"mu": (points, bodies), "error": (points, bodies), "instant": (points,), "displacement": (points,)}
-    arrays = {name: _array(name, {"mu": mu, **parts}.get(name), shape) for name, shape in shapes.items()}
+    arrays: dict[str, Any] = {
+        name: _array(name, {"mu": mu, **parts}.get(name), shape) for name, shape in shapes.items()
+    }
     mu, error = arrays["mu"], arrays["error"]
     error[~(error >= 0.0)] = UNKNOWN_ERROR
     status, error_message = _outcomes(outcomes, points)

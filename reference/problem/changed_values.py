@@ -1,14 +1,89 @@
-"""One value of a scene, set by its dotted key."""
+"""One value of a scene, read and set by its dotted key, and the name of a scene whose values are changed."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from numbers import Real
+from pathlib import Path
 from typing import Any
 
-from reference.problem.ranges import brief
+from reference.problem.ranges import as_float, brief
 from reference.problem.record_files import AXES
 from reference.problem.record_loading import SUITE
 from reference.problem.scene_error import SceneError, keys_of, unknown_key
+
+LONGEST_TEXT, LONGEST_LIST = 40, 80  # letters of one changed value in a name, and of all of them
+WITHOUT_EFFECT = ("title", "name", "acceptance", "analyses", "measured")  # tables that enter no result
+
+
+def value_at(data: Any, key: str) -> Any:
+    """What tables hold under a dotted key; None if nothing."""
+    place = data
+    for part in key.split("."):
+        if isinstance(place, dict):
+            place = place.get(part)
+        elif isinstance(place, list) and part.isdecimal() and int(part) < len(place):
+            place = place[int(part)]
+        else:
+            return None
+    return place
+
+
+def short_key(key: str) -> str:
+    """A dotted key as it stands in names: its last part, or all of it with the number of a body."""
+    parts = key.split(".")
+    return key if any(part.isdecimal() for part in parts) else parts[-1]
+
+
+def text_of_table(table: Mapping[str, Any]) -> str:
+    """The files of one record, or the numbers of a table with their keys, as one text."""
+    return "+".join(Path(part).stem if isinstance(part, str) else f"{key}={part:.12g}" for key, part in table.items())
+
+
+def change_of(key: str, before: Any, value: Any) -> str:
+    """What a changed value adds to the name of its scene; "" where it changes no result."""
+    if key.split(".")[0] in WITHOUT_EFFECT:
+        return ""
+    short, number = short_key(key), as_float(value)
+    if value is None:
+        return "" if before is None else f"{short}=none"
+    if isinstance(value, Real) and not isinstance(value, bool):
+        return "" if number == as_float(before) else f"{short}={number:.12g}"
+    if isinstance(value, bool | str):
+        text = Path(str(value)).stem
+        shown = text.isprintable() and len(text) <= LONGEST_TEXT
+        return "" if value == before else f"{short}={text}" if shown else f"{short} changed"
+    if isinstance(value, dict) and value and all(isinstance(part, str | Real) for part in value.values()):
+        text = f"{short}={text_of_table(value)}"
+        return text if len(text) <= LONGEST_TEXT and text.isprintable() else f"{short} changed"
+    return f"{short} changed"
+
+
+def changed_name(name: str, changes: Sequence[str]) -> str:
+    """
+    The name of a scene with other values, as the scenes of a family are named: the later value of a key counts.
+
+    Examples
+    --------
+    >>> changed_name("fig3-I[friction=0.2, duration=3]", ["friction=0.12"])
+    'fig3-I[duration=3, friction=0.12]'
+    >>> changed_name("fig3-I", ["bodies changed"])
+    'fig3-I[bodies changed]'
+    """
+    shown = [change for change in changes if change]
+    if not shown:
+        return name
+    stem, bracket, inside = name.removesuffix("]").partition("[")
+    if not (bracket and name.endswith("]")):
+        stem, inside = name, ""
+    anew = {_key_of(change) for change in shown}
+    entries = [entry for entry in inside.split(", ") if entry and _key_of(entry) not in anew] + shown
+    text = ", ".join(entries)
+    return f"{stem}[{text if len(text) <= LONGEST_LIST else 'changed'}]"
+
+
+def _key_of(change: str) -> str:
+    return change.partition("=")[0].removesuffix(" changed")
 
 
 def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapping[str, Sequence[str]]) -> None:

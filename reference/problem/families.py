@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from reference.problem.changed_values import short_key, text_of_table
 from reference.problem.ranges import as_float, takes
 from reference.problem.record_suites import SuiteError, motion_names, suite_motions
 from reference.problem.scene import Scene
@@ -31,6 +32,7 @@ from reference.problem.scene_file import (
     RANGE,
     VALUES,
     running_values,
+    scaled_scene,
     scene_tables,
     scene_text,
     validated_scene,
@@ -178,7 +180,7 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
     _check_combine(label, combine, running)
     if not running:
         scene = validated_scene(data, label, name)
-        return Family(name, (scene if amplitude is None else scene.with_amplitude(amplitude),))
+        return Family(name, (scaled_scene(scene, amplitude),))
     steps = [range(len(key.values)) for key in running]
     rows = list(product(*steps) if combine == "product" else zip(*steps))
     _check_bodies(label, data.get("bodies"), len(rows))
@@ -189,7 +191,7 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
             tables = _with(tables, key.path, key.listed[step])
         texts = ", ".join(f"{key.short}={key.texts[step]}" for key, step in zip(running, row))
         member = validated_scene(tables, label, f"{name}[{texts}]")
-        scenes.append(member if amplitude is None else member.with_amplitude(amplitude))
+        scenes.append(scaled_scene(member, amplitude))
     columns = {key.name: tuple(key.values[row[n]] for row in rows) for n, key in enumerate(running)}
     values = [", ".join(key.texts[step] for key, step in zip(running, row)) for row in rows]
     return Family(
@@ -210,9 +212,9 @@ class _Key:
     ) -> None:
         self.path, self.table = path, table
         self.name = ".".join(map(str, path))
-        self.short = self.name if any(isinstance(part, int) for part in path) else str(path[-1])
+        self.short = short_key(self.name)
         self.listed = _values(label, self.name, table)
-        self.values: list[Value] = [_named(value) if isinstance(value, dict) else value for value in self.listed]
+        self.values: list[Value] = [text_of_table(value) if isinstance(value, dict) else value for value in self.listed]
         self.texts = _texts(label, self.name, self.listed)
         named = path == MOTION and set(self.values) <= set(motions)
         self.labels = [motions[value] for value in self.values] if named else self.texts
@@ -306,11 +308,6 @@ def _is_table(value: Any) -> bool:
     return isinstance(value, dict) and len(value) > 0 and all(map(_is_number, value.values()))
 
 
-def _named(table: Files | Numbers) -> str:
-    """The files of one record, or the numbers of a table with their keys, as one text."""
-    return "+".join(Path(part).stem if isinstance(part, str) else f"{key}={part:.12g}" for key, part in table.items())
-
-
 def _is_number(value: Any) -> bool:
     return math.isfinite(as_float(value))
 
@@ -319,7 +316,7 @@ def _texts(label: str, key: str, values: Sequence[Value | Files | Numbers]) -> l
     """The values as they stand in names: short, but no two alike. A path is named by its file."""
     for digits in range(4, 18):
         texts = [
-            _named(v) if isinstance(v, dict) else Path(v).stem if isinstance(v, str) else f"{v:.{digits}g}"
+            text_of_table(v) if isinstance(v, dict) else Path(v).stem if isinstance(v, str) else f"{v:.{digits}g}"
             for v in values
         ]
         if len(set(texts)) == len(texts):

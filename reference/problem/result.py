@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.drawing import draw_motion, draw_surface
+from reference.drawing import draw_motion, draw_surface, verbatim
 from reference.problem.html_table import digits, html_table
 from reference.problem.phases import grid_axes, phase_coordinates
 from reference.problem.ranges import brief, checked_choice, takes
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Array = NDArray[np.float64]
+PER_POINT = ("instant", "cap_share", "displacement", "displacement_effect")  # numbers of a phase pair
 DRAWN = {
     "position": "displacement against the plate, m",
     "velocity": "velocity against the plate, m/s",
@@ -60,6 +61,18 @@ class Amplification:
         The phase pairs, as they were computed: beyond a full turn reduced to (-pi, pi].
     displacement : ndarray, (...,), m
         The same displacement in m.
+    scene_name, model : str
+        What was computed, and by which equations or model of the engine. "" where that was not stated.
+    reading : str
+        Which reading of (5.1) mu has: "as integrated" or "literal supremum". "" without dry friction, where both agree,
+        and where it was not stated: then `law` is "", too.
+    law : str
+        Law of friction, and what the error leaves out of it.
+    regularization_effect : ndarray, (..., N)
+        Change of mu from v_reg to a tenth of it: an estimate of what regularization does. NaN where that was not asked
+        for and where either has no answer; 0 without dry friction.
+    displacement_effect : ndarray, (...,), m
+        The same change of `displacement`.
     """
 
     mu: Array
@@ -70,12 +83,20 @@ class Amplification:
     cap_share: Array = field(default_factory=lambda: np.empty(0))
     phases: Array = field(default_factory=lambda: np.empty(0))
     displacement: Array = field(default_factory=lambda: np.empty(0))
+    scene_name: str = ""
+    model: str = ""
+    reading: str = ""
+    law: str = ""
+    regularization_effect: Array = field(default_factory=lambda: np.empty(0))
+    displacement_effect: Array = field(default_factory=lambda: np.empty(0))
 
     def __post_init__(self) -> None:
         shape = self.mu.shape[:-1]
-        for name in ("cap_share", "displacement"):
+        for name in ("cap_share", "displacement", "displacement_effect"):
             if getattr(self, name).shape != shape:
                 object.__setattr__(self, name, np.full(shape, np.nan))
+        if self.regularization_effect.shape != self.mu.shape:
+            object.__setattr__(self, "regularization_effect", np.full(self.mu.shape, np.nan))
         if self.phases.shape != (*shape, 2):
             object.__setattr__(self, "phases", np.full((*shape, 2), np.nan))
 
@@ -91,7 +112,10 @@ class Amplification:
                 for body, (mu, error) in enumerate(rows, start=1)
                 if np.isfinite(mu).any()
             ]
-        return f"<Amplification of {points} phase pair{'s'[: points != 1]}: {_list([*factors, *_counts(self.status)])}>"
+        facts = _list([*factors, *_counts(self.status)])
+        reading = "" if self.reading in self.law else f"; {self.reading}"
+        basis = f"{reading}; {self.law}" if self.law else reading
+        return f"<Amplification of {points} phase pair{'s'[: points != 1]}: {facts}{basis}>"
 
     def _repr_html_(self) -> str:
         bodies = self.mu.shape[-1]
@@ -115,8 +139,8 @@ class Amplification:
         -------
         Amplification
         """
-        per_point = {name: getattr(self, name) for name in ("status", "instant", "cap_share", "displacement")}
-        per_body = {name: getattr(self, name) for name in ("mu", "error", "phases")}
+        per_point = {name: getattr(self, name) for name in (*PER_POINT, "status")}
+        per_body = {name: getattr(self, name) for name in ("mu", "error", "phases", "regularization_effect")}
         points = {name: array.reshape(shape) for name, array in per_point.items()}
         rows = {name: array.reshape(*shape, array.shape[-1]) for name, array in per_body.items()}
         return replace(self, **points, **rows)
@@ -154,12 +178,12 @@ class Amplification:
                 "displacement": (dims, self.displacement, {"units": "m", "long_name": "largest displacement"}),
             },
             coords={**alpha, "body": np.arange(1, self.mu.shape[-1] + 1)},
-            attrs={"cost": self.cost, "cost_units": "s"},
+            attrs={"cost": self.cost, "cost_units": "s", "reading": self.reading, "law": self.law},
         )
 
     def plot(self, body: int = 1, axes: Axes | None = None) -> Axes:
         """
-        Draw mu_i of a grid of phases as a surface.
+        Draw mu_i of a grid of phases as a surface, with scene, body, model and reading of (5.1) above it.
 
         Parameters
         ----------
@@ -191,7 +215,9 @@ class Amplification:
             rule = "must be a grid of at least 2 x 2 phases, as phase_grid(8) is"
             raise ValueError(f"phases: shape {self.phases.shape}: {rule}, to be drawn as a surface")
         height = self.mu[..., body - 1].reshape(len(grid[0]), len(grid[1]))
-        return draw_surface(grid, height, rf"$\mu_{{{body}}}$", axes)
+        drawn = ", ".join(filter(None, (verbatim(self.scene_name), f"body {body}")))
+        title = "\n".join(filter(None, (drawn, ", ".join(filter(None, (self.model, self.reading))))))
+        return draw_surface(grid, height, rf"$\mu_{{{body}}}$", title, axes)
 
 
 @dataclass(frozen=True, repr=False)
@@ -228,6 +254,8 @@ class Trajectory:
         Acceleration of the ground.
     friction_power : ndarray, (T,), W
         Power that friction in the isolator dissipates.
+    law : str
+        Law of friction, and what errors leave out of it. "" where it was not stated.
     """
 
     time: Array
@@ -244,6 +272,7 @@ class Trajectory:
     accuracy: Accuracy | None = field(default=None, repr=False)
     ground: Array = field(default_factory=lambda: np.empty((0, 3)))
     friction_power: Array = field(default_factory=lambda: np.empty(0))
+    law: str = ""
 
     def __post_init__(self) -> None:
         unknown = {"peak": self.position.shape[1:2], "ground": (len(self.time), 3), "friction_power": self.time.shape}
@@ -255,7 +284,7 @@ class Trajectory:
         span = f"{len(self.time)} instants to {self.time[-1]:g} s" if len(self.time) else "no samples"
         moved = np.linalg.norm(self.position[:, 0, :2], axis=-1).max(initial=0.0)
         facts = [span, f"{len(self.stick)} rests", f"platform at most {1e3 * moved:.4g} mm off", self.status]
-        return f"<Trajectory of {self.scene.name}: {_list(facts)}>"
+        return f"<Trajectory of {self.scene.name}: {_list(facts)}{'; ' * bool(self.law)}{self.law}>"
 
     def _repr_html_(self) -> str:
         moved = np.linalg.norm(self.position[:, :, :2], axis=-1).max(axis=0, initial=0.0)
@@ -328,7 +357,7 @@ class Trajectory:
                 "horizontal": ["x", "y"],
                 "support": np.arange(1, self.support_force.shape[1] + 1),
             },
-            attrs={"scene": self.scene.name, "status": str(self.status)},
+            attrs={"scene": self.scene.name, "status": str(self.status), "law": self.law},
         )
 
     def plot(self, quantity: str = "position", axes: Axes | None = None) -> Axes:

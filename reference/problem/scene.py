@@ -17,7 +17,7 @@ from reference.problem.acceptance import Acceptance, Limits
 from reference.problem.analyses import Analyses
 from reference.problem.bar_links import BarLink, bar_links, stands_upright
 from reference.problem.beam_column import buckling_load
-from reference.problem.changed_values import put_value
+from reference.problem.changed_values import change_of, changed_name, put_value, value_at
 from reference.problem.constants import GRAVITY
 from reference.problem.friction import DryFriction, Heat
 from reference.problem.html_table import html_table
@@ -258,7 +258,8 @@ class Scene(Table):
         ----------
         values : mapping of str to object
             New values by dotted key as in the scene file, ``"isolator.friction"`` or ``"bodies.1.height"`` (the first
-            body is 0), or whole tables, ``"bodies"``. None leaves an optional key out. ``"name"`` may be given, too.
+            body is 0), or whole tables, ``"bodies"``. None leaves an optional key out. Without a ``"name"`` the name
+            shows what is changed, ``fig3-I[friction=0.12]``, as in a family.
             ``"excitation.record"`` takes arrays, too, as in `Scene`, and files relative to the working directory; the
             duration stays.
 
@@ -279,10 +280,15 @@ class Scene(Table):
         0.5
         """
         data = self.model_dump(exclude_none=True)
+        changes = []
         for key, value in values.items():
+            before = value_at(data, str(key))
             # a key inside a table that is given, too, must not change the caller's table
             own = deepcopy(value) if isinstance(value, dict | list) else value
             put_value(self.name, data, str(key), own, KEYS)
+            changes.append(change_of(str(key), before, own))
+        if "name" not in values:
+            data["name"] = changed_name(self.name, changes)
         try:
             return Scene.model_validate(data)
         except ValidationError as error:
@@ -465,6 +471,11 @@ class Scene(Table):
         SceneError
             For an amplitude outside its range, or a loading that is zero throughout.
         """
+        values = self.loading_values(amplitude)
+        return self.with_values({**values, "name": changed_name(self.name, [f"amplitude={as_float(amplitude):.12g}"])})
+
+    def loading_values(self, amplitude: float) -> dict[str, Any]:
+        """The values that scale the loading to an amplitude, m/s^2. Raises SceneError as `with_amplitude`."""
         largest, stated = self.largest_acceleration, amplitude
         amplitude = as_float(stated)
         if not 0.0 < amplitude <= SCENE["excitation.amplitudes"].highest:
@@ -473,8 +484,8 @@ class Scene(Table):
             key = "record" if self.recorded else "amplitudes"
             raise SceneError(self.name, f"excitation.{key}", 0.0, "all entries are 0: nothing to scale")
         if self.excitation.scale is not None:
-            return self.with_values({"excitation.scale": self.excitation.scale * (amplitude / largest)})
-        return self.with_values({"excitation.amplitudes": (self.amplitudes / largest) * amplitude})
+            return {"excitation.scale": self.excitation.scale * (amplitude / largest)}
+        return {"excitation.amplitudes": (self.amplitudes / largest) * amplitude}
 
     @property
     def has_unloaded_bars(self) -> bool:
@@ -504,7 +515,8 @@ class Scene(Table):
         ([96.0, 96.0], [84.21, 84.21])
         """
         unloaded = [n for n, body in enumerate(self.bodies) if body.bars is not None and body.bars.load_effect is None]
-        return self.with_values({f"bodies.{number}.bars.load_effect": "softening" for number in unloaded})
+        values = {f"bodies.{number}.bars.load_effect": "softening" for number in unloaded}
+        return self.with_values({**values, "name": changed_name(self.name, ["softened"] * bool(unloaded))})
 
     def digest(self) -> str:
         """Hash of everything that enters a result, for stores of results and for provenance."""

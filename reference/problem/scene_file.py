@@ -86,8 +86,12 @@ def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
     >>> load_scene("fig3-I").friction_coefficient
     0.1
     """
-    scene = parse_scene(scene_text(source), str(source))
-    return scene if amplitude is None else scene.with_amplitude(amplitude)
+    return scaled_scene(parse_scene(scene_text(source), str(source)), amplitude)
+
+
+def scaled_scene(scene: Scene, amplitude: float | None) -> Scene:
+    """The scene of a file with its loading scaled, if so asked, under the name of the file."""
+    return scene if amplitude is None else scene.with_values({**scene.loading_values(amplitude), "name": scene.name})
 
 
 def scene_text(source: str | Path) -> bytes:

@@ -276,7 +276,7 @@ MISTAKES = (
     Mistake(CLI + "computing.py", "        runner.run(first, compiling_task)\n", "",
             "An ensemble shows nothing of the equations before its engine has run.",
             (OF + "ensemble.py::test_the_equations_are_shown_before_the_engine_runs",)),
-    Mistake(ANALYSES + "ensemble/target.py", "with_values({SCALE: member.scale * factor})", "with_values({SCALE: factor})",
+    Mistake(ANALYSES + "ensemble/target.py", "with_values({SCALE: member.scale * factor, ", "with_values({SCALE: factor, ",
             "Every scale of a motion is that of the target spectrum.",
             (OF + "ensemble.py::test_motions_are_scaled_to_the_target_spectrum",)),
     Mistake(ANALYSES + "ensemble/feature.py", "(pair[0] + side * pair[1])", "(pair[0] + 0.5 * side * pair[1])",

@@ -263,5 +263,13 @@ MISTAKES = (
     Mistake("multibody/demand_surface.py", "tolerance: float = DEFAULT_TOLERANCE", "tolerance: float = 1e-3",
             "A signature has a default of its own.",
             (TESTS + "test_defaults.py::test_a_default_is_taken_by_its_name_and_stated_with_its_value",)),
+    Mistake("multibody/surface.py", "effect, slip = finer.mu - found.mu,", "effect, slip = found.mu - finer.mu,",
+            "The effect of regularization has the other sign.", ("tests/multibody/test_regularization_effect.py",)),
+    Mistake("multibody/surface.py", "phases, model, FINER * regularization,", "phases, model, 0.3 * regularization,",
+            "The effect of regularization is that of another v_reg than its law says.",
+            ("tests/multibody/test_regularization_effect.py",)),
+    Mistake("multibody/surface.py", "reading=reading_of(scene, regularization),", 'reading="literal supremum",',
+            "A peak under regularized friction is called the literal supremum.",
+            ("tests/reference/problem/test_readings.py::test_the_engine_says_its_reading_and_its_law",)),
 )
 # fmt: on

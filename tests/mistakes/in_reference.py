@@ -12,6 +12,7 @@ SMALL = TESTS + "test_small_readings.py::"
 REDUCTIONS = TESTS + "problem/test_reductions.py"
 SPECTRA = TESTS + "test_floor_spectra.py::"
 TRAVEL = TESTS + "test_travel.py::"
+READINGS, SLOPES = TESTS + "problem/test_readings.py::", TESTS + "test_sensitivity.py::"
 
 # fmt: off
 HEATED = TESTS + "test_heated_friction.py::test_the_friction_of_a_motion_is_what_its_heat_leaves"
@@ -279,5 +280,50 @@ MISTAKES = (
     Mistake(MEASURES + "demands.py", "abs(place - value) + abs(way - creep) for", "abs(place - value) for",
             "The error of a residual lacks the creep that coarser samples miss.",
             (DEMANDS + "test_creep_that_coarser_samples_miss_is_in_the_error_of_a_residual",)),
+    Mistake(PROBLEM + "readings.py", "return LITERAL_SUPREMUM if regularization is None and cutoff is None else AS_INTEGRATED",
+            "return LITERAL_SUPREMUM if regularization is None else AS_INTEGRATED",
+            "A resolved peak is called the literal supremum.",
+            (READINGS + "test_the_equations_say_their_reading_and_their_law",)),
+    Mistake(PROBLEM + "readings.py", "peak = LITERAL_SUPREMUM if cutoff is None else", "peak = AS_INTEGRATED if cutoff is None else",
+            "The law names the other reading.", (READINGS + "test_the_equations_say_their_reading_and_their_law",)),
+    Mistake(PROBLEM + "readings.py", "if scene.lubricated or scene.friction_coefficient == 0.0:",
+            "if scene.friction_coefficient == 0.0:", "A viscous scene has one of two readings that agree.",
+            (READINGS + "test_both_readings_agree_where_the_reading_is_left_empty",)),
+    Mistake(PROBLEM + "readings.py", "np.nanmax(np.abs(part))", "np.nanmax(part)",
+            "The effect of regularization is small where it lowers what it changes.",
+            ("tests/multibody/test_regularization_effect.py",)),
+    Mistake("reference/phase_maximum.py", 'reading=reading_of(scene, regularization, cutoff) if quantity == "amplification" else "",',
+            "reading=reading_of(scene, regularization, cutoff),", "A displacement has a reading of (5.1).",
+            (READINGS + "test_the_largest_value_over_the_phases_says_its_reading_except_of_a_displacement",)),
+    Mistake("reference/derivatives.py", 'getattr(parts[0], "reading", "")', '""',
+            "A derivative does not say which reading it has.",
+            (SLOPES + "test_a_derivative_says_which_reading_its_quantity_has",)),
+    Mistake("reference/derivatives.py", "if abs(left - below) >= abs(right - beyond):",
+            "if abs(left - below) < abs(right - beyond):", "A kink is sought in the half that is straight.",
+            (SLOPES + "test_a_kink_within_five_percent_is_located_with_the_slopes_beside_it",)),
+    Mistake("reference/derivatives.py", "slope {slopes[0]:.3g} below and {slopes[1]:.3g} beyond it",
+            "slope {slopes[1]:.3g} below and {slopes[0]:.3g} beyond it",
+            "The sides of a kink change places in its sentence.",
+            (SLOPES + "test_a_sentence_about_a_kink_says_place_sides_and_what_is_there",)),
+    Mistake("reference/derivatives.py", 'kind = f"jump by {jump:.3g}" if jump else "kink"', 'kind = "kink"',
+            "A jump is called a kink.", (SLOPES + "test_a_jump_is_told_from_a_kink",)),
+    Mistake("reference/derivatives.py", "if high[0] - low[0] > LEAST_SHRINKING * width:", "if False:",
+            "Noise within the errors is a kink.", (SLOPES + "test_noise_within_the_errors_is_no_kink",)),
+    Mistake("reference/derivatives.py", "if abs(beyond - below) > LEAST_REMAINDER * abs(turned) else None", "if True else None",
+            "A strongly curved quantity has a kink.", (SLOPES + "test_what_is_strongly_curved_is_no_kink_but_is_said",)),
+    Mistake("reference/derivatives.py", "each.value - middle.value for each in moved", "middle.value - each.value for each in moved",
+            "Finite changes have the other sign.", (SLOPES + "test_finite_changes_stand_beside_the_derivative",)),
+    Mistake(PROBLEM + "changed_values.py", 'return "" if number == as_float(before) else f"{short}={number:.12g}"', 'return ""',
+            "A changed scene keeps its name.",
+            (TESTS + "problem/test_with_values.py::test_the_name_of_a_changed_scene_shows_what_was_changed",)),
+    Mistake(PROBLEM + "changed_values.py", "if entry and _key_of(entry) not in anew]", "if entry]",
+            "A name keeps values that were changed again.",
+            (TESTS + "problem/test_with_values.py::test_a_scene_changed_twice_names_the_last_value_of_each_key",)),
+    Mistake("reference/drawing.py", '{"vmin": np.nanmin(height), "vmax": np.nanmax(height)}', "{}",
+            "The color bar of a surface ends at means of its values.",
+            (TESTS + "test_results_in_python.py::test_a_surface_is_drawn_with_its_heights_where_they_belong",)),
+    Mistake(PROBLEM + "result.py", "filter(None, (self.model, self.reading))", "filter(None, (self.model,))",
+            "The title of a surface does not say which reading it shows.",
+            (TESTS + "test_results_in_python.py::test_a_surface_is_drawn_with_its_heights_where_they_belong",)),
 )
 # fmt: on

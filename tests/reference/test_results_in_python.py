@@ -70,7 +70,7 @@ def test_a_motion_is_labeled_with_units(motion):
     of = {"m": "position", "m/s": "velocity", "m/s^2": "absolute_acceleration peak ground", "W": "friction_power"}
     of |= {"N": "contact_force isolator_force support_force", "s": "time"}
     assert_units(data, of)
-    assert (data.attrs["scene"], data.attrs["status"]) == ("fig4-dry", "ok")
+    assert (data.attrs["scene"], data.attrs["status"]) == ("fig4-dry[duration=3]", "ok")
     assert np.isin(np.linspace(0.0, 3.0, 215), motion.time).all(), "64 instants in 0.9 s, and those of the steps"
     assert data["support_force"].shape == (len(motion.time), 0), "the equations have no single supports"
 
@@ -79,6 +79,12 @@ def test_a_surface_is_drawn_with_its_heights_where_they_belong(surface):
     axes = surface.plot(body=2)
     assert (axes.name, axes.get_xlabel(), axes.get_ylabel()) == ("3d", r"$\alpha_1$, rad", r"$\alpha_2$, rad")
     assert "mu_{2}" in axes.get_zlabel()
+    (bar,) = (other for other in axes.figure.axes if other is not axes)
+    assert (bar.get_ylabel(), *bar.get_ylim()) == (axes.get_zlabel(), surface.mu[:, 1].min(), surface.mu[:, 1].max())
+    assert axes.get_title() == "fig4-dry[duration=3], body 2\nexact equations, literal supremum"
+    axes.figure.canvas.draw()
+    names = {label.get_text() for label in axes.get_xticklabels()}
+    assert {"0", "π/2", "π"} <= names, "quarter turns, and no numbers that look like names of phases"
     low, high = axes.get_zlim()
     assert low <= surface.mu[:, 1].min() < surface.mu[:, 1].max() <= high
     flat = surface.plot(axes=plt.figure().add_subplot())
@@ -129,11 +135,12 @@ def test_a_terminal_and_a_notebook_show_scene_surface_and_motion(motion):
     assert repr(one) == "<Amplification of 1 phase pair: mu_1 = 1 ± 0.01, mu_2 = 2.25 ± 0.2, 1 ok>"
     far = 1e3 * np.linalg.norm(motion.position[:, :, :2], axis=2).max(axis=0)
     head = f"{len(motion.time)} instants to 3 s, {len(motion.stick)} rests, platform at most {far[0]:.4g} mm off, ok"
-    assert repr(motion) == f"<Trajectory of fig4-dry: {head}>"
+    law = "set-valued Coulomb friction; literal supremum"
+    assert repr(motion) == f"<Trajectory of fig4-dry[duration=3]: {head}; {law}>"
     rows = [[str(n + 1), f"{far[n]:.4g}", f"{motion.peak[n]:.5g}"] for n in range(2)]
     assert cells(motion._repr_html_().removesuffix("</tbody></table>")) == rows
     scene = chain(0.4, 0.07, (3.0, 2.0), [(150.0, 110.0)], duration=7.0)
-    scene = scene.with_values({"title": "a < b", "bodies.1.damping": [5.0, 6.0]})
+    scene = scene.with_values({"title": "a < b", "bodies.1.damping": [5.0, 6.0], "name": "scene"})
     assert repr(scene) == "<Scene scene: 2 bodies, 5 kg, radius 0.4 m, two-frequency motion, 7 s>"
     table = scene._repr_html_().removesuffix("</tbody></table>")
     assert "7 s: a &lt; b; friction coefficient at most 0.07</p>" in table

@@ -71,7 +71,7 @@ class Case:
 
 def shipped(name: str, values: Mapping[str, Any] | None = None) -> Scene:
     """A scene of this package, with other values."""
-    return load_scene(Path(str(SCENES / f"{name}.toml"))).with_values(values or {})
+    return load_scene(Path(str(SCENES / f"{name}.toml"))).with_values({"name": name, **(values or {})})
 
 
 def cases() -> list[Case]:

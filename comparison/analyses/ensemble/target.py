@@ -64,6 +64,6 @@ def matched(members: Sequence[Member], file: str, ends: Sequence[str] | None) ->
             spectrum = factor * response_spectrum(time, ground, drawn)
             found[key] = MatchedMotion(member.motion, factor, spectrum.tolist())
         factor = found[key].factor
-        scene = member.scene.with_values({SCALE: member.scale * factor})
+        scene = member.scene.with_values({SCALE: member.scale * factor, "name": member.scene.name})
         scaled.append(replace(member, scene=scene, factor=factor))
     return tuple(scaled), Target(low, high, drawn.tolist(), target(drawn).tolist(), list(found.values()))

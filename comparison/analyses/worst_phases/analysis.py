@@ -111,7 +111,8 @@ def search_worst(task: Arguments) -> list[Worst]:
     scene, model, engine, on_grid, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
     maximum = reference.worst_phases(scene, body, quantity, tolerance=TOLERANCE, starts=starts, **settings)
-    worst = Worst(scene.name, model.key, quantity, body, **vars(maximum))
+    stated = {name: value for name, value in vars(maximum).items() if name not in ("reading", "law")}  # the model's
+    worst = Worst(scene.name, model.key, quantity, body, **stated)
     found = [worst]
     if engine is not None:
         found.append(_engine_beside(worst, scene, model, engine, tolerance))

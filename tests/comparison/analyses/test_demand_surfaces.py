@@ -17,7 +17,7 @@ from reference.problem import load_scene, phase_axis
 @pytest.fixture(scope="module")
 def study() -> Study:
     """A scene with mirrored phases, shortened, and one under a record."""
-    first = load_scene("fig3-I").with_values({"duration": 1.5})
+    first = load_scene("fig3-I").with_values({"duration": 1.5, "name": "fig3-I"})
     record = load_scene("synthetic-pair").with_values({"duration": 2.0})
     return Study((first, record), 4, 1e-3, (SMALL, EXACT, REGULARIZED))
 

@@ -23,7 +23,7 @@ LAW_SETTINGS: dict[str, dict[str, Any]] = {
     "small-regularised": {"equations": "small", "regularization": 1e-3},
     "regularised": {"regularization": 1e-3},
 }
-SHORT = reference.load_scene("fig3-I").with_values({"duration": 2.0})
+SHORT = reference.load_scene("fig3-I").with_values({"duration": 2.0, "name": "fig3-I"})
 BARS = {"bodies.1.period": None, "bodies.1.bars": {"count": 4, "bending_stiffness": 0.8, "length": 1.0}}
 
 

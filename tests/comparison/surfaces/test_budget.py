@@ -120,7 +120,9 @@ class Mistake:
 
 
 def _by(hierarchy: Sequence[Model]) -> Solved:
-    study = Study((load_scene(SCENE).with_values({"duration": 3.0}),), 2, 1e-3, hierarchy)  # of the strongest loading
+    study = Study(
+        (load_scene(SCENE).with_values({"duration": 3.0, "name": SCENE}),), 2, 1e-3, hierarchy
+    )  # of the strongest loading
     surfaces = solved(study)
     assert np.isfinite(surfaces["mu"]).all()
     return study, surfaces

@@ -38,7 +38,9 @@ def test_an_impossible_amplitude_is_refused():
         line = str(refusal(load_scene, "fig3-I", amplitude=amplitude))
         assert line == f"fig3-I: amplitude = {amplitude}: must be finite and greater than 0 m/s^2"
     silent = load_scene("fig3-I").with_values({"excitation.amplitudes": [[0.0, 0.0], [0.0, 0.0]]})
-    assert str(refusal(silent.with_amplitude, 1.0)).startswith("fig3-I: excitation.amplitudes = 0.0: all entries are 0")
+    assert str(refusal(silent.with_amplitude, 1.0)).startswith(
+        "fig3-I[amplitudes changed]: excitation.amplitudes = 0.0: all entries are 0"
+    )
 
 
 BOTH = [[1, 1], [1, 1], [0, 0]]

@@ -54,7 +54,7 @@ def test_bars_that_would_buckle_are_refused_with_both_loads() -> None:
     limit = math.pi**2 * 0.8 * 4 / GRAVITY
     assert chain([1.0, 0.999 * limit], BARS).softened().stiffness[0, 0] < 0.1
     said = str(refusal(chain([1.0, 1.001 * limit], BARS).softened, kind=SceneError))
-    assert said.startswith("fig3-I: bodies.1.bars: weight on each bar in N = 7.90")
+    assert said.startswith("fig3-I[duration=3, bodies changed]: bodies.1.bars: weight on each bar in N = 7.90")
     assert "must be below pi^2 E J / l^2 = 7.89568 N" in said
     heavy = chain([1.0, limit + 1.0], BARS)
     assert multibody.refusal(heavy, softened=True).startswith("refused before any step: ")

@@ -110,3 +110,41 @@ def test_keys_and_numbers_of_any_length_are_one_line(text: str, tmp_path: Any) -
     (tmp_path / "mine.toml").write_text(text)
     for read in (load_scene, load_family):
         assert len(str(refusal(read, tmp_path / "mine.toml", kind=SceneError))) < 700
+
+
+@pytest.mark.parametrize(
+    ("values", "name"),
+    [
+        ({"isolator.friction": 0.12}, "fig3-I[friction=0.12]"),
+        ({"isolator.friction": 0.12, "duration": 3}, "fig3-I[friction=0.12, duration=3]"),
+        ({"bodies.1.mass": 2.0}, "fig3-I[bodies.1.mass=2]"),
+        ({"isolator.friction": None, "isolator.lubrication": 0.5}, "fig3-I[friction=none, lubrication=0.5]"),
+        (
+            {"isolator.friction": {"slow": 0.03, "fast": 0.06, "rate": 50}},
+            "fig3-I[friction=slow=0.03+fast=0.06+rate=50]",
+        ),
+        ({"excitation.amplitudes": [[2.0, 0.0], [0.0, 1.0]]}, "fig3-I[amplitudes changed]"),
+        ({"isolator.friction": 0.1, "duration": 20}, "fig3-I"),
+        ({"title": "another", "acceptance.failed": 2, "analyses": {}}, "fig3-I"),
+        ({"isolator.friction": 0.12, "name": "mine"}, "mine"),
+        ({f"bodies.{n}.{key}": 0.7 for n in (0, 1) for key in ("mass", "height", "yaw")}, "fig3-I[changed]"),
+    ],
+)
+def test_the_name_of_a_changed_scene_shows_what_was_changed(values: dict[str, Any], name: str) -> None:
+    changed = FIG3.with_values(values)
+    assert changed.name == name
+    assert repr(changed).startswith(f"<Scene {name}: ")
+    read = Scene.model_validate(changed.model_dump(exclude_none=True))
+    assert (read, read.name) == (changed, name)
+
+
+def test_a_scene_changed_twice_names_the_last_value_of_each_key() -> None:
+    twice = FIG3.with_values({"isolator.friction": 0.12, "duration": 3.0}).with_values({"isolator.friction": 0.13})
+    assert twice.name == "fig3-I[duration=3, friction=0.13]"
+    assert FIG3.with_amplitude(2.0).name == "fig3-I[amplitude=2]"
+    assert FIG3.with_amplitude(2.0).with_amplitude(3.0).name == "fig3-I[amplitude=3]"
+    assert load_scene("fig3-I", amplitude=2.0).name == "fig3-I", "a scene of a file is named after it"
+    assert load_family("fig3-I", amplitude=2.0).scenes[0].name == "fig3-I"
+    bars = {"bodies.1.period": None, "bodies.1.bars": {"count": 4, "bending_stiffness": 20.0, "length": 1.0}}
+    assert FIG3.with_values({**bars, "name": "bars"}).softened().name == "bars[softened]"
+    assert FIG3.softened().name == "fig3-I"

@@ -1,0 +1,65 @@
+"""The two readings of (5.1), and the law of friction that a result rests on, in words."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.problem.scene import Scene
+
+AS_INTEGRATED = "as integrated"
+"""The resolved peak at v_c, 1 mm/s by default of the comparison, or what a run with regularized friction reaches."""
+LITERAL_SUPREMUM = "literal supremum"
+"""The limit of vanishing slip speed under the set-valued law, which no integration reaches."""
+FINER = 0.1
+"""Second v_reg over the first where the effect of regularization is estimated: nine tenths of one in proportion."""
+
+
+def reading_of(scene: Scene, regularization: float | None, cutoff: float | None = None) -> str:
+    """Which reading of (5.1) a factor has; "" without dry friction, where both readings agree."""
+    if scene.lubricated or scene.friction_coefficient == 0.0:
+        return ""
+    return LITERAL_SUPREMUM if regularization is None and cutoff is None else AS_INTEGRATED
+
+
+def describe_law(
+    scene: Scene,
+    regularization: float | None,
+    cutoff: float | None = None,
+    effect: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
+) -> str:
+    """
+    Law of friction of a result, and what its error leaves out.
+
+    Parameters
+    ----------
+    scene : Scene
+    regularization, cutoff : float or None, m/s
+        v_reg and v_c.
+    effect : tuple of ndarray, optional
+        What a tenth of v_reg changes in mu and in the displacement, m, where that was computed.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> from reference.problem import load_scene
+    >>> describe_law(load_scene("fig3-I"), None, 1e-3)
+    'set-valued Coulomb friction; as integrated, v_c = 0.001 m/s'
+    """
+    if scene.friction_coefficient == 0.0:
+        return "no friction"
+    if scene.lubricated:
+        return "viscous friction (3.14)"
+    if regularization is None:
+        kind = "Coulomb" if scene.dry_friction.constant else "dry"
+        peak = LITERAL_SUPREMUM if cutoff is None else f"{AS_INTEGRATED}, v_c = {cutoff:g} m/s"
+        return f"set-valued {kind} friction; {peak}"
+    law = f"regularized below v_reg = {regularization:g} m/s: the error leaves out what this changes against set-valued"
+    if effect is None or not all(np.isfinite(part).any() for part in effect):
+        return f"{law} friction"
+    factor, displacement = (f"{np.nanmax(np.abs(part)):.2g}" for part in effect)
+    changes = f"mu changes by up to {factor} and the displacement by up to {displacement} m"
+    return f"{law} friction; from there to v_reg = {FINER * regularization:g} m/s {changes}"
