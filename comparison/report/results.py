@@ -34,8 +34,8 @@ VALIDATED = (
 
 # the same by `word_validated_briefly`, for the first screen
 VALIDATED_BRIEFLY = (
-    "measured was the half range of a frame shaken against dry friction: met at 2 of 2 predicted loads with friction of "
-    "the load, at 1 of 3 with one friction ratio; no building has been compared"
+    "measured was the half range of a frame shaken against dry friction: met at 2 of 2 predicted loads with friction "
+    "of the load, at 1 of 3 with one friction ratio; no building has been compared"
 )
 
 

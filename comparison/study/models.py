@@ -11,11 +11,10 @@ from itertools import pairwise
 from typing import Any, Literal
 
 from reference.problem import Scene, mirror_symmetric, no_friction
+from reference.problem.readings import AS_INTEGRATED, LITERAL_SUPREMUM
 
 DEFAULT_V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity, on both sides alike
 DEFAULT_V_C = 1e-3  # m/s: slip speed above which an integration with steps of about 1 ms sees the motion
-AS_INTEGRATED = "as integrated"  # reading of (5.1): the largest value that an integration meets
-LITERAL_SUPREMUM = "literal supremum"  # reading of (5.1): the limit v -> 0+ at a stop counts, too
 REFERENCE_TOLERANCE = 1e-6  # asked at least of the equations, which are cheap: their error blurs no difference
 SOFTENED = "softened-"  # begins the key of a model whose bars are softened
 

@@ -89,8 +89,8 @@ def word_validated_briefly(table: Validation) -> str:
         rows = [each for each in frame_rows(table, loaded, "predicted") if each.name == HALF_RANGE]
         met[loaded] = word_met_of(rows)
     return (
-        f"measured was the {HALF_RANGE} of a frame shaken against dry friction: met at {met[True]} predicted loads with "
-        f"friction of the load, at {met[False]} with one friction ratio; no building has been compared"
+        f"measured was the {HALF_RANGE} of a frame shaken against dry friction: met at {met[True]} predicted loads "
+        f"with friction of the load, at {met[False]} with one friction ratio; no building has been compared"
     )
 
 
