@@ -31,9 +31,10 @@ from comparison.analyses.assumptions.variations import (
 from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Number, Phases, Text, result
 from comparison.runner.task_results import TaskResults
-from comparison.study.models import AS_INTEGRATED, models_of
+from comparison.study.models import models_of
 from comparison.study.study import Study
 from reference.problem import Scene
+from reference.problem.readings import AS_INTEGRATED
 
 PHASES = ((0.0, 0.0), (2.0, 0.7))  # rad; the first is where turning tells most in fig3-I, the second in fig3-II
 MORE_PHASES = (*PHASES, (0.3, 1.1))  # of the command
