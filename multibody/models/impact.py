@@ -120,10 +120,9 @@ class ImpactLaw:
         for link, lag in enumerate(lags):
             along, levers = turned[link][:, 2], self._levers(link, turned)
             ends = [jump[body, 0] + np.cross(jump[body, 1], lever) for body, lever in enumerate(levers, start=link)]
-            for body in range(link + 1, len(self.masses)):
-                shifted[BODY_COORDINATES * body : BODY_COORDINATES * body + 3] -= (
-                    lag * float(along @ (ends[1] - ends[0])) * along
-                )
+            stretch = lag * float(along @ (ends[1] - ends[0]))
+            for first in range(BODY_COORDINATES * (link + 1), count, BODY_COORDINATES):
+                shifted[first : first + 3] -= stretch * along
         return shifted
 
     def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
