@@ -28,6 +28,9 @@ from reference.problem import DryFriction
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+# Coordinates of the platform among those of the bodies.
+PLATFORM = slice(BODY_COORDINATES)
+
 # Largest number of sweeps over the contacts, and the change of a velocity in one, over the largest before the impact,
 # at which they end.
 MAX_SWEEPS, SWEEP_TOLERANCE = 2000, 1e-11
@@ -75,7 +78,7 @@ class ImpactLaw:
         struck = np.flatnonzero(closed | hit)
         axes = _contact_axes(normals[struck])
         rows = np.zeros((len(struck), 3, count))
-        rows[:, :, :BODY_COORDINATES] = axes @ jacobian[struck]
+        rows[:, :, PLATFORM] = axes @ jacobian[struck]
         before = rows @ speeds
         if len(self.depressions.vertical):
             upward = velocities[self.depressions.vertical[struck]]
@@ -127,9 +130,7 @@ class ImpactLaw:
 
     def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
         """Speeds (K,) at which the platform leaves spheres that hold still or give way, and spheres as they move."""
-        platform = (self._velocity_matrix(coordinates) @ velocities[: BODY_COORDINATES * len(self.masses)])[
-            :BODY_COORDINATES
-        ]
+        platform = (self._velocity_matrix(coordinates) @ velocities[: BODY_COORDINATES * len(self.masses)])[PLATFORM]
         normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         leaving: Array = np.einsum("ki,kij,j->k", normals, jacobian, platform)
         if not len(self.depressions.vertical):
@@ -141,10 +142,8 @@ class ImpactLaw:
         """Rates (K, n) of the gaps over the engine's velocities, at coordinates (n,)."""
         normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         rates = np.zeros((len(normals), len(coordinates)))
-        rates[:, :BODY_COORDINATES] = np.einsum("ki,kij->kj", normals, jacobian)
-        rates[:, :BODY_COORDINATES] = (
-            rates[:, :BODY_COORDINATES] @ self._velocity_matrix(coordinates)[:BODY_COORDINATES, :BODY_COORDINATES]
-        )
+        rates[:, PLATFORM] = np.einsum("ki,kij->kj", normals, jacobian)
+        rates[:, PLATFORM] = rates[:, PLATFORM] @ self._velocity_matrix(coordinates)[PLATFORM, PLATFORM]
         if len(self.depressions.vertical):
             rates[np.arange(len(normals)), self.depressions.vertical] = -normals[:, 2]
         return rates
