@@ -124,7 +124,7 @@ def _parse_arguments(words: list[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--max-work", type=float, default=MAX_WORK, help="most steps of the engine, %(default)g if not given"
     )
-    parser.add_argument("--stretch", type=float, default=Look.stretch, help="displacements drawn so many times larger")
+    parser.add_argument("--stretch", type=float, default=Look.stretch, help="factor on the displacements as drawn")
     parser.add_argument("--speed", type=float, default=Look.speed, help="seconds of motion per second of film")
     parser.add_argument("--rate", type=int, default=Look.rate, help=f"frames per second, {Look.rate} if not given")
     size = "pixels, {} {} if not given".format(*Look.size)

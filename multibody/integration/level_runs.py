@@ -209,6 +209,10 @@ class LevelRuns:
 
     def _choose_springs_for_opening(self, run: EngineRun) -> EngineRun:
         """Return the last level's run where a support opens in `run`: that, or one on springs of real bearings."""
+        # A support that opens on stiff springs may have been lifted off by the misfit of the platform alone, which real
+        # bearings take up. So the level is repeated on the springs of real bearings. If a support opens there, too, and
+        # no peak changes by more than the tolerance, the stiff run stays the answer and the change becomes a part of
+        # its error. Otherwise real bearings are part of the model, and all levels from here on have their springs.
         number = len(self.runs)
         level = self.levels[number]
         if level.warping_compliance == REAL_WARPING_COMPLIANCE:
@@ -217,7 +221,6 @@ class LevelRuns:
             return run
         real, change = self._run_on_real_bearings(level, run)
         stiff = level.warping_compliance < REAL_WARPING_COMPLIANCE
-        # stiff springs also lift supports off by the misfit of the platform alone
         if stiff and real.lifts_off and (change <= self.tolerance * run.peaks.value).all():
             self.on_real = real, change
             return run

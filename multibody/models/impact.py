@@ -28,6 +28,9 @@ from reference.problem import DryFriction
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+# Coordinates of the platform among those of the bodies.
+PLATFORM = slice(BODY_COORDINATES)
+
 # Largest number of sweeps over the contacts, and the change of a velocity in one, over the largest before the impact,
 # at which they end.
 MAX_SWEEPS, SWEEP_TOLERANCE = 2000, 1e-11
@@ -75,7 +78,7 @@ class ImpactLaw:
         struck = np.flatnonzero(closed | hit)
         axes = _contact_axes(normals[struck])
         rows = np.zeros((len(struck), 3, count))
-        rows[:, :, :BODY_COORDINATES] = axes @ jacobian[struck]
+        rows[:, :, PLATFORM] = axes @ jacobian[struck]
         before = rows @ speeds
         if len(self.depressions.vertical):
             upward = velocities[self.depressions.vertical[struck]]
@@ -120,17 +123,14 @@ class ImpactLaw:
         for link, lag in enumerate(lags):
             along, levers = turned[link][:, 2], self._levers(link, turned)
             ends = [jump[body, 0] + np.cross(jump[body, 1], lever) for body, lever in enumerate(levers, start=link)]
-            for body in range(link + 1, len(self.masses)):
-                shifted[BODY_COORDINATES * body : BODY_COORDINATES * body + 3] -= (
-                    lag * float(along @ (ends[1] - ends[0])) * along
-                )
+            stretch = lag * float(along @ (ends[1] - ends[0]))
+            for first in range(BODY_COORDINATES * (link + 1), count, BODY_COORDINATES):
+                shifted[first : first + 3] -= stretch * along
         return shifted
 
     def normal_speeds(self, coordinates: Array, velocities: Array) -> tuple[Array, Array]:
         """Speeds (K,) at which the platform leaves spheres that hold still or give way, and spheres as they move."""
-        platform = (self._velocity_matrix(coordinates) @ velocities[: BODY_COORDINATES * len(self.masses)])[
-            :BODY_COORDINATES
-        ]
+        platform = (self._velocity_matrix(coordinates) @ velocities[: BODY_COORDINATES * len(self.masses)])[PLATFORM]
         normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         leaving: Array = np.einsum("ki,kij,j->k", normals, jacobian, platform)
         if not len(self.depressions.vertical):
@@ -142,10 +142,8 @@ class ImpactLaw:
         """Rates (K, n) of the gaps over the engine's velocities, at coordinates (n,)."""
         normals, jacobian = self.depressions.contact_normals_and_jacobian(coordinates)
         rates = np.zeros((len(normals), len(coordinates)))
-        rates[:, :BODY_COORDINATES] = np.einsum("ki,kij->kj", normals, jacobian)
-        rates[:, :BODY_COORDINATES] = (
-            rates[:, :BODY_COORDINATES] @ self._velocity_matrix(coordinates)[:BODY_COORDINATES, :BODY_COORDINATES]
-        )
+        rates[:, PLATFORM] = np.einsum("ki,kij->kj", normals, jacobian)
+        rates[:, PLATFORM] = rates[:, PLATFORM] @ self._velocity_matrix(coordinates)[PLATFORM, PLATFORM]
         if len(self.depressions.vertical):
             rates[np.arange(len(normals)), self.depressions.vertical] = -normals[:, 2]
         return rates

@@ -1,5 +1,5 @@
 """
-The links of the spatial model: upright bars clamped at both ends, as the engine's connectors half-way up.
+The links of the spatial model: upright bars clamped at both ends, as the engine's connectors halfway up.
 
 A link is stiff in tension and in bending about the horizontal axes, ten times less than the contacts. Bars with an
 `axial_stiffness` give way in both as the beams that they are, and the stiffness of the link is part of the model. Its
@@ -136,7 +136,7 @@ def _bars_in_units(bars: BarLink, units: Units) -> BarLink:
 
 
 def add_link(mbs: Any, bodies: list[Any], centers: Array, damping: Array) -> Any:
-    """Add a link half-way between two centers of mass (2, 3), on the vertical axis; damping: in shear, (2, 2)."""
+    """Add a link halfway between two centers of mass (2, 3), on the vertical axis; damping: in shear, (2, 2)."""
     values, directions = np.linalg.eigh(damping)
     for value, direction in zip(values, directions.T):
         add_damper(mbs, bodies, centers, np.append(direction, 0.0), value)
@@ -167,7 +167,7 @@ def add_damper(mbs: Any, bodies: list[Any], centers: Array, direction: Array, da
 
 
 def _add_end_markers(mbs: Any, bodies: list[Any], centers: Array, rod: Array, below: float) -> list[Any]:
-    """Add markers on two neighbors at the ends of a rod (3,), of which a share lies below half-way up on the axis."""
+    """Add markers on two neighbors at the ends of a rod (3,), of which a share lies below halfway up on the axis."""
     half = 0.5 * (centers[1, 2] - centers[0, 2]) * np.array([0.0, 0.0, 1.0])
     axis = [[-center[0], -center[1], 0.0] for center in centers]
     places = (axis[0] + half - below * rod, axis[1] - half + (1.0 - below) * rod)

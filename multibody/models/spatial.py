@@ -4,7 +4,7 @@ The spatial model: rigid bodies free to turn, supports in the plane, contacts th
 Platform and bodies are boxes with six degrees of freedom at their heights. The platform's underside has one depression
 per support. Each has its own unilateral contact, so supports share the load as overturning demands. A link is a
 set of upright bars clamped at both ends. It is stiff in tension and in bending about the horizontal axes. The scene's
-shear stiffness acts half-way up. Against twist it has the stiffness of bars that stand on the ring,
+shear stiffness acts halfway up. Against twist it has the stiffness of bars that stand on the ring,
 ring^2 (kx + ky) / 2, or at the positions of the supports. Its forces act on both bodies at the same point, the middle
 between the two ends. Bars whose axial stiffness a scene states give way in tension and bending, too (`links`).
 

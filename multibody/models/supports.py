@@ -101,6 +101,12 @@ def add_fixed_supports(mbs: Any, plate: Plate, ring: Array) -> Supports:
 
 def add_sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) -> Supports:
     """Add spheres at places (K, 2) that share the load elastically; on a plate that moves, bodies too heavy to turn."""
+    # K vertical forces at places (x_k, y_k) can be split into the patterns 1, x_k, y_k, which balance heave and tilt,
+    # and K - 3 others, which balance nothing: only the stiffness of the supports decides them. `warping_projection` is
+    # the projection onto these. The springs are stiff against its complement, so that the contact alone decides how the
+    # total force follows, and as soft as elastic bearings against warping, so that a rigid platform does not rock on
+    # two diagonals (docs/decisions/0007-elastic-sharing.md). Each part is damped critically as the platform's share of
+    # the mass on the same springs, so that neither rings.
     count = len(ring)
     warped = warping_projection(ring)
     if plate.moves:
@@ -125,7 +131,6 @@ def add_sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) 
 
     def set_stiffness(penetration: float, share: float) -> None:
         stiff, soft = SPHERE_STIFFNESS_RATIO / (count * penetration), 1.0 / (count * share)
-        # damped critically, as the platform's share of the mass on the same springs
         springs(stiff, soft, 2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))
 
     return Supports(markers, *read, each * count, first + upright, carried, warped, set_stiffness)

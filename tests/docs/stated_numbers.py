@@ -58,7 +58,7 @@ def _in_facts(pattern: str) -> str:
 
 (_mastodon,) = (each for each in evidence_table.published().benchmarks if each.name == "mastodon")
 _off = sum(row.numbers[EQUATIONS].verdict == NOT_MET for row in _mastodon.rows)
-_multibody = (evidence_table.DOCS / "multibody.md").read_text(encoding="utf-8")
+_multibody = (evidence_table.DOCS / "records/multibody.md").read_text(encoding="utf-8")
 _like_for_like = re.search(r"\| fig3-II, 1e-3, 256 \|[^|]*\|[^|]*\| ([\d.e-]+),", _multibody)
 assert _like_for_like
 

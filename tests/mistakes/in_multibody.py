@@ -210,7 +210,7 @@ MISTAKES = (
     Mistake(INTEGRATION + "level_runs.py", " and not level.precedes_level_0", "",
             "A level before level 0 confirms what lies behind impacts.",
             (TESTS + "test_recorded.py::test_a_loose_tolerance_begins_a_level_earlier_under_a_record",)),
-    Mistake(MODELS + "impact.py", "-= lag * float(along", "+= lag * float(along",
+    Mistake(MODELS + "impact.py", "stretch = lag * float(along", "stretch = -lag * float(along",
             "Bars are stretched the wrong way behind an impact, and their dampers push.",
             (NUMBERS + "test_behind_an_impact_stretched_bars_balance_their_dampers",)),
     Mistake(MODELS + "speed_friction.py", "(self._mass_ratio * steepness", "(steepness",
