@@ -118,7 +118,7 @@ def test_what_is_left_out_is_listed_once_with_its_reason() -> None:
     assert reductions(Study((scene,), GRID, 1e-3, full=True)) == []
     (_, *plane) = reductions(Study((load_scene("fig4-dry"),), GRID, 1e-3))
     assert [(row.what, row.models) for row in plane] == [
-        ("motion across its plane", "small, exact, resolved, regularised"),
+        ("motion across its plane", "small, exact, small-resolved, resolved, small-regularised, regularised"),
         ("motion across its plane, of the bodies", "translational"),
     ]
     twins = tuple(load_scene("fig3-I").with_values({"name": name}) for name in "ab")
