@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from comparison.analyses.conditioning.analysis import REGULARIZATIONS, SPEEDS, ConditioningCurve
-from comparison.study.models import AS_INTEGRATED, LITERAL_SUPREMUM
+from reference.problem.readings import AS_INTEGRATED, LITERAL_SUPREMUM
 
 # from the literal supremum at each speed of SPEEDS
 BELOW = (-0.31, -0.22, -0.17, -0.13, -0.111, -0.083, -0.067, -0.052, -0.037, -0.029, -0.023, -0.0173)

@@ -30,8 +30,8 @@ from comparison.analyses.tradeoff.trade import Entry as Setting
 from comparison.analyses.validation import table as validation
 from comparison.analyses.worst_phases.analysis import Worst
 from comparison.runner.output import publish
-from comparison.study.models import AS_INTEGRATED
 from reference.problem import load_scene
+from reference.problem.readings import AS_INTEGRATED
 
 MADE = {"command": "made <by a test>", "began": "then", "seconds": 1.0, "compute_seconds": 1.0, "jobs": 1,
         "quick": True, "provenance": {"commit": "abc", "processor": "one"}}  # fmt: skip

@@ -6,7 +6,7 @@ from functools import cache, partial
 from typing import Any
 
 from comparison.study import models
-from reference.problem import Scene, load_scene
+from reference.problem import Scene, load_scene, readings
 
 
 @dataclass(frozen=True)
@@ -18,8 +18,8 @@ class PeakReading:
     cutoff: float | None
 
 
-AS_INTEGRATED = PeakReading(models.AS_INTEGRATED, models.SMALL_RESOLVED.key, models.DEFAULT_V_C)
-LITERAL_SUPREMUM = PeakReading(models.LITERAL_SUPREMUM, models.SMALL.key, None)
+AS_INTEGRATED = PeakReading(readings.AS_INTEGRATED, models.SMALL_RESOLVED.key, models.DEFAULT_V_C)
+LITERAL_SUPREMUM = PeakReading(readings.LITERAL_SUPREMUM, models.SMALL.key, None)
 READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)
 
 

@@ -23,10 +23,11 @@ from comparison.analyses.mapped import MappedAnalysis
 from comparison.analyses.shortened import shorten
 from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.task import TaskResult
-from comparison.study.models import AS_INTEGRATED, LITERAL_SUPREMUM, any_scene, dry, has_spatial_data
+from comparison.study.models import any_scene, dry, has_spatial_data
 from comparison.study.study import Study, nested_grids
 from comparison.surfaces.sampling import sampling_error
 from reference.problem import Outcome, Scene, phase_grid
+from reference.problem.readings import AS_INTEGRATED, LITERAL_SUPREMUM
 from reference.problem.symmetry import distinct
 
 MAX_GRID = 16  # phases per axis of the small equations

@@ -9,8 +9,8 @@ from comparison.analyses.conditioning.statement import conditioning_line, speed_
 from comparison.analyses.panels import panel
 from comparison.report.plots import Panel, plain
 from comparison.report.section import Feature, Report, Section
-from comparison.study.models import LITERAL_SUPREMUM
 from comparison.wording import scientific, signed, significant
+from reference.problem.readings import LITERAL_SUPREMUM
 
 NAMES = {
     "small": "small equations",

@@ -39,10 +39,11 @@ from comparison.analyses.assumptions.variations import (
     plane_of_symmetry,
     trials_of,
 )
-from comparison.study.models import AS_INTEGRATED, MODEL_HIERARCHY
+from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from multibody import amplification
 from reference.problem import Scene, load_scene
+from reference.problem.readings import AS_INTEGRATED
 
 FIRST, PLANAR = load_scene("fig3-I"), load_scene("fig4-dry")
 SQUARE = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])

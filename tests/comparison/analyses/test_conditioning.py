@@ -26,9 +26,9 @@ from comparison.analyses.conditioning.analysis import (
 )
 from comparison.analyses.conditioning.feature import conditioning_panels, conditioning_tables
 from comparison.analyses.conditioning.statement import ILL, conditioning_line
-from comparison.study.models import AS_INTEGRATED, LITERAL_SUPREMUM
 from comparison.study.study import Study
 from reference.problem import Amplification, Scene, load_scene
+from reference.problem.readings import AS_INTEGRATED, LITERAL_SUPREMUM
 
 Array = NDArray[np.float64]
 GRID = 4
