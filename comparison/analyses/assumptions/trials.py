@@ -78,7 +78,8 @@ Arguments = tuple[Scene, tuple[Model, Model], Variation | tuple[Axis, ...] | Non
 def answer_trials(task: Arguments) -> Answer:
     """Try one variation, or sizes of some axes in their worst directions. Runs inside a worker process."""
     scene, (translational, spatial), what, tolerance, phases, sizes = task
-    short, pairs = scene.with_values({"duration": min(scene.duration, DURATION)}), np.array(phases)
+    short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # found again by name
+    pairs = np.array(phases)
     if what is None:
         return Answer((amplification_of(short, translational, None, tolerance, pairs),))
     if isinstance(what, Variation):

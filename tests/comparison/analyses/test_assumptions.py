@@ -68,11 +68,13 @@ def test_a_variation_changes_what_it_names_alone() -> None:
     changed = Variation(ring=2.0, height=0.5, supports=3).of(FIRST)
     assert (changed.isolator.ring, changed.isolator.supports) == (2.0, 3)
     assert [body.height for body in changed.bodies] == [0.1, 0.6]
-    assert Variation(ring=0.5, height=2.0, supports=4).of(changed) == FIRST
+    back = Variation(ring=0.5, height=2.0, supports=4).of(changed)
+    assert back.with_values({"name": FIRST.name}) == FIRST
     uneven = Variation(offset=0.1, direction=math.pi / 2.0, yaw=0.2).of(FIRST)
     assert uneven.offsets.ravel().tolist() == pytest.approx([0.0, 0.0, 0.0, 0.1])
     assert uneven.yaws.tolist() == [0.0, 0.2]
-    assert uneven.with_values({"bodies.1.offset": None, "bodies.1.yaw": None}) == FIRST
+    even = {"bodies.1.offset": None, "bodies.1.yaw": None, "name": FIRST.name}
+    assert uneven.with_values(even) == FIRST
     placed = FIRST.with_values({"isolator.supports": (2.0 * SQUARE).tolist(), "isolator.ring": None})
     assert Variation(ring=0.5).of(placed).support_places.tolist() == SQUARE.tolist(), "by the same factor"
     three = Variation(supports=3, offset=0.1).of(placed)
@@ -350,6 +352,7 @@ def test_cells_compare_the_two_engine_models() -> None:
     study = Study((FIRST, bare), 2, 1e-3, fake_hierarchy(gap=0.0))
     found = collected(Assumptions(), study)
     assert [each.variation for each in found.cells][: len(FEW)] == list(FEW)
+    assert {each.scene for each in found.directions} == {FIRST.name}, "whatever is shortened to compute them"
     assert {(each.key, each.worst) for each in found.directions} == {
         (key, worst) for key in DIRECTED for worst in (True, False)
     }
