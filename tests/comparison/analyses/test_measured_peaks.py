@@ -112,7 +112,7 @@ def test_what_is_not_known_exceeds_nothing():
     line = Results.measurements.fget(SimpleNamespace(of={"measured": [found]}.get))
     counts = "3 comparisons: 1 met, 1 not met, 1 not compared"
     assert line == f"1 measured peak stands beside the models ({counts})"
-    largest = "largest: fig3-I, mu of body 1, far, −25 %"
+    largest = f"largest: {scene.name}, mu of body 1, far, −25 %"
     assert verdict_line([found]) == counts.replace("1 not met", f"1 not met ({largest})")
     [none] = PLAIN.with_values({"measured": [peak("drift", 0.0, 0.1, 2)]}).measured
     drift = _beside(scene, none, [("a", {("drift", 2): (0.3, 0.1, "ok")})])
