@@ -103,8 +103,7 @@ def readings(known: Mapping[str, Any]) -> str:
 
 
 PASSAGES: Mapping[str, Callable[[Mapping[str, Any]], str]] = {
-    "verdict": lambda known: known["verdict"],
-    "claims": lambda known: known["leads"]["claims"],
+    "answer": lambda known: f"{known['verdict']} {known['leads']['claims']}",
     "conditioning": lambda known: known["leads"]["conditioning"],
     "answers": answers,
     "readings": readings,
