@@ -74,6 +74,14 @@ function panels() {
   });
 }
 
+// title, scale and notes of a panel
+function describe(figure, panel, k) {
+  const scale = figure.querySelector("canvas.scale"), pen = scale.getContext("2d");
+  figure.querySelector("b").replaceChildren(...(k < 2 ? indexed(`μ_${state.body}, `) : []), ...indexed(panel.title));
+  figure.querySelector(".notes").replaceChildren(...panel.notes.map(note => element("span", "", ...indexed(note))));
+  for (let x = 0; x < scale.width; x++) { pen.fillStyle = panel.color(x / (scale.width - 1)); pen.fillRect(x, 0, 1, scale.height); }
+  panel.range.forEach((value, end) => { figure.querySelectorAll(".scale span")[end].textContent = k === 2 ? percentText(value) : digits(value, 3); });
+}
 const canvases = [...viewer.querySelectorAll("figure canvas.surface")];
 let shown = [];
 function paint() {
@@ -93,11 +101,7 @@ function show() {
   if (scene.recorded) return;
   shown = panels();
   shown.forEach((panel, k) => {
-    const figure = canvases[k].closest("figure"), scale = figure.querySelector("canvas.scale"), pen = scale.getContext("2d"), [low, high] = panel.range;
-    figure.querySelector("b").replaceChildren(...(k < 2 ? indexed(`mu_${state.body}`.replace("mu", "μ")) : []), k < 2 ? ", " : "", ...indexed(panel.title));
-    figure.querySelector(".notes").replaceChildren(...panel.notes.map(note => element("span", "", ...indexed(note))));
-    for (let x = 0; x < scale.width; x++) { pen.fillStyle = panel.color(x / (scale.width - 1)); pen.fillRect(x, 0, 1, scale.height); }
-    [low, high].forEach((value, end) => { figure.querySelectorAll(".scale span")[end].textContent = k === 2 ? percentText(value) : digits(value, 3); });
+    describe(canvases[k].closest("figure"), panel, k);
     canvases[k].setAttribute("aria-label", `${panel.title}, ${scene.title}, body ${state.body}: ${panel.notes.join("; ")}. Arrow keys move the cross, Enter shows the nearest stored motion.`);
   });
   paintSoon();
@@ -161,6 +165,29 @@ function chooseScene(scene, body = 1) {
   showMotions();
 }
 
+// on paper: the surfaces of every scene and body; the pair of models is the one shown, or the one with which the page opens
+function drawPaper() {
+  const now = { ...state }, place = sceneNow().places[now.place], pair = pairNow();
+  const models = `${study.titles[pair.first]} and ${study.titles[pair.second]}`;
+  part("chosen").replaceChildren(...indexed(`${sceneNow().name}, body ${now.body}, ${models}: ${place?.phases ? at(place.phases) : "the record"}`));
+  const sheets = [...part("scene").options].map(option => Number(option.value)).flatMap(number => Array.from({ length: study.scenes[number].recorded ? 0 : study.scenes[number].bodies }, (_, i) => {
+    const scene = study.scenes[number], body = i + 1, here = number === now.scene && body === now.body;
+    Object.assign(state, { scene: number, body, cursor: null, place: here ? now.place : null });
+    state.pair = here ? now.pair : drawnPair(body);
+    const figures = panels().map((panel, k) => {
+      const figure = canvases[k].closest("figure").cloneNode(true), canvas = figure.querySelector("canvas.surface");
+      ["tabindex", "aria-label"].forEach(name => canvas.removeAttribute(name));
+      describe(figure, panel, k);
+      state.view === "3d" ? draw3d(canvas, panel, camera) : drawMap(canvas, panel);
+      return figure;
+    });
+    const sheet = element("div", "sheet", element("h3", "", `${scene.title} (${scene.name}), body ${body}: `, ...indexed(pairNow().sentence)), element("div", "three", ...figures));
+    return sheet;
+  }));
+  part("paper").replaceChildren(...sheets);
+  Object.assign(state, now);
+}
+
 function startViewer() {
   part("scene").addEventListener("change", event => chooseScene(Number(event.target.value)));
   part("body").addEventListener("change", event => chooseScene(state.scene, Number(event.target.value)));
@@ -208,6 +235,5 @@ function startViewer() {
   });
   new ResizeObserver(paintSoon).observe(part("panels"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", show);
-  matchMedia("print").addEventListener("change", () => { if (!sceneNow().recorded) { shown = panels(); paint(); } });
   chooseScene(Number(part("scene").options[0].value));
 }
