@@ -55,10 +55,10 @@ function draw3d(canvas, panel, camera) {
   const center = [width / 2 + 14, height / 2];
   [front, (front + 3) % 4].forEach(from => {  // the two edges at the front carry the phases
     const [p, q] = [corners[from], corners[(from + 1) % 4]], name = p[0] === q[0] ? "α₂" : "α₁";
-    [["π/2", 0.25, 0], ["π", 0.5, 0], [name, 0.5, 16], ["3π/2", 0.75, 0]].forEach(([text, part, farther]) => {
+    [["π/2", 0.25, 0], [name, 0.5, 9], ["3π/2", 0.75, 0]].forEach(([text, part, farther]) => {
       const value = part * turn, [x, y] = at(name === "α₁" ? value : p[0], name === "α₁" ? p[1] : value, 0), side = Math.sign(x - center[0]) || 1;
       pen.textAlign = side > 0 ? "left" : "right";
-      pen.fillText(text, x + (6 + farther) * side, y + 13 + 0.7 * farther);
+      pen.fillText(text, x + (6 + farther) * side, y + 13 + farther);
     });
   });
   const [low, high] = [0, 1].map(part => at(...corners[leftmost], part));

@@ -2,7 +2,7 @@
 // every plot of the page: drawn as SVG at the width it has, from a description
 //   { label, height, x: {title, log, range, ticks: [[value, text], ...], equal}, y: the same,
 //     series: [{ name, x, y, low, high, band, line, marks, color, dash, width, titles, legend }], bands: [{ from, to, text }] }
-// color: 0 to 7 of the palette, "ink" or "gray"; a null in y parts a line; low and high make error bars, or a band
+// color: number in the palette, "ink" or "gray"; a null in y parts a line; low and high make error bars, or a band
 const SVG = "http://www.w3.org/2000/svg";
 function svgElement(name, attributes = {}, ...content) {
   const element = document.createElementNS(SVG, name);
@@ -17,7 +17,7 @@ function element(name, className = "", ...content) {
   return made;
 }
 
-const COLORS = 7;  // of the palette: from there on they repeat
+const COLORS = 8;  // of the palette: from there on they repeat
 const lookOf = series => `c-${Number.isInteger(series.color) ? series.color % COLORS : series.color ?? 0}`;
 const paper = { printing: false, plot: 342, surface: [226, 190] };  // px at 96 to the inch: what stands two and three times beside each other on A4
 const known = value => value !== null && Number.isFinite(value);
@@ -127,6 +127,7 @@ function markOf(color, x, y, look) {
     () => svgElement("circle", { cx: x, cy: y, r, class: `mark ${look}` }), () => points([[-1, -1], [1, -1], [1, 1], [-1, 1]]),
     () => points([[0, -1.3], [1.2, 0.9], [-1.2, 0.9]]), () => points([[0, -1.4], [1.4, 0], [0, 1.4], [-1.4, 0]]),
     () => points([[0, 1.3], [1.2, -0.9], [-1.2, -0.9]]), () => points([[-1.3, 0], [0.9, -1.2], [0.9, 1.2]]), () => points([[1.3, 0], [-0.9, -1.2], [-0.9, 1.2]]),
+    () => points([[-1.5, -0.5], [1.5, -0.5], [1.5, 0.5], [-1.5, 0.5]]),
   ];
   return (shapes[Number(color) % COLORS] ?? shapes[0])();
 }

@@ -7,7 +7,7 @@ const viewer = document.getElementById("viewer") ?? document.createElement("div"
 const part = name => viewer.querySelector(`[data-part="${name}"]`);
 const degrees = phase => `${Math.round(phase * 180 / Math.PI)}°`;
 const at = phases => `(${phases.map(degrees).join(", ")})`;
-const percentText = value => !known(value) ? "none" : `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value) >= 10 ? Math.abs(value).toFixed(0) : +Math.abs(value).toPrecision(2)} %`;
+const percentText = value => !known(value) ? "none" : `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value) >= 10 ? Math.abs(value).toFixed(0) : +Math.abs(value).toPrecision(2)}\u00a0%`;  // no line ends before the sign
 const digits = (value, count = 4) => known(value) ? String(+value.toPrecision(count)).replace("-", "−") : "none";
 
 async function unpacked(id) {
@@ -62,12 +62,12 @@ function panels() {
     const notes = [k === 2 ? `${shown} × ${shown} phases${surface.completed ? ", completed" : ""}` : state.grid === "second" && k === 0 && !surface.sheet ? `${shown} × ${shown} of ${surface.model.phases} × ${surface.model.phases} phases` : grid(surface, surface.model.phases)];
     if (surface.completed?.mu && k < 2) notes.push(`dots: computed; ${surface.completed.certificate}`);
     if (!surface.sheet && k === 1 && surface.completed?.reason) notes.push(`points: ${surface.completed.reason}`);
-    if (largest) notes.push(`largest of ${surface.phases} × ${surface.phases} phases: ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])} ▾`);
+    if (largest) notes.push(`largest of ${surface.phases} × ${surface.phases} phases: ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])}\u00a0▾`);
     else notes.push("no value at any phase pair");
     if (surface.points.some(point => point.error === null)) notes.push("dashed: of unknown error");
     const worst = k < 2 ? surface.model.worst[body - 1] : null;
     const own = worst && worst[3] === (k ? pair.second : pair.first);
-    if (k < 2) notes.push(worst ? `largest over all phases${own ? "" : `, ${study.titles[worst[3]]}`}: ${digits(worst[2])} at ${at(worst.slice(0, 2))}${own ? " ▿" : ""}` : "largest over all phases: not searched");
+    if (k < 2) notes.push(worst ? `largest over all phases${own ? "" : `, ${study.titles[worst[3]]}`}: ${digits(worst[2])} at ${at(worst.slice(0, 2))}${own ? "\u00a0▿" : ""}` : "largest over all phases: not searched");
     return { ...common, ...surface, range: k === 2 ? [-reach, reach] : range, color: k === 2 ? signs : light, largest: largest && [largest.a, largest.b], worst: own && worst.slice(0, 2),
       lines: k === 2 && surface.sheet && !surface.completed ? pair.contours[body - 1] : [], notes,
       title: k === 2 ? "difference, % of the first" : study.titles[k ? pair.second : pair.first], unit: k === 2 ? " %" : "" };
@@ -79,7 +79,7 @@ function describe(figure, panel, k) {
   const scale = figure.querySelector("canvas.scale"), pen = scale.getContext("2d");
   figure.querySelector("b").replaceChildren(...(k < 2 ? indexed(`μ_${state.body}, `) : []), ...indexed(panel.title));
   figure.querySelector(".notes").replaceChildren(...panel.notes.map(note => element("span", "", ...indexed(note))));
-  for (let x = 0; x < scale.width; x++) { pen.fillStyle = panel.color(x / (scale.width - 1)); pen.fillRect(x, 0, 1, scale.height); }
+  for (let x = 0; x < scale.width; x++) { pen.fillStyle = panel.color(x / (scale.width - 1)); pen.fillRect(x, 0, scale.width - x, scale.height); }  // over the one before: no seam is seen
   panel.range.forEach((value, end) => { figure.querySelectorAll(".scale span")[end].textContent = k === 2 ? percentText(value) : digits(value, 3); });
 }
 const canvases = [...viewer.querySelectorAll("figure canvas.surface")];
