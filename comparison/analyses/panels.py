@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import groupby, zip_longest
+from itertools import cycle, groupby, zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 COLORS = ("#1f4e8c", "#b3541e", "#2a7f4f", "#7b3f98", "#8a6d00", "#37808c", "#b3124b", "#5b9bd5")
+DASHES = ("", "7 3", "2 2", "10 3 2 3", "14 4", "4 4")  # of curves that lie on each other: the later ones leave gaps
 GRAYS = {"ink": "#222222", "gray": "0.5"}
 LEGEND_ROWS, LEGEND_ROW = 4, 11.5  # rows of a legend in one column; height of a row, points
 MARKERS = "os^Dv<>PX*"  # told apart without colors, too
@@ -35,8 +36,8 @@ def distribution_panels(results: Results, scene: str, quantity: str, unit: str, 
     """The share of all phases at which a quantity stays below a value, by (model, values); none without curves."""
     models = {model.key: (model.title, number) for number, model in enumerate(results.models)}
     series = [
-        {"name": models[key][0], "x": plain(values), "y": CURVE.tolist(), "color": models[key][1]}
-        for key, values in curves
+        {"name": models[key][0], "x": plain(values), "y": CURVE.tolist(), "color": models[key][1], "dash": dash}
+        for (key, values), dash in zip(curves, cycle(DASHES))
     ]
     title = f"{scene}, {quantity}"
     label = f"{title}: share of the phases at which it stays below a value, by model"

@@ -59,8 +59,13 @@ def explained(sentence: str, seen: set[str] | None = None) -> Markup:
         seen.add(word)
         return symbols(word) if known else term(word)
 
-    unbroken = sentence.replace(" %", "\u00a0%")  # no line ends between a number and its sign
-    return _by_parts(WORDS.finditer(unbroken), unbroken, first, symbols)
+    text = unbroken(sentence)
+    return _by_parts(WORDS.finditer(text), text, first, symbols)
+
+
+def unbroken(text: str) -> str:
+    """Return the text in which no line ends between a number and its sign of percent."""
+    return text.replace(" %", "\u00a0%")
 
 
 def _by_parts(

@@ -12,7 +12,7 @@ import jinja2
 from markupsafe import Markup
 
 from comparison.analyses.motions.page_data import packed, packed_motions
-from comparison.report.glossary import explained, term
+from comparison.report.glossary import explained, term, unbroken
 from comparison.report.page_data import page_data
 from comparison.report.results import VALIDATED_BRIEFLY, Results
 from comparison.report.section import Report
@@ -136,7 +136,7 @@ def _environment() -> jinja2.Environment:
         [jinja2.PackageLoader("comparison.report", "templates"), jinja2.PackageLoader("comparison", "analyses")]
     )
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    filters = (percent, signed, scientific, degrees, significant, symbols, explained)
+    filters = (percent, signed, scientific, degrees, significant, symbols, explained, unbroken)
     environment.filters.update({function.__name__: function for function in filters})
     environment.globals["term"] = term  # in macros, too
     return environment

@@ -63,12 +63,6 @@ def draw_ensemble(path: Path, ensemble: EnsembleResult) -> None:
     draw_panels(path, f"{names}\n{_motions(ensemble)}: median, 16 % to 84 %", ensemble_panels(ensemble))
 
 
-def draw_profiles(path: Path, ensemble: EnsembleResult) -> None:
-    """Write profiles and floor spectra to `path`, for report.pdf."""
-    title = f"{_motions(ensemble)}: median, 16 % to 84 %"
-    draw_panels(path, title, [*_profiles(ensemble), *_spectra(ensemble)], columns=2, height=2.8)
-
-
 def _motions(ensemble: EnsembleResult) -> str:
     return f"{ensemble.motions} motion{'' if ensemble.motions == 1 else 's'}"
 

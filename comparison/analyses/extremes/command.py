@@ -13,12 +13,12 @@ from dataclasses import replace
 from rich.console import Console
 
 from comparison.analyses.extremes.analysis import LIMIT, Extremes, cells, reduced
-from comparison.analyses.extremes.matrix import FILE, PICTURE, STORED, Matrix, Verdict
+from comparison.analyses.extremes.matrix import FILE, STORED, Matrix, Verdict
 from comparison.analyses.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, rows, user_column
 from comparison.cli.arguments import CommandParser, command, jobs, number, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.user_models import add_models, user_models
-from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
+from comparison.runner.output import destination, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from reference.problem import SceneError
@@ -44,21 +44,18 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     options = parser.parse_args(argv)
     extremes = _chosen(options)
     out = destination(options.out)
-    refuse_foreign_files(out, [FILE, PICTURE])
+    refuse_foreign_files(out, [FILE])
     console = wide_console()
     matrix = judged_matrix(extremes, options, argv, console, executor)
-    from comparison.analyses.extremes.figure import draw_extremes  # matplotlib: not needed to refuse a command
-
-    picture = made_by(lambda folder: draw_extremes(folder / PICTURE, matrix))
     with writing(out):
-        files = publish(out, {FILE: STORED.as_json(matrix), **picture}, "comparison.extremes")
+        (file,) = publish(out, {FILE: STORED.as_json(matrix)}, "comparison.extremes")
     for verdict in (Verdict.LIMIT, Verdict.FAILED):
         for row, title, entry in matrix.listed(verdict):
             console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
     counts = ", ".join(f"{count} {name}" for name, count in matrix.counts().items())
     spent = f"{matrix.run['seconds']} s, {matrix.run['cpu_seconds']} s of processor time"
     console.print(f"{sum(matrix.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)
-    console.print(f"Matrix: {', '.join(map(str, files))}", soft_wrap=True)
+    console.print(f"Matrix: {file}", soft_wrap=True)
     console.print("A report written into the same directory by comparison.run shows it.")
     return 1 if matrix.counts()[Verdict.FAILED] else 0
 

@@ -1,16 +1,7 @@
 """Stability at the extremes: in the report."""
 
-from pathlib import Path
-
-from comparison.analyses.extremes.matrix import MEANING, PICTURE, STORED, Matrix, Verdict, describe
-from comparison.report.section import Feature, Report, Section
-
-
-def _draw(figures: Path, report: Report) -> None:
-    from comparison.analyses.extremes.figure import draw_extremes  # matplotlib: only a report that draws here needs it
-
-    draw_extremes(figures / PICTURE, report.results.of("extremes"))
-
+from comparison.analyses.extremes.matrix import MEANING, STORED, Matrix, Verdict, describe
+from comparison.report.section import Feature, Section
 
 FEATURE = Feature(
     "extremes",
@@ -25,7 +16,6 @@ FEATURE = Feature(
             "verdicts": [(verdict.value, MEANING[verdict]) for verdict in Verdict],
             "describe": describe,
         },
-        draw=_draw,
         verifies=True,
         verdict=lambda results: results.of("extremes").count_line,
     ),

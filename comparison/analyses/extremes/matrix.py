@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from comparison.json_file import StoredFile
 from comparison.result_types import result
 
-FILE, PICTURE = "extremes.json", "extremes.png"
+FILE = "extremes.json"
 
 
 class Verdict(StrEnum):

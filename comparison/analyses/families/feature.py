@@ -1,7 +1,6 @@
 """Families of scenes: in the report and in summary.json."""
 
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import Any
 
 from comparison.analyses.families.analysis import (
@@ -13,14 +12,13 @@ from comparison.analyses.families.analysis import (
     family_demands_over_phases,
     family_steps,
 )
-from comparison.analyses.panels import draw_panels, panel
+from comparison.analyses.panels import panel
 from comparison.report.plots import DEMANDS, Panel, plain
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
-from comparison.report.section import Feature, Findings, Report, Section
+from comparison.report.section import Feature, Findings, Section
 from comparison.result_types import Part, Text
 from comparison.surfaces.budget import TOTAL
-from comparison.surfaces.figures.file_names import figure_file
 from comparison.surfaces.waterfall import PHASES
 from comparison.wording import MAX_NAMES
 
@@ -140,17 +138,6 @@ def _family_demand(
     return _over(family, f"{title} {of_which}", title, f"{title}, {unit}", lines) if lines else None
 
 
-def _draw(figures: Path, report: Report) -> None:
-    results = report.results
-    titles = {scene.name: (scene.title, scene.bodies) for scene in results.scenes}
-    for family in results.of("families"):
-        title, bodies = titles[family.scenes[0]]
-        for body in range(1, bodies + 1):
-            panels = [_family_mu(results, family, body), _family_steps(results, family, body)]
-            path = figures / figure_file(family.name, f"body{body}", "family")
-            draw_panels(path, f"{title} ({family.name})", panels)
-
-
 FEATURE = Feature(
     "families",
     list[FamilyResult],
@@ -160,7 +147,6 @@ FEATURE = Feature(
         "Families of scenes",
         "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
         lambda report, figures: {"family_panels": family_panels(report.results)},
-        draw=_draw,
         folded=False,
     ),
 )

@@ -14,7 +14,6 @@ from rich.console import Console
 
 from comparison.analyses.tradeoff import growth
 from comparison.analyses.tradeoff.analysis import TradeOff
-from comparison.analyses.tradeoff.feature import draw_growth, draw_tradeoff
 from comparison.analyses.tradeoff.growth import Growth, MeasuredGrowth, Series, by_workers
 from comparison.analyses.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
 from comparison.analyses.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, Trade, TradeFile, load
@@ -22,19 +21,17 @@ from comparison.cli.arguments import CommandParser, command, jobs, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table
 from comparison.cli.user_models import add_models, user_models
-from comparison.runner.output import destination, made_by, netcdf, publish, refuse_foreign_files
+from comparison.runner.output import destination, netcdf, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.study import Study, refuse_same_names
-from comparison.surfaces.figures.file_names import figure_file, with_ending
+from comparison.surfaces.figures.file_names import figure_file
 from reference.command import UsageError
 from reference.problem import Scene, SceneError, load_scene
 
 DEFAULT = "fig3-I"
 COMMAND = "comparison.tradeoff"
-ENDINGS = "png", "pdf", "nc"  # of the files of a scene
 STARTING = 8.0  # s of a worker before its first task: imports, compiled code loaded
-GROWTH_FILES = (growth.FILE, growth.PICTURE, "growth.pdf")
 MODELS = {REFERENCE, ENGINE, RUN, LEVEL, CONSTANT, SCIPY}  # what the workers ask
 TOLERANCE = 1e-3  # of a study; every setting has one of its own
 
@@ -61,20 +58,19 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     refuse_same_names((scene.name, scene.name) for scene in scenes)
     out = destination(options.out)
     _stored(out)  # a file that is no trade is refused before anything is measured
-    pictures = [figure_file(scene.name, "tradeoff", ending=f".{end}") for scene in scenes for end in ENDINGS]
-    refuse_foreign_files(out, [FILE, *pictures, *(GROWTH_FILES if options.growth else ())])
+    refuse_foreign_files(out, [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)])
     console = wide_console()
     if options.growth:
         return _grown(scenes[0], options, argv, out, console, executor)
     measured = measured_trades(scenes, options, argv, console, executor)
     with writing(out):
         for each in measured:
-            publish(out, _files(each), COMMAND)
+            publish(out, {_values_file(each.trade.scene): netcdf(each.values)}, COMMAND)
         trades = {trade.scene: trade for trade in [*_stored(out), *(each.trade for each in measured)]}
         (file,) = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
     for each in measured:
         print_trade(console, each.trade)
-    console.print(f"Trade: {file}, and SCENE-tradeoff.png and .nc beside it.", soft_wrap=True)
+    console.print(f"Trade: {file}, and SCENE-tradeoff.nc beside it.", soft_wrap=True)
     return 0
 
 
@@ -88,11 +84,10 @@ def _grown(
     series = [*Growth().collect(study, None, results), by_workers(scene, process_pool)]
     facts = run_facts("tradeoff", options, words, begin)
     measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
-    picture = made_by(lambda folder: draw_growth(folder / growth.PICTURE, measured))
     with writing(out):
-        publish(out, {growth.FILE: growth.STORED.as_json(measured), **picture}, COMMAND)
+        publish(out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
     print_growth(console, series)
-    console.print(f"Growth: {out / growth.FILE}, and growth.png beside it.", soft_wrap=True)
+    console.print(f"Growth: {out / growth.FILE}", soft_wrap=True)
     return 0
 
 
@@ -151,12 +146,8 @@ def measured_trades(
     ]
 
 
-def _files(measured: MeasuredTrade) -> dict[str, bytes]:
-    picture = figure_file(measured.trade.scene, "tradeoff")
-    return made_by(
-        lambda folder: with_ending(folder / picture, ".nc").write_bytes(netcdf(measured.values)),
-        lambda folder: draw_tradeoff(folder / picture, measured.trade),
-    )
+def _values_file(scene: str) -> str:
+    return figure_file(scene, "tradeoff", ending=".nc")
 
 
 def print_trade(console: Console, trade: Trade) -> None:

@@ -5,34 +5,21 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.panels import draw_panels, panel
+from comparison.analyses.panels import panel
 from comparison.analyses.tradeoff import growth, trade
 from comparison.analyses.tradeoff.growth import MeasuredGrowth, Series
 from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
 from comparison.report.plots import MAX_CURVES, Panel
 from comparison.report.section import Feature, Report, Section
-from comparison.surfaces.figures.file_names import figure_file
 from comparison.wording import scientific
 
 TARGETS = 1e-2, 1e-3, 1e-4, 1e-6  # relative errors for which the trade is put into words
 
 
-def tradeoff_panels(trade: Trade, most: int | None = MAX_CURVES) -> list[Panel]:
-    """One panel for each question, of the platform and of the last body; at most so many curves, None for all."""
+def tradeoff_panels(trade: Trade) -> list[Panel]:
+    """One panel for each question, of the platform and of the last body."""
     bodies = sorted({0, trade.bodies - 1})
-    return [_tradeoff_panel(trade, question, body, most) for question in trade.questions for body in bodies]
-
-
-def draw_tradeoff(path: Path, trade: Trade) -> None:
-    """Write the panels with every curve to `path`, PNG, and as PDF."""
-    title = f"{trade.title} ({trade.scene}): speed for accuracy"
-    what = "error that 95 % of the points meet; dashed: model error; shaded: below that of the reference solution"
-    draw_panels(path, f"{title}\n{what}", tradeoff_panels(trade, None), 4)
-
-
-def draw_growth(path: Path, measured: MeasuredGrowth) -> None:
-    """Write how the cost grows to `path`, PNG, and as PDF."""
-    draw_panels(path, f"{measured.title} ({measured.scene}): cost", growth_panels(measured.series), 4)
+    return [_tradeoff_panel(trade, question, body) for question in trade.questions for body in bodies]
 
 
 def word_trades(trades: Sequence[Trade]) -> str:
@@ -81,7 +68,7 @@ def growth_panels(listed: Sequence[Series]) -> list[Panel]:
     return panels
 
 
-def _tradeoff_panel(trade: Trade, question: Answered, body: int, most: int | None) -> Panel:
+def _tradeoff_panel(trade: Trade, question: Answered, body: int) -> Panel:
     curves = {
         method: known
         for method, entries in trade.methods(question.key).items()
@@ -91,7 +78,7 @@ def _tradeoff_panel(trade: Trade, question: Answered, body: int, most: int | Non
     def rank(method: str) -> tuple[bool, int]:
         return curves[method][0].model_error, -sum(any(entry.pareto_front[body:][:1]) for entry in curves[method])
 
-    shown = sorted(curves, key=rank)[:most]
+    shown = sorted(curves, key=rank)[:MAX_CURVES]
     title = f"{question.title}, mu_{body + 1}"
     return panel(
         title,
@@ -110,13 +97,6 @@ def _curve(method: str, entries: Sequence[Entry], body: int, number: int) -> dic
     titles = [f"{method}, {entry.setting}: {time}" for entry, time in zip(entries, times)]
     line: dict[str, Any] = {"name": method, "x": x, "y": y, "marks": True, "titles": titles, "color": number}
     return {**line, "dash": "5 3"} if entries[0].model_error else line
-
-
-def _draw(figures: Path, report: Report) -> None:
-    for each in report.results.of("tradeoff") or ():
-        draw_tradeoff(figures / figure_file(each.scene, "tradeoff"), each)
-    if measured := report.results.of("growth"):
-        draw_growth(figures / growth.PICTURE, measured)
 
 
 def _context(report: Report, figures: Path) -> Mapping[str, Any]:
@@ -144,7 +124,6 @@ FEATURE = Feature(
         "Speed for accuracy",
         "python -m comparison.tradeoff SCENE makes it, beside the report; the next run of the study shows it",
         _context,
-        draw=_draw,
         verifies=True,
         verdict=lambda results: word_trades(results.of("tradeoff") or ()),
         shows=("tradeoff", "growth"),

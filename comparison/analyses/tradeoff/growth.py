@@ -23,7 +23,7 @@ from reference.problem import Scene
 TOLERANCE = 1e-3  # asked of the engine; the equations are asked for their own
 CALLS, PAIRS = 16, 64  # of the equations, shared by the workers
 
-FILE, PICTURE = "growth.json", "growth.png"
+FILE = "growth.json"
 SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"
 BODIES = (2, 4, 8, 16, 32, 64, 100)
 DURATIONS = (10.0, 30.0, 100.0, 300.0, 1000.0)  # s

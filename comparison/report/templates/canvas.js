@@ -15,11 +15,11 @@ function palette(list) {
   };
 }
 const variable = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-const dark = () => matchMedia("(prefers-color-scheme: dark)").matches && !matchMedia("print").matches;
+const dark = () => matchMedia("(prefers-color-scheme: dark)").matches && !paper.printing;
 const around = (a, b) => { const d = Math.abs(a - b) % turn; return Math.min(d, turn - d); };
 
 function prepared(canvas) {
-  const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
+  const [width, height] = paper.printing ? paper.surface : [canvas.clientWidth, canvas.clientHeight], ratio = paper.printing ? 4 : devicePixelRatio;  // sharp in print
   canvas.width = Math.round(width * ratio);
   canvas.height = Math.round(height * ratio);
   const pen = canvas.getContext("2d");
@@ -55,10 +55,10 @@ function draw3d(canvas, panel, camera) {
   const center = [width / 2 + 14, height / 2];
   [front, (front + 3) % 4].forEach(from => {  // the two edges at the front carry the phases
     const [p, q] = [corners[from], corners[(from + 1) % 4]], name = p[0] === q[0] ? "α₂" : "α₁";
-    [["π/2", 0.25], [`${name} = π`, 0.5], ["3π/2", 0.75]].forEach(([text, part]) => {
+    [["π/2", 0.25, 0], [name, 0.5, 9], ["3π/2", 0.75, 0]].forEach(([text, part, farther]) => {
       const value = part * turn, [x, y] = at(name === "α₁" ? value : p[0], name === "α₁" ? p[1] : value, 0), side = Math.sign(x - center[0]) || 1;
       pen.textAlign = side > 0 ? "left" : "right";
-      pen.fillText(text, x + 6 * side, y + 13);
+      pen.fillText(text, x + (6 + farther) * side, y + 13 + farther);
     });
   });
   const [low, high] = [0, 1].map(part => at(...corners[leftmost], part));

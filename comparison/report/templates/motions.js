@@ -49,7 +49,7 @@ function motionFigures(scene, models, motions) {
   const { body } = state, shown = motions.map((motion, k) => ({ motion, k })).filter(({ motion }) => motion.time.length);
   if (!shown.length) return [];
   const line = k => ({ name: study.titles[models[k]], color: k, dash: k ? "5 3" : "", width: k ? 1.4 : 1.8 });
-  const figure = (title, spec) => plotFigure(title, { height: 200, ...spec, label: `${title}, ${scene.title}: ${models.map(key => study.titles[key]).join(" and ")}` });
+  const figure = (title, spec) => plotFigure(scene.name, title, { height: 200, ...spec, label: `${title}, ${scene.title}: ${models.map(key => study.titles[key]).join(" and ")}` });
   const time = { title: "t, s", range: [0, scene.duration] };
   const over = (title, unit, pick) => figure(title, { x: time, y: { title: unit }, series: shown.map(({ motion, k }) => ({ ...line(k), x: motion.time, y: pick(motion) })) });
   const plane = (title, x, y, pick, extra = {}) => {

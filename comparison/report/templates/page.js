@@ -32,9 +32,22 @@ function openTarget() {
 }
 addEventListener("hashchange", openTarget);
 document.querySelectorAll("a[data-show-scene]").forEach(link => link.addEventListener("click", () => { if (study) chooseScene(Number(link.dataset.showScene)); }));
-addEventListener("beforeprint", () => {  // paper has no folded section, and no time to wait for its plots
-  document.querySelectorAll("details.section").forEach(section => { section.open = true; });
-  document.querySelectorAll("[data-plot]").forEach(drawStanding);
+// paper has nothing folded, light colors, plots and surfaces in the size they have there, and no time to wait for them
+let unfolded = [];
+addEventListener("beforeprint", () => {
+  paper.printing = true;
+  document.documentElement.dataset.paper = "";
+  unfolded = [...document.querySelectorAll("details:not([open])")];
+  unfolded.forEach(details => { details.open = true; });
+  document.querySelectorAll(".plot").forEach(drawStanding);
+  if (study && part("scene")?.options.length) drawPaper();
+});
+addEventListener("afterprint", () => {
+  paper.printing = false;
+  delete document.documentElement.dataset.paper;
+  unfolded.forEach(details => { details.open = false; });
+  document.querySelectorAll(".plot").forEach(drawStanding);
+  part("paper")?.replaceChildren();
 });
 
 unpacked("data").then(buffer => {

@@ -2,7 +2,7 @@
 // every plot of the page: drawn as SVG at the width it has, from a description
 //   { label, height, x: {title, log, range, ticks: [[value, text], ...], equal}, y: the same,
 //     series: [{ name, x, y, low, high, band, line, marks, color, dash, width, titles, legend }], bands: [{ from, to, text }] }
-// color: 0 to 7 of the palette, "ink" or "gray"; a null in y parts a line; low and high make error bars, or a band
+// color: number in the palette, "ink" or "gray"; a null in y parts a line; low and high make error bars, or a band
 const SVG = "http://www.w3.org/2000/svg";
 function svgElement(name, attributes = {}, ...content) {
   const element = document.createElementNS(SVG, name);
@@ -17,6 +17,9 @@ function element(name, className = "", ...content) {
   return made;
 }
 
+const COLORS = 8;  // of the palette: from there on they repeat
+const lookOf = series => `c-${Number.isInteger(series.color) ? series.color % COLORS : series.color ?? 0}`;
+const paper = { printing: false, plot: 342, surface: [226, 190] };  // px at 96 to the inch: what stands two and three times beside each other on A4
 const known = value => value !== null && Number.isFinite(value);
 function rangeOf(axis, values) {
   if (axis.range) return axis.range;
@@ -52,7 +55,7 @@ function shortNumber(value, step = Math.abs(value)) {
 }
 
 function drawPlot(box, spec) {
-  const width = Math.max(200, box.clientWidth), height = spec.height ?? 230;
+  const width = Math.max(200, paper.printing ? paper.plot : box.clientWidth), height = spec.height ?? 230;
   const all = key => spec.series.flatMap(series => [...series[key], ...(key === "y" ? [...(series.low ?? []), ...(series.high ?? [])] : [])]);
   let xRange = rangeOf(spec.x, all("x")), yRange = rangeOf(spec.y, all("y"));
   let yTicks = ticksOf(spec.y, yRange, Math.max(2, Math.floor(height / 42)));
@@ -94,7 +97,7 @@ function drawPlot(box, spec) {
   const drawing = svgElement("g", { "clip-path": `url(#${clip})` });
   svg.append(frame, drawing);
   spec.series.forEach(series => {
-    const look = `c-${series.color ?? 0}`, shown = Array.from(series.x, (x, i) => known(x) && known(series.y[i]) && (!spec.x.log || x > 0) && (!spec.y.log || series.y[i] > 0));
+    const look = lookOf(series), shown = Array.from(series.x, (x, i) => known(x) && known(series.y[i]) && (!spec.x.log || x > 0) && (!spec.y.log || series.y[i] > 0));
     if (series.line !== false) {
       let path = "", down = false;
       series.x.forEach((x, i) => { path += shown[i] ? `${down ? "L" : "M"}${X(x).toFixed(1)} ${Y(series.y[i]).toFixed(1)}` : ""; down = shown[i]; });
@@ -114,8 +117,8 @@ function drawPlot(box, spec) {
       drawing.append(mark);
     });
   });
-  const named = spec.series.filter(series => series.name && series.legend !== false);
-  box.replaceChildren(...(named.length && spec.legend !== false ? [legendOf(named)] : []), svg);
+  const named = namedSeries(spec);
+  box.replaceChildren(...(named.length ? [legendOf(named)] : []), svg);
 }
 // a mark has a shape of its own for each color: told apart without colors
 function markOf(color, x, y, look) {
@@ -124,17 +127,20 @@ function markOf(color, x, y, look) {
     () => svgElement("circle", { cx: x, cy: y, r, class: `mark ${look}` }), () => points([[-1, -1], [1, -1], [1, 1], [-1, 1]]),
     () => points([[0, -1.3], [1.2, 0.9], [-1.2, 0.9]]), () => points([[0, -1.4], [1.4, 0], [0, 1.4], [-1.4, 0]]),
     () => points([[0, 1.3], [1.2, -0.9], [-1.2, -0.9]]), () => points([[-1.3, 0], [0.9, -1.2], [0.9, 1.2]]), () => points([[1.3, 0], [-0.9, -1.2], [-0.9, 1.2]]),
+    () => points([[-1.5, -0.5], [1.5, -0.5], [1.5, 0.5], [-1.5, 0.5]]),
   ];
-  return (shapes[Number(color)] ?? shapes[0])();
+  return (shapes[Number(color) % COLORS] ?? shapes[0])();
+}
+const namedSeries = spec => spec.legend === false ? [] : spec.series.filter(series => series.name && series.legend !== false);
+function keyOf(series) {
+  const key = svgElement("svg", { viewBox: "0 0 26 12", "aria-hidden": "true", class: "key" }), look = lookOf(series);
+  if (series.line !== false) key.append(svgElement("path", { d: "M1 6 H25", class: `line ${look}`, "stroke-width": 2, ...(series.dash ? { "stroke-dasharray": series.dash } : {}) }));
+  if (series.marks) key.append(markOf(series.marks === true ? series.color : series.marks, 13, 6, look));
+  return key;
 }
 function legendOf(list) {
   const legend = element("ul", "legend");
-  list.forEach(series => {
-    const key = svgElement("svg", { viewBox: "0 0 26 12", "aria-hidden": "true", class: "key" }), look = `c-${series.color ?? 0}`;
-    if (series.line !== false) key.append(svgElement("path", { d: "M1 6 H25", class: `line ${look}`, "stroke-width": 2, ...(series.dash ? { "stroke-dasharray": series.dash } : {}) }));
-    if (series.marks) key.append(markOf(series.marks === true ? series.color : series.marks, 13, 6, look));
-    legend.append(element("li", "", key, element("span", "", ...indexed(series.name))));
-  });
+  list.forEach(series => legend.append(element("li", "", keyOf(series), element("span", "", ...indexed(series.name)))));
   return legend;
 }
 // v_reg with its index below the line, in the page and inside a picture: every second part is an index
@@ -143,17 +149,59 @@ const indexed = text => parts(text).map((part, i) => i % 2 ? element("sub", "", 
 const indexedInPicture = text => parts(text).map((part, i) => svgElement("tspan", i % 2 ? { dy: 3, "font-size": "80%" } : i ? { dy: -3 } : {}, part));
 
 // plots that stand in the page: drawn when they come into view, and again at another width
-const drawStanding = box => { if (box.clientWidth) drawPlot(box, box.spec ??= JSON.parse(box.dataset.plot)); };
+const drawStanding = box => { if (paper.printing || box.clientWidth) drawPlot(box, box.spec ??= JSON.parse(box.dataset.plot)); };
 const plotWatcher = new ResizeObserver(entries => entries.forEach(({ target, contentRect }) => {
   if (Math.abs(contentRect.width - (target.drawnAt ?? 0)) <= 1) return;
   target.drawnAt = contentRect.width;
   drawStanding(target);
 }));
-document.querySelectorAll("[data-plot]").forEach(box => plotWatcher.observe(box));
-// a plot that a script makes: a figure with its title
-function plotFigure(title, spec) {
-  const box = element("div", "plot");
-  box.spec = spec;
+document.querySelectorAll("[data-plot]").forEach(box => {
+  offerFile(box, box.closest("[data-scene]")?.dataset.scene);
   plotWatcher.observe(box);
-  return element("figure", "", element("figcaption", "", ...indexed(title)), box);
+});
+// a plot that a script makes: a figure with its title
+function plotFigure(scene, title, spec) {
+  const box = element("div", "plot"), figure = element("figure", "", element("figcaption", "", ...indexed(title)), box);
+  box.spec = spec;
+  offerFile(box, scene);
+  plotWatcher.observe(box);
+  return figure;
+}
+
+// a plot as a file of its own, as it is shown: with its title, its legend and every style
+const STYLES = ["fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin", "opacity", "font-size", "font-family"];
+function offerFile(box, scene = "") {
+  const caption = box.closest("figure").querySelector("figcaption"), save = element("button", "save", "save as SVG");
+  const title = [...caption.childNodes].map(node => (node.nodeName === "SUB" ? "_" : "") + node.textContent).join("");
+  save.type = "button";
+  save.addEventListener("click", () => saveFile(fileName(title.startsWith(scene) ? title : `${scene} ${title}`, "svg"), svgFile(title, box), "image/svg+xml"));
+  caption.append(save);
+}
+const fileName = (text, ending) => `${text.replace(/[^\p{L}\p{N}_.=+-]+/gu, "-").replace(/^-+|-+$/g, "").slice(0, 120)}.${ending}`;
+function saveFile(name, text, type) {
+  const link = element("a");
+  link.download = name;
+  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}
+function withStyles(shown) {
+  const copy = shown.cloneNode(false), styles = getComputedStyle(shown);
+  STYLES.forEach(name => copy.setAttribute(name, styles.getPropertyValue(name)));
+  copy.removeAttribute("class");
+  copy.append(...[...shown.childNodes].map(node => node.nodeType === Node.ELEMENT_NODE ? withStyles(node) : node.cloneNode()));
+  return copy;
+}
+function svgFile(title, box) {
+  const plot = box.querySelector("svg.plot-svg"), [, , width, height] = plot.getAttribute("viewBox").split(" ").map(Number), row = 16;
+  const [ink, fill] = ["--ink", "--back"].map(variable), font = getComputedStyle(document.body).fontFamily;
+  const line = (x, number, text) => svgElement("text", { x, y: row * (number + 1) - 4, fill: ink, "font-size": "11px", "font-family": font }, ...indexedInPicture(text));
+  const keys = [...box.querySelectorAll("svg.key")].map(withStyles), names = namedSeries(box.spec).map(series => series.name), top = row * (names.length + 1);
+  keys.forEach((key, i) => Object.entries({ x: 2, y: row * (i + 1) + 2, width: 26, height: 12 }).forEach(([name, value]) => key.setAttribute(name, value)));
+  const drawing = withStyles(plot);
+  Object.entries({ y: top, width, height }).forEach(([name, value]) => drawing.setAttribute(name, value));
+  const whole = svgElement("svg", { viewBox: `0 0 ${width} ${top + height}`, width, height: top + height, role: "img" },
+    svgElement("title", {}, box.spec.label ?? title), svgElement("rect", { width, height: top + height, fill }), line(2, 0, title),
+    ...keys, ...names.map((name, i) => line(34, i + 1, name)), drawing);
+  return new XMLSerializer().serializeToString(whole);
 }

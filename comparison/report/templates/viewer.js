@@ -7,7 +7,7 @@ const viewer = document.getElementById("viewer") ?? document.createElement("div"
 const part = name => viewer.querySelector(`[data-part="${name}"]`);
 const degrees = phase => `${Math.round(phase * 180 / Math.PI)}°`;
 const at = phases => `(${phases.map(degrees).join(", ")})`;
-const percentText = value => !known(value) ? "none" : `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value) >= 10 ? Math.abs(value).toFixed(0) : +Math.abs(value).toPrecision(2)} %`;
+const percentText = value => !known(value) ? "none" : `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value) >= 10 ? Math.abs(value).toFixed(0) : +Math.abs(value).toPrecision(2)}\u00a0%`;  // no line ends before the sign
 const digits = (value, count = 4) => known(value) ? String(+value.toPrecision(count)).replace("-", "−") : "none";
 
 async function unpacked(id) {
@@ -62,18 +62,26 @@ function panels() {
     const notes = [k === 2 ? `${shown} × ${shown} phases${surface.completed ? ", completed" : ""}` : state.grid === "second" && k === 0 && !surface.sheet ? `${shown} × ${shown} of ${surface.model.phases} × ${surface.model.phases} phases` : grid(surface, surface.model.phases)];
     if (surface.completed?.mu && k < 2) notes.push(`dots: computed; ${surface.completed.certificate}`);
     if (!surface.sheet && k === 1 && surface.completed?.reason) notes.push(`points: ${surface.completed.reason}`);
-    if (largest) notes.push(`largest of ${surface.phases} × ${surface.phases} phases: ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])} ▾`);
+    if (largest) notes.push(`largest of ${surface.phases} × ${surface.phases} phases: ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])}\u00a0▾`);
     else notes.push("no value at any phase pair");
     if (surface.points.some(point => point.error === null)) notes.push("dashed: of unknown error");
     const worst = k < 2 ? surface.model.worst[body - 1] : null;
     const own = worst && worst[3] === (k ? pair.second : pair.first);
-    if (k < 2) notes.push(worst ? `largest over all phases${own ? "" : `, ${study.titles[worst[3]]}`}: ${digits(worst[2])} at ${at(worst.slice(0, 2))}${own ? " ▿" : ""}` : "largest over all phases: not searched");
+    if (k < 2) notes.push(worst ? `largest over all phases${own ? "" : `, ${study.titles[worst[3]]}`}: ${digits(worst[2])} at ${at(worst.slice(0, 2))}${own ? "\u00a0▿" : ""}` : "largest over all phases: not searched");
     return { ...common, ...surface, range: k === 2 ? [-reach, reach] : range, color: k === 2 ? signs : light, largest: largest && [largest.a, largest.b], worst: own && worst.slice(0, 2),
       lines: k === 2 && surface.sheet && !surface.completed ? pair.contours[body - 1] : [], notes,
       title: k === 2 ? "difference, % of the first" : study.titles[k ? pair.second : pair.first], unit: k === 2 ? " %" : "" };
   });
 }
 
+// title, scale and notes of a panel
+function describe(figure, panel, k) {
+  const scale = figure.querySelector("canvas.scale"), pen = scale.getContext("2d");
+  figure.querySelector("b").replaceChildren(...(k < 2 ? indexed(`μ_${state.body}, `) : []), ...indexed(panel.title));
+  figure.querySelector(".notes").replaceChildren(...panel.notes.map(note => element("span", "", ...indexed(note))));
+  for (let x = 0; x < scale.width; x++) { pen.fillStyle = panel.color(x / (scale.width - 1)); pen.fillRect(x, 0, scale.width - x, scale.height); }  // over the one before: no seam is seen
+  panel.range.forEach((value, end) => { figure.querySelectorAll(".scale span")[end].textContent = k === 2 ? percentText(value) : digits(value, 3); });
+}
 const canvases = [...viewer.querySelectorAll("figure canvas.surface")];
 let shown = [];
 function paint() {
@@ -93,11 +101,7 @@ function show() {
   if (scene.recorded) return;
   shown = panels();
   shown.forEach((panel, k) => {
-    const figure = canvases[k].closest("figure"), scale = figure.querySelector("canvas.scale"), pen = scale.getContext("2d"), [low, high] = panel.range;
-    figure.querySelector("b").replaceChildren(...(k < 2 ? indexed(`mu_${state.body}`.replace("mu", "μ")) : []), k < 2 ? ", " : "", ...indexed(panel.title));
-    figure.querySelector(".notes").replaceChildren(...panel.notes.map(note => element("span", "", ...indexed(note))));
-    for (let x = 0; x < scale.width; x++) { pen.fillStyle = panel.color(x / (scale.width - 1)); pen.fillRect(x, 0, 1, scale.height); }
-    [low, high].forEach((value, end) => { figure.querySelectorAll(".scale span")[end].textContent = k === 2 ? percentText(value) : digits(value, 3); });
+    describe(canvases[k].closest("figure"), panel, k);
     canvases[k].setAttribute("aria-label", `${panel.title}, ${scene.title}, body ${state.body}: ${panel.notes.join("; ")}. Arrow keys move the cross, Enter shows the nearest stored motion.`);
   });
   paintSoon();
@@ -161,6 +165,29 @@ function chooseScene(scene, body = 1) {
   showMotions();
 }
 
+// on paper: the surfaces of every scene and body; the pair of models is the one shown, or the one with which the page opens
+function drawPaper() {
+  const now = { ...state }, place = sceneNow().places[now.place], pair = pairNow();
+  const models = `${study.titles[pair.first]} and ${study.titles[pair.second]}`;
+  part("chosen").replaceChildren(...indexed(`${sceneNow().name}, body ${now.body}, ${models}: ${place?.phases ? at(place.phases) : "the record"}`));
+  const sheets = [...part("scene").options].map(option => Number(option.value)).flatMap(number => Array.from({ length: study.scenes[number].recorded ? 0 : study.scenes[number].bodies }, (_, i) => {
+    const scene = study.scenes[number], body = i + 1, here = number === now.scene && body === now.body;
+    Object.assign(state, { scene: number, body, cursor: null, place: here ? now.place : null });
+    state.pair = here ? now.pair : drawnPair(body);
+    const figures = panels().map((panel, k) => {
+      const figure = canvases[k].closest("figure").cloneNode(true), canvas = figure.querySelector("canvas.surface");
+      ["tabindex", "aria-label"].forEach(name => canvas.removeAttribute(name));
+      describe(figure, panel, k);
+      state.view === "3d" ? draw3d(canvas, panel, camera) : drawMap(canvas, panel);
+      return figure;
+    });
+    const sheet = element("div", "sheet", element("h3", "", `${scene.title} (${scene.name}), body ${body}: `, ...indexed(pairNow().sentence)), element("div", "three", ...figures));
+    return sheet;
+  }));
+  part("paper").replaceChildren(...sheets);
+  Object.assign(state, now);
+}
+
 function startViewer() {
   part("scene").addEventListener("change", event => chooseScene(Number(event.target.value)));
   part("body").addEventListener("change", event => chooseScene(state.scene, Number(event.target.value)));
@@ -208,6 +235,5 @@ function startViewer() {
   });
   new ResizeObserver(paintSoon).observe(part("panels"));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", show);
-  matchMedia("print").addEventListener("change", () => { if (!sceneNow().recorded) { shown = panels(); paint(); } });
   chooseScene(Number(part("scene").options[0].value));
 }

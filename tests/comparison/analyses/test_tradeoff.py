@@ -10,7 +10,6 @@ import xarray as xr
 from known_analyses import collected
 from known_results import known_trade
 from rich.console import Console
-from runs import no_picture
 from scipy.stats import linregress
 
 from comparison.analyses.tradeoff import analysis, command, growth, outside, single_runs
@@ -151,7 +150,6 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
     question = Question("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
     monkeypatch.setattr(analysis, "settings", lambda scene, quick: known)
-    monkeypatch.setattr(command, "draw_tradeoff", no_picture)
     monkeypatch.setattr(analysis, "asked", lambda scene: [question])
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
@@ -218,7 +216,6 @@ def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path)
     bodies = with_slope("bodies", "", "exact", (2.0, 4.0, 8.0), (0.5, 2.0, 8.0))
     workers = with_slope("workers", "", "exact", (1.0, 2.0), (3.0, float("nan")))
     monkeypatch.setattr(command, "computed", lambda *rest: None)
-    monkeypatch.setattr(command, "draw_growth", no_picture)
     monkeypatch.setattr(Growth, "collect", lambda *rest: [bodies])
     monkeypatch.setattr(command, "by_workers", lambda *rest: workers)
     assert command.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0

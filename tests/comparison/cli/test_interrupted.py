@@ -24,7 +24,7 @@ from report_texts import summary_of
 from runs import Run, no_executor
 
 from comparison.analyses.extremes import command as extremes
-from comparison.analyses.extremes.matrix import PICTURE, STORED
+from comparison.analyses.extremes.matrix import STORED
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.output import publish
 from comparison.runner.task_results import TaskResults
@@ -124,7 +124,6 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     rows = [replace(PLAIN, title=str(number), columns=models) for number in range(COUNT // len(models))]
     monkeypatch.setattr(extremes, "COLUMNS", tuple(replace(fake(model), key=model) for model in models))
     monkeypatch.setattr(extremes, "rows", lambda: iter(rows))
-    monkeypatch.setattr(extremes, "made_by", lambda draw: {PICTURE: b"a picture"})
     monkeypatch.chdir(tmp_path)
     words = ["--jobs", "2", "--out", "report"]
     assert extremes.main(words, Interrupted) == 130

@@ -1,8 +1,10 @@
 """The page in a browser."""
 
+import re
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
@@ -15,6 +17,7 @@ from runs import quick_figures
 import comparison.run
 from reference.problem import example_scenes
 
+SVG = "{http://www.w3.org/2000/svg}"
 SERIOUS = ("serious", "critical")
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
@@ -153,13 +156,42 @@ def test_a_table_is_copied_to_the_clipboard_as_csv(visit: Visit) -> None:
     assert page.locator("#differences [role=status]").first.inner_text() == f"{len(lines) - 1} rows copied"
 
 
-def test_paper_shows_plots_and_surfaces_and_no_control(visit: Visit) -> None:
+def test_every_plot_is_saved_as_svg_that_needs_nothing_else(browser: Browser, finished: Path) -> None:
+    for name, least in (("index.html", 8), ("verification.html", 2)):
+        visit = opened(browser, finished / name, LAPTOP, "dark")
+        page = visit.page
+        unfolded(page)
+        plots = page.locator("figure:has(svg.plot-svg)")
+        assert plots.count() == page.locator("button.save").count() >= least
+        for number in range(plots.count()):
+            plot = plots.nth(number)
+            with page.expect_download() as saved:
+                plot.locator("button.save").click()
+            file = saved.value
+            root = ElementTree.fromstring(file.path().read_text(encoding="utf-8"))
+            drawn = ["".join(each.itertext()) for each in root.iter(f"{SVG}text")]
+            shown = plot.locator("svg.plot-svg text").evaluate_all("list => list.map(each => each.textContent)")
+            named = plot.locator(".legend li").evaluate_all("list => list.map(each => each.textContent)")
+            caption = plot.locator("figcaption").evaluate("caption => caption.firstChild.textContent")
+            assert [text for text in (*shown, *named, caption) if text not in " ".join(drawn)] == []
+            assert not any(name in each.attrib for each in root.iter() for name in ("class", "style", "href"))
+            lines = [each for each in root.iter(f"{SVG}path") if each.get("stroke") not in (None, "none")]
+            assert all(each.get("fill") == "none" and float(each.get("stroke-width", "0px")[:-2]) > 0 for each in lines)
+            assert file.suggested_filename == re.sub(r"[^\w.=+-]+", "-", file.suggested_filename)
+        page.close()
+        assert (visit.complaints, len(visit.requests)) == ([], 1)
+
+
+def test_a_file_of_a_plot_is_called_by_scene_and_title(visit: Visit) -> None:
+    """The titles of some plots begin with their scene."""
     page = visit.page
-    page.emulate_media(media="print")
-    pdf = page.pdf(prefer_css_page_size=True)
-    controls = page.locator("button:not(.sort):visible, select:visible, nav:visible, input:visible").count()
-    surfaces = page.locator("canvas.surface:visible").count()
-    assert (pdf[:4], controls, surfaces) == (b"%PDF", 0, 3)
+    unfolded(page)
+    names = []
+    for title in ("displacement of the platform in x", "fig3-I, μ1"):
+        with page.expect_download() as saved:
+            page.locator("figure", has_text=title).first.locator("button.save").click()
+        names.append(saved.value.suggested_filename)
+    assert names == ["fig3-I-displacement-of-the-platform-in-x.svg", "fig3-I-μ_1.svg"]
 
 
 def test_surfaces_without_any_value_are_said_to_have_none(

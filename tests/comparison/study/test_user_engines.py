@@ -26,7 +26,7 @@ from comparison.analyses.extremes.analysis import cells
 from comparison.analyses.extremes.rows import rows, user_column
 from comparison.analyses.tradeoff import analysis
 from comparison.analyses.tradeoff.analysis import TradeOff
-from comparison.analyses.tradeoff.feature import draw_tradeoff
+from comparison.analyses.tradeoff.feature import tradeoff_panels
 from comparison.analyses.tradeoff.settings import QUESTIONS, user_settings
 from comparison.cli.user_models import as_words, look_at, user_models
 from comparison.runner import environment
@@ -506,7 +506,7 @@ def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
     assert set(mine) == {7.0}
 
 
-def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(analysis, "settings", lambda scene, quick: [])
     monkeypatch.setattr(analysis, "asked", lambda scene: [one for one in QUESTIONS if one.key == "regularised"])
     models = supplied("as_reference", "good"), supplied("raises", "bad")
@@ -520,4 +520,5 @@ def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatc
     assert max(error for error in good.most if error is not None) == pytest.approx(1e-3, rel=1e-3)
     assert good.error_estimate == [None, None], "it states none"
     assert good.pareto_front == (True, True)
-    draw_tradeoff(tmp_path / "trade.png", measured.trade)
+    curves = {line["name"] for each in tradeoff_panels(measured.trade) for line in each["plot"]["series"]}
+    assert curves == {good.method}, "one without an answer has no curve"
