@@ -62,7 +62,8 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "acceptance",
         "Limits for `--check`. `median`, `maximum` and `ratio` in this table apply to `like_for_like`. The tables"
         " `total`, `translational` and `like_for_like` take the same three keys. So does the table of an engine that"
-        " `--model NAME=...` adds, such as `[acceptance.mine]`; it limits the difference from the equations.",
+        " `--model NAME=...` adds, such as `[acceptance.mine]`; it limits the difference from the equations"
+        " that the engine solves. Without such a table the limit is `ratio = 2.0`.",
     ),
     (
         "`[analyses]`",
