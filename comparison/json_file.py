@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from reference.problem.files import read_file
+from reference.support.files import read_file
 
 LARGEST = 2**26  # bytes of a file
 

@@ -16,7 +16,8 @@ from comparison.surfaces.model_difference import difference_of
 from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.unanswered import unanswered
 from reference.problem import Scene, load_scene
-from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_whole_number
+from reference.problem.ranges import TOLERANCE
+from reference.support.arguments import Range, checked_choice, checked_number, checked_whole_number
 
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
 ENGINE, ENGINE_TITLE = "engine", "your engine"  # key and title of the user's engine

@@ -5,7 +5,7 @@ import re
 
 from markupsafe import Markup, escape
 
-from reference.drawing import verbatim
+from reference.support.drawing import verbatim
 
 MAX_DECIMALS = 4  # of a percentage: what is smaller is nothing
 SHOWN_ERROR = 0.01  # of a size: a smaller error is not seen in two digits

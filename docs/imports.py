@@ -29,6 +29,8 @@ ROWS = [  # of boxes, from above; a box stands for the modules whose names begin
     ["multibody.models", "reference.natural_modes"],
     ["reference.measures"],
     ["reference.problem"],
+    ["reference.records"],
+    ["reference.support"],
 ]
 
 

@@ -62,7 +62,8 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "acceptance",
         "Limits for `--check`. `median`, `maximum` and `ratio` in this table apply to `like_for_like`. The tables"
         " `total`, `translational` and `like_for_like` take the same three keys. So does the table of an engine that"
-        " `--model NAME=...` adds, such as `[acceptance.mine]`; it limits the difference from the equations.",
+        " `--model NAME=...` adds, such as `[acceptance.mine]`; it limits the difference from the equations"
+        " that the engine solves. Without such a table the limit is `ratio = 2.0`.",
     ),
     (
         "`[analyses]`",
@@ -82,7 +83,7 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
 INTRODUCTION = f"""# The scene file
 
 A scene is a TOML file in UTF-8 of at most 4 MiB. The stem of the file name is its name. `reference/problem/scenes` has
-the paper's four cases and `reference/problem/examples` two recorded motions. The error for an unknown key names the
+the paper's four cases and `reference/records/examples` two recorded motions. The error for an unknown key names the
 nearest valid keys. The error for a wrong value gives file, key, value and rule in one line.
 
 Every optional key is off by default. "All" models are the paper's equations and the two engine models, translational

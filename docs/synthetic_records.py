@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from reference.problem.constants import GRAVITY
-from reference.problem.record_files import Array
+from reference.records.formats import Array
+from reference.support.constants import GRAVITY
 
 PER_LINE = 5  # values in a line of an .AT2 file
 DESCRIPTION = "Synthetic, made by this project, no measurement: velocity along axis k = 0, 1, 2 (x, y, z)"

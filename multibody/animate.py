@@ -28,7 +28,6 @@ from multibody.integration.work_limit import refusal
 from multibody.models.assembly import assemble
 from multibody.models.engine import exudyn
 from multibody.motion import trajectory
-from reference.command import OneLineParser, run_command
 from reference.problem import (
     ADVICE,
     Outcome,
@@ -37,7 +36,8 @@ from reference.problem import (
     ground_acceleration,
     load_scene,
 )
-from reference.problem.files import write_new
+from reference.support.command import OneLineParser, run_command
+from reference.support.files import write_new
 
 Array = NDArray[np.float64]
 

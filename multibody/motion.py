@@ -16,9 +16,10 @@ from multibody.integration.refine import MAX_WORK, WORK, refine
 from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
 from reference.problem import Accuracy, Scene, State, Trajectory, checked_phase, ground_acceleration
-from reference.problem.ranges import TOLERANCE, Range, checked_choice, checked_number, checked_state
+from reference.problem.ranges import TOLERANCE, checked_state
 from reference.problem.readings import describe_law
 from reference.problem.scene import takes_scene
+from reference.support.arguments import Range, checked_choice, checked_number
 
 # Largest number of steps of a single run, which is held in memory whole.
 MAX_STEPS = 1e7

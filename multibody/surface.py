@@ -26,9 +26,10 @@ from reference.problem import (
     in_plane,
     planar_chain,
 )
-from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE, checked_number
+from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE
 from reference.problem.readings import FINER, describe_law, reading_of
 from reference.problem.scene import takes_scene
+from reference.support.arguments import checked_number
 
 Array = NDArray[np.float64]
 

@@ -90,7 +90,7 @@ from reference.problem import (
     load_scene,
     phase_grid,
 )
-from reference.problem.version import __version__ as __version__
+from reference.support.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from reference.demand_surface import peak_demands

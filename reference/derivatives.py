@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from reference.measures import Estimate, Estimates
 from reference.problem import Amplification, Scene
 from reference.problem.changed_values import value_at
-from reference.problem.ranges import brief
 from reference.problem.scene import takes_scene
+from reference.support.arguments import brief
 
 Array = NDArray[np.float64]
 Quantity = Callable[[Scene], Any]

@@ -19,7 +19,7 @@ from reference.problem import (
     ground_acceleration,
     loading_period,
 )
-from reference.problem.ranges import checked_array, checked_state
+from reference.problem.ranges import checked_state
 from reference.problem.readings import describe_law
 from reference.problem.scene import takes_scene
 from reference.solver.error_estimate import (
@@ -32,6 +32,7 @@ from reference.solver.error_estimate import (
 )
 from reference.solver.samples import SampledMotion, sample_motion, step_instants
 from reference.solver.system import Array, RunSettings, StepRecord, System, allocate_record
+from reference.support.arguments import checked_array
 from reference.surface import OUTCOMES, checked_demand, loads_are_finite
 
 SAMPLES_PER_PERIOD = 64  # default samples per shorter loading period

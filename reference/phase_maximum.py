@@ -21,11 +21,11 @@ from reference.measures.local_search import (
     search_round,
 )
 from reference.problem import Scene, checked_phases
-from reference.problem.ranges import checked_choice
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene
 from reference.problem.symmetry import distinct, half_turns
+from reference.support.arguments import checked_choice
 from reference.surface import amplification
 
 QUANTITIES = ("amplification", "displacement")

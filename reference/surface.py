@@ -25,14 +25,7 @@ from reference.problem import (
     loading_period,
     planar,
 )
-from reference.problem.ranges import (
-    CUTOFF,
-    LEAST_ACCELERATION,
-    REGULARIZATION,
-    TOLERANCE,
-    checked_choice,
-    checked_number,
-)
+from reference.problem.ranges import CUTOFF, LEAST_ACCELERATION, REGULARIZATION, TOLERANCE
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.scene import takes_scene
 from reference.solver.error_estimate import NOT_MET, RunPeaks, peaks_with_error
@@ -49,6 +42,7 @@ from reference.solver.system import (
     System,
     pack,
 )
+from reference.support.arguments import checked_choice, checked_number
 
 OUTCOMES = {
     SOLVED: Outcome.OK,

@@ -15,7 +15,7 @@ from comparison.report.plots import MAX_CURVES, Panel, plain
 from comparison.report.results import Results
 from comparison.surfaces.distribution import CURVE
 from comparison.wording import mathtext
-from reference.drawing import verbatim
+from reference.support.drawing import verbatim
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -17,8 +17,8 @@ from typing import Concatenate, ParamSpec, TypeVar
 from comparison.runner.cache import Cache
 from comparison.runner.processes import cores
 from comparison.runner.task import BATCH, RESULT
-from reference.command import OneLineParser, UsageError
 from reference.problem import SceneError
+from reference.support.command import OneLineParser, UsageError
 
 Rest = ParamSpec("Rest")
 Value = TypeVar("Value", int, float)

@@ -14,9 +14,9 @@ from pathlib import Path
 from comparison.cli.arguments import command, writing
 from comparison.cli.requirement import requirement
 from comparison.runner.output import destination, make_parents, refuse_unwritable
-from reference.command import OneLineParser
 from reference.problem import SceneError
-from reference.problem.files import NEW, staging
+from reference.support.command import OneLineParser
+from reference.support.files import NEW, staging
 
 PLACE = "DIRECTORY"
 TEMPLATE = {  # file of the study: file of the template

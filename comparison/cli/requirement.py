@@ -10,7 +10,7 @@ from urllib.parse import urlsplit, urlunsplit
 from urllib.request import url2pathname
 
 from comparison.runner.environment import git
-from reference.problem.version import __version__
+from reference.support.version import __version__
 
 NAME = "phase-resonance"
 CHECKOUT = Path(__file__).resolve().parents[2]

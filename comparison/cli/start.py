@@ -90,7 +90,7 @@ def start(module: str) -> NoReturn:
     except ImportError as error:
         print(f"{SCRIPT} cannot start: {' '.join(str(error).split())}", file=sys.stderr)
         raise SystemExit(3) from None
-    import_module("reference.command").run_command(main)
+    import_module("reference.support.command").run_command(main)
     raise AssertionError("run_command ends the process")
 
 

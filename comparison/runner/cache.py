@@ -29,7 +29,7 @@ from numpy.lib import format as npy
 from pydantic import ConfigDict, TypeAdapter
 
 from reference.problem import SceneError
-from reference.problem.files import TEMPORARY, read_file, write_atomically
+from reference.support.files import TEMPORARY, read_file, write_atomically
 
 MAGIC = b"phase-resonance result 1\n"
 DIGEST = 32  # bytes of a checksum

@@ -13,7 +13,7 @@ from importlib.metadata import PackageNotFoundError, packages_distributions, ver
 from importlib.util import find_spec
 from pathlib import Path
 
-from reference.problem.version import __version__
+from reference.support.version import __version__
 
 PACKAGES = ("exudyn", "llvmlite", "numba", "numpy", "scipy")
 OURS = ("reference", "multibody", "comparison")

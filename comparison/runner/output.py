@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 
 from comparison.runner.cache import store_beside
 from reference.problem import SceneError
-from reference.problem.files import (
+from reference.support.files import (
     NEW,
     TEMPORARY,
     clear_staging,

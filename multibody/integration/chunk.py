@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.build_cache import cached_on_disk
+from reference.support.build_cache import cached_on_disk
 
 Array = NDArray[np.float64]
 

@@ -21,8 +21,9 @@ from multibody.models.assembly import assemble
 from multibody.models.supports import MIN_WARPING_COMPLIANCE
 from multibody.models.system import EngineModel
 from reference.problem import GRAVITY, Scene
-from reference.problem.ranges import TOLERANCE, checked_number
+from reference.problem.ranges import TOLERANCE
 from reference.problem.scene import takes_scene
+from reference.support.arguments import checked_number
 
 MAX_LEVELS = 8
 

@@ -24,7 +24,7 @@ from multibody.integration.one_run import PhasePair
 from multibody.integration.peak import PeakReader
 from multibody.models.system import EngineModel
 from reference.problem import Outcome
-from reference.problem.ranges import Range
+from reference.support.arguments import Range
 
 Array = NDArray[np.float64]
 

@@ -15,8 +15,9 @@ from multibody.integration.refine import MAX_WORK, WORK
 from multibody.integration.time_scales import STEPS_PER_PERIOD
 from multibody.models.assembly import assemble, choose_model
 from reference.problem import Scene, SceneError
-from reference.problem.ranges import TOLERANCE, checked_number
+from reference.problem.ranges import TOLERANCE
 from reference.problem.scene import takes_scene
+from reference.support.arguments import checked_number
 
 # Work of two levels, and of the compliance of the second, over a first level in its largest steps. The factor of two is
 # for smaller steps at stops, which take as many again.

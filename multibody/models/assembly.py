@@ -11,7 +11,8 @@ from multibody.models.spatial import assemble_spatial
 from multibody.models.system import EngineModel
 from multibody.models.translational import assemble_translational
 from reference.problem import Scene, untilted
-from reference.problem.ranges import REGULARIZATION, checked_choice, checked_number
+from reference.problem.ranges import REGULARIZATION
+from reference.support.arguments import checked_choice, checked_number
 
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": assemble_translational, "spatial": assemble_spatial}
 

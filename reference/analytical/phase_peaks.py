@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from reference.build_cache import cached_on_disk
+from reference.support.build_cache import cached_on_disk
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.measures.demands import Estimate
-from reference.problem.ranges import checked_array
+from reference.support.arguments import checked_array
 
 FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)
 # Sampling error over the largest difference to a grid of twice the spacing. Measured with the paper's scenes, 8 to 64
@@ -79,10 +79,10 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
 
     Examples
     --------
-    >>> import numpy as np
+    >>> import numpy as np, reference
     >>> alpha = 2.0 * np.pi * np.arange(48) / 48
     >>> mu = 2.0 + np.cos(alpha)[:, None] + np.zeros(48)
-    >>> distribution = phase_distribution(mu, np.zeros((48, 48)))
+    >>> distribution = reference.phase_distribution(mu, np.zeros((48, 48)))
     >>> round(distribution.mean.value, 12), distribution.fractiles[2].error < 0.1
     (2.0, True)
     """

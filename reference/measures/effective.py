@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.problem.constants import GRAVITY
 from reference.problem.result import Array
 from reference.problem.scene import Scene, takes_scene
+from reference.support.constants import GRAVITY
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from reference.problem.constants import GRAVITY
 from reference.problem.result import Array, Trajectory
+from reference.support.constants import GRAVITY
 
 
 class Energy(NamedTuple):

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.build_cache import cached_on_disk
 from reference.measures.demands import ANSWERED
-from reference.problem.ranges import Range, checked_array, checked_number
 from reference.problem.result import Array, Trajectory, takes_motion
+from reference.support.arguments import Range, checked_array, checked_number
+from reference.support.build_cache import cached_on_disk
 
 PERIODS = np.geomspace(0.02, 5.0, 49)  # s, default periods
 DAMPING_RANGE = Range(0.0, 1.0, "of critical")

@@ -8,21 +8,18 @@ builtin_scenes, example_scenes                                  names of the sce
 ground_acceleration, ground_velocity, ground_displacement       motion of the ground (5.2)-(5.4)
 exponents, loading_period                                       of the loading
 ground_peak                                                     denominator of (5.1)
-demands, floor_spectra, phase_distribution                      those of `reference.measures`
 checked_phase, checked_phases, flat_phases, phase_axis,
 phase_grid                                                      phase pairs
 half_turn, own_axes, planar, planar_chain, linear, no_friction,
 untilted, mirror_symmetric, unused_harmonics, in_plane          what a scene does not require
-verbatim                                                        a text of a scene for matplotlib (`reference.drawing`)
+verbatim                                                        a text of a scene for matplotlib
 
 Classes
 -------
 Scene, Family                       the system with its loading; the scenes of one file
 State, Amplification, Trajectory    arguments and results of both sides
-Demands, PeakDemands, FloorSpectra,
-PhaseDistribution                   those of `reference.measures`
 DryFriction                         coefficient of friction over the slip speed
-Estimate, Estimates, Accuracy       a number with its error; what errors are made from
+Accuracy                            what the errors of a motion are made from
 Outcome, Reduction, SceneError      why a point has no answer; why work is left out; what is wrong with a scene
 
 Constants
@@ -33,11 +30,6 @@ ADVICE     what to try, for every `Outcome`
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-from reference.drawing import verbatim
-from reference.problem.constants import GRAVITY
 from reference.problem.definition import ground_peak
 from reference.problem.excitation import (
     exponents,
@@ -65,36 +57,19 @@ from reference.problem.reductions import (
 )
 from reference.problem.result import Accuracy, Amplification, State, Trajectory
 from reference.problem.scene import Scene
-from reference.problem.scene_error import SceneError
 from reference.problem.scene_file import builtin_scenes, example_scenes, load_scene, parse_scene
-
-if TYPE_CHECKING:
-    from reference.measures import (
-        Demands,
-        Estimate,
-        Estimates,
-        FloorSpectra,
-        PeakDemands,
-        PhaseDistribution,
-        demands,
-        floor_spectra,
-        phase_distribution,
-    )
+from reference.support.constants import GRAVITY
+from reference.support.drawing import verbatim
+from reference.support.scene_error import SceneError
 
 __all__ = [
     "ADVICE",
     "GRAVITY",
     "Accuracy",
     "Amplification",
-    "Demands",
     "DryFriction",
-    "Estimate",
-    "Estimates",
     "Family",
-    "FloorSpectra",
     "Outcome",
-    "PeakDemands",
-    "PhaseDistribution",
     "Reduction",
     "Scene",
     "SceneError",
@@ -103,11 +78,9 @@ __all__ = [
     "builtin_scenes",
     "checked_phase",
     "checked_phases",
-    "demands",
     "example_scenes",
     "exponents",
     "flat_phases",
-    "floor_spectra",
     "ground_acceleration",
     "ground_displacement",
     "ground_peak",
@@ -123,7 +96,6 @@ __all__ = [
     "own_axes",
     "parse_scene",
     "phase_axis",
-    "phase_distribution",
     "phase_grid",
     "planar",
     "planar_chain",
@@ -131,13 +103,3 @@ __all__ = [
     "unused_harmonics",
     "verbatim",
 ]
-
-
-def __getattr__(name: str) -> Any:
-    if name in __all__:  # read off motions: here, too, for scripts that import them from here
-        return getattr(import_module("reference.measures"), name)
-    raise AttributeError(f"module 'reference.problem' has no attribute '{name}'")
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})

@@ -7,10 +7,10 @@ from numbers import Real
 from pathlib import Path
 from typing import Any
 
-from reference.problem.ranges import as_float, brief
-from reference.problem.record_files import AXES
-from reference.problem.record_loading import SUITE
-from reference.problem.scene_error import SceneError, keys_of, unknown_key
+from reference.records.formats import AXES
+from reference.records.loading import SUITE
+from reference.support.arguments import as_float, brief
+from reference.support.scene_error import SceneError, keys_of, unknown_key
 
 LONGEST_TEXT, LONGEST_LIST = 40, 80  # letters of one changed value in a name, and of all of them
 WITHOUT_EFFECT = ("title", "name", "acceptance", "analyses", "measured")  # tables that enter no result

@@ -13,10 +13,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from reference.build_cache import cached_on_disk
 from reference.problem.excitation import exponents, ground_acceleration, loading_period
 from reference.problem.phases import checked_phases
 from reference.problem.scene import Scene, takes_scene
+from reference.support.build_cache import cached_on_disk
 
 Array = NDArray[np.float64]
 

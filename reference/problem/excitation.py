@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.phases import checked_phase
-from reference.problem.ranges import checked_array
 from reference.problem.scene import Scene, takes_scene
 from reference.problem.tables import Excitation
+from reference.support.arguments import checked_array
 
 Array = NDArray[np.float64]
 

@@ -24,10 +24,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from reference.problem.changed_values import short_key, text_of_table
-from reference.problem.ranges import as_float, takes
-from reference.problem.record_suites import SuiteError, motion_names, suite_motions
 from reference.problem.scene import Scene
-from reference.problem.scene_error import SceneError
 from reference.problem.scene_file import (
     RANGE,
     VALUES,
@@ -37,6 +34,9 @@ from reference.problem.scene_file import (
     scene_text,
     validated_scene,
 )
+from reference.records.suites import SuiteError, motion_names, suite_motions
+from reference.support.arguments import as_float, takes
+from reference.support.scene_error import SceneError
 
 if TYPE_CHECKING:
     import xarray as xr

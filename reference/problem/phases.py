@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.problem.ranges import PHASE, Range, checked_array, checked_whole_number
+from reference.problem.ranges import PHASE
+from reference.support.arguments import Range, checked_array, checked_whole_number
 
 Array = NDArray[np.float64]
 POINTS = Range(1, 10_000)  # phases per axis

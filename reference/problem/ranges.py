@@ -1,5 +1,5 @@
 """
-The range of every quantity of a scene and of every argument of both sides, and the checks of arguments.
+The range of every quantity of a scene and of every argument of both sides.
 
 Inside its range a value is answered, or refused under a named outcome; outside it is refused in one line that states
 the range. The ranges are far wider than any isolator: they end where double precision or the work would.
@@ -8,45 +8,14 @@ the range. The ranges are far wider than any isolator: they end where double pre
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import wraps
-from inspect import signature
-from numbers import Integral, Real
-from types import UnionType
-from typing import Any, ParamSpec, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from reference.support.arguments import Range, brief, checked_array
+
 Array = NDArray[np.float64]
-Rest = ParamSpec("Rest")
-Result = TypeVar("Result")
-MISSING = object()  # an argument that is not there
-
-
-@dataclass(frozen=True)
-class Range:
-    """Finite numbers from `lowest` to `highest`, both included, in `unit`; inf as well where it is `or_infinite`."""
-
-    lowest: float
-    highest: float
-    unit: str = ""
-    or_infinite: bool = False
-
-    @property
-    def rule(self) -> str:
-        """The range as the end of an error message."""
-        unit = f" {self.unit}" if self.unit else ""
-        if self.or_infinite:
-            return f"must be positive, from {self.lowest:g} to {self.highest:g}{unit}, or inf"
-        if self.lowest > 0.0:
-            return f"must be finite and positive, from {self.lowest:g} to {self.highest:g}{unit}"
-        return f"must be finite, from {self.lowest:g} to {self.highest:g}{unit}"
-
-    def __contains__(self, value: float) -> bool:
-        return bool(self.lowest <= value <= self.highest) or (self.or_infinite and value == math.inf)
-
 
 SCENE: dict[str, Range] = {
     "duration": Range(1e-6, 1e9, "s"),
@@ -108,81 +77,6 @@ TOLERANCE = Range(1e-10, 0.1)
 LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digits; the ground is at rest
 
 
-def takes(kind: type | UnionType, rule: str) -> Callable[[Callable[Rest, Result]], Callable[Rest, Result]]:
-    """Have a function raise TypeError, one line that ends with `rule`, if its first argument is not a `kind`."""
-
-    def with_check(function: Callable[Rest, Result]) -> Callable[Rest, Result]:
-        name = next(iter(signature(function).parameters))
-
-        @wraps(function)
-        def checked(*args: Rest.args, **kwargs: Rest.kwargs) -> Result:
-            first = args[0] if args else kwargs.get(name, MISSING)
-            if first is not MISSING and not isinstance(first, kind):
-                raise TypeError(f"{name} = {brief(first)}: {rule}")
-            return function(*args, **kwargs)
-
-        return checked
-
-    return with_check
-
-
-def as_float(value: Any) -> float:
-    """A number as a float: inf for one beyond double precision, NaN for what is no number."""
-    try:
-        return float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
-    except OverflowError:
-        return math.inf
-
-
-def checked_number(name: str, value: Any, allowed: Range) -> float:
-    """`value` as a float. Raises ValueError, one line, if it is not a number within the range."""
-    number = as_float(value)
-    if number not in allowed:
-        raise ValueError(f"{name} = {brief(value)}: {allowed.rule}")
-    return number
-
-
-def checked_whole_number(name: str, value: Any, allowed: Range) -> int:
-    """`value` as an int. Raises ValueError, one line, if it is not a whole number within the range."""
-    if not isinstance(value, Integral) or isinstance(value, bool) or as_float(value) not in allowed:
-        rule = f"must be a whole number from {allowed.lowest:g} to {allowed.highest:g}"
-        raise ValueError(f"{name} = {brief(value)}: {rule}")
-    return int(value)
-
-
-def checked_choice(name: str, value: Any, allowed: Sequence[str]) -> str:
-    """`value` if it is one of the texts `allowed`. Raises ValueError, one line."""
-    if not (isinstance(value, str) and value in allowed):
-        raise ValueError(f"{name} = {brief(value)}: must be one of {', '.join(allowed)}")
-    return value
-
-
-def checked_array(name: str, values: Any, rule: str, *, finite: bool = True) -> Array:
-    """
-    `values` as a contiguous array of numbers, finite ones if so asked. Raises ValueError, one line that ends with
-    `rule`.
-    """
-    if _is_masked(values):
-        raise ValueError(f"{name}: has masked entries: {rule}")
-    try:
-        array = np.asarray(values)
-    except ValueError:  # uneven rows
-        array = np.empty(0, dtype=object)
-    if array.dtype.kind not in "iuf":
-        raise ValueError(f"{name} = {brief(values)}: must be numbers: {rule}")
-    array = np.ascontiguousarray(array, dtype=float)
-    if finite and not np.isfinite(array).all():
-        raise ValueError(f"{name}: must be finite: {rule}")
-    return array
-
-
-def _is_masked(values: Any) -> bool:
-    """Whether an array, or one within lists, has masked entries."""
-    if isinstance(values, list | tuple):
-        return any(map(_is_masked, values))
-    return bool(np.ma.is_masked(values))
-
-
 def checked_state(initial: Any, bodies: int, radius: float, travel: float | None = None) -> tuple[Array, Array]:
     """
     Position and velocity (N, 2) of an initial `State`, inside the rim and the travel. Raises ValueError, one line.
@@ -202,13 +96,3 @@ def checked_state(initial: Any, bodies: int, radius: float, travel: float | None
     if travel is not None and float(np.hypot(*x[0])) > travel:
         raise ValueError(f"initial: the platform must start within isolator.travel = {travel:.6g} m")
     return x, v
-
-
-def brief(value: Any, longest: int = 80) -> str:
-    """`repr` of a value in one line of at most `longest` letters."""
-    try:
-        text = repr(value[: 2 * longest] if isinstance(value, str) else value)
-    except (ValueError, RecursionError):  # an integer of more digits than Python prints, tables thousands deep
-        text = f"<{type(value).__name__}>"
-    text = " ".join(text.split())
-    return text if len(text) <= longest else text[: longest - 3] + "..."

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference.problem.constants import GRAVITY
 from reference.problem.excitation import exponents
 from reference.problem.scene import Scene, takes_scene
+from reference.support.constants import GRAVITY
 
 # rad in the whole motion: links that vibrate more often are integrated at less cost than summed
 MAX_VIBRATION_ANGLE = 2e5

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.drawing import draw_motion, draw_surface, verbatim
-from reference.problem.html_table import digits, html_table
 from reference.problem.phases import grid_axes, phase_coordinates
-from reference.problem.ranges import brief, checked_choice, takes
 from reference.problem.scene import Scene
+from reference.support.arguments import brief, checked_choice, takes
+from reference.support.drawing import draw_motion, draw_surface, verbatim
+from reference.support.html_table import digits, html_table
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -18,13 +18,9 @@ from reference.problem.analyses import Analyses
 from reference.problem.bar_links import BarLink, bar_links, stands_upright
 from reference.problem.beam_column import buckling_load
 from reference.problem.changed_values import change_of, changed_name, put_value, value_at
-from reference.problem.constants import GRAVITY
 from reference.problem.friction import DryFriction, Heat
-from reference.problem.html_table import html_table
 from reference.problem.measured import Measured
-from reference.problem.ranges import MAX_CYCLES, SCENE, as_float, takes
-from reference.problem.record_loading import with_samples
-from reference.problem.scene_error import EXCITATIONS, FRICTIONS, MisfitError, SceneError, first_error
+from reference.problem.ranges import MAX_CYCLES, SCENE
 from reference.problem.supports import on_one_line, ring_places, static_shares
 from reference.problem.tables import (
     ALL,
@@ -45,6 +41,12 @@ from reference.problem.tables import (
     kind_of_excitation,
     within,
 )
+from reference.problem.validation import EXCITATIONS, FRICTIONS, first_error
+from reference.records.loading import with_samples
+from reference.support.arguments import as_float, takes
+from reference.support.constants import GRAVITY
+from reference.support.html_table import html_table
+from reference.support.scene_error import MisfitError, SceneError
 
 MAX_BODIES = 10_000
 MIN_STATIC_SHARE = 1e-9  # of the weight, on a support: one with less carries nothing

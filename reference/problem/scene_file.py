@@ -11,11 +11,12 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from reference.problem.files import read_file
-from reference.problem.ranges import takes
-from reference.problem.record_loading import EXAMPLES, with_samples
 from reference.problem.scene import KEYS, Scene
-from reference.problem.scene_error import SceneError, first_error
+from reference.problem.validation import first_error
+from reference.records.loading import EXAMPLES, with_samples
+from reference.support.arguments import takes
+from reference.support.files import read_file
+from reference.support.scene_error import SceneError
 
 RANGE, VALUES = {"range", "steps"}, {"values"}  # keys of an inline table whose value runs
 LARGEST = 2**22  # bytes of a scene file

@@ -25,10 +25,11 @@ from pydantic import (
 )
 
 from reference.problem.beam_column import LoadFactors, load_factors
-from reference.problem.plain_values import hashable, plain
-from reference.problem.ranges import DAMPING_COEFFICIENT, SCENE, SUPPORT_POSITION, Range
-from reference.problem.record_files import checked_samples
-from reference.problem.scene_error import DAMPINGS, EXCITATIONS, FRICTIONS, SUPPORTS
+from reference.problem.ranges import DAMPING_COEFFICIENT, SCENE, SUPPORT_POSITION
+from reference.problem.validation import DAMPINGS, EXCITATIONS, FRICTIONS, SUPPORTS
+from reference.records.formats import checked_samples
+from reference.support.arguments import Range
+from reference.support.plain_values import hashable, plain
 
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
 

@@ -14,13 +14,13 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
-from reference.build_cache import cached_on_disk
 from reference.problem import DryFriction
 from reference.problem.friction import Heat
 from reference.solver.collocation import DEFECT_POLYNOMIAL, MONOMIALS, NODES, STAGES, A
 from reference.solver.compiled import OPTIONS
 from reference.solver.samples import SampledMotion, sample_motion
 from reference.solver.system import REST, Array, StepRecord, System
+from reference.support.build_cache import cached_on_disk
 
 NEWTON_STEPS = 8  # iterations to the instant between two nodes at which covering begins or ends
 # Ends of the pieces behind a kink of the power, as shares of the step: T is not smooth there, like the root of time

@@ -5,7 +5,7 @@ from pathlib import Path
 HELPERS = Path(__file__).parent
 ROOT = HELPERS.parents[1]
 SCENES = ROOT / "reference/problem/scenes"
-EXAMPLES = ROOT / "reference/problem/examples"
+EXAMPLES = ROOT / "reference/records/examples"
 
 
 def scene_text(name: str = "fig3-I", *replaced: tuple[str, str]) -> str:

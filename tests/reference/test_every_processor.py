@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from numpy._core._multiarray_umath import __cpu_features__  # what this processor has, by NumPy's names
 
-from reference.build_cache import build_folder
 from reference.solver import collocation
+from reference.support.build_cache import build_folder
 
 ROOT = Path(__file__).parents[2]
 # kernels of OpenBLAS, and what a processor must have to run them: they would end in an illegal instruction

@@ -18,8 +18,8 @@ from comparison.analyses.benchmarks import readings
 from comparison.analyses.benchmarks.table import Row
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, SceneError, Trajectory, load_scene
-from reference.problem.files import read_file
-from reference.problem.record_files import LARGEST, RecordError, csv_samples
+from reference.records.formats import LARGEST, RecordError, csv_samples
+from reference.support.files import read_file
 
 SCENES = resources.files("comparison.analyses.benchmarks") / "scenes"
 INCH = 0.0254  # m

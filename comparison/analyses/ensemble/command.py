@@ -39,8 +39,8 @@ from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent
 from reference.problem import Family, SceneError
 from reference.problem.families import family_of
-from reference.problem.record_suites import suite_files
 from reference.problem.scene_file import scene_tables, scene_text
+from reference.records.suites import suite_files
 
 TABLE = "ensemble.csv"
 FORMULA = ("=", "+", "-", "@", "\t", "\r")  # begin formulas in a spreadsheet

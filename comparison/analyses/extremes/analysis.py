@@ -22,7 +22,7 @@ from comparison.study.study import Study
 from comparison.wording import exception_line
 from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
-from reference.problem.scene_error import first_error
+from reference.problem.validation import first_error
 
 Finer = tuple[str, Array, Array]  # status, mu and error of a finer run at a phase pair
 

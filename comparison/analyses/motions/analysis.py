@@ -13,10 +13,10 @@ from comparison.study.batches import imported
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import difference_of
-from reference.build_cache import cached_on_disk
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
 from reference.measures.demands import ANSWERED
 from reference.problem import Outcome, Scene, Trajectory
+from reference.support.build_cache import cached_on_disk
 
 SHARE = 0.003  # of the swing of a component: what a decimated motion may be off by
 MIN_SWING = 0.01  # of its largest value: a component that changes less is as good as constant

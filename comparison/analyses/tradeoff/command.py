@@ -26,8 +26,8 @@ from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.study import Study, refuse_same_names
 from comparison.surfaces.figures.file_names import figure_file
-from reference.command import UsageError
 from reference.problem import Scene, SceneError, load_scene
+from reference.support.command import UsageError
 
 DEFAULT = "fig3-I"
 COMMAND = "comparison.tradeoff"

@@ -10,7 +10,7 @@ from scipy.io import loadmat
 
 from comparison.result_types import Array
 from reference.problem import SceneError
-from reference.problem.files import read_file
+from reference.support.files import read_file
 
 LARGEST = 2**24  # bytes of a file
 MAX_SAMPLES = 2_000_000

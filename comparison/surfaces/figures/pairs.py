@@ -17,8 +17,8 @@ from comparison.surfaces.figures.file_names import with_ending
 from comparison.surfaces.model_difference import ModelDifference, difference_of
 from comparison.surfaces.surfaces import stride_of, values_of
 from comparison.wording import mathtext
-from reference.drawing import verbatim
 from reference.problem import Scene
+from reference.support.drawing import verbatim
 
 HEIGHT_COLORS = "cividis"  # read alike with and without color vision deficiency, and in print
 SIGN_COLORS = "RdBu_r"

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from reference.build_cache import cached_on_disk
 from reference.solver.compiled.parts import compiled_part
+from reference.support.build_cache import cached_on_disk
 
 # Divisions by zero give inf or NaN as in NumPy; other threads run meanwhile.
 OPTIONS = {"error_model": "numpy", "nogil": True}

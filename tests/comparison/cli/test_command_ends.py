@@ -24,7 +24,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the bac
 for name in ("reference", "reference.problem"):  # packages without what they import: it takes most of the time
     sys.modules[name] = types.ModuleType(name)
     sys.modules[name].__path__ = [{root!r} + "/" + name.replace(".", "/")]
-from reference.command import run_command
+from reference.support.command import run_command
 def main():
     {body}
 run_command(main)

@@ -184,7 +184,7 @@ def test_a_full_disk_is_exit_3_and_the_run_goes_on_later(
 
     words = ["fig3-I", "--grid", "4"]
     with monkeypatch.context() as patch:
-        patch.setattr("reference.problem.files.os.fdopen", lambda handle, mode: Full(handle, mode))
+        patch.setattr("reference.support.files.os.fdopen", lambda handle, mode: Full(handle, mode))
         run = command(*words)
     assert run.code == 3
     assert run.err.count("\n") == 1

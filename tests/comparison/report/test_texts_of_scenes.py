@@ -21,8 +21,8 @@ from comparison.runner.progress import progress, wide_console
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import figure_file, with_ending
 from comparison.wording import degrees, mathtext, percent, scientific, signed, significant, symbols
-from reference.drawing import verbatim
 from reference.problem import Scene, load_scene
+from reference.support.drawing import verbatim
 
 
 def test_a_name_with_dots_keeps_them_and_a_long_one_is_cut() -> None:

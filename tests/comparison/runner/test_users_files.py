@@ -28,7 +28,7 @@ from comparison.runner.output import (
     refuse_foreign_files,
     replace_report,
 )
-from reference.problem.files import TEMPORARY
+from reference.support.files import TEMPORARY
 
 TABLES = ["extremes.json", "extremes.png"]
 

@@ -31,8 +31,8 @@ from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study, levels, nested_grids
 from comparison.study.user_models import user_model
 from comparison.surfaces.surfaces import surface_tasks
-from reference.command import StoppedError
 from reference.problem import load_scene
+from reference.support.command import StoppedError
 
 SCENES = (load_scene("fig3-I"), load_scene("synthetic-pair"))
 WORDS = ("fig3-I", "--grid", "24", "--only", "differences,effective,motions")

@@ -7,7 +7,7 @@ from chains import refusal
 
 from reference.problem import SceneError, load_scene
 from reference.problem.plausibility import implausible_values
-from reference.problem.ranges import brief
+from reference.support.arguments import brief
 
 PEAK = {"quantity": "mu", "body": 2, "value": 2.3, "uncertainty": 0.1, "phases": [0.3, 1.1]}
 BARS = {"count": 4, "bending_stiffness": 0.8, "length": 1.0}

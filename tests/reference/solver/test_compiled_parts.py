@@ -11,7 +11,7 @@ from numba.core.errors import TypingError
 from numba.core.runtime import _nrt_python, rtsys
 
 import reference
-from reference.build_cache import cached_on_disk
+from reference.support.build_cache import cached_on_disk
 
 
 def test_python_searches_for_garbage_again_after_compiling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reference.problem import GRAVITY
-from reference.problem.record_files import RecordError, at2_samples, csv_samples
+from reference.records.formats import RecordError, at2_samples, csv_samples
 
 finite = st.floats(-1e3, 1e3)
 PLAIN = "time [s],ax [g]\n0,0.1\n0.01,0.2\n"
@@ -156,7 +156,7 @@ def test_of_a_file_that_is_no_record_nothing_is_quoted(text):
 
 def test_shipped_records_are_those_of_their_formula():
     """To the digits printed: a machine's sine may differ in the last bit."""
-    folder = resources.files("reference.problem") / "examples"
+    folder = resources.files("reference.records") / "examples"
     made = runpy.run_path(str(Path(__file__).parents[3] / "docs" / "synthetic_records.py"))["texts"]()
     assert sorted(made) == sorted(entry.name for entry in folder.iterdir() if not entry.name.endswith(".toml"))
     for name, text in made.items():

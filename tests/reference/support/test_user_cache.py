@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from reference import build_cache as module
-from reference.build_cache import user_cache
+from reference.support import build_cache as module
+from reference.support.build_cache import user_cache
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 @pytest.fixture
@@ -53,7 +53,7 @@ def test_without_a_home_a_private_directory_takes_its_place_and_none_of_others(
 
 def test_a_first_call_says_once_that_it_compiles(tmp_path: Path) -> None:
     program = (
-        "from reference.build_cache import cached_on_disk\n"
+        "from reference.support.build_cache import cached_on_disk\n"
         "slow, fast = (cached_on_disk(__file__, slow=slow)(lambda x: x + 1) for slow in (True, False))\n"
         "print(slow(1), slow(2), fast(1))\n"
     )

@@ -6,18 +6,10 @@ from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
 from typing import Any
 
-from pydantic import ValidationError
-
-from reference.problem.ranges import brief
+from reference.support.arguments import brief
 
 MAX_LETTERS = 300  # letters of a path or a key in an error
-# what a table or key with several forms may be: pydantic puts which was meant into the place of an error
-EXCITATIONS = ("two frequencies", "recorded motion")
-SUPPORTS = ("number of supports", "positions of supports")
-FRICTIONS = ("constant friction", "velocity-dependent friction")
 SYNONYMS = {"bearings": "supports", "isolators": "supports"}
-ALONG_AXES = {"stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s"}  # of a link
-DAMPINGS = ("damping ratio", "damping coefficients")
 
 
 class SceneError(ValueError):
@@ -71,25 +63,3 @@ def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneE
     nearest = get_close_matches(key.rpartition(".")[2][:MAX_LETTERS], valid, n=2, cutoff=0.5)
     suggestion = f"did you mean {' or '.join(nearest)}?" if nearest else f"the keys here are {', '.join(valid)}"
     return SceneError(file, key, value, f"unknown key; {suggestion}")
-
-
-def first_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence[str]]) -> SceneError:
-    """The first error that pydantic reports, in the words of the scene file. keys: of every table, by its name."""
-    errors = invalid.errors(include_url=False)
-    # a misspelt key is unknown and its right name is missing: the first says more
-    error = next((error for error in errors if error["type"] == "extra_forbidden"), errors[0])
-    misfit = error.get("ctx", {}).get("error")
-    if isinstance(misfit, MisfitError):
-        return SceneError(file, misfit.key, misfit.value, misfit.rule)
-    forms = EXCITATIONS + SUPPORTS + FRICTIONS + DAMPINGS
-    place = [part for part in error["loc"] if part not in forms]
-    key = ".".join(map(str, place)) or "scene"
-    if error["type"] == "extra_forbidden":
-        table = ".".join(str(part) for part in error["loc"][:-1] if not isinstance(part, int))
-        return unknown_key(file, key, error["input"], keys_of(table, keys))
-    if error["type"] == "missing":
-        return SceneError(file, key, None, "this key is required")
-    rule = error["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
-    if error["type"] == "list_type" and (form := ALONG_AXES.get(str(place[-1]))):
-        rule = f"must be {form}"
-    return SceneError(file, key, error["input"], rule)

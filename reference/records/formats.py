@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.problem.constants import GRAVITY
-from reference.problem.ranges import brief, checked_array
+from reference.support.arguments import brief, checked_array
+from reference.support.constants import GRAVITY
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import pytest
 from chains import refusal, scene_file
 
 from reference.problem import SceneError, load_family, load_scene
-from reference.problem.files import read_file
+from reference.support.files import read_file
 
 SECRET = "xK7-of-somebody-else"
 RECORDS = {"a.csv": '"a.csv"', "a.AT2": '{x = "a.AT2"}', "suite/a.csv": '{suite = "suite", motion = 1}'}

@@ -21,8 +21,8 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import Any, NoReturn, TextIO, cast
 
-from reference.problem.scene_error import SceneError
-from reference.problem.version import __version__
+from reference.support.scene_error import SceneError
+from reference.support.version import __version__
 
 UNEXPECTED, CLOSED = 3, 141
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))

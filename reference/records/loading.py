@@ -13,8 +13,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from reference.problem.files import read_file
-from reference.problem.record_files import (
+from reference.records.formats import (
     AXES,
     LARGEST,
     Array,
@@ -23,10 +22,11 @@ from reference.problem.record_files import (
     at2_samples,
     csv_samples,
 )
-from reference.problem.record_suites import SuiteError, suite_samples
-from reference.problem.scene_error import SceneError, unknown_key
+from reference.records.suites import SuiteError, suite_samples
+from reference.support.files import read_file
+from reference.support.scene_error import SceneError, unknown_key
 
-EXAMPLES = resources.files("reference.problem") / "examples"
+EXAMPLES = resources.files("reference.records") / "examples"
 RECORD_RULE = (
     'must be a CSV file, "motion.csv", .AT2 files by direction, {x = "a.AT2", y = "b.AT2"}, or a motion of a suite, '
     '{suite = "fema-p695:farfield", motion = 3, normalized = true}'

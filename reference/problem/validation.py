@@ -1,0 +1,38 @@
+"""The first error that pydantic finds in a scene, in the words of the scene file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from pydantic import ValidationError
+
+from reference.support.scene_error import MisfitError, SceneError, keys_of, unknown_key
+
+# what a table or key with several forms may be: pydantic puts which was meant into the place of an error
+EXCITATIONS = ("two frequencies", "recorded motion")
+SUPPORTS = ("number of supports", "positions of supports")
+FRICTIONS = ("constant friction", "velocity-dependent friction")
+ALONG_AXES = {"stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s"}  # of a link
+DAMPINGS = ("damping ratio", "damping coefficients")
+
+
+def first_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence[str]]) -> SceneError:
+    """The first error that pydantic reports, in the words of the scene file. keys: of every table, by its name."""
+    errors = invalid.errors(include_url=False)
+    # a misspelt key is unknown and its right name is missing: the first says more
+    error = next((error for error in errors if error["type"] == "extra_forbidden"), errors[0])
+    misfit = error.get("ctx", {}).get("error")
+    if isinstance(misfit, MisfitError):
+        return SceneError(file, misfit.key, misfit.value, misfit.rule)
+    forms = EXCITATIONS + SUPPORTS + FRICTIONS + DAMPINGS
+    place = [part for part in error["loc"] if part not in forms]
+    key = ".".join(map(str, place)) or "scene"
+    if error["type"] == "extra_forbidden":
+        table = ".".join(str(part) for part in error["loc"][:-1] if not isinstance(part, int))
+        return unknown_key(file, key, error["input"], keys_of(table, keys))
+    if error["type"] == "missing":
+        return SceneError(file, key, None, "this key is required")
+    rule = error["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
+    if error["type"] == "list_type" and (form := ALONG_AXES.get(str(place[-1]))):
+        rule = f"must be {form}"
+    return SceneError(file, key, error["input"], rule)
