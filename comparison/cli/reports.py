@@ -4,6 +4,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,10 @@ from comparison.cli.arguments import command_line, writing
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
 from comparison.registry import EARLIER, chosen_analyses, first_tasks, report_of
+from comparison.report.building import note_lost
 from comparison.report.results import Results
 from comparison.report.section import Feature, Report
+from comparison.runner.attempts import attempt
 from comparison.runner.environment import provenance
 from comparison.runner.output import on_stderr, replace_report
 from comparison.runner.runner import Runner, compiling_task
@@ -83,7 +86,7 @@ class Reports:
         report = self._report(complete, runner)
         results = report.results
         if final:
-            drawings = drawing_tasks(report)
+            drawings = attempt("drawings", partial(drawing_tasks, report)) or []
             runner.run(drawings)
             files = {task.key: runner.results[task].value for task in drawings}
             report = replace(report, drawings={key: value for key, value in files.items() if value})
@@ -130,15 +133,16 @@ class Reports:
             "levels": complete.level.of,
             "provenance": provenance(),
         }
-        found = {
-            analysis.key: analysis.collect(study.selecting(analysis.key), surfaces, runner.results)
-            for analysis in chosen_analyses(study)
-        }
+        lost: list[str] = []
+        found: dict[str, Any] = {}
+        for analysis in chosen_analyses(study):
+            collect = partial(analysis.collect, study.selecting(analysis.key), surfaces, runner.results)
+            found[analysis.key] = attempt(f"section {analysis.key}", collect, partial(note_lost, lost))
         kept = [feature for feature in EARLIER if feature.selection not in study.absent]
         found |= {feature.key: _loaded(feature, self._options.out) for feature in kept}
         families = [family for family in self._options.families if len(family.scenes) > 1]
         faults = _faults(complete.tasks, runner.results)
-        return report_of(study, surfaces, found, faults, run, families=families)
+        return report_of(study, surfaces, found, faults, run, families=families, lost=lost)
 
 
 def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:

@@ -1,6 +1,7 @@
 """What a run found, built into the one `Report` that page, files and terminal are made from."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, get_args
 
 import xarray as xr
@@ -8,6 +9,8 @@ import xarray as xr
 from comparison.report.results import ModelDescription, Results, Run
 from comparison.report.scene_result import ModelOutcome, RecordValue
 from comparison.report.section import Feature, Findings, Report
+from comparison.runner.attempts import attempt
+from comparison.runner.output import on_stderr
 from comparison.study.analyses import ANALYSES
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
@@ -33,8 +36,18 @@ def build_report(
     features: Sequence[Feature],
     kind: type[Results],
     families: Sequence[Family] = (),
+    lost: Sequence[str] = (),
 ) -> Report:
-    """Everything that a report is made from. found: of the features, by key. kind: with a field for each of them."""
+    """
+    Return everything that a report is made from; a feature whose own part raises is left out, with a line in `lost`.
+
+    found: of the features, by key. kind: with a field for each of them.
+    """
+    lines = [*lost]
+
+    def part_of(key: str, act: Callable[[], Any]) -> Any:
+        return attempt(f"section {key}", act, lambda line: note_lost(lines, line))
+
     comparisons, lacking = body_comparisons(study, surfaces), unanswered(study, surfaces)
     completed = [
         each for scene in study.scenes for each in completions(study, surfaces, scene, found.get("completion"))
@@ -52,11 +65,13 @@ def build_report(
     scenes = []
     for scene in study.scenes:
         of_scene = {name: [row for row in every if row.scene == scene.name] for name, every in parts.items()}
-        more = {name: each.of(findings, scene) for name, each in fields.items()}
+        more = {name: part_of(name, partial(each.of, findings, scene)) or [] for name, each in fields.items()}
         bodies = [comparison for comparison in comparisons if comparison.scene is scene]
         scenes.append(scene_kind(**_scene(study, surfaces, scene, bodies), **of_scene, **more))
     summaries: dict[str, Any] = {
-        feature.key: feature.summary(findings, scenes) if feature.summary else findings.found.get(feature.key)
+        feature.key: part_of(feature.key, partial(feature.summary, findings, scenes))
+        if feature.summary
+        else findings.found.get(feature.key)
         for feature in features
         if feature.result is not None
     }
@@ -73,7 +88,14 @@ def build_report(
         **summaries,
     )
     sections = [feature.section for feature in features if feature.section]
-    return Report(study, surfaces, completed, results, findings.found, sections)
+    return Report(study, surfaces, completed, results, findings.found, sections, lost=lines)
+
+
+def note_lost(lines: list[str], line: str) -> None:
+    """Add a line on a part that could not be made, and say it on standard error, once."""
+    if line not in lines:
+        lines.append(line)
+        on_stderr(line)
 
 
 def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequence[BodyComparison]) -> dict[str, Any]:

@@ -26,7 +26,7 @@ class Report:
 
     results: what summary.json holds. surfaces: of every model, with the completed ones. found: what each analysis
     collected, by its key: motions, demands and pictures are not in the results. drawings: files that workers drew, by
-    key of their task.
+    key of their task. lost: a line for every part that could not be made.
     """
 
     study: Study
@@ -36,6 +36,7 @@ class Report:
     found: Mapping[str, Any]
     sections: Sequence[Section]
     drawings: Mapping[Key, Any] = field(default_factory=dict)
+    lost: Sequence[str] = ()
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -28,9 +29,10 @@ from comparison.analyses.ensemble.feature import (
 )
 from comparison.analyses.ensemble.result import PICTURE, STORED, EnsembleResult
 from comparison.analyses.ensemble.target import matched
-from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
+from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, write_and_show, writing
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table, print_implausible_values
+from comparison.runner.attempts import attempt
 from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Display, wide_console
@@ -42,6 +44,7 @@ from reference.problem.families import family_of
 from reference.problem.scene_file import scene_tables, scene_text
 from reference.records.suites import suite_files
 
+COMMAND = "comparison.ensemble"
 TABLE = "ensemble.csv"
 FORMULA = ("=", "+", "-", "@", "\t", "\r")  # begin formulas in a spreadsheet
 FILES = (STORED.name, TABLE, PICTURE, "ensemble.pdf")
@@ -86,10 +89,12 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
         result = part.result(points, run)
         files = {STORED.name: STORED.as_json(result), TABLE: table_text(points).encode()}
-        files |= made_by(lambda folder: draw_ensemble(folder / PICTURE, result))
+        written = write_and_show(
+            out, partial(publish, out, files, COMMAND), partial(print_ensemble, console, result, cost)
+        )
         with writing(out):
-            written = publish(out, files, "comparison.ensemble")
-        print_ensemble(console, result, cost)
+            drawn = attempt("picture", lambda: made_by(lambda folder: draw_ensemble(folder / PICTURE, result)))
+            written += publish(out, drawn or {}, COMMAND)
         console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
 
     def show_equations(results: TaskResults, display: Display) -> None:

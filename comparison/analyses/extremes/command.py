@@ -9,13 +9,14 @@ import argparse
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 from rich.console import Console
 
 from comparison.analyses.extremes.analysis import LIMIT, Extremes, cells, reduced
 from comparison.analyses.extremes.matrix import FILE, STORED, Matrix, Verdict
 from comparison.analyses.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, rows, user_column
-from comparison.cli.arguments import CommandParser, command, jobs, number, writing
+from comparison.cli.arguments import CommandParser, command, jobs, number, write_and_show
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.user_models import add_models, user_models
 from comparison.runner.output import destination, publish, refuse_foreign_files
@@ -47,11 +48,13 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     refuse_foreign_files(out, [FILE])
     console = wide_console()
     matrix = judged_matrix(extremes, options, argv, console, executor)
-    with writing(out):
-        (file,) = publish(out, {FILE: STORED.as_json(matrix)}, "comparison.extremes")
-    for verdict in (Verdict.LIMIT, Verdict.FAILED):
-        for row, title, entry in matrix.listed(verdict):
-            console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
+
+    def show() -> None:
+        for verdict in (Verdict.LIMIT, Verdict.FAILED):
+            for row, title, entry in matrix.listed(verdict):
+                console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
+
+    (file,) = write_and_show(out, partial(publish, out, {FILE: STORED.as_json(matrix)}, "comparison.extremes"), show)
     counts = ", ".join(f"{count} {name}" for name, count in matrix.counts().items())
     spent = f"{matrix.run['seconds']} s, {matrix.run['cpu_seconds']} s of processor time"
     console.print(f"{sum(matrix.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)

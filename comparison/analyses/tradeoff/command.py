@@ -8,6 +8,7 @@ import argparse
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from rich.console import Console
@@ -17,10 +18,11 @@ from comparison.analyses.tradeoff.analysis import TradeOff
 from comparison.analyses.tradeoff.growth import Growth, MeasuredGrowth, Series, by_workers
 from comparison.analyses.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
 from comparison.analyses.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, Trade, TradeFile, load
-from comparison.cli.arguments import CommandParser, command, jobs, writing
+from comparison.cli.arguments import CommandParser, command, jobs, write_and_show
 from comparison.cli.computing import computed, run_facts
 from comparison.cli.terminal import new_table
 from comparison.cli.user_models import add_models, user_models
+from comparison.runner.attempts import attempt
 from comparison.runner.output import destination, netcdf, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
@@ -58,18 +60,28 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     refuse_same_names((scene.name, scene.name) for scene in scenes)
     out = destination(options.out)
     _stored(out)  # a file that is no trade is refused before anything is measured
-    refuse_foreign_files(out, [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)])
+    refuse_foreign_files(
+        out, [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)]
+    )
     console = wide_console()
     if options.growth:
         return _grown(scenes[0], options, argv, out, console, executor)
     measured = measured_trades(scenes, options, argv, console, executor)
-    with writing(out):
-        for each in measured:
-            publish(out, {_values_file(each.trade.scene): netcdf(each.values)}, COMMAND)
+
+    def write() -> list[Path]:
         trades = {trade.scene: trade for trade in [*_stored(out), *(each.trade for each in measured)]}
-        (file,) = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
-    for each in measured:
-        print_trade(console, each.trade)
+        files = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
+        for each in measured:
+            name = _values_file(each.trade.scene)
+            values = attempt(name, partial(netcdf, each.values))
+            publish(out, {} if values is None else {name: values}, COMMAND)
+        return files
+
+    def show() -> None:
+        for each in measured:
+            print_trade(console, each.trade)
+
+    (file,) = write_and_show(out, write, show)
     console.print(f"Trade: {file}, and SCENE-tradeoff.nc beside it.", soft_wrap=True)
     return 0
 
@@ -84,9 +96,8 @@ def _grown(
     series = [*Growth().collect(study, None, results), by_workers(scene, process_pool)]
     facts = run_facts("tradeoff", options, words, begin)
     measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
-    with writing(out):
-        publish(out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
-    print_growth(console, series)
+    write = partial(publish, out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
+    write_and_show(out, write, partial(print_growth, console, series))
     console.print(f"Growth: {out / growth.FILE}", soft_wrap=True)
     return 0
 

@@ -67,7 +67,7 @@ class Answered:
     title: Annotated[str, "equations and law of friction"]
     points: Annotated[int, "phase pairs of the sample"]
     reference_solution: Annotated[str, "what the errors are against"]
-    error: Annotated[float, "largest relative error estimate of the reference solution"]
+    error: Annotated[float | None, "largest relative error estimate of the reference solution; null without an answer"]
     checks: Annotated[Sequence[str], "how the reference solution was checked"]
 
 

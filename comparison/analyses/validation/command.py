@@ -7,6 +7,7 @@ Exit codes: 0 done; 1 a side has no value for a quantity; 2 wrong input; 3 the f
 
 import time
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 from rich.console import Console
@@ -15,7 +16,7 @@ from comparison.analyses.sides import ENGINE, EQUATIONS
 from comparison.analyses.validation import frame, pendulum
 from comparison.analyses.validation.files import FRAME_SOURCE, PENDULUM_SOURCE, read_folder
 from comparison.analyses.validation.table import STORED, Validation, joined, recorded
-from comparison.cli.arguments import CommandParser, command, writing
+from comparison.cli.arguments import CommandParser, command, write_and_show
 from comparison.cli.terminal import new_table
 from comparison.runner.environment import provenance
 from comparison.runner.output import destination, publish, refuse_foreign_files
@@ -47,9 +48,8 @@ def main(argv: Sequence[str]) -> int:
     out = destination(options.out)
     refuse_foreign_files(out, [STORED.name])
     table = compared(options.folder)
-    with writing(out):
-        files = publish(out, {STORED.name: STORED.as_json(table)}, "comparison.validation")
-    print_validation(console, table)
+    write = partial(publish, out, {STORED.name: STORED.as_json(table)}, "comparison.validation")
+    files = write_and_show(out, write, partial(print_validation, console, table))
     console.print(f"Table: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by comparison.run shows it.")
     return 1 if table.counts()[NOT_COMPARED] else 0

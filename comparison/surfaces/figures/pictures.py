@@ -3,12 +3,14 @@
 import base64
 import tempfile
 from dataclasses import replace
+from functools import partial
 from io import BytesIO
 from pathlib import Path
 
 import xarray as xr
 
 from comparison.runner.analysis import Analysis
+from comparison.runner.attempts import attempt
 from comparison.runner.task import Task, fingerprint
 from comparison.runner.task_results import TaskResults
 from comparison.study.analyses import EVERYTHING
@@ -47,12 +49,14 @@ class Pictures(Analysis[dict[str, bytes]]):
         return tasks
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> dict[str, bytes]:
-        """The files; a picture that no worker could draw is drawn here, for the page refers to it."""
-        return {
-            name: content
-            for task in self.tasks(study, surfaces)
-            for name, content in results.value(task, lambda picture, *failure: drawn(picture))
-        }
+        """Return the files; a picture that no worker could draw is tried here, and left out where that raises."""
+        files: dict[str, bytes] = {}
+        for task in self.tasks(study, surfaces):
+            draw = partial(results.value, task, lambda picture, *failure: drawn(picture))
+            kind, one, _, body, _ = task.argument
+            name = f"picture of {one.scenes[0].name}, {f'body {body}' if body else kind},"
+            files |= dict(attempt(name, draw) or ())
+        return files
 
 
 def drawn(picture: Picture) -> Files:
