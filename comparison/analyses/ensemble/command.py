@@ -43,10 +43,11 @@ from reference.problem import Family, SceneError
 from reference.problem.families import family_of
 from reference.problem.scene_file import scene_tables, scene_text
 from reference.records.suites import suite_files
+from reference.support.scene_error import printable
 
 COMMAND = "comparison.ensemble"
 TABLE = "ensemble.csv"
-FORMULA = ("=", "+", "-", "@", "\t", "\r")  # begin formulas in a spreadsheet
+FORMULA = ("=", "+", "-", "@")  # begin formulas in a spreadsheet, behind white space, too
 FILES = (STORED.name, TABLE, PICTURE, "ensemble.pdf")
 MODELS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # what the workers ask
 SUBSET = 2  # motions of every scene that the engine computes, unless the command says otherwise
@@ -134,7 +135,7 @@ def how_paired(suite: str | None) -> str:
     motions = suite_files(suite, Path())
     if "" in motions[0]:
         return ""
-    first = ", ".join(f"{axis} = {file.name}" for axis, file in motions[0].items())
+    first = ", ".join(f"{axis} = {printable(file.name)}" for axis, file in motions[0].items())
     vertical = sum("z" in motion for motion in motions)
     return f"{len(motions)} motions of .AT2 files paired by name, {vertical} with a vertical one: {first}, and so on."
 
@@ -143,7 +144,7 @@ def table_text(points: Points) -> str:
     """ensemble.csv: a row for every motion, scale and model; what begins like a formula stands behind an apostrophe."""
 
     def cell(value: object) -> object:
-        return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
+        return f"'{value}" if isinstance(value, str) and value.lstrip().startswith(FORMULA) else value
 
     rows, stream = as_rows(points), io.StringIO()
     writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")

@@ -24,6 +24,9 @@ TRADES = STORED.as_json(TradeFile(SCHEMA, [known_trade("fig3-I")]))
 KNOWN = {**{name: content for name, content in FILES.items() if name in STORES}, STORED.name: TRADES}
 
 
+CURVE = {"panel": "p", "axes": ["a", "b"], "name": "measured", "x": [1.0], "y": [2.0]}
+
+
 def edited(name: str, path: tuple[Any, ...], value: Any) -> bytes:
     """A known file with another value in one place; later places of a list of structures are its first."""
     content = json.loads(KNOWN[name])
@@ -53,8 +56,8 @@ SENSELESS = [
     (growth.FILE, ("series", 0, "values"), [], "values must be"),
     (MATRIX.name, ("columns",), {}, "is none of the columns"),
     (VALIDATION.name, ("quantities", 0, "sides"), {}, "sides must have equations"),
-    (VALIDATION.name, ("curves", 0, "name"), "another", "name of a curve must be one of"),
-    (VALIDATION.name, ("curves", 0, "y"), [1.0], "y must be"),
+    (VALIDATION.name, ("curves",), [{**CURVE, "name": "another"}], "name of a curve must be one of"),
+    (VALIDATION.name, ("curves",), [{**CURVE, "y": []}], "y must be 1 values, not 0"),
     (BENCHMARKS.name, ("benchmarks", 0, "rows", 0, "numbers"), {}, "numbers must have equations"),
 ]  # fmt: skip
 
