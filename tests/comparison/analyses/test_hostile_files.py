@@ -1,7 +1,9 @@
 """Measured files and results that are not what they should be end in one line, exit code 2, or in the result."""
 
+import random
 import struct
 import zlib
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,9 +13,12 @@ import pytest
 from runs import Here
 from scipy.io import savemat
 
+from comparison.analyses.benchmarks.cases import mastodon
 from comparison.analyses.validation import files
 from comparison.analyses.validation.command import main
 from comparison.analyses.validation.files import DECAY, LARGE
+from comparison.analyses.validation.table import Found
+from reference.problem import SceneError
 
 X, Y = "s_b_250g_x.mat", "s_b_250g_y.mat"
 TIME = np.arange(2500) / 250.0
@@ -94,7 +99,8 @@ def test_a_file_of_another_motion_ends_in_one_line(
     code, lines = ending(tmp_path, content, capsys)
     if rule:
         assert (code, len(lines)) == (2, 1)
-        assert file in lines[0] and rule in lines[0]
+        assert file in lines[0]
+        assert rule in lines[0]
     else:
         assert (code, len(lines)) in ((2, 1), (0, 0), (1, 0))
 
@@ -139,3 +145,49 @@ def test_a_file_that_ends_its_reader_ends_in_one_line(
     code, lines = ending(tmp_path, {}, capsys)
     assert (code, len(lines)) == (2, 1)
     assert f"{DECAY}: {said}" in lines[0]
+
+
+CSV = "time [s],ax [m/s^2],ay [m/s^2],az [m/s^2]\n" + "\n".join(f"{0.01 * n:.2f},{n % 7},-0.5,1e-3" for n in range(60))
+PIECES = (b"", b"\0", b"\xff\xfe", b"nan", b"inf", b"1e999", b"-", b",", b"\n", b'"', b"=1+1", b"9" * 400, b"\x1b[31m")
+
+
+def damaged(content: bytes, chance: random.Random) -> bytes:
+    """The content with a few pieces changed, lost, doubled or put in."""
+    for _ in range(chance.randrange(1, 4)):
+        begin = chance.randrange(len(content) + 1)
+        end = min(len(content), begin + chance.choice((0, 1, 4, 64, len(content))))
+        content = (
+            content[:begin] + chance.choice((*PIECES, content[begin:end] * 2, chance.randbytes(4))) + content[end:]
+        )
+    return content
+
+
+def test_a_damaged_measured_file_is_read_or_refused_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two hundred damaged files, the same every time; what is read is not compared."""
+    monkeypatch.setattr(files, "Workers", Here)
+    monkeypatch.setattr("comparison.analyses.validation.command._compared", lambda *rest: Found([], [], [], [], []))
+    monkeypatch.setattr("comparison.analyses.validation.command.provenance", dict)
+    chance, endings = random.Random(5), Counter()
+    for content in (pair(), decay(INSTANTS[:600], SWING[:600])):
+        for name, variables in content.items():
+            savemat(tmp_path / name, variables, oned_as="column")
+        good = {name: (tmp_path / name).read_bytes() for name in content}
+        for _ in range(100):
+            name = chance.choice([*content])
+            (tmp_path / name).write_bytes(damaged(good[name], chance))
+            code, lines = ending(tmp_path, {}, capsys)
+            assert (code, len(lines)) in ((2, 1), (0, 0)), lines
+            endings[code] += 1
+            (tmp_path / name).write_bytes(good[name])
+    assert endings[2] > 50
+
+
+def test_a_damaged_input_of_mastodon_is_refused_in_one_line(tmp_path: Path) -> None:
+    chance, file = random.Random(6), tmp_path / "input.csv"
+    for _ in range(200):
+        file.write_bytes(damaged(CSV.encode(), chance))
+        with pytest.raises(SceneError) as refused:
+            mastodon(file)
+        assert str(refused.value).isprintable()
