@@ -62,7 +62,11 @@ def scene(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
         assert main([*words, "--out", str(folder / "report")], distinct_hierarchy(), ThreadPoolExecutor) == 0
     assert reading_table.main(folder / "report", COARSE) == 0, "by a program that imports nothing of the project"
     [found] = summary_of(folder / "report")["scenes"]
-    lists = {name: rows for name, rows in found.items() if isinstance(rows, list) and name != "analyses"}
+    lists = {
+        name: rows
+        for name, rows in found.items()
+        if isinstance(rows, list) and all(isinstance(row, dict) for row in rows)
+    }
     of_body = {name: [row for row in rows if row.get("body", body) == body] for name, rows in lists.items()}
     return {**of_body, "number": body, "models": found["models"]}
 
