@@ -10,7 +10,7 @@ from comparison.analyses.motions.page_data import contact_geometry, places, spec
 from comparison.analyses.worst_phases.analysis import nearest_search
 from comparison.report.section import Report
 from comparison.result_types import Array
-from comparison.study.models import Model, Pair, models_of
+from comparison.study.models import Model, Pair, label_of, models_of
 from comparison.surfaces.completion import Completion
 from comparison.surfaces.model_difference import difference_of
 from comparison.surfaces.surfaces import values_of
@@ -25,8 +25,8 @@ def page_data(report: Report) -> str:
     """
     JSON of all that is drawn; NaN is null.
 
-    grid: phases per axis of the study. titles: by model. scenes, each: name, title, bodies, duration (s), recorded,
-    flat (whether it is a flat slider); pairs, each: key, title, sentence, first, second (models), supplied (whether the
+    grid: phases per axis of the study. titles: by model. scenes, each: name, title, labels (by
+    model, with the reading of mu), bodies, duration (s), recorded, flat (whether it is a flat slider); pairs, each: key, title, sentence, first, second (models), supplied (whether the
     second is an engine of the user), contours (per body: polylines [[alpha1, alpha2], ...], rad, on which |D| = u_D),
     uncertainty (per body: u_D relative to the first model on the phases of both, or null where both are surfaces);
     models (by key: see `_model`); contact (`contact_geometry`); places (row, column, phases or null under a record,
@@ -42,6 +42,7 @@ def page_data(report: Report) -> str:
             {
                 "name": scene.name,
                 "title": scene.title,
+                "labels": {model.key: label_of(model, scene) for model in models_of(scene, study.hierarchy)},
                 "bodies": len(scene.bodies),
                 "duration": scene.duration,
                 "recorded": scene.recorded,

@@ -143,6 +143,12 @@ class Pair:
     effect: str = ""
 
 
+def label_of(model: Model, scene: Scene) -> str:
+    """Return the title of a model with the reading of (5.1) that its mu has; without it where both are the same."""
+    title = model.title.removesuffix(f", {model.reading}")
+    return title if smooth(scene) else f"{title}, {model.reading}"
+
+
 def with_max_work(hierarchy: Sequence[Model], max_work: float) -> tuple[Model, ...]:
     """Return the hierarchy with this many steps of the engine allowed for a phase pair."""
     return tuple(

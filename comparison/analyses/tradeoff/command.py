@@ -58,7 +58,8 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     refuse_same_names((scene.name, scene.name) for scene in scenes)
     out = destination(options.out)
     _stored(out)  # a file that is no trade is refused before anything is measured
-    refuse_foreign_files(out, [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)])
+    written = [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)]
+    refuse_foreign_files(out, written)
     console = wide_console()
     if options.growth:
         return _grown(scenes[0], options, argv, out, console, executor)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.result_types import Array
-from comparison.study.models import Model, Pair
+from comparison.study.models import Model, Pair, label_of
 from comparison.surfaces.figures.file_names import with_ending
 from comparison.surfaces.model_difference import ModelDifference, difference_of
 from comparison.surfaces.surfaces import stride_of, values_of
@@ -40,7 +40,7 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
         axes = figure.add_axes((left, 0.0, 0.31, 0.86), projection="3d")
         assert isinstance(axes, Axes3D)
         _surface(axes, *surface, low, high)
-        axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(model.title)}", fontsize=11, pad=0)
+        axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(label_of(model, scene))}", fontsize=11, pad=0)
     _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), difference_of(surfaces, scene.name, pair, body))
     figure.savefig(path, pil_kwargs=PNG)
 

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
+from comparison.study.models import label_of
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import with_ending
 from comparison.surfaces.figures.pairs import PNG, closed_surface, draw_in_space, limits_of
@@ -43,7 +44,8 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
                 axes = figure.add_axes(place, projection="3d")
                 letter = chr(ord("a") + 2 * row + column)
                 draw_surface(axes, phase, height, limits, rf"$\mu_{{{row + 1}}}$")
-                axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {mathtext(model.title)}", y=1.0, fontsize=9.0)
+                label = mathtext(label_of(model, scene))
+                axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {label}", y=1.0, fontsize=9.0)
         figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
         figure.savefig(path, dpi=RESOLUTION, pil_kwargs=PNG)
 
