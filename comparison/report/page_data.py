@@ -25,13 +25,13 @@ def page_data(report: Report) -> str:
     """
     JSON of all that is drawn; NaN is null.
 
-    grid: phases per axis of the study. titles: by model. scenes, each: name, title, labels (by
-    model, with the reading of mu), bodies, duration (s), recorded, flat (whether it is a flat slider); pairs, each: key, title, sentence, first, second (models), supplied (whether the
-    second is an engine of the user), contours (per body: polylines [[alpha1, alpha2], ...], rad, on which |D| = u_D),
-    uncertainty (per body: u_D relative to the first model on the phases of both, or null where both are surfaces);
-    models (by key: see `_model`); contact (`contact_geometry`); places (row, column, phases or null under a record,
-    why, and motions: see `motion_data`); spectra (`spectrum_axis`). A surface is a list of rows, one per alpha1, of
-    values, one per alpha2.
+    grid: phases per axis of the study. titles: by model. scenes, each: name, title, labels (by model, with the reading
+    of mu), bodies, duration (s), recorded, flat (whether it is a flat slider); pairs, each: key, title, sentence,
+    first, second (models), supplied (whether the second is an engine of the user), contours (per body: polylines
+    [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
+    phases of both, or null where both are surfaces); models (by key: see `_model`); contact (`contact_geometry`);
+    places (row, column, phases or null under a record, why, and motions: see `motion_data`); spectra (`spectrum_axis`).
+    A surface is a list of rows, one per alpha1, of values, one per alpha2.
     """
     study = report.study
     starts = starts_of(report.found.get("motions") or [])
