@@ -81,9 +81,9 @@ def test_every_key_of_the_summary_is_as_documented(finished: Path) -> None:
 
 
 def test_a_missing_number_is_null_in_one_way() -> None:
-    form, bar = TypeAdapter(WaterfallBar), WaterfallBar("exact", math.nan, math.inf)
+    form, bar = TypeAdapter(WaterfallBar), WaterfallBar("exact", math.nan, math.inf, resolved=False)
     written = form.dump_python(bar, mode="json")
-    assert written == {"model": "exact", "size": None, "error": None, "real": False}
+    assert written == {"model": "exact", "size": None, "error": None, "resolved": False}
     assert math.isnan(form.validate_python(written).size)
 
 
