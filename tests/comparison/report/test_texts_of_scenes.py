@@ -86,7 +86,7 @@ def test_a_page_of_records_says_nothing_of_phases(command: Callable[..., Run]) -
     page = page_of(run.report)
     top = page[page.index("<h1>") : page.index("</nav")]
     assert "initial phases" not in top
-    assert "Exudyn (spatial) from them (synthetic-pair, " in top
+    assert " (spatial) from them (synthetic-pair, " in top
     assert "Values and motions under the records" in top
     summary = (run.report / "summary.md").read_text(encoding="utf-8")
     assert "1 scene, one value under each recorded motion" in summary
