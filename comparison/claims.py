@@ -3,4 +3,4 @@
 from comparison.cli.start import start
 
 if __name__ == "__main__":
-    start("comparison.analyses.claims.command")
+    start("comparison.evidence.claims.command")

@@ -7,21 +7,21 @@ from typing import Any
 from pydantic import Field, create_model
 
 from comparison.analyses.assumptions import feature as assumptions
-from comparison.analyses.benchmarks import feature as benchmarks
-from comparison.analyses.claims import feature as claims
 from comparison.analyses.conditioning import feature as conditioning
-from comparison.analyses.convergence import feature as convergence
 from comparison.analyses.demands import feature as demands
-from comparison.analyses.effective_values import feature as effective_values
 from comparison.analyses.ensemble import feature as ensemble
-from comparison.analyses.extremes import feature as extremes
 from comparison.analyses.families import feature as families
 from comparison.analyses.measured import feature as measured
 from comparison.analyses.motions import feature as motions
-from comparison.analyses.scaling import feature as scaling
-from comparison.analyses.tradeoff import feature as tradeoff
-from comparison.analyses.validation import feature as validation
 from comparison.analyses.worst_phases import feature as worst_phases
+from comparison.evidence.benchmarks import feature as benchmarks
+from comparison.evidence.claims import feature as claims
+from comparison.evidence.convergence import feature as convergence
+from comparison.evidence.effective import feature as effective_values
+from comparison.evidence.extremes import feature as extremes
+from comparison.evidence.scaling import feature as scaling
+from comparison.evidence.tradeoff import feature as tradeoff
+from comparison.evidence.validation import feature as validation
 from comparison.report.building import build_report
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult

@@ -3,4 +3,4 @@
 from comparison.cli.start import start
 
 if __name__ == "__main__":
-    start("comparison.analyses.validation.command")
+    start("comparison.evidence.validation.command")

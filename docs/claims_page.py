@@ -23,11 +23,11 @@ from matplotlib.figure import Figure
 from PIL import Image
 from pydantic import TypeAdapter
 
-from comparison.analyses.claims.checks import MET
-from comparison.analyses.claims.evidence import CaseInReading, gather_evidence
-from comparison.analyses.claims.readings import CASES, READINGS, PeakReading, effective_reading
-from comparison.analyses.claims.table import GRID, Claims, ClaimTable, claims_line
-from comparison.analyses.effective_values.analysis import forced_ratios
+from comparison.evidence.claims.checks import MET
+from comparison.evidence.claims.evidence import CaseInReading, gather_evidence
+from comparison.evidence.claims.readings import CASES, READINGS, PeakReading, effective_reading
+from comparison.evidence.claims.table import GRID, Claims, ClaimTable, claims_line
+from comparison.evidence.effective.analysis import forced_ratios
 from comparison.json_file import json_text
 from comparison.runner.environment import provenance
 from comparison.runner.task import execute

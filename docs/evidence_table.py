@@ -3,7 +3,7 @@ What the pages state from records: `python docs/evidence_table.py` writes it ane
 
 - evidence.json holds what the tests of the checks found: `python docs/evidence_table.py --measure [WORD]` runs them, or
   those whose names hold a word.
-- recorded.json of comparison/analyses/validation holds the measured motions: `python docs/evidence_table.py --measured
+- recorded.json of comparison/evidence/validation holds the measured motions: `python docs/evidence_table.py --measured
   FOLDER` computes it from the published files.
 - benchmarks.json is what `python -m comparison.benchmarks --mastodon FILE` writes.
 """
@@ -20,13 +20,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from xml.etree import ElementTree
 
-from comparison.analyses.benchmarks.table import STORED as PUBLISHED
-from comparison.analyses.benchmarks.table import Benchmarks, page
-from comparison.analyses.sides import ENGINE, EQUATIONS
-from comparison.analyses.validation import statements
-from comparison.analyses.validation.command import compared
-from comparison.analyses.validation.table import STORED as MEASURED
-from comparison.analyses.validation.table import recorded
+from comparison.evidence.benchmarks.table import STORED as PUBLISHED
+from comparison.evidence.benchmarks.table import Benchmarks, page
+from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.evidence.validation import statements
+from comparison.evidence.validation.command import compared
+from comparison.evidence.validation.table import STORED as MEASURED
+from comparison.evidence.validation.table import recorded
 from comparison.report.verification import CHECKS, Check
 from comparison.verdicts import NOT_COMPARED, NOT_MET, count_verdicts, judge, word_counts, word_verdict
 
@@ -114,7 +114,7 @@ def measure(word: str) -> None:
 
 def record_measured(folder: Path) -> None:
     """Compute the measured motions and keep all but the curves, which are of the files of others."""
-    place = ROOT / "comparison/analyses/validation/recorded.json"
+    place = ROOT / "comparison/evidence/validation/recorded.json"
     place.write_bytes(MEASURED.as_json(replace(compared(folder), curves=[])))
 
 

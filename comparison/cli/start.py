@@ -27,17 +27,17 @@ COLLECTIONS = 50_000, 20, 100
 COMMANDS = {  # module whose `main` is the command, and what it does
     "run": ("comparison.run", "compare the equations with Exudyn and write the report"),
     "claims": (
-        "comparison.analyses.claims.command",
+        "comparison.evidence.claims.command",
         "the paper's statements about its figures in both readings of (5.1)",
     ),
     "assumptions": ("comparison.analyses.assumptions.command", "how far the paper's assumptions hold"),
     "benchmarks": (
-        "comparison.analyses.benchmarks.command",
+        "comparison.evidence.benchmarks.command",
         "numbers published elsewhere, by the equations and by the engine",
     ),
-    "validation": ("comparison.analyses.validation.command", "measured motions, by the equations and by the engine"),
-    "extremes": ("comparison.analyses.extremes.command", "every model at the extremes of every quantity"),
-    "tradeoff": ("comparison.analyses.tradeoff.command", "error against compute time"),
+    "validation": ("comparison.evidence.validation.command", "measured motions, by the equations and by the engine"),
+    "extremes": ("comparison.evidence.extremes.command", "every model at the extremes of every quantity"),
+    "tradeoff": ("comparison.evidence.tradeoff.command", "error against compute time"),
     "ensemble": ("comparison.analyses.ensemble.command", "demands under a suite of motions at many intensities"),
     "init": ("comparison.cli.init", "a directory with a study to start from"),
     "animate": ("multibody.animate", "a film of the motion"),

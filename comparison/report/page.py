@@ -133,7 +133,11 @@ def content_policy(script: str, style: str) -> str:
 @cache
 def _environment() -> jinja2.Environment:
     loader = jinja2.ChoiceLoader(
-        [jinja2.PackageLoader("comparison.report", "templates"), jinja2.PackageLoader("comparison", "analyses")]
+        [
+            jinja2.PackageLoader("comparison.report", "templates"),
+            jinja2.PackageLoader("comparison", "analyses"),
+            jinja2.PackageLoader("comparison", "evidence"),
+        ]
     )
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
     filters = (percent, signed, scientific, degrees, significant, symbols, explained, unbroken)

@@ -23,7 +23,7 @@ SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
 VERSION: Literal[6] = 6  # grows when a key changes its meaning or goes
 
 
-# what measured motions say of the models, for every report: `word_validated` of comparison.analyses.validation words it
+# what measured motions say of the models, for every report: `word_validated` of comparison.evidence.validation words it
 # from the record, which the gate repeats; the report itself knows no analysis
 VALIDATED = (
     "Validated is one quantity: the half range of a frame shaken against dry friction, with friction of the load,"

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import reference
-from comparison.analyses.tradeoff.outside import factors, motion
+from comparison.evidence.tradeoff.outside import factors, motion
 from reference.solver.error_estimate import MAX_STEP_TOLERANCE, peaks_at, peaks_with_error
 from reference.surface import checked_demand
 

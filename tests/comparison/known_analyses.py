@@ -9,9 +9,9 @@ import xarray as xr
 from known_conditioning import known_curves
 
 import comparison.registry
-from comparison.analyses.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict
-from comparison.analyses.claims.table import ClaimTable, table_of
-from comparison.analyses.trends import trend
+from comparison.evidence.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict
+from comparison.evidence.claims.table import ClaimTable, table_of
+from comparison.evidence.trends import trend
 from comparison.runner.analysis import Analysis
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task

@@ -7,7 +7,7 @@ from oracle_law import Law
 from scipy.integrate import quad, solve_ivp
 
 import reference
-from comparison.analyses.scaling.analysis import scaled
+from comparison.evidence.scaling.analysis import scaled
 from reference.problem import GRAVITY, Outcome, Scene, State, load_scene, phase_grid
 
 PHASE = (0.3, 1.1)

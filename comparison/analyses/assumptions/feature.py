@@ -14,7 +14,7 @@ from comparison.analyses.assumptions.statements import (
 from comparison.analyses.assumptions.trials import WITHIN
 from comparison.analyses.assumptions.validity import Assumptions, Validity, line_of
 from comparison.analyses.assumptions.variations import Axis
-from comparison.analyses.panels import panel
+from comparison.report.panels import panel
 from comparison.report.plots import Panel, plain
 from comparison.report.results import Results
 from comparison.report.section import Feature, Report, Section

@@ -28,8 +28,8 @@ from comparison.analyses.assumptions.variations import (
     Variation,
     blind_by_symmetry,
 )
-from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Number, Phases, Text, result
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import models_of
 from comparison.study.study import Study

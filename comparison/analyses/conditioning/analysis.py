@@ -19,11 +19,11 @@ import numpy as np
 
 import multibody
 import reference
-from comparison.analyses.mapped import MappedAnalysis
-from comparison.analyses.shortened import shorten
 from comparison.result_types import Array, Number, Phases, Text, result
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
 from comparison.study.models import any_scene, dry, has_spatial_data
+from comparison.study.shorten import shorten
 from comparison.study.study import Study, nested_grids
 from comparison.surfaces.sampling import sampling_error
 from reference.problem import Outcome, Scene, phase_grid

@@ -6,7 +6,7 @@ from typing import Any
 
 from comparison.analyses.conditioning.analysis import SPEEDS, Conditioning, ConditioningCurve
 from comparison.analyses.conditioning.statement import conditioning_line, speed_text
-from comparison.analyses.panels import panel
+from comparison.report.panels import panel
 from comparison.report.plots import Panel, plain
 from comparison.report.section import Feature, Report, Section
 from comparison.wording import scientific, signed, significant

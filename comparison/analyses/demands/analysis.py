@@ -12,8 +12,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Phases, UncertainNumber, result
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import SMALL_REGULARIZED, Model, models_of

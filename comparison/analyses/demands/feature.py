@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from comparison.analyses.demands.analysis import DemandStatistics, DemandSurfaces, PhaseExtreme, demand_statistics
-from comparison.analyses.panels import distribution_panels
+from comparison.report.panels import distribution_panels
 from comparison.report.plots import DEMANDS, Panel
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult

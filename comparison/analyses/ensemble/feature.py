@@ -18,7 +18,7 @@ from comparison.analyses.ensemble.result import (
     Structure,
     Target,
 )
-from comparison.analyses.panels import draw_panels, panel
+from comparison.report.panels import draw_panels, panel
 from comparison.report.plots import Panel
 from comparison.report.section import Feature, Section
 from comparison.study.models import EXACT, SPATIAL

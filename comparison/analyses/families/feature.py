@@ -12,7 +12,7 @@ from comparison.analyses.families.analysis import (
     family_demands_over_phases,
     family_steps,
 )
-from comparison.analyses.panels import panel
+from comparison.report.panels import panel
 from comparison.report.plots import DEMANDS, Panel, plain
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult

@@ -12,8 +12,8 @@ from typing import Annotated, Any
 import xarray as xr
 from pydantic import computed_field
 
-from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Number, Phases, Text, result
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, models_of

@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
 from comparison.study.batches import imported
 from comparison.study.models import Model

@@ -18,8 +18,8 @@ import numpy as np
 import xarray as xr
 
 import reference
-from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Phases, Text, result
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
 from comparison.study.batches import imported
 from comparison.study.models import EXACT, SMALL, SMALL_RESOLVED, Model, models_of, pairs_of

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from comparison.analyses.panels import distribution_panels
 from comparison.analyses.worst_phases.analysis import Worst, WorstPhases
+from comparison.report.panels import distribution_panels
 from comparison.report.plots import fractile_heads
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Feature, Report, Section

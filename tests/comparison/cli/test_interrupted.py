@@ -23,8 +23,8 @@ from places import HELPERS, ROOT
 from report_texts import summary_of
 from runs import Run, no_executor
 
-from comparison.analyses.extremes import command as extremes
-from comparison.analyses.extremes.matrix import STORED
+from comparison.evidence.extremes import command as extremes
+from comparison.evidence.extremes.matrix import STORED
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.output import publish
 from comparison.runner.task_results import TaskResults

@@ -50,7 +50,7 @@ def test_a_folder_and_its_entry_are_a_feature(tmp_path: Path) -> None:
     text = registry.read_text(encoding="utf-8")
     measured = "from comparison.analyses.measured import feature as measured\n"
     edits = {
-        "from comparison.analyses.claims import feature as claims\n": "",
+        "from comparison.evidence.claims import feature as claims\n": "",
         "    claims.FEATURE,\n": "    ratio.FEATURE,\n",
         measured: measured + "from comparison.analyses.ratio import feature as ratio\n",
     }

@@ -12,7 +12,7 @@ from report_texts import both_pages, page_of
 from runs import SMALL, Run
 
 from comparison.analyses.ensemble import result as ensemble
-from comparison.analyses.tradeoff.trade import FILE as TRADES
+from comparison.evidence.tradeoff.trade import FILE as TRADES
 from comparison.runner.output import publish
 
 MAKES = ("extremes", "benchmarks", "tradeoff SCENE", "ensemble SCENE", "validation FOLDER")

@@ -13,9 +13,9 @@ from rich.console import Console
 from runs import RUN, Run
 from studies import solved
 
-from comparison.analyses.panels import draw_panels, panel
 from comparison.registry import report_of
 from comparison.report.junit import junit
+from comparison.report.panels import draw_panels, panel
 from comparison.report.summary_text import summary_text
 from comparison.runner.progress import progress, wide_console
 from comparison.study.study import Study

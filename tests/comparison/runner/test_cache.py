@@ -27,8 +27,8 @@ from places import ROOT
 from runs import no_executor
 
 import multibody.models.engine
-from comparison.analyses.claims.table import paper_complete
 from comparison.analyses.motions.analysis import Place, StoredMotion
+from comparison.evidence.claims.table import paper_complete
 from comparison.registry import ANALYSES, first_tasks
 from comparison.runner.cache import MAGIC, Cache, Key
 from comparison.runner.environment import (

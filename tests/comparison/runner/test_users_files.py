@@ -13,8 +13,8 @@ from known_results import FOUND
 from report_texts import page_of, summary_of
 from runs import SMALL, Run
 
-from comparison.analyses.extremes import command as extremes
 from comparison.cli import reports
+from comparison.evidence.extremes import command as extremes
 from comparison.report import page
 from comparison.runner.cache import Cache, Key
 from comparison.runner.output import (

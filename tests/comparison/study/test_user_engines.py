@@ -22,13 +22,13 @@ from runs import Run
 from studies import difference_rows, solved
 
 import reference
-from comparison.analyses.extremes.analysis import cells
-from comparison.analyses.extremes.rows import rows, user_column
-from comparison.analyses.tradeoff import analysis
-from comparison.analyses.tradeoff.analysis import TradeOff
-from comparison.analyses.tradeoff.feature import tradeoff_panels
-from comparison.analyses.tradeoff.settings import QUESTIONS, user_settings
 from comparison.cli.user_models import as_words, look_at, user_models
+from comparison.evidence.extremes.analysis import cells
+from comparison.evidence.extremes.rows import rows, user_column
+from comparison.evidence.tradeoff import analysis
+from comparison.evidence.tradeoff.analysis import TradeOff
+from comparison.evidence.tradeoff.feature import tradeoff_panels
+from comparison.evidence.tradeoff.settings import QUESTIONS, user_settings
 from comparison.runner import environment
 from comparison.runner.environment import engine_fingerprint, source_digest
 from comparison.runner.processes import process_pool

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from chains import refusal
 
-from comparison.analyses.scaling.analysis import scaled
+from comparison.evidence.scaling.analysis import scaled
 from reference.problem import Scene, SceneError, builtin_scenes, in_plane, load_family, load_scene
 from reference.problem.scene_file import scene_text
 
