@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
+from reference.defaults import DEFAULT_TOLERANCE
 from reference.measures import PeakDemands
 from reference.measures.peak_demands import demands_of_motions
 from reference.motion import trajectory
@@ -18,7 +19,7 @@ def peak_demands(
     phases: ArrayLike,
     equations: str = "exact",
     regularization: float | None = None,
-    tolerance: float = 1e-6,
+    tolerance: float = DEFAULT_TOLERANCE,
     rest_condition: str = "consistent",
 ) -> PeakDemands:
     """

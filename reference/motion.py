@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference.defaults import DEFAULT_TOLERANCE
 from reference.problem import (
     GRAVITY,
     Accuracy,
@@ -49,7 +50,7 @@ def trajectory(
     phase: ArrayLike,
     equations: str = "exact",
     regularization: float | None = None,
-    tolerance: float = 1e-6,
+    tolerance: float = DEFAULT_TOLERANCE,
     rest_condition: str = "consistent",
     times: ArrayLike | None = None,
     initial: State | None = None,
@@ -64,7 +65,7 @@ def trajectory(
     equations, regularization, rest_condition
         As in `reference.amplification`.
     tolerance : float
-        Relative error of the accelerations inside each step.
+        Relative error of the accelerations inside each step; 1e-06 (`DEFAULT_TOLERANCE`) if not given.
     times : array_like, (T,), s, optional
         Rising instants within the duration. By default 64 per shorter loading period, and the solver's own, which are
         closer at stops.

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference.defaults import DEFAULT_TOLERANCE
 from reference.measures.local_maxima import GRID, local_maxima
 from reference.measures.local_search import (
     LocalSearch,
@@ -83,7 +84,7 @@ def worst_phases(
     quantity: str = "amplification",
     equations: str = "exact",
     regularization: float | None = None,
-    tolerance: float = 1e-6,
+    tolerance: float = DEFAULT_TOLERANCE,
     cutoff: float | None = None,
     starts: ArrayLike | None = None,
 ) -> PhaseMaximum:

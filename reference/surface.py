@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.analytical.frictionless import frictionless_peaks
+from reference.defaults import DEFAULT_TOLERANCE
 from reference.problem import (
     GRAVITY,
     Amplification,
@@ -69,7 +70,7 @@ def amplification(
     phases: ArrayLike,
     equations: str = "exact",
     regularization: float | None = None,
-    tolerance: float = 1e-6,
+    tolerance: float = DEFAULT_TOLERANCE,
     cutoff: float | None = None,
     rest_condition: str = "consistent",
     full: bool = False,
@@ -89,7 +90,7 @@ def amplification(
     regularization : float, optional, m/s
         v_reg: dry friction is linear below this speed. None takes the set-valued law. A lubricated scene needs none.
     tolerance : float
-        Relative error asked of every mu.
+        Relative error asked of every mu; 1e-06 (`DEFAULT_TOLERANCE`) if not given.
     cutoff : float, optional, m/s
         v_c: mu as integrated, the resolved peak, in which only rest and sliding faster than v_c count. 1e-3 is what
         steps of about 1 ms resolve. None: the literal supremum with its one-sided limits, which no integration reaches.

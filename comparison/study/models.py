@@ -10,18 +10,16 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any, Literal
 
-from reference.problem import Scene, mirror_symmetric, no_friction
-from reference.problem.readings import AS_INTEGRATED, LITERAL_SUPREMUM
+from reference.problem import Scene, mirror_symmetric
+from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, DEFAULT_V_REG, LITERAL_SUPREMUM
 
-DEFAULT_V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity, on both sides alike
-DEFAULT_V_C = 1e-3  # m/s: slip speed above which an integration with steps of about 1 ms sees the motion
 REFERENCE_TOLERANCE = 1e-6  # asked at least of the equations, which are cheap: their error blurs no difference
 SOFTENED = "softened-"  # begins the key of a model whose bars are softened
 
 
 def dry(scene: Scene) -> bool:
     """Whether there is dry friction, which may be regularized."""
-    return not scene.lubricated and not no_friction(scene)
+    return scene.has_dry_friction
 
 
 def any_scene(scene: Scene) -> bool:

@@ -36,7 +36,7 @@ def assemble(
     checked_choice("model", model, sorted(BUILDERS))
     if regularization is not None:
         regularization = checked_number("regularization", regularization, REGULARIZATION)
-    elif not scene.lubricated and scene.friction_coefficient > 0.0:
+    elif scene.has_dry_friction:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
     if loading != "inertial" and scene.dry_friction.heat is not None:
         raise ValueError(f"loading: {loading!r}: friction that heat lowers needs the inertial loading")

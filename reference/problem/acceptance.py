@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from reference.problem.tables import STUDY, Positive, Table, about
+from reference.problem.keys import STUDY, Positive, Table, about
 from reference.support.scene_error import MisfitError
 
 ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # of an engine of the user

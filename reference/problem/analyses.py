@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from reference.problem.tables import REPORT, Table, about
+from reference.problem.keys import REPORT, Table, about
 
 Names = Annotated[list[str], Field(min_length=1)]
 

@@ -1,12 +1,22 @@
-"""Dry friction whose coefficient depends on slip speed, load and heat, as in friction-pendulum practice."""
+"""
+The law of friction: its keys in a scene file, and its coefficient over slip speed, load and heat.
+
+This is the one place of the law. `reference/solver/contact/friction.py` has its compiled form, and
+`multibody/models/speed_friction.py` gives its coefficients to the engine.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from pydantic import Discriminator, Tag, model_validator
+
+from reference.problem.keys import ALL, NonNegative, Positive, Table, about, within
+from reference.problem.validation import FRICTIONS
 
 LEAST_LOAD = 1e-6  # of the weight: friction depends no further on a normal force that is smaller
 
@@ -93,6 +103,11 @@ class DryFriction:
         return self.exponent != 0.0 or self.heat is not None
 
     @property
+    def kind(self) -> str:
+        """What texts call the law: "Coulomb" friction, or "dry" where the coefficient depends on anything."""
+        return "Coulomb" if self.constant else "dry"
+
+    @property
     def largest(self) -> float:
         """The larger of `slow` and `fast`, which bounds the coefficient at every speed under the weight."""
         return max(self.slow, self.fast)
@@ -117,3 +132,116 @@ class DryFriction:
             -self.rate * np.asarray(speed, dtype=float)
         )
         return coefficient if self.exponent == 0.0 else coefficient * np.maximum(load, LEAST_LOAD) ** self.exponent
+
+    def at_one(self, speed: float, load: float) -> float:
+        """Return the coefficient at one slip speed and load, as `at` does, for loops over single contacts."""
+        coefficient = self.slow - (self.fast - self.slow) * math.expm1(-self.rate * speed)
+        return coefficient if self.exponent == 0.0 else coefficient * max(load, LEAST_LOAD) ** self.exponent
+
+    def steepness(self, speed: ArrayLike) -> NDArray[np.float64]:
+        """Return the size of the derivative of the coefficient by the slip speed, under the weight."""
+        steepness: NDArray[np.float64] = (
+            abs(self.fast - self.slow) * self.rate * np.exp(-self.rate * np.asarray(speed, dtype=float))
+        )
+        return steepness
+
+    def in_unit_of_speed(self, unit: float) -> DryFriction:
+        """Return the same law for slip speeds in a unit of so many m/s."""
+        return replace(self, rate=self.rate * unit)
+
+
+class Heating(Table):
+    """
+    Heating of the sliding surface, which lowers dry friction.
+
+    The coefficient is that at 20 degrees C times 0.79 (0.7^(0.02 T) + 0.40), T in degrees C.
+    """
+
+    contact_radius: Annotated[
+        Annotated[Positive, within("isolator.friction.heating.contact_radius")],
+        about("radius of the slider's round contact, of each of the supports where these are given", "m", ALL),
+    ]
+    conductivity: Annotated[
+        Annotated[Positive, within("isolator.friction.heating.conductivity")],
+        about("thermal conductivity of the plate that the slider runs on", "W/(m K)", ALL),
+    ]
+    diffusivity: Annotated[
+        Annotated[Positive, within("isolator.friction.heating.diffusivity")],
+        about("thermal diffusivity of that plate", "m^2/s", ALL),
+    ]
+    initial_temperature: Annotated[
+        Annotated[float, within("isolator.friction.heating.initial_temperature")],
+        about("temperature before the motion, degrees C", "", ALL),
+    ] = 20.0
+
+
+class VelocityFriction(Table):
+    """
+    Dry friction that depends on the slip speed, the normal force, its own heat, or several of them.
+
+    The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n, times the temperature factor of `heating`.
+    """
+
+    slow: Annotated[Positive, within("isolator.friction.slow"), about("coefficient at rest", "", ALL)]
+    fast: Annotated[
+        Annotated[NonNegative, within("isolator.friction.fast")] | None,
+        about("coefficient at high speed, above or below slow; without it and rate, slow at every speed", "", ALL),
+    ] = None
+    rate: Annotated[
+        Annotated[Positive, within("isolator.friction.rate")] | None,
+        about("rate of the change from slow to fast", "s/m", ALL),
+    ] = None
+    load_exponent: Annotated[
+        Annotated[float, within("isolator.friction.load_exponent")] | None,
+        about("exponent n: the coefficient grows like N^n with the normal force N, and not without it", "", ALL),
+    ] = None
+    reference_load: Annotated[
+        Annotated[Positive, within("isolator.friction.reference_load")] | None,
+        about(
+            "normal force of the whole isolator under which the coefficients are those stated; the weight without it",
+            "N",
+            ALL,
+        ),
+    ] = None
+
+    heating: Annotated[Heating | None, about("the table below; without it the surface stays cold", "", ALL)] = None
+
+    @model_validator(mode="after")
+    def _pairs(self) -> VelocityFriction:
+        if (self.fast is None) != (self.rate is None):
+            raise ValueError("give fast and rate together, or neither")
+        if self.fast is None and self.load_exponent is None and self.heating is None:
+            raise ValueError("give fast and rate, load_exponent or heating, or one number in place of the table")
+        if self.reference_load is not None and self.load_exponent is None:
+            raise ValueError("reference_load belongs to a load_exponent: state that, too, or remove this key")
+        return self
+
+
+def kind_of_friction(friction: Any) -> str:
+    """Which of the two a friction is meant to be."""
+    return FRICTIONS[int(isinstance(friction, dict | VelocityFriction))]
+
+
+Friction = Annotated[
+    Annotated[NonNegative, within("isolator.friction"), Tag(FRICTIONS[0])]
+    | Annotated[VelocityFriction, Tag(FRICTIONS[1])],
+    Discriminator(kind_of_friction),
+]
+
+
+def law_of_friction(stated: float | VelocityFriction | None, weight: float, sliders: int) -> DryFriction:
+    """
+    Return the law of dry friction that a scene states under a weight, N; without friction where it states none.
+
+    A `reference_load` refers the coefficients to another load. The heat of `heating` spreads over all sliders.
+    """
+    if not isinstance(stated, VelocityFriction):
+        return DryFriction(stated or 0.0, stated or 0.0, 0.0)
+    exponent, heating = stated.load_exponent or 0.0, stated.heating
+    share = (weight / stated.reference_load) ** exponent if stated.reference_load else 1.0
+    heat = None
+    if heating is not None:
+        track = heating.contact_radius, heating.conductivity, heating.diffusivity, heating.initial_temperature
+        heat = Heat.of(*track, sliders)
+    fast = stated.slow if stated.fast is None else stated.fast
+    return DryFriction(share * stated.slow, share * fast, stated.rate or 0.0, exponent, heat)

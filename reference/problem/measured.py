@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
-from reference.problem.tables import REPORT, NonNegative, Table, Text, about, within
+from reference.problem.keys import REPORT, NonNegative, Table, Text, about, within
 
 OF_BODIES = {"mu": 1, "acceleration": 1, "drift": 2, "torsion": 1}  # number of the first body that has the quantity
 OF_ISOLATOR = (

@@ -18,29 +18,12 @@ from reference.problem.analyses import Analyses
 from reference.problem.bar_links import BarLink, bar_links, stands_upright
 from reference.problem.beam_column import buckling_load
 from reference.problem.changed_values import change_of, changed_name, put_value, value_at
-from reference.problem.friction import DryFriction, Heat
+from reference.problem.friction import DryFriction, Heating, VelocityFriction, law_of_friction
+from reference.problem.keys import ALL, NONE, Positive, Table, Text, about, exactly_one, within
 from reference.problem.measured import Measured
 from reference.problem.ranges import MAX_CYCLES, SCENE
 from reference.problem.supports import on_one_line, ring_places, static_shares
-from reference.problem.tables import (
-    ALL,
-    LINKS,
-    NONE,
-    Bars,
-    Body,
-    Excitation,
-    Heating,
-    Isolator,
-    Positive,
-    Record,
-    Table,
-    Text,
-    VelocityFriction,
-    about,
-    exactly_one,
-    kind_of_excitation,
-    within,
-)
+from reference.problem.tables import LINKS, Bars, Body, Excitation, Isolator, Record, kind_of_excitation
 from reference.problem.validation import EXCITATIONS, FRICTIONS, first_error
 from reference.records.loading import with_samples
 from reference.support.arguments import as_float, takes
@@ -402,18 +385,13 @@ class Scene(Table):
     @property
     def dry_friction(self) -> DryFriction:
         """The law of dry friction mu(|v|, N); without friction in a lubricated scene, which has none."""
-        friction = self.isolator.friction
-        if not isinstance(friction, VelocityFriction):
-            return DryFriction(friction or 0.0, friction or 0.0, 0.0)
-        fast, rate, exponent = friction.fast, friction.rate or 0.0, friction.load_exponent or 0.0
-        share = (self.total_mass * GRAVITY / friction.reference_load) ** exponent if friction.reference_load else 1.0
-        heat, sliders = None, 1 if self.support_places is None else len(self.support_places)
-        if friction.heating is not None:
-            stated = friction.heating
-            track = stated.contact_radius, stated.conductivity, stated.diffusivity, stated.initial_temperature
-            heat = Heat.of(*track, sliders)
-        fast = friction.slow if fast is None else fast
-        return DryFriction(share * friction.slow, share * fast, rate, exponent, heat)
+        sliders = 1 if self.support_places is None else len(self.support_places)
+        return law_of_friction(self.isolator.friction, self.total_mass * GRAVITY, sliders)
+
+    @property
+    def has_dry_friction(self) -> bool:
+        """Whether friction is dry and not zero: only then a law can be regularized and a motion comes to rest."""
+        return not self.lubricated and self.friction_coefficient != 0.0
 
     @property
     def recorded(self) -> bool:

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import math
-import unicodedata
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import (
-    AfterValidator,
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Discriminator,
     Field,
     PlainSerializer,
@@ -25,47 +19,23 @@ from pydantic import (
 )
 
 from reference.problem.beam_column import LoadFactors, load_factors
+from reference.problem.friction import Friction
+from reference.problem.keys import (
+    ALL,
+    SPATIAL,
+    NonNegative,
+    Positive,
+    Radius,
+    Table,
+    Text,
+    about,
+    exactly_one,
+    in_range,
+    within,
+)
 from reference.problem.ranges import DAMPING_COEFFICIENT, SCENE, SUPPORT_POSITION
-from reference.problem.validation import DAMPINGS, EXCITATIONS, FRICTIONS, SUPPORTS
+from reference.problem.validation import DAMPINGS, EXCITATIONS, SUPPORTS
 from reference.records.formats import checked_samples
-from reference.support.arguments import Range
-from reference.support.plain_values import hashable, plain
-
-USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
-
-
-ALL = "all"  # models that read a key
-SPATIAL = "spatial"
-STUDY = "`--check`"
-REPORT = "the report"
-NONE = "none"
-
-
-def about(meaning: str, unit: str, models: str) -> Any:
-    """A key in docs/scene.md: its meaning, its unit ("" for a plain number or text), the models that read it."""
-    return Field(description=meaning, json_schema_extra={"unit": unit, "models": models})
-
-
-def within(key: str) -> AfterValidator:
-    """The rule that a number lies within the range of `key` in `ranges.SCENE`."""
-    return in_range(SCENE[key])
-
-
-def in_range(allowed: Range) -> AfterValidator:
-    """The rule that a number lies within a range."""
-
-    def check(value: float) -> float:
-        if value not in allowed:
-            raise ValueError(allowed.rule)
-        return value
-
-    return AfterValidator(check)
-
-
-def _without_control_characters(text: str) -> str:
-    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in text):
-        raise ValueError("must have no control characters")
-    return text
 
 
 def _ratio_or_coefficients(value: Any) -> Any:
@@ -80,15 +50,6 @@ def _kind_of_damping(value: Any) -> str:
     return DAMPINGS[isinstance(value, list)]
 
 
-Text = Annotated[str, AfterValidator(_without_control_characters)]
-Positive = Annotated[float, Field(gt=0.0)]
-NonNegative = Annotated[float, Field(ge=0.0)]
-# JSON has no infinity: there it is the text "inf"
-Radius = Annotated[
-    float,
-    Field(gt=0.0, allow_inf_nan=True),
-    PlainSerializer(lambda value: "inf" if value == math.inf else value, when_used="json"),
-]
 LinkPeriods = Annotated[list[Annotated[Positive, within("bodies.period")]], Field(min_length=2, max_length=2)]
 LinkStiffness = Annotated[list[Annotated[Positive, within("bodies.stiffness")]], Field(min_length=2, max_length=2)]
 LinkDamping = Annotated[
@@ -104,119 +65,6 @@ MAX_SUPPORTS = int(SCENE["isolator.supports"].highest)
 Row = Annotated[list[Annotated[float, within("excitation.amplitudes")]], Field(min_length=2, max_length=2)]
 Periods = Annotated[list[Annotated[Positive, within("excitation.periods")]], Field(min_length=2, max_length=2)]
 Decay = Annotated[list[Annotated[NonNegative, within("excitation.decay")]], Field(min_length=2, max_length=2)]
-
-
-class Table(BaseModel):
-    """One table of the file: unknown keys, wrong types and numbers outside their range are refused."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-    long_keys: ClassVar[frozenset[str]] = frozenset()  # arrays that stay arrays, and that a hash leaves out
-
-    @model_validator(mode="before")
-    @classmethod
-    def _plain(cls, table: Any) -> Any:
-        """Arrays, tuples and numbers of numpy as a file would have them."""
-        if not isinstance(table, dict):
-            return table
-        return {key: value if key in cls.long_keys else plain(value) for key, value in table.items()}
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, type(self)) and self.model_dump() == other.model_dump()
-
-    def __hash__(self) -> int:
-        short = [hashable(getattr(self, key)) for key in type(self).model_fields if key not in self.long_keys]
-        return hash((type(self).__name__, *short))
-
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """A copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
-        if update:
-            raise ValueError(USE_WITH_VALUES)
-        return super().model_copy(deep=deep)
-
-
-def exactly_one(table: BaseModel, *keys: str) -> None:
-    """Raise ValueError, one line, unless exactly one of the keys of a table has a value."""
-    if sum(getattr(table, key) is not None for key in keys) != 1:
-        raise ValueError(f"give exactly one of {', '.join(keys[:-1])} and {keys[-1]}")
-
-
-class Heating(Table):
-    """
-    Heating of the sliding surface, which lowers dry friction.
-
-    The coefficient is that at 20 degrees C times 0.79 (0.7^(0.02 T) + 0.40), T in degrees C.
-    """
-
-    contact_radius: Annotated[
-        Annotated[Positive, within("isolator.friction.heating.contact_radius")],
-        about("radius of the slider's round contact, of each of the supports where these are given", "m", ALL),
-    ]
-    conductivity: Annotated[
-        Annotated[Positive, within("isolator.friction.heating.conductivity")],
-        about("thermal conductivity of the plate that the slider runs on", "W/(m K)", ALL),
-    ]
-    diffusivity: Annotated[
-        Annotated[Positive, within("isolator.friction.heating.diffusivity")],
-        about("thermal diffusivity of that plate", "m^2/s", ALL),
-    ]
-    initial_temperature: Annotated[
-        Annotated[float, within("isolator.friction.heating.initial_temperature")],
-        about("temperature before the motion, degrees C", "", ALL),
-    ] = 20.0
-
-
-class VelocityFriction(Table):
-    """
-    Dry friction that depends on the slip speed, the normal force, its own heat, or several of them.
-
-    The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n, times the temperature factor of `heating`.
-    """
-
-    slow: Annotated[Positive, within("isolator.friction.slow"), about("coefficient at rest", "", ALL)]
-    fast: Annotated[
-        Annotated[NonNegative, within("isolator.friction.fast")] | None,
-        about("coefficient at high speed, above or below slow; without it and rate, slow at every speed", "", ALL),
-    ] = None
-    rate: Annotated[
-        Annotated[Positive, within("isolator.friction.rate")] | None,
-        about("rate of the change from slow to fast", "s/m", ALL),
-    ] = None
-    load_exponent: Annotated[
-        Annotated[float, within("isolator.friction.load_exponent")] | None,
-        about("exponent n: the coefficient grows like N^n with the normal force N, and not without it", "", ALL),
-    ] = None
-    reference_load: Annotated[
-        Annotated[Positive, within("isolator.friction.reference_load")] | None,
-        about(
-            "normal force of the whole isolator under which the coefficients are those stated; the weight without it",
-            "N",
-            ALL,
-        ),
-    ] = None
-
-    heating: Annotated[Heating | None, about("the table below; without it the surface stays cold", "", ALL)] = None
-
-    @model_validator(mode="after")
-    def _pairs(self) -> VelocityFriction:
-        if (self.fast is None) != (self.rate is None):
-            raise ValueError("give fast and rate together, or neither")
-        if self.fast is None and self.load_exponent is None and self.heating is None:
-            raise ValueError("give fast and rate, load_exponent or heating, or one number in place of the table")
-        if self.reference_load is not None and self.load_exponent is None:
-            raise ValueError("reference_load belongs to a load_exponent: state that, too, or remove this key")
-        return self
-
-
-def kind_of_friction(friction: Any) -> str:
-    """Which of the two a friction is meant to be."""
-    return FRICTIONS[int(isinstance(friction, dict | VelocityFriction))]
-
-
-Friction = Annotated[
-    Annotated[NonNegative, within("isolator.friction"), Tag(FRICTIONS[0])]
-    | Annotated[VelocityFriction, Tag(FRICTIONS[1])],
-    Discriminator(kind_of_friction),
-]
 
 
 class Isolator(Table):

@@ -14,12 +14,11 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
-from reference.problem import DryFriction
 from reference.problem.friction import Heat
 from reference.solver.collocation import DEFECT_POLYNOMIAL, MONOMIALS, NODES, STAGES, A
 from reference.solver.compiled import OPTIONS
 from reference.solver.samples import SampledMotion, sample_motion
-from reference.solver.system import REST, Array, StepRecord, System
+from reference.solver.system import REST, Array, StepRecord, System, law_of
 from reference.support.build_cache import cached_on_disk
 
 NEWTON_STEPS = 8  # iterations to the instant between two nodes at which covering begins or ends
@@ -101,8 +100,7 @@ def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
     if not system.small:
         speed2 += (x * v).sum(axis=1) ** 2 / (system.radius**2 - (x**2).sum(axis=1))
     speed, weight = np.sqrt(speed2), system.mass_ratio * system.gravity
-    law = DryFriction(system.friction, system.friction + system.rise, system.rate, system.exponent)
-    power = law.at(speed, motion.reaction / weight) * motion.reaction * speed
+    power = law_of(system).at(speed, motion.reaction / weight) * motion.reaction * speed
     return power * np.minimum(speed / system.v_reg, 1.0) if system.v_reg > 0.0 else power
 
 

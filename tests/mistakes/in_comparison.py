@@ -467,7 +467,7 @@ MISTAKES = (
     Mistake(EVIDENCE + "claims/table.py", "scene.digest() != CASES[case]().digest() or ", "",
             "A changed scene stands for the paper's.",
             (EVIDENT + "claims.py::test_the_surfaces_of_the_study_are_used_where_it_has_the_grid",)),
-    Mistake(EVIDENCE + "claims/readings.py", 'models.SMALL_RESOLVED.key, models.DEFAULT_V_C)', 'models.SMALL_RESOLVED.key, None)',
+    Mistake(EVIDENCE + "claims/readings.py", 'models.SMALL_RESOLVED.key, readings.DEFAULT_V_C)', 'models.SMALL_RESOLVED.key, None)',
             "The supremum is called as integrated.", (EVIDENT + "claims.py::test_evidence_of_the_paper_is_what_the_equations_give",)),
     Mistake(EVIDENCE + "claims/command.py", "options.out = options.out.absolute()", "pass",
             "--out . ends in an unexpected error.", (EVIDENT + "claims.py::test_the_command_prints_the_table",)),
@@ -569,7 +569,7 @@ MISTAKES = (
             (OF + "worst_phases_in_a_study.py::test_searches_begin_at_the_hills_of_what_they_search",)),
     Mistake(EVIDENCE + "validation/frame.py", "mu = setup.ratio * setup.disc * cycles", "mu = setup.ratio * cycles",
             "The weight of the disc has no uncertainty.", (EVIDENT + "validation.py::test_the_scene_of_a_run_has_the_force_of_disc_and_base",)),
-    Mistake(EVIDENCE + "scaling/analysis.py", "cutoff = None if supremum else CUTOFF * s", "cutoff = CUTOFF * s if supremum else None",
+    Mistake(EVIDENCE + "scaling/analysis.py", "cutoff = None if supremum else DEFAULT_V_C * s", "cutoff = DEFAULT_V_C * s if supremum else None",
             "Supremum and resolved peak have each other's names.", (EVIDENT + "trends.py::test_a_geometric_step_has_the_exponent_two",)),
     # scripts of the page
     Mistake(REPORT + "templates/plot.js", "down = shown[i]; });", "down = down || shown[i]; });",

@@ -4,9 +4,8 @@ import math
 from collections.abc import Sequence
 
 from comparison.analyses.conditioning.analysis import ConditioningCurve
-from comparison.study.models import DEFAULT_V_C
 from comparison.wording import difference
-from reference.problem.readings import AS_INTEGRATED
+from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C
 
 DEEP, DEEPEST = 1e-6, 1e-12  # m/s: below what any instrument, and below what any computation, sees of a slide
 ILL = 1e-3  # of mu below DEEP: more than the engine's tolerance

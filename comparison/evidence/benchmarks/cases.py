@@ -18,6 +18,7 @@ from comparison.evidence.benchmarks import readings
 from comparison.evidence.benchmarks.table import Row
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, SceneError, Trajectory, load_scene
+from reference.problem.readings import DEFAULT_V_REG
 from reference.records.formats import LARGEST, RecordError, csv_samples
 from reference.support.files import read_file
 
@@ -197,7 +198,7 @@ def _linear() -> list[Case]:
             reading=Reading(readings.natural_periods),
             scene=shipped("stories"),
             start=(*((0.0, 0.0),) * 5, (1e-4, 0.0)),
-            regularization=1e-3,
+            regularization=DEFAULT_V_REG,
         ),
         Case(
             title="Pendulum released at 60°",
@@ -258,7 +259,7 @@ def mastodon(path: Path) -> Case:
         published=[published(name, value, READ_TO, "mm") for name, value in zip(names, LIMITS)],
         reading=Reading(readings.ranges, factor=1e3),
         scene=scene,
-        regularization=1e-3,
+        regularization=DEFAULT_V_REG,
         difference="their bearing is elastic up to 1 mm, and its restoring force N y / sqrt(R² - y²) lies between "
         "those of the exact and the small equations. The small equations give -429 to 329 and -199 to 151 mm",
     )

@@ -18,7 +18,7 @@ class PeakReading:
     cutoff: float | None
 
 
-AS_INTEGRATED = PeakReading(readings.AS_INTEGRATED, models.SMALL_RESOLVED.key, models.DEFAULT_V_C)
+AS_INTEGRATED = PeakReading(readings.AS_INTEGRATED, models.SMALL_RESOLVED.key, readings.DEFAULT_V_C)
 LITERAL_SUPREMUM = PeakReading(readings.LITERAL_SUPREMUM, models.SMALL.key, None)
 READINGS = (AS_INTEGRATED, LITERAL_SUPREMUM)
 

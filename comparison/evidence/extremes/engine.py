@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 import multibody
 from reference.problem import GRAVITY, Amplification, Scene
+from reference.problem.readings import DEFAULT_V_REG
 
 MAX_LEVELS = 6  # few: a bad start may cost some levels, not the answer
 LEVELS_TO_USUAL_CONTACT = 3  # from the given stiffness to that of the study, by equal factors
@@ -22,7 +23,7 @@ def amplification(
     scene: Scene,
     phases: ArrayLike,
     model: str = "translational",
-    regularization: float | None = 1e-3,
+    regularization: float | None = DEFAULT_V_REG,
     tolerance: float = 1e-2,
     contact_stiffness: float | None = None,
     step: float | None = None,

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from comparison.study.models import Model
+from reference.problem.readings import DEFAULT_V_REG
 
 Phases = tuple[tuple[float, float], ...]
 
@@ -72,10 +73,9 @@ def _column(key: str, title: str, equations: str, regularization: float | None) 
     return Column(key, title, function, settings, 1e-6, ((function, settings, 1e-8), (function, settings, 1e-7)))
 
 
-V_REG = 1e-3  # m/s, where it is not the extreme
-_REGULARIZED = {"equations": "exact", "regularization": V_REG}
-_TRANSLATIONAL = {"model": "translational", "regularization": V_REG, "max_work": MAX_WORK}
-_SPATIAL = {"model": "spatial", "regularization": V_REG, "max_work": MAX_WORK}
+_REGULARIZED = {"equations": "exact", "regularization": DEFAULT_V_REG}
+_TRANSLATIONAL = {"model": "translational", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
+_SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
 STATED = "comparison.evidence.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
 
 # the same law and geometry by other means and far closer; the engine itself where that has no answer
@@ -85,7 +85,7 @@ _FINER_SPATIAL = (ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)
 COLUMNS = (
     _column("small", "small equations", "small", None),
     _column("exact", "exact equations", "exact", None),
-    _column("regularised", "exact equations, v_reg", "exact", V_REG),
+    _column("regularised", "exact equations, v_reg", "exact", DEFAULT_V_REG),
     Column("translational", "translational engine", ENGINE, _TRANSLATIONAL, 1e-3, _FINER, 1.0),
     Column("spatial", "spatial engine", ENGINE, _SPATIAL, 1e-2, _FINER_SPATIAL, 8.5),
 )

@@ -20,11 +20,11 @@ from comparison.runner.task import TaskResult
 from comparison.study.models import dry
 from comparison.study.study import Study
 from reference.problem import Scene
+from reference.problem.readings import DEFAULT_V_C
 
 SCALES = (1.0, 0.5, 0.25, 0.125)
 PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
 TOLERANCE = 1e-8  # relative: the step at the smallest scale is 1e-5
-CUTOFF = 1e-3  # m/s at s = 1, of the resolved peak; it scales with the motion
 STEP = "exact minus small"
 PRINTED = "small, s minus s/2"
 
@@ -64,7 +64,7 @@ def scene_trends(task: Arguments) -> list[Trend]:
 
 def _both(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
     """mu and error, (2, P, N): small, exact."""
-    cutoff = None if supremum else CUTOFF * s
+    cutoff = None if supremum else DEFAULT_V_C * s  # it scales with the motion
     answers = [
         reference.amplification(scene, PHASES, equations=equations, tolerance=TOLERANCE, cutoff=cutoff)
         for equations in ("small", "exact")

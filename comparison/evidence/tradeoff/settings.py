@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from comparison.evidence.tradeoff.trade import Stated
-from comparison.study.models import DEFAULT_V_REG, Model, dry, has_spatial_data
+from comparison.study.models import Model, dry, has_spatial_data
 from comparison.study.user_models import engine_of
 from reference.problem import Scene
+from reference.problem.readings import DEFAULT_V_REG
 
 REFERENCE, ENGINE = "reference:amplification", "multibody:amplification"
 RUN, LEVEL, CONSTANT = (

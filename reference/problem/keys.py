@@ -1,0 +1,95 @@
+"""What every table of a scene file is made of: keys with their meaning and range, and how tables are compared."""
+
+from __future__ import annotations
+
+import math
+import unicodedata
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PlainSerializer, model_validator
+
+from reference.problem.ranges import SCENE
+from reference.support.arguments import Range
+from reference.support.plain_values import hashable, plain
+
+USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
+
+
+ALL = "all"  # models that read a key
+SPATIAL = "spatial"
+STUDY = "`--check`"
+REPORT = "the report"
+NONE = "none"
+
+
+def about(meaning: str, unit: str, models: str) -> Any:
+    """A key in docs/scene.md: its meaning, its unit ("" for a plain number or text), the models that read it."""
+    return Field(description=meaning, json_schema_extra={"unit": unit, "models": models})
+
+
+def within(key: str) -> AfterValidator:
+    """The rule that a number lies within the range of `key` in `ranges.SCENE`."""
+    return in_range(SCENE[key])
+
+
+def in_range(allowed: Range) -> AfterValidator:
+    """The rule that a number lies within a range."""
+
+    def check(value: float) -> float:
+        if value not in allowed:
+            raise ValueError(allowed.rule)
+        return value
+
+    return AfterValidator(check)
+
+
+def _without_control_characters(text: str) -> str:
+    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in text):
+        raise ValueError("must have no control characters")
+    return text
+
+
+Text = Annotated[str, AfterValidator(_without_control_characters)]
+Positive = Annotated[float, Field(gt=0.0)]
+NonNegative = Annotated[float, Field(ge=0.0)]
+# JSON has no infinity: there it is the text "inf"
+Radius = Annotated[
+    float,
+    Field(gt=0.0, allow_inf_nan=True),
+    PlainSerializer(lambda value: "inf" if value == math.inf else value, when_used="json"),
+]
+
+
+class Table(BaseModel):
+    """One table of the file: unknown keys, wrong types and numbers outside their range are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    long_keys: ClassVar[frozenset[str]] = frozenset()  # arrays that stay arrays, and that a hash leaves out
+
+    @model_validator(mode="before")
+    @classmethod
+    def _plain(cls, table: Any) -> Any:
+        """Arrays, tuples and numbers of numpy as a file would have them."""
+        if not isinstance(table, dict):
+            return table
+        return {key: value if key in cls.long_keys else plain(value) for key, value in table.items()}
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, type(self)) and self.model_dump() == other.model_dump()
+
+    def __hash__(self) -> int:
+        short = [hashable(getattr(self, key)) for key in type(self).model_fields if key not in self.long_keys]
+        return hash((type(self).__name__, *short))
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """A copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
+        if update:
+            raise ValueError(USE_WITH_VALUES)
+        return super().model_copy(deep=deep)
+
+
+def exactly_one(table: BaseModel, *keys: str) -> None:
+    """Raise ValueError, one line, unless exactly one of the keys of a table has a value."""
+    if sum(getattr(table, key) is not None for key in keys) != 1:
+        raise ValueError(f"give exactly one of {', '.join(keys[:-1])} and {keys[-1]}")
