@@ -71,7 +71,7 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     study = Study((scene,), 2, 1e-3, fake_hierarchy())
     surfaces = solved(study)
     surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0}] = np.nan
-    results = report_of(study, surfaces, {}, [], RUN).results
+    results = report_of(study, surfaces, {}, [], RUN, families=[]).results
     assert results.broken
     suites = ElementTree.fromstring(junit(results).encode())
     assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"
@@ -87,7 +87,7 @@ def test_a_page_of_records_says_nothing_of_phases(command: Callable[..., Run]) -
     top = page[page.index("<h1>") : page.index("</nav")]
     assert "initial phases" not in top
     assert "Exudyn (spatial) from them (synthetic-pair, " in top
-    assert "Values and motions under the records" in top
+    assert "Amplification and motions" in top
     summary = (run.report / "summary.md").read_text(encoding="utf-8")
     assert "1 scene, one value under each recorded motion" in summary
     assert ("48 ×" in summary, "over the phases" in run.out) == (False, False)
