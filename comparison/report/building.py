@@ -32,7 +32,7 @@ def build_report(
     run: Mapping[str, Any],
     features: Sequence[Feature],
     kind: type[Results],
-    families: Sequence[Family] = (),
+    families: Sequence[Family],
 ) -> Report:
     """Everything that a report is made from. found: of the features, by key. kind: with a field for each of them."""
     comparisons, lacking = body_comparisons(study, surfaces), unanswered(study, surfaces)

@@ -46,10 +46,9 @@ class Section:
     shows: fields of the results; where all of them are None the section is left out, and `absent` says which command
     makes it. name, template (in comparison/analyses or comparison/report/templates), shows: those of the feature unless
     they are given. context: what the template reads, from the report and the folder of its figures. tasks: drawings for
-    the workers. draw: writes its pictures into the folder of the figures. title_recorded: title where no scene has
-    phases, "" for the same. folded: whether the reader opens it. verifies: whether it verifies the tool rather than
-    answers the question, and so stands in verification.html. verdict: one line beside the title. lead: one sentence
-    for the first screen, "" for none.
+    the workers. draw: writes its pictures into the folder of the figures. folded: whether the reader opens it.
+    verifies: whether it verifies the tool rather than answers the question, and so stands in verification.html.
+    verdict: one line beside the title. lead: one sentence for the first screen, "" for none.
     """
 
     title: str
@@ -57,7 +56,6 @@ class Section:
     context: Callable[[Report, Path], Mapping[str, Any]] = lambda report, figures: {}
     tasks: Callable[[Report], list[Task]] | None = None
     draw: Callable[[Path, Report], None] | None = None
-    title_recorded: str = ""
     folded: bool = True
     verifies: bool = False
     verdict: Callable[[Results], str] | None = None
@@ -70,10 +68,6 @@ class Section:
         """Whether the section was asked for and the results hold any of what it shows."""
         held = [getattr(results, name) is not None for name in self.shows]
         return self.name not in results.absent and (not held or any(held))
-
-    def title_of(self, results: Results) -> str:
-        """Title of the section in these results."""
-        return self.title if results.phased else self.title_recorded or self.title
 
 
 @dataclass(frozen=True)

@@ -45,12 +45,7 @@ def _feature(key: str, title: str, **about: Any) -> Feature:
     return Feature(key, section=Section(title, template=f"sections/{key}.html.j2", **about))
 
 
-SURFACES = _feature(
-    "surfaces",
-    "Surfaces and motions",
-    title_recorded="Values and motions under the records",
-    folded=False,
-)
+SURFACES = _feature("surfaces", "Amplification and motions", folded=False)  # under a record it is one value
 DIFFERENCES = _feature("differences", "Differences", context=_differences)
 BUDGET = _feature("budget", "Causes of the difference", context=_grids)
 OUTCOMES = _feature("outcomes", "Outcomes and cost", context=_costs)

@@ -71,7 +71,7 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     study = Study((scene,), 2, 1e-3, fake_hierarchy())
     surfaces = solved(study)
     surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0}] = np.nan
-    results = report_of(study, surfaces, {}, [], RUN).results
+    results = report_of(study, surfaces, {}, [], RUN, families=[]).results
     assert results.broken
     suites = ElementTree.fromstring(junit(results).encode())
     assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"
