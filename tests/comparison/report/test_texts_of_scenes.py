@@ -87,7 +87,7 @@ def test_a_page_of_records_says_nothing_of_phases(command: Callable[..., Run]) -
     top = page[page.index("<h1>") : page.index("</nav")]
     assert "initial phases" not in top
     assert " (spatial) from them (synthetic-pair, " in top
-    assert "Values and motions under the records" in top
+    assert "Amplification and motions" in top
     summary = (run.report / "summary.md").read_text(encoding="utf-8")
     assert "1 scene, one value under each recorded motion" in summary
     assert ("48 ×" in summary, "over the phases" in run.out) == (False, False)
