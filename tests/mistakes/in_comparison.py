@@ -232,7 +232,7 @@ MISTAKES = (
             "np.nanmax(beyond)", "The gate holds the maximum to the limit of the median.",
             (GATE + "median_and_maximum_have_limits_of_their_own",)),
     Mistake("comparison/testing.py", "> failed:", "> failed + 1:", "The gate allows one missing value too many.",
-            (GATE + "a_user_engine_is_compared_with_the_equations_of_its_law",)),
+            (GATE + "a_status_that_is_not_ok_is_no_value",)),
     # commands
     Mistake("comparison/run.py", "return 1 if options.check and found.broken else 0", "return 0",
             "--check passes whatever is broken.", (CHECK + "check_exits_1_and_names_scene_body_key_found_and_limit",)),
