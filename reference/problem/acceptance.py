@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from reference.problem.keys import STUDY, Positive, Table, about
+from reference.problem.keys import STUDY, Positive, Table, key
 from reference.support.scene_error import MisfitError
 
 ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # of an engine of the user
@@ -17,20 +17,11 @@ ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # of an engine of the u
 class Limits(Table):
     """Limits of the relative difference of two models over the phases, for every body."""
 
-    median: Annotated[
-        Positive | None, about("limit of the median relative difference of mu_i over the phases", "", STUDY)
-    ] = None
-    maximum: Annotated[
-        Positive | None, about("limit of the largest relative difference of mu_i over the phases", "", STUDY)
-    ] = None
-    ratio: Annotated[
-        Positive | None,
-        about(
-            "limit of the largest difference in units of u_D = sqrt(u_A^2 + u_B^2) of the two error estimates",
-            "",
-            STUDY,
-        ),
-    ] = None
+    median: Positive | None = key("limit of the median relative difference of mu_i over the phases", models=STUDY)
+    maximum: Positive | None = key("limit of the largest relative difference of mu_i over the phases", models=STUDY)
+    ratio: Positive | None = key(
+        "limit of the largest difference in units of u_D = sqrt(u_A^2 + u_B^2) of the two error estimates", models=STUDY
+    )
 
     def stated(self) -> dict[str, float]:
         """The limits that are present, by key."""
@@ -55,37 +46,26 @@ class Acceptance(Limits):
     model_config = ConfigDict(extra="allow")
     __pydantic_extra__: dict[str, Annotated[Limits, BeforeValidator(_only_a_table)]] = Field(init=False)
 
-    total: Annotated[
-        Limits | None,
-        about("table of limits: the paper's printed equations against the most complete model", "", STUDY),
-    ] = None
-    translational: Annotated[
-        Limits | None,
-        about("table of limits: the paper's printed equations against the engine without rotations", "", STUDY),
-    ] = None
-    like_for_like: Annotated[
-        Limits | None,
-        about("table of limits: the exact equations against that engine under the same friction law", "", STUDY),
-    ] = None
-    closure: Annotated[
-        Positive | None,
-        about("limit of the size of (sum of the models' steps - total) relative to mu_i, for every body", "", STUDY),
-    ] = None
-    failed: Annotated[
-        Annotated[int, Field(ge=0)] | None,
-        about(
-            "points without an answer that are allowed, of all models with the user's; 0 where another limit is given",
-            "",
-            STUDY,
-        ),
-    ] = None
+    total: Limits | None = key(
+        "table of limits: the paper's printed equations against the most complete model", models=STUDY
+    )
+    translational: Limits | None = key(
+        "table of limits: the paper's printed equations against the engine without rotations", models=STUDY
+    )
+    like_for_like: Limits | None = key(
+        "table of limits: the exact equations against that engine under the same friction law", models=STUDY
+    )
+    closure: Positive | None = key(
+        "limit of the size of (sum of the models' steps - total) relative to mu_i, for every body", models=STUDY
+    )
+    failed: Annotated[int, Field(ge=0)] | None = key(
+        "points without an answer that are allowed, of all models with the user's; 0 where another limit is given",
+        models=STUDY,
+    )
 
-    confirm: Annotated[
-        bool | None,
-        about(
-            "true: --check computes the study again at a tenth of the tolerance, where the limits hold, too", "", STUDY
-        ),
-    ] = None
+    confirm: bool | None = key(
+        "true: --check computes the study again at a tenth of the tolerance, where the limits hold, too", models=STUDY
+    )
 
     @model_validator(mode="after")
     def _once(self) -> Acceptance:

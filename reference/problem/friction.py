@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import Discriminator, Tag, model_validator
 
-from reference.problem.keys import ALL, NonNegative, Positive, Table, about, within
+from reference.problem.keys import REQUIRED, NonNegative, Positive, Table, key
 from reference.problem.validation import FRICTIONS
+from reference.support.arguments import Range
 
 LEAST_LOAD = 1e-6  # of the weight: friction depends no further on a normal force that is smaller
 
@@ -157,22 +158,16 @@ class Heating(Table):
     The coefficient is that at 20 degrees C times 0.79 (0.7^(0.02 T) + 0.40), T in degrees C.
     """
 
-    contact_radius: Annotated[
-        Annotated[Positive, within("isolator.friction.heating.contact_radius")],
-        about("radius of the slider's round contact, of each of the supports where these are given", "m", ALL),
-    ]
-    conductivity: Annotated[
-        Annotated[Positive, within("isolator.friction.heating.conductivity")],
-        about("thermal conductivity of the plate that the slider runs on", "W/(m K)", ALL),
-    ]
-    diffusivity: Annotated[
-        Annotated[Positive, within("isolator.friction.heating.diffusivity")],
-        about("thermal diffusivity of that plate", "m^2/s", ALL),
-    ]
-    initial_temperature: Annotated[
-        Annotated[float, within("isolator.friction.heating.initial_temperature")],
-        about("temperature before the motion, degrees C", "", ALL),
-    ] = 20.0
+    contact_radius: Positive = key(
+        "radius of the slider's round contact, of each of the supports where these are given",
+        Range(1e-3, 10.0, "m"),
+        default=REQUIRED,
+    )
+    conductivity: Positive = key(
+        "thermal conductivity of the plate that the slider runs on", Range(0.01, 1e4, "W/(m K)"), default=REQUIRED
+    )
+    diffusivity: Positive = key("thermal diffusivity of that plate", Range(1e-8, 1e-2, "m^2/s"), default=REQUIRED)
+    initial_temperature: float = key("temperature before the motion", Range(-50.0, 300.0, "degrees C"), default=20.0)
 
 
 class VelocityFriction(Table):
@@ -182,29 +177,20 @@ class VelocityFriction(Table):
     The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n, times the temperature factor of `heating`.
     """
 
-    slow: Annotated[Positive, within("isolator.friction.slow"), about("coefficient at rest", "", ALL)]
-    fast: Annotated[
-        Annotated[NonNegative, within("isolator.friction.fast")] | None,
-        about("coefficient at high speed, above or below slow; without it and rate, slow at every speed", "", ALL),
-    ] = None
-    rate: Annotated[
-        Annotated[Positive, within("isolator.friction.rate")] | None,
-        about("rate of the change from slow to fast", "s/m", ALL),
-    ] = None
-    load_exponent: Annotated[
-        Annotated[float, within("isolator.friction.load_exponent")] | None,
-        about("exponent n: the coefficient grows like N^n with the normal force N, and not without it", "", ALL),
-    ] = None
-    reference_load: Annotated[
-        Annotated[Positive, within("isolator.friction.reference_load")] | None,
-        about(
-            "normal force of the whole isolator under which the coefficients are those stated; the weight without it",
-            "N",
-            ALL,
-        ),
-    ] = None
+    slow: Positive = key("coefficient at rest", Range(1e-9, 1e3), default=REQUIRED)
+    fast: NonNegative | None = key(
+        "coefficient at high speed, above or below slow; without it and rate, slow at every speed", Range(0.0, 1e3)
+    )
+    rate: Positive | None = key("rate of the change from slow to fast", Range(1e-6, 1e10, "s/m"))
+    load_exponent: float | None = key(
+        "exponent n: the coefficient grows like N^n with the normal force N, and not without it", Range(-0.5, 1.0)
+    )
+    reference_load: Positive | None = key(
+        "normal force of the whole isolator under which the coefficients are those stated; the weight without it",
+        Range(1e-11, 1e16, "N"),
+    )
 
-    heating: Annotated[Heating | None, about("the table below; without it the surface stays cold", "", ALL)] = None
+    heating: Heating | None = key("the table below; without it the surface stays cold")
 
     @model_validator(mode="after")
     def _pairs(self) -> VelocityFriction:
@@ -223,8 +209,7 @@ def kind_of_friction(friction: Any) -> str:
 
 
 Friction = Annotated[
-    Annotated[NonNegative, within("isolator.friction"), Tag(FRICTIONS[0])]
-    | Annotated[VelocityFriction, Tag(FRICTIONS[1])],
+    Annotated[NonNegative, Tag(FRICTIONS[0])] | Annotated[VelocityFriction, Tag(FRICTIONS[1])],
     Discriminator(kind_of_friction),
 ]
 

@@ -4,12 +4,22 @@ from __future__ import annotations
 
 import math
 import unicodedata
-from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Self
+from collections.abc import Iterator, Mapping
+from dataclasses import astuple
+from typing import Annotated, Any, ClassVar, Self, cast
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, PlainSerializer, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
-from reference.problem.ranges import SCENE
+from reference.problem.validation import PlacedError
 from reference.support.arguments import Range
 from reference.support.plain_values import hashable, plain
 
@@ -21,16 +31,44 @@ SPATIAL = "spatial"
 STUDY = "`--check`"
 REPORT = "the report"
 NONE = "none"
+REQUIRED = ...
 
 
-def about(meaning: str, unit: str, models: str) -> Any:
-    """A key in docs/scene.md: its meaning, its unit ("" for a plain number or text), the models that read it."""
-    return Field(description=meaning, json_schema_extra={"unit": unit, "models": models})
+def key(
+    meaning: str,
+    allowed: Range | None = None,
+    *,
+    models: str = ALL,
+    default: Any = None,
+    other_form: bool = False,
+) -> Any:
+    """
+    Declare a key of a table: its meaning and the models that read it in docs/scene.md, and the range of its numbers.
+
+    other_form: the key has another form than a number, whose lists of numbers have ranges of their own.
+    """
+    said: dict[str, Any] = {"unit": allowed.unit if allowed else "", "models": models}
+    if allowed is not None:
+        said |= {"range": [*astuple(allowed)], "other_form": other_form}
+    return Field(default, description=meaning, json_schema_extra=said)
 
 
-def within(key: str) -> AfterValidator:
-    """The rule that a number lies within the range of `key` in `ranges.SCENE`."""
-    return in_range(SCENE[key])
+def range_of(table: type[Table], name: str) -> Range:
+    """Return the range of a key of a table."""
+    return Range(*_said(table, name)["range"])
+
+
+def _said(table: type[Table], name: str) -> dict[str, Any]:
+    return cast("dict[str, Any]", table.model_fields[name].json_schema_extra or {})
+
+
+def _numbers_in(value: Any, place: tuple[int, ...] = ()) -> Iterator[tuple[tuple[int, ...], float]]:
+    """Iterate over the numbers of a value and of its lists, with the place of each."""
+    if isinstance(value, list):
+        for n, part in enumerate(value):
+            yield from _numbers_in(part, (*place, n))
+    elif isinstance(value, int | float):
+        yield place, value
 
 
 def in_range(allowed: Range) -> AfterValidator:
@@ -74,6 +112,17 @@ class Table(BaseModel):
         if not isinstance(table, dict):
             return table
         return {key: value if key in cls.long_keys else plain(value) for key, value in table.items()}
+
+    @field_validator("*")
+    @classmethod
+    def _check_range(cls, value: Any, info: ValidationInfo) -> Any:
+        said = _said(cls, info.field_name or "")
+        if "range" in said and not (said["other_form"] and isinstance(value, list)):
+            allowed = Range(*said["range"])
+            for place, number in _numbers_in(value):
+                if number not in allowed:
+                    raise PlacedError(place, number, allowed.rule)
+        return value
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, type(self)) and self.model_dump() == other.model_dump()

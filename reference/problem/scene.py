@@ -19,14 +19,14 @@ from reference.problem.bar_links import BarLink, bar_links, stands_upright
 from reference.problem.beam_column import buckling_load
 from reference.problem.changed_values import change_of, changed_name, put_value, value_at
 from reference.problem.friction import DryFriction, Heating, VelocityFriction, law_of_friction
-from reference.problem.keys import ALL, NONE, Positive, Table, Text, about, exactly_one, within
+from reference.problem.keys import NONE, REQUIRED, Positive, Table, Text, exactly_one, key, range_of
 from reference.problem.measured import Measured
-from reference.problem.ranges import MAX_CYCLES, SCENE
+from reference.problem.ranges import MAX_CYCLES
 from reference.problem.supports import on_one_line, ring_places, static_shares
 from reference.problem.tables import LINKS, Bars, Body, Excitation, Isolator, Record, kind_of_excitation
 from reference.problem.validation import EXCITATIONS, FRICTIONS, first_error
 from reference.records.loading import with_samples
-from reference.support.arguments import as_float, takes
+from reference.support.arguments import Range, as_float, takes
 from reference.support.constants import GRAVITY
 from reference.support.html_table import html_table
 from reference.support.scene_error import MisfitError, SceneError
@@ -72,12 +72,12 @@ class Scene(Table):
     1.0
     """
 
-    title: Annotated[Text, about("title of the scene in the report and in figures", "", NONE)]
-    duration: Annotated[
-        Positive,
-        within("duration"),
-        about("time from the start of the motion to its end; with a record, left out, that of the record", "s", ALL),
-    ]
+    title: Text = key("title of the scene in the report and in figures", models=NONE, default=REQUIRED)
+    duration: Positive = key(
+        "time from the start of the motion to its end; with a record, left out, that of the record",
+        Range(1e-6, 1e9, "s"),
+        default=REQUIRED,
+    )
     isolator: Isolator
     bodies: Annotated[list[Body], Field(min_length=1, max_length=MAX_BODIES)]
     excitation: Annotated[
@@ -104,9 +104,9 @@ class Scene(Table):
     @model_validator(mode="after")
     def _links(self) -> Scene:
         platform, *others = self.bodies
-        for key in (*LINKS, "damping"):
-            if (value := getattr(platform, key)) is not None:
-                raise MisfitError(f"bodies.0.{key}", value, "the platform has no link below: remove this key")
+        for name in (*LINKS, "damping"):
+            if (value := getattr(platform, name)) is not None:
+                raise MisfitError(f"bodies.0.{name}", value, "the platform has no link below: remove this key")
         for number, body in enumerate(others, start=1):
             try:
                 exactly_one(body, *LINKS)
@@ -137,22 +137,23 @@ class Scene(Table):
     def _check_derived(self) -> None:
         """What follows from several values must be within its range as well."""
         derived = {
-            "isolator: radius in m": (self.radius, SCENE["isolator.radius"]),
-            "bodies: total mass in kg": (self.total_mass, SCENE["bodies.mass"]),
+            "isolator: radius in m": (self.radius, range_of(Isolator, "radius")),
+            "bodies: total mass in kg": (self.total_mass, range_of(Body, "mass")),
         }
         with np.errstate(over="ignore", divide="ignore"):
             periods = 2.0 * np.pi * np.sqrt(self.masses[1:, None] / self.stiffness)
         if self.dry_friction.exponent != 0.0:
-            derived["isolator.friction: under the weight"] = self.dry_friction.slow, SCENE["isolator.friction.slow"]
+            derived["isolator.friction: under the weight"] = self.dry_friction.slow, range_of(VelocityFriction, "slow")
+        allowed = {name: range_of(Body, name) for name in ("stiffness", "period", "damping")}
         for (i, axis), k in np.ndenumerate(self.stiffness):
-            derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), SCENE["bodies.stiffness"]
-            derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), SCENE["bodies.period"]
+            derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), allowed["stiffness"]
+            derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), allowed["period"]
             ratio = float(self.damping[i, axis] / (2.0 * np.sqrt(k * self.masses[i + 1])))
-            derived[f"bodies.{i + 1}: damping ratio along {'xy'[axis]}"] = ratio, SCENE["bodies.damping"]
-        for key, (value, allowed) in derived.items():
-            lowest, highest = allowed.lowest * (1.0 - DERIVED_ROUNDING), allowed.highest * (1.0 + DERIVED_ROUNDING)
-            if not (lowest <= value <= highest or value in allowed):
-                raise MisfitError(key, value, allowed.rule)
+            derived[f"bodies.{i + 1}: damping ratio along {'xy'[axis]}"] = ratio, allowed["damping"]
+        for name, (value, span) in derived.items():
+            lowest, highest = span.lowest * (1.0 - DERIVED_ROUNDING), span.highest * (1.0 + DERIVED_ROUNDING)
+            if not (lowest <= value <= highest or value in span):
+                raise MisfitError(name, value, span.rule)
         shortest = 2.0 * math.pi * math.sqrt(self.radius / GRAVITY)
         if isinstance(self.excitation, Excitation):
             shortest = min(shortest, *self.excitation.periods)
@@ -266,12 +267,12 @@ class Scene(Table):
         """
         data = self.model_dump(exclude_none=True)
         changes = []
-        for key, value in values.items():
-            before = value_at(data, str(key))
+        for name, value in values.items():
+            before = value_at(data, str(name))
             # a key inside a table that is given, too, must not change the caller's table
             own = deepcopy(value) if isinstance(value, dict | list) else value
-            put_value(self.name, data, str(key), own, KEYS)
-            changes.append(change_of(str(key), before, own))
+            put_value(self.name, data, str(name), own, KEYS)
+            changes.append(change_of(str(name), before, own))
         if "name" not in values:
             data["name"] = changed_name(self.name, changes)
         try:
@@ -458,7 +459,7 @@ class Scene(Table):
         """The values that scale the loading to an amplitude, m/s^2. Raises SceneError as `with_amplitude`."""
         largest, stated = self.largest_acceleration, amplitude
         amplitude = as_float(stated)
-        if not 0.0 < amplitude <= SCENE["excitation.amplitudes"].highest:
+        if not 0.0 < amplitude <= range_of(Excitation, "amplitudes").highest:
             raise SceneError(self.name, "amplitude", stated, "must be finite and greater than 0 m/s^2")
         if largest == 0.0:
             key = "record" if self.recorded else "amplitudes"

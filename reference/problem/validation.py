@@ -16,6 +16,14 @@ ALONG_AXES = {"stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s"}  # of a lin
 DAMPINGS = ("damping ratio", "damping coefficients")
 
 
+class PlacedError(ValueError):
+    """A number that is not allowed, with its place in the lists of its key."""
+
+    def __init__(self, place: tuple[int, ...], value: float, rule: str) -> None:
+        self.place, self.value, self.rule = place, value, rule
+        super().__init__(rule)
+
+
 def first_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence[str]]) -> SceneError:
     """The first error that pydantic reports, in the words of the scene file. keys: of every table, by its name."""
     errors = invalid.errors(include_url=False)
@@ -26,6 +34,8 @@ def first_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence
         return SceneError(file, misfit.key, misfit.value, misfit.rule)
     forms = EXCITATIONS + SUPPORTS + FRICTIONS + DAMPINGS
     place = [part for part in error["loc"] if part not in forms]
+    if isinstance(misfit, PlacedError):
+        return SceneError(file, ".".join(map(str, [*place, *misfit.place])), misfit.value, misfit.rule)
     key = ".".join(map(str, place)) or "scene"
     if error["type"] == "extra_forbidden":
         table = ".".join(str(part) for part in error["loc"][:-1] if not isinstance(part, int))

@@ -30,6 +30,11 @@ class Range:
     or_infinite: bool = False
 
     @property
+    def text(self) -> str:
+        """The range as it stands in a table."""
+        return f"{self.lowest:g} to {self.highest:g}{', or inf' if self.or_infinite else ''}"
+
+    @property
     def rule(self) -> str:
         """The range as the end of an error message."""
         unit = f" {self.unit}" if self.unit else ""

@@ -2,8 +2,9 @@
 
 import math
 import runpy
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -12,8 +13,10 @@ from chains import refusal
 import multibody
 import reference
 from reference.problem import Outcome, SceneError, load_scene
-from reference.problem.ranges import REGULARIZATION, SCENE
-from reference.problem.scene import KEYS
+from reference.problem.keys import Table
+from reference.problem.ranges import REGULARIZATION
+from reference.problem.scene import KEYS, Scene
+from reference.support.arguments import Range
 from reference.surface import checked_demand
 
 FIG3 = load_scene("fig3-I")
@@ -40,6 +43,27 @@ def test_the_page_of_keys_is_what_the_schema_says() -> None:
     docs = Path(__file__).parents[3] / "docs"
     made = runpy.run_path(str(docs / "scene_keys.py"))["page"]()
     assert (docs / "scene.md").read_text(encoding="utf-8") == made, "run: python docs/scene_keys.py"
+
+
+def tables_in(kind: Any) -> Iterator[type[Table]]:
+    """Iterate over the tables that an annotation names."""
+    if isinstance(kind, type) and issubclass(kind, Table):
+        yield kind
+    for part in get_args(kind):
+        yield from tables_in(part)
+
+
+def ranges_in(table: type[Table], start: str = "") -> Iterator[tuple[str, Range]]:
+    """Iterate over the keys of a table and of the tables in it, with the ranges of their numbers."""
+    for name, field in table.model_fields.items():
+        said = field.json_schema_extra
+        if isinstance(said, dict) and "range" in said:
+            yield start + name, Range(*said["range"])
+        for inner in tables_in(field.annotation):
+            yield from ranges_in(inner, f"{start}{name}.")
+
+
+SCENE = dict(ranges_in(Scene))
 
 
 def test_every_number_of_a_scene_has_a_range() -> None:
