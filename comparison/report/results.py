@@ -34,8 +34,9 @@ VALIDATED = (
 
 # the same by `word_validated_briefly`, for the first screen
 VALIDATED_BRIEFLY = (
-    "measured was the half range of a frame shaken against dry friction: met at 2 of 2 predicted loads with friction "
-    "of the load, at 1 of 3 with one friction ratio; no building has been compared"
+    "measurements of a shaken frame test dry friction alone: both codes predict its half range within the uncertainties "
+    "at 2 of 2 loads where friction depends on the load, at 1 of 3 with a constant coefficient; no building has been "
+    "compared"
 )
 
 

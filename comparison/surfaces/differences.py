@@ -54,8 +54,10 @@ class Difference(DifferenceStatistics):
     sampling_error: Annotated[Number, "error of the mean that the grid of phases leaves; null where it does not tell"]
     spread: Annotated[Number, "standard deviation of the signed size over the same phase pairs"]
     low: Annotated[Number, "smallest signed size"]
+    low_error: Annotated[Number, "error estimate of it"]
     low_phases: Annotated[Phases, "(alpha1, alpha2) of it, rad"]
     high: Annotated[Number, "largest signed size"]
+    high_error: Annotated[Number, "error estimate of it"]
     high_phases: Annotated[Phases, "(alpha1, alpha2) of it, rad"]
     phases_per_axis: Annotated[int, "of the grid of phase pairs that both models were asked for; 1 under a record"]
     independent: Annotated[int, "phase pairs where both have a value that no symmetry of the scene relates"]
@@ -124,8 +126,10 @@ def difference_row(scene: str, difference: ModelDifference, independent: int, no
         sampling_error=0.0 if difference.recorded else sampling_error(size, independent),
         spread=float(size[known].std()) if known.any() else nan,
         low=difference.at(size, ends[0]),
+        low_error=difference.at(difference.uncertainty, ends[0]),
         low_phases=difference.phases_at(ends[0]),
         high=difference.at(size, ends[1]),
+        high_error=difference.at(difference.uncertainty, ends[1]),
         high_phases=difference.phases_at(ends[1]),
         phases_per_axis=grid,
         independent=independent,

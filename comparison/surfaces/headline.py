@@ -68,8 +68,10 @@ class Headline:
     resolved: Annotated[bool, "whether the mean exceeds its sampling error, and five times the numerical one"]
     spread: Annotated[Number, "standard deviation of the signed difference over the same phase pairs"]
     low: Annotated[Number, "smallest signed difference"]
+    low_error: Annotated[Number, "error estimate of it"]
     low_phases: Annotated[Phases, "(alpha1, alpha2) of it, rad"]
     high: Annotated[Number, "largest signed difference"]
+    high_error: Annotated[Number, "error estimate of it"]
     high_phases: Annotated[Phases, "(alpha1, alpha2) of it, rad"]
     phases_per_axis: Annotated[int, "of the grid of phase pairs that both models were asked for; 1 under a record"]
     points: Annotated[int, "phase pairs of this grid where both models have a value"]
@@ -129,8 +131,10 @@ def headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
         resolved=total.mean_is_resolved,
         spread=total.spread,
         low=total.low,
+        low_error=total.low_error,
         low_phases=total.low_phases,
         high=total.high,
+        high_error=total.high_error,
         high_phases=total.high_phases,
         phases_per_axis=total.phases_per_axis,
         points=total.asked - total.unanswered,

@@ -27,8 +27,9 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     pairs = f"{curve.grid} × {curve.grid} phases"
     integrated, deep, deepest = (_written(*_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
     values = (
-        f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} as integrated ({1e3 * DEFAULT_V_C:g} mm/s), "
-        f"{deep} down to {speed_text(DEEP)} m/s, {deepest} down to {speed_text(DEEPEST)} m/s (mean of {pairs})"
+        f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} where speeds above {speed_text(DEFAULT_V_C)} m/s "
+        f"count (as integrated), {deep} above {speed_text(DEEP)} m/s, {deepest} above {speed_text(DEEPEST)} m/s "
+        f"(mean of {pairs})"
     )
     if abs(size) >= ILL and abs(size) > error:
         return f"The literal supremum is ill-conditioned: {values}{_of_engine(curve, result or ())}."
@@ -42,9 +43,9 @@ def speed_text(speed: float) -> str:
     Write a speed without a leading zero in its exponent.
 
     >>> speed_text(1e-6), speed_text(0.0003)
-    ('1e-6', '0.0003')
+    ('1e-6', '3e-4')
     """
-    return f"{speed:g}".replace("e-0", "e-")
+    return f"{speed:.0e}".replace("e-0", "e-")
 
 
 def _asked(curve: ConditioningCurve) -> bool:
@@ -71,8 +72,8 @@ def _of_engine(curve: ConditioningCurve, result: Sequence[ConditioningCurve]) ->
     if not changes:
         return ""
     before, after = engines[0].v[-2:]
-    steps = f"from v_reg = {speed_text(before)} to {speed_text(after)} m/s"
-    return f"; {steps} Exudyn's mean of {pairs} phase pairs changes by {', by '.join(changes)}"
+    steps = f"as v_reg falls from {speed_text(before)} to {speed_text(after)} m/s"
+    return f"; {steps}, Exudyn's mean of {pairs} phase pairs still changes by {', by '.join(changes)}"
 
 
 def _last_change(curve: ConditioningCurve) -> tuple[float, float]:

@@ -89,8 +89,9 @@ def word_validated_briefly(table: Validation) -> str:
         rows = [each for each in frame_rows(table, loaded, "predicted") if each.name == HALF_RANGE]
         met[loaded] = word_met_of(rows)
     return (
-        f"measured was the {HALF_RANGE} of a frame shaken against dry friction: met at {met[True]} predicted loads "
-        f"with friction of the load, at {met[False]} with one friction ratio; no building has been compared"
+        f"measurements of a shaken frame test dry friction alone: both codes predict its {HALF_RANGE} within the "
+        f"uncertainties at {met[True]} loads where friction depends on the load, at {met[False]} with a constant "
+        "coefficient; no building has been compared"
     )
 
 
