@@ -33,14 +33,14 @@ from comparison.cli.reports import Complete, Reports, computed_level
 from comparison.cli.start import Clock, start_time
 from comparison.cli.terminal import print_models_left_out, print_plan, print_stored
 from comparison.cli.user_models import Engines, as_words
-from comparison.registry import chosen_analyses, first_tasks, levels
+from comparison.registry import chosen_analyses, first_tasks, levels, seconds_by_stage
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.output import clear_dead
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Deadline, TimeUpError, progress, wide_console
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
-from comparison.study.costs import WRITING, seconds_of_analysis, seconds_of_model
+from comparison.study.costs import WRITING, seconds_of_model
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
@@ -120,7 +120,7 @@ def _ended(study: Study, options: Options, console: Console, words: Sequence[str
             store.remove([*keys, *(task.key for task in first)])
         results = TaskResults(store, options.fresh)
         print_stored(console, results, surfaces, first)
-        stages = {analysis.stage: seconds_of_analysis(study, analysis.key, analysis.stage) for analysis in analyses}
+        stages = seconds_by_stage(study)
         total = WRITING + sum(stages.values()) + sum(seconds_of_model(study, model) for model in study.hierarchy)
         reports = Reports(options, jobs, words, began)
         complete: Complete | None = None

@@ -5,7 +5,7 @@ What the pages state from records: `python docs/evidence_table.py` writes it ane
   those whose names hold a word.
 - recorded.json of comparison/evidence/validation holds the measured motions: `python docs/evidence_table.py --measured
   FOLDER` computes it from the published files.
-- benchmarks.json is what `python -m comparison.benchmarks --mastodon FILE` writes.
+- benchmarks.json is what `phase-resonance benchmarks --mastodon FILE` writes.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ def measured_rows() -> list[str]:
         rows.append(
             f"| the {each.name} of the {each.experiment}, {each.measured:.4g} {each.unit} | measurement ({each.use}) "
             f"| E = {found} {each.unit} (equations, engine) | u<sub>val</sub> = {sides[0].validation:.2g} {each.unit} "
-            f"| {each.word_both()} | `comparison.validation FOLDER` | {commit} |"
+            f"| {each.word_both()} | `phase-resonance validation FOLDER` | {commit} |"
         )
     return rows
 
@@ -85,7 +85,7 @@ def published_rows() -> list[str]:
         rows.append(
             f"| {name} numbers published elsewhere | closed forms and other programs, [all](benchmarks.md) "
             f"| {word_counts(counts, 'number')} | the error of both | {verdict} "
-            f"| `comparison.benchmarks --mastodon FILE` | {table.run['provenance']['commit'][:7]} |"
+            f"| `phase-resonance benchmarks --mastodon FILE` | {table.run['provenance']['commit'][:7]} |"
         )
     return rows
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from comparison.study.analyses import ANALYSES
+from comparison.registry import EVERYTHING
 from reference.problem import Scene
 from reference.problem.ranges import MAX_CYCLES
 from reference.support.arguments import Range
@@ -70,8 +70,8 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "`[analyses]`",
         "Analyses",
         "analyses",
-        f"Analyses of the report beside the amplification factors: {', '.join(ANALYSES)}. `--only`, `--skip` and"
-        " `--also` of the command line override this table.",
+        f"Analyses of the report beside the amplification factors: {', '.join(EVERYTHING.names)}. `--only`, `--skip`"
+        " and `--also` of the command line override this table.",
     ),
     (
         "`[[measured]]`",

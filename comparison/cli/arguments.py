@@ -118,9 +118,10 @@ def command(main: Callable[Concatenate[Sequence[str], Rest], int]) -> Callable[.
 
 
 def invocation(command: str) -> list[str]:
-    """The words that start a command: those of the console script where it was started by that."""
+    """Return the words that start a command; those of the study are `python -m` unless the console script started it."""
     script = ["phase-resonance", command]
-    return script if sys.argv[0] == " ".join(script) else ["python", "-m", f"comparison.{command}"]
+    by_script = command != "run" or sys.argv[0] == " ".join(script)
+    return script if by_script else ["python", "-m", f"comparison.{command}"]
 
 
 def command_line(words: Sequence[str], command: str = "run") -> str:

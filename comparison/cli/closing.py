@@ -60,7 +60,7 @@ def print_closing(console: Console, results: Results, options: Options, words: S
         console.print(f"{LABELS[alert.kind]}: {alert.line}", style=color, soft_wrap=True)
     for headline in (headline for scene in results.scenes for headline in scene.headlines):
         console.print(headline.sentence, soft_wrap=True)
-    if results.of("measured") is not None:
+    if results.clauses:
         console.print(f"{results.measurements}.", soft_wrap=True)
     console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
     if results.run.level < results.run.levels:

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from comparison.cli.arguments import CommandParser, jobs, number, whole_number
 from comparison.cli.user_models import add_models, user_models
-from comparison.registry import EARLIER
+from comparison.registry import EVERYTHING, FEATURES, SELECTABLE
 from comparison.runner.cache import refuse_foreign_store
 from comparison.runner.output import destination, refuse_foreign_report
-from comparison.study.analyses import ANALYSES, EVERYTHING, ON_REQUEST, Selection, known_analyses
 from comparison.study.models import Model
+from comparison.study.selection import Selection, refuse_unknown, select
 from comparison.study.study import refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance
@@ -68,7 +68,7 @@ def parsed(argv: Sequence[str]) -> Options:
         full=words.full,
         max_work=_optional("--max-work", words.max_work, 1.0, 1e12, "steps of Exudyn for a phase pair"),
         scheduler=words.scheduler,
-        selection=Selection.of((scene for family in families for scene in family.scenes), only, skip, also),
+        selection=select(SELECTABLE, (scene for family in families for scene in family.scenes), only, skip, also),
         models=user_models(words.model, words.model_limit, words.scheduler),
     )
     if options.check:
@@ -80,9 +80,9 @@ def parsed(argv: Sequence[str]) -> Options:
         raise SceneError("command line", "--budget", words.budget, "needs a timer that this system does not have")
     if not options.plan:
         try:
-            for feature in EARLIER:
-                assert feature.load is not None
-                feature.load(options.out)
+            for field in (field for feature in FEATURES for field in feature.stored):
+                assert field.load is not None
+                field.load(options.out)
         except (OSError, ValueError) as error:
             rule = f"the report cannot show {error}"
             raise SceneError("command line", "--out", str(options.out), rule) from None
@@ -136,10 +136,10 @@ def _parser() -> CommandParser:
         "before any step",
     )
     add_models(parser)
-    names = ", ".join(ANALYSES)
+    names, on_request = ", ".join(EVERYTHING.names), ", ".join(each.name for each in SELECTABLE if each.on_request)
     parser.add_argument("--only", metavar="LIST", help=f"make these analyses only, separated by commas: {names}")
     parser.add_argument("--skip", metavar="LIST", help="make all analyses but these")
-    parser.add_argument("--also", metavar="LIST", help=f"make these analyses besides: {', '.join(ON_REQUEST)}")
+    parser.add_argument("--also", metavar="LIST", help=f"make these analyses besides: {on_request}")
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument(
         "--plan", action="store_true", help="print what would be computed and roughly how long it takes; run nothing"
@@ -151,8 +151,10 @@ def _analyses(option: str, text: str | None) -> list[str] | None:
     """The analyses that an option lists, separated by commas."""
     if text is None:
         return None
+    names = [name.strip() for name in text.split(",")]
     try:
-        return known_analyses([name.strip() for name in text.split(",")])
+        refuse_unknown(names, SELECTABLE)
+        return names
     except ValueError as error:
         raise SceneError("command line", option, text, str(error)) from None
 

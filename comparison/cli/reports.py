@@ -12,9 +12,10 @@ import xarray as xr
 from comparison.cli.arguments import command_line, writing
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
-from comparison.registry import EARLIER, chosen_analyses, first_tasks, report_of
+from comparison.registry import FEATURES, chosen_analyses, first_tasks, report_of
+from comparison.report.feature import ResultField
 from comparison.report.results import Results
-from comparison.report.section import Feature, Report
+from comparison.report.section import Report
 from comparison.runner.environment import provenance
 from comparison.runner.output import on_stderr, replace_report
 from comparison.runner.runner import Runner, compiling_task
@@ -74,19 +75,13 @@ class Reports:
         new = any(task.key not in runner.results.stored for task in complete.tasks)
         return new and time.monotonic() - self._last >= PATIENCE
 
-    def write(self, complete: Complete, runner: Runner, stopped: bool = False) -> Results:
-        """Write the report of a level; that of the last one, unless the run was ended, with drawings."""
-        from comparison.report.writing import drawing_tasks, write_report  # plotting: not needed to refuse or to plan
+    def write(self, complete: Complete, runner: Runner) -> Results:
+        """Write the report of a level."""
+        from comparison.report.writing import write_report  # plotting: not needed to refuse or to plan
 
         begin = time.monotonic()
-        final = complete.level.last and not stopped
         report = self._report(complete, runner)
         results = report.results
-        if final:
-            drawings = drawing_tasks(report)
-            runner.run(drawings)
-            files = {task.key: runner.results[task].value for task in drawings}
-            report = replace(report, drawings={key: value for key, value in files.items() if value})
         with writing(self._options.out), replace_report(self.place) as staged:
             write_report(staged.folder, report)
         self.place = self._options.out if staged.place == self._options.out.resolve() else staged.place
@@ -108,7 +103,7 @@ class Reports:
                     unfinished.append(analysis.key)
         if self.level is not complete.level or set(unfinished) != set(later):
             study = replace(complete.study, selection=whole.selection.without(unfinished))
-            self.write(replace(complete, study=study), runner, stopped=True)
+            self.write(replace(complete, study=study), runner)
 
     def _report(self, complete: Complete, runner: Runner) -> Report:
         study, surfaces, took = complete.study, complete.surfaces, Clock.now().since(self._began)
@@ -134,8 +129,8 @@ class Reports:
             analysis.key: analysis.collect(study.selecting(analysis.key), surfaces, runner.results)
             for analysis in chosen_analyses(study)
         }
-        kept = [feature for feature in EARLIER if feature.selection not in study.absent]
-        found |= {feature.key: _loaded(feature, self._options.out) for feature in kept}
+        fields = [field for feature in FEATURES if feature.key not in study.absent for field in feature.stored]
+        found |= {field.name: _load(field, self._options.out) for field in fields}
         families = [family for family in self._options.families if len(family.scenes) > 1]
         faults = _faults(complete.tasks, runner.results)
         return report_of(study, surfaces, found, faults, run, families=families)
@@ -151,11 +146,11 @@ def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
     return [Alert(level="amber", kind="fault", scene=scene, text=text, help="") for scene, text in sorted(texts)]
 
 
-def _loaded(feature: Feature, out: Path) -> Any:
+def _load(field: ResultField[Any], out: Path) -> Any:
     """What another command left beside the report; None for a file that has come since and cannot be read."""
-    assert feature.load is not None
+    assert field.load is not None
     try:
-        return feature.load(out)
+        return field.load(out)
     except (OSError, ValueError) as error:
         on_stderr(str(error))
         return None

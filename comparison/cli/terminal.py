@@ -7,12 +7,12 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.cli.options import Options
-from comparison.registry import chosen_analyses, first_tasks, levels
+from comparison.registry import chosen_analyses, first_tasks, levels, seconds_by_stage
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import refusal_of
-from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_analysis, seconds_of_model
+from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_model
 from comparison.study.models import models_of, why_not_spatial
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
@@ -57,7 +57,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     results = TaskResults(Cache(store_beside(options.out)), options.fresh)
     print_stored(console, results, surface_tasks(study), first_tasks(study, analyses))
     seconds = sum(seconds_of_model(study, model) for model in study.hierarchy)
-    seconds += sum(seconds_of_analysis(study, each.key, each.stage) for each in analyses)
+    seconds += sum(seconds_by_stage(study).values())
     wall = STARTING + seconds / options.jobs + WRITING
     first = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
     console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{first}; nothing was computed.")

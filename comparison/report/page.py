@@ -5,15 +5,13 @@ import hashlib
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
 import jinja2
 from markupsafe import Markup
 
-from comparison.analyses.motions.page_data import packed, packed_motions
 from comparison.report.glossary import explained, term, unbroken
-from comparison.report.page_data import page_data
+from comparison.report.page_data import pack, page_data
 from comparison.report.results import VALIDATED_BRIEFLY, Results
 from comparison.report.section import Report
 from comparison.report.surface_sections import applied_models
@@ -27,7 +25,7 @@ DRAWN = 0.01  # share of mu: shorter bars are left out
 SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
-def pages(figures: Path, report: Report) -> dict[str, str]:
+def pages(report: Report) -> dict[str, str]:
     """index.html, which answers the question, and verification.html, which verifies the tool, each whole by itself."""
     study, results = report.study, report.results
     waterfalls = [each for scene in results.scenes for each in zip(scene.waterfalls, scene.headlines)]
@@ -51,14 +49,12 @@ def pages(figures: Path, report: Report) -> dict[str, str]:
             "largest": scale_of((each.largest.bars, each.largest.total) for each, _ in drawn),
         },
         "effects": {PHASES: "other phases", **{model.key: model.effect or model.title for model in study.hierarchy}},
-        "data": packed(page_data(report).encode()),
-        "motions": packed_motions(report),
+        "data": pack(page_data(report).encode()),
+        "packed": {each.key: pack(each.packed_data(report)) for each in report.features if each.packed_data},
     }
     return {
-        "index.html": _page("report.html.j2", figures, report, False, answers),
-        "verification.html": _page(
-            "verification.html.j2", figures, report, True, {"data": packed(b"null"), "motions": ""}
-        ),
+        "index.html": _page("report.html.j2", report, False, answers),
+        "verification.html": _page("verification.html.j2", report, True, {"data": pack(b"null"), "packed": {}}),
     }
 
 
@@ -70,8 +66,7 @@ def is_drawn(bars: Waterfall) -> bool:
 
 def measured_sentence(results: Results) -> str:
     """Return what measurements say, without the full stop."""
-    measured = "" if results.of("measured") is None else f"; {results.measurements}"
-    return f"{VALIDATED_BRIEFLY}{measured}"
+    return "; ".join([VALIDATED_BRIEFLY, *results.clauses])
 
 
 def lead_lines(report: Report) -> list[tuple[str, str]]:
@@ -84,7 +79,6 @@ def lead_lines(report: Report) -> list[tuple[str, str]]:
 
 def _page(
     template: str,
-    figures: Path,
     report: Report,
     verifies: bool,
     context: Mapping[str, Any],
@@ -108,7 +102,7 @@ def _page(
         "has_surfaces": lambda scene: "surfaces" in scene.analyses,
     }
     load = _environment().get_template
-    bodies = [load(section.template).render({**common, **section.context(report, figures)}) for section in shown]
+    bodies = [load(section.template).render({**common, **section.context(report)}) for section in shown]
     return load(template).render(
         {**common, **context},
         policy=content_policy(script, style),

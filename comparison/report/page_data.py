@@ -1,13 +1,13 @@
 """What the page's script draws: surfaces, where their difference is as large as its uncertainty, motions."""
 
+import base64
+import gzip
 import json
 from typing import Any
 
 import contourpy
 import numpy as np
 
-from comparison.analyses.motions.page_data import contact_geometry, places, spectrum_axis, starts_of
-from comparison.analyses.worst_phases.analysis import nearest_search
 from comparison.report.section import Report
 from comparison.result_types import Array
 from comparison.study.models import Model, Pair, label_of, models_of
@@ -19,6 +19,7 @@ from reference.problem import Scene
 Rows = list[list[float | None]]
 
 DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
+LEVEL = 6  # of compression: the next one takes half as long again for 2 % less
 
 
 def page_data(report: Report) -> str:
@@ -29,12 +30,11 @@ def page_data(report: Report) -> str:
     of mu), bodies, duration (s), recorded, flat (whether it is a flat slider); pairs, each: key, title, sentence,
     first, second (models), supplied (whether the second is an engine of the user), contours (per body: polylines
     [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
-    phases of both, or null where both are surfaces); models (by key: see `_model`); contact (`contact_geometry`);
-    places (row, column, phases or null under a record, why, and motions: see `motion_data`); spectra (`spectrum_axis`).
-    A surface is a list of rows, one per alpha1, of values, one per alpha2.
+    phases of both, or null where both are surfaces); models (by key: see `_model`); and what the `page_data` of every
+    feature adds. A surface is a list of rows, one per alpha1, of values, one per alpha2.
     """
     study = report.study
-    starts = starts_of(report.found.get("motions") or [])
+    hooks = [feature.page_data for feature in report.features if feature.page_data]
     data = {
         "grid": study.grid,
         "titles": {model.key: model.title for model in study.hierarchy},
@@ -49,14 +49,17 @@ def page_data(report: Report) -> str:
                 "flat": scene.flat,
                 "pairs": [_pair(report, scene, pair) for pair in study.pairs(scene)],
                 "models": {model.key: _model(report, scene, model) for model in models_of(scene, study.hierarchy)},
-                "contact": contact_geometry(scene),
-                "places": list(places(report, scene, starts)),
-                "spectra": spectrum_axis(report, scene),
+                **{name: part for hook in hooks for name, part in hook(report, scene).items()},
             }
             for scene in study.scenes
         ],
     }
     return json.dumps(data, allow_nan=False, separators=(",", ":"))
+
+
+def pack(content: bytes) -> str:
+    """Compress and write in letters; the browser undoes both."""
+    return base64.b64encode(gzip.compress(content, LEVEL, mtime=0)).decode()
 
 
 def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[float]]]:
@@ -96,8 +99,6 @@ def _model(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     mu: per body. error: per body, null for a surface. completed: per body, null or through (a model), certificate
     (how far it is off, in words), reason (why it is not drawn), difference (whether that may be drawn), mu (null where
     refused).
-    worst: per body, null or alpha1, alpha2 (rad), the largest mu over all phases, and the model that was searched: this
-    one or one near it.
     """
     bodies = range(1, len(scene.bodies) + 1)
     surface = not scene.recorded and _surface(report, scene, model)
@@ -114,17 +115,8 @@ def _model(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
         "surface": surface,
         "mu": listed("mu", DIGITS),
         "error": None if surface else listed("error", ERROR_DIGITS),
-        "worst": [_worst(report, scene, model, body) for body in bodies],
         "completed": [_completed(completed.get(body)) for body in bodies],
     }
-
-
-def _worst(report: Report, scene: Scene, model: Model, body: int) -> list[float | str] | None:
-    keys = [each.key for each in models_of(scene, report.study.hierarchy)]
-    worst = nearest_search(report.found.get("worst_phases") or (), keys, scene.name, model.key, body)
-    if worst is None:
-        return None
-    return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{DIGITS}g}"), worst.model]
 
 
 def _completed(completion: Completion | None) -> dict[str, Any] | None:

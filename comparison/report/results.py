@@ -5,8 +5,9 @@ The page, summary.md, JUnit and summary.json are made from one `Results` object.
 summary.json: its JSON schema is generated from them and written beside it. Relative sizes are fractions, not percent.
 """
 
+from collections.abc import Sequence
 from functools import cache
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -17,7 +18,6 @@ from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.statements import word_gate
 from comparison.surfaces.unanswered import Unanswered
-from comparison.verdicts import count_verdicts, word_counts
 
 SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
 VERSION: Literal[6] = 6  # grows when a key changes its meaning or goes
@@ -101,10 +101,7 @@ class Results(Part):
     unanswered: list[Unanswered] = Field(description="models without a value at some or all phase pairs of a scene")
     alerts: list[Alert] = Field(description="what a reader must know before trusting a number, the most serious first")
     faults: list[Text] = Field(description="error messages of the solvers")
-
-    def of(self, key: str) -> Any:
-        """What a feature found; None where it found nothing."""
-        return getattr(self, key)
+    features: ClassVar[Sequence[Any]] = ()  # the registry enters them
 
     @property
     def broken(self) -> list[Alert]:
@@ -122,14 +119,15 @@ class Results(Part):
         return {scene.name: scene.unchecked for scene in self.scenes}
 
     @property
+    def clauses(self) -> list[str]:
+        """What the features add to the statement on measurements."""
+        said = [feature.clause(self) for feature in self.features if feature.clause]
+        return [clause for clause in said if clause]
+
+    @property
     def measurements(self) -> str:
         """What measurements say of the models, in a clause."""
-        measured = self.of("measured")
-        if measured is None:
-            return "this study has no measured peaks"
-        counts = count_verdicts(computed.verdict for peak in measured for computed in peak.computed)
-        count = "1 measured peak stands" if len(measured) == 1 else f"{len(measured)} measured peaks stand"
-        return f"{count} beside the models ({word_counts(counts)})"
+        return "; ".join(self.clauses) or "this study has no measured peaks"
 
     @property
     def engine_lines(self) -> list[str]:

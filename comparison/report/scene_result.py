@@ -1,6 +1,6 @@
 """The results of one scene; the registry adds the fields of its features."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
@@ -67,7 +67,3 @@ class SceneResult(Part):
     limits: list[Limit]
     """every acceptance limit that the scene states, and those that an engine of the user has by default"""
     unchecked: list[str] = Field(description="pairs of models that are compared without any limit on their difference")
-
-    def of(self, key: str) -> Any:
-        """What a feature found of the scene."""
-        return getattr(self, key)

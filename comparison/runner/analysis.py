@@ -22,7 +22,8 @@ class Analysis(Protocol[Result]):
     """
 
     key: ClassVar[str]  # its name for a selection, and its field of the findings
-    stage: ClassVar[str]  # the stage of its tasks, on the terminal and in the table of costs
+    stage: ClassVar[str]  # the stage of its tasks, on the terminal
+    seconds: ClassVar[float] = 1.0  # rough s of processor time for one scene
     needs_surfaces: ClassVar[bool] = False  # whether the surfaces choose its tasks
     level: ClassVar[int] = LAST  # of the study, the first whose report has it
 

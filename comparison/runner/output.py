@@ -83,8 +83,8 @@ def destination(path: Path, option: str = "--out") -> Path:
         raise refusal("is a symbolic link that leads back to itself: give another directory") from None
     except OSError as error:
         raise refusal(f"cannot be used: {error.strerror}: give another directory") from None
-    # a path that means what it says stays as it was typed, for the messages
-    return path if Path(os.path.abspath(path)) == place and ".." not in path.parts else place
+    # a path that means what it says stays as it was typed, for the messages; "." has no name to put a store beside
+    return path if path.name and Path(os.path.abspath(path)) == place and ".." not in path.parts else place
 
 
 def refuse_foreign_report(out: Path) -> None:

@@ -87,7 +87,8 @@ class Model:
     "user" for a user-supplied engine (user_models.py), which has no place in the steps from model to model and no
     trajectory. `like`: key of the reference's model that such an engine is compared with. `timeout`: most processor
     time of one call, s. `reading`: of (5.1), where friction is dry. `in_chain`: whether the scene's chain of models has
-    it, in which each adds one effect to the one before and all read (5.1) as integrated.
+    it, in which each adds one effect to the one before and all read (5.1) as integrated. `seconds`: rough processor
+    time of a phase pair of the scene that costs.py is for.
     """
 
     key: str
@@ -108,6 +109,7 @@ class Model:
     timeout: float | None = None
     reading: str = AS_INTEGRATED
     in_chain: Callable[[Scene], bool] = field(default=any_scene)
+    seconds: float = 1.0
 
     @property
     def is_spatial(self) -> bool:
@@ -278,6 +280,7 @@ SMALL = Model(
     symmetric=any_scene,
     reading=LITERAL_SUPREMUM,
     in_chain=smooth,
+    seconds=0.0005,
 )
 EXACT = _next(
     SMALL,
@@ -326,6 +329,7 @@ SMALL_REGULARIZED = _next(
     "geometry adds under that law is seen from here.",
     settings={"equations": "small", "regularization": DEFAULT_V_REG},
     in_chain=never,
+    seconds=0.001,
 )
 REGULARIZED = _next(
     RESOLVED,
@@ -336,6 +340,7 @@ REGULARIZED = _next(
     adds="Friction linear below v_reg = 1 mm/s, as an engine has it: no true rest, no jump at a stop.",
     settings={"equations": "exact", "regularization": DEFAULT_V_REG},
     applies=dry,
+    seconds=0.001,
 )
 TRANSLATIONAL = _next(
     REGULARIZED,
@@ -358,6 +363,7 @@ TRANSLATIONAL = _next(
     batch=2,
     applies=any_scene,
     most=16,
+    seconds=0.06,
 )
 SPATIAL = _next(
     TRANSLATIONAL,
@@ -376,6 +382,7 @@ SPATIAL = _next(
     applies=has_spatial_data,
     most=16,
     symmetric=mirror_symmetric,
+    seconds=0.22,
 )
 
 MODEL_HIERARCHY: tuple[Model, ...] = (

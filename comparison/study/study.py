@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from itertools import accumulate
 from operator import mul
@@ -11,9 +11,9 @@ from operator import mul
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.study.analyses import ANALYSES, EVERYTHING, Selection
 from comparison.study.batches import Batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, chain_of, pairs_of
+from comparison.study.selection import Selection
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.symmetry import sources
 
@@ -74,7 +74,7 @@ class Study:
     tolerance: float
     hierarchy: Sequence[Model] = MODEL_HIERARCHY
     full: bool = False
-    selection: Selection = EVERYTHING
+    selection: Selection = field(default_factory=Selection)
 
     @cached_property
     def strides(self) -> dict[str, int]:
@@ -100,7 +100,7 @@ class Study:
         """The analyses that are made of no scene, with the reason."""
         return {
             analysis: self.selection.why_absent(analysis)
-            for analysis in ANALYSES
+            for analysis in self.selection.names
             if not self.selecting(analysis).scenes
         }
 

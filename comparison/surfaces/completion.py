@@ -113,6 +113,7 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
     """Held-out phase pairs of every model that is completed."""
 
     key, stage, level = "completion", "held-out phases", 2
+    seconds = 3.5
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """A few phase pairs each."""

@@ -1,5 +1,5 @@
 """
-How far the paper's assumptions hold: `python -m comparison.assumptions [SCENE ...]`.
+How far the paper's assumptions hold: `phase-resonance assumptions [SCENE ...]`.
 
 Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
 """

@@ -210,6 +210,7 @@ class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
     """Every question of every scene with phases and dry friction."""
 
     key, stage = "conditioning", "conditioning"
+    seconds = 4.0
     function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
 
     def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:

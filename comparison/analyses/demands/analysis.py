@@ -74,6 +74,7 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
     """Demands at every phase pair of every model's surface."""
 
     key, stage, level = "demands", "demands", 2
+    seconds = 10.0
     function = staticmethod(moved_demands)
     without_value = staticmethod(lambda task, failed: ({}, [failed.outcome.value] * len(task[3])))
 

@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 
 from comparison.analyses.ensemble import result
-from comparison.analyses.families.analysis import listed_demands
 from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
@@ -21,7 +20,7 @@ from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL, Model, ha
 from comparison.study.study import Study
 from reference.measures import Demands, Estimate, FloorSpectra, demands, effective_isolator, floor_spectra
 from reference.measures.distribution import fractile
-from reference.measures.peak_demands import unit_of
+from reference.measures.peak_demands import list_demands, unit_of
 from reference.problem import GRAVITY, Family, Scene, SceneError
 
 SCALE = "excitation.scale"
@@ -62,7 +61,7 @@ class Point:
 
     def estimate(self, quantity: Quantity) -> Estimate:
         """A demand; NaN without an answer."""
-        known = () if self.demands is None else listed_demands(self.demands)
+        known = () if self.demands is None else list_demands(self.demands)
         return next((number for *key, number in known if tuple(key) == quantity), Estimate(math.nan, math.nan))
 
 
@@ -310,7 +309,7 @@ def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[resu
 
 def quantities(points: Sequence[Point]) -> list[Quantity]:
     """The demands that any point has, in the order of `Demands`, without the check of its energy."""
-    listed = (listed_demands(point.demands) for point in points if point.demands is not None)
+    listed = (list_demands(point.demands) for point in points if point.demands is not None)
     names = dict.fromkeys((name, body) for numbers in listed for name, body, _ in numbers)
     return [quantity for quantity in names if quantity[0] != "energy_balance"]
 

@@ -1,5 +1,5 @@
 """
-Demands under a suite: `python -m comparison.ensemble SCENE [SCENE ...] --suite SUITE --scales LOW HIGH COUNT`.
+Demands under a suite: `phase-resonance ensemble SCENE [SCENE ...] --suite SUITE --scales LOW HIGH COUNT`.
 
 Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
 """

@@ -18,9 +18,10 @@ from comparison.analyses.ensemble.result import (
     Structure,
     Target,
 )
+from comparison.report.feature import Feature, ResultField
 from comparison.report.panels import draw_panels, panel
 from comparison.report.plots import Panel
-from comparison.report.section import Feature, Section
+from comparison.report.section import Section
 from comparison.study.models import EXACT, SPATIAL
 from comparison.wording import percent
 from reference.measures.peak_demands import QUANTITIES, unit_of
@@ -278,21 +279,25 @@ def text_of(number: Statistic, factor: float) -> str:
     )
 
 
-FEATURE = Feature(
+FOUND = ResultField(
     "ensemble",
     EnsembleResult,
-    "demands under many motions at many scales; null unless python -m comparison.ensemble left it beside the report",
+    "demands under many motions at many scales; null unless phase-resonance ensemble left it beside the report",
     load=STORED.load,
+)
+FEATURE = Feature(
+    "ensemble",
+    (FOUND,),
     section=Section(
         "Demands under many motions",
-        "python -m comparison.ensemble SCENE makes it, beside the report; the next run of the study shows it",
-        lambda report, figures: {
-            "ensemble_panels": ensemble_panels(report.results.of("ensemble")),
+        "phase-resonance ensemble SCENE makes it, beside the report; the next run of the study shows it",
+        lambda report: {
+            "ensemble_panels": ensemble_panels(FOUND.of(report.results)),
             "demand_rows": demand_rows,
             "agreement_sentence": agreement_sentence,
             "heading": heading,
             "isolator_sentence": isolator_sentence,
-            "labels": labels(report.results.of("ensemble")),
+            "labels": labels(FOUND.of(report.results)),
             "target_sentence": target_sentence,
             "title_of": title_of,
         },

@@ -181,4 +181,4 @@ class EnsembleResult:
         return [each for each in own if each.model == EXACT.key], [each for each in own if each.model != EXACT.key]
 
 
-STORED = StoredFile(FILE, EnsembleResult, "an ensemble", "python -m comparison.ensemble")
+STORED = StoredFile(FILE, EnsembleResult, "an ensemble", "phase-resonance ensemble")

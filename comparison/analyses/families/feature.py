@@ -12,11 +12,12 @@ from comparison.analyses.families.analysis import (
     family_demands_over_phases,
     family_steps,
 )
+from comparison.report.feature import Feature, Findings, ResultField
 from comparison.report.panels import panel
 from comparison.report.plots import DEMANDS, Panel, plain
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
-from comparison.report.section import Feature, Findings, Section
+from comparison.report.section import Section
 from comparison.result_types import Part, Text
 from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.waterfall import PHASES
@@ -49,9 +50,9 @@ class FamilyResult(Part):
 
 def family_results(findings: Findings, scenes: Sequence[SceneResult]) -> list[FamilyResult] | None:
     """Of every family of the study; None without any."""
-    statistics = {scene.name: scene.of("demand_statistics") for scene in scenes}
+    statistics = {scene.name: getattr(scene, "demand_statistics", []) for scene in scenes}
     motions, found = findings.found.get("motions") or [], []
-    for family in findings.found.get("families") or []:
+    for family in findings.families:
         over = any(statistics[scene.name] for scene in family.scenes)
         result = FamilyResult(
             name=family.name,
@@ -67,11 +68,19 @@ def family_results(findings: Findings, scenes: Sequence[SceneResult]) -> list[Fa
     return found or None
 
 
+FOUND = ResultField(
+    "families",
+    list[FamilyResult],
+    "families of scenes in which one value runs; null without any",
+    compute=family_results,
+)
+
+
 def family_panels(results: Results) -> list[dict[str, Any]]:
     """For each family: mu of every body by every model over the value that runs, and what each effect adds."""
     scenes = {scene.name: scene for scene in results.scenes}
     listed = []
-    for family in results.of("families") or ():
+    for family in FOUND.get(results) or ():
         first = scenes[family.scenes[0]]
         bodies = range(1, first.bodies + 1)
         panels = [draw(results, family, body) for body in bodies for draw in (_family_mu, _family_steps)]
@@ -140,13 +149,11 @@ def _family_demand(
 
 FEATURE = Feature(
     "families",
-    list[FamilyResult],
-    "families of scenes in which one value runs; null without any",
-    summary=family_results,
+    (FOUND,),
     section=Section(
         "Families of scenes",
         "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
-        lambda report, figures: {"family_panels": family_panels(report.results)},
+        lambda report: {"family_panels": family_panels(report.results)},
         folded=False,
     ),
 )

@@ -25,6 +25,7 @@ from comparison.verdicts import (
     Verdict,
     count_verdicts,
     judge,
+    word_counts,
     word_counts_and_largest,
     word_error,
     word_verdict,
@@ -128,10 +129,20 @@ def peaks_at(task: Arguments) -> list[Peak]:
     return [(number.value, number.error, number.reason or status) for number in numbers]
 
 
+def word_measured(peaks: Sequence[MeasuredPeak]) -> str:
+    """Return what measured peaks say of the models, in a clause; "" without any."""
+    if not peaks:
+        return ""
+    counts = count_verdicts(computed.verdict for peak in peaks for computed in peak.computed)
+    count = "1 measured peak stands" if len(peaks) == 1 else f"{len(peaks)} measured peaks stand"
+    return f"{count} beside the models ({word_counts(counts)})"
+
+
 class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
     """Every measured peak of every scene by every model that has its quantity."""
 
     key, stage, level = "measured", "measured", 2
+    seconds = 1.0
     function = staticmethod(peaks_at)
     without_value = staticmethod(lambda task, failed: [(math.nan, math.nan, failed.outcome.value)] * len(task[4]))
 

@@ -199,6 +199,7 @@ class Motions(MappedAnalysis[list[StoredMotion]]):
     """Motions kept for the report, at phases that the surfaces choose."""
 
     key, stage, needs_surfaces = "motions", "motions", True
+    seconds = 4.0
     function, without_value, collect = staticmethod(moved), staticmethod(_without_value), MappedAnalysis.values
 
     def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Arguments]:

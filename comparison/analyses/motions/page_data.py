@@ -34,8 +34,6 @@ support k, at (X, Y) from the center of mass of body 1, begins at the sphere's t
 A column is rounded to at most ROUNDING of its swing, less than thinning leaves, so that it compresses well.
 """
 
-import base64
-import gzip
 from collections.abc import Iterator, Sequence
 from itertools import accumulate, groupby
 from typing import Any
@@ -50,24 +48,28 @@ from reference.problem import Scene
 
 Starts = dict[tuple[Place, str], int]
 
-LEVEL = 6  # of compression: the next one takes half as long again for 2 % less
 ROUNDING = 7e-4  # of the swing of a column
 DIGITS = 4  # of a spectrum: a line on a screen shows no more
 TIME_ROUNDING = 1e-6  # of the duration
 
 
-def packed_motions(report: Report) -> str:
-    """The numbers of every motion, packed."""
-    return packed(b"".join(_numbers(motion) for motion in report.found.get("motions") or []))
+def motion_numbers(report: Report) -> bytes:
+    """Return the numbers of every motion, one after the other."""
+    return b"".join(_numbers(motion) for motion in report.found.get("motions") or [])
 
 
-def packed(content: bytes) -> str:
-    """Compressed and written in letters; the browser undoes both."""
-    return base64.b64encode(gzip.compress(content, LEVEL, mtime=0)).decode()
+def motion_data(report: Report, scene: Scene) -> dict[str, Any]:
+    """Return what the page's script reads of the motions of a scene."""
+    return {
+        "contact": contact_geometry(scene),
+        "places": list(places(report, scene)),
+        "spectra": spectrum_axis(report, scene),
+    }
 
 
-def places(report: Report, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
+def places(report: Report, scene: Scene) -> Iterator[dict[str, Any]]:
     """The phase pairs of a scene that have motions, each with its motions by every model."""
+    starts = starts_of(report.found.get("motions") or [])
     of_scene = [motion for motion in report.found.get("motions") or [] if motion.place.scene == scene.name]
     alpha1, alpha2 = (np.asarray(report.surfaces[name]) for name in ("alpha1", "alpha2"))
     for place, motions in groupby(of_scene, key=lambda motion: motion.place):

@@ -131,6 +131,7 @@ class WorstPhases(MappedAnalysis[list[Worst]]):
     """Searches of every scene and body; one more for the displacement."""
 
     key, stage, needs_surfaces = "worst_phases", "worst phases", True
+    seconds = 2.0
     function, without_value = staticmethod(search_worst), staticmethod(_without_value)
 
     def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:

@@ -1,5 +1,5 @@
 """
-Numbers published elsewhere, each solved by the equations and by the engine: `python -m comparison.benchmarks`.
+Numbers published elsewhere, each solved by the equations and by the engine: `phase-resonance benchmarks`.
 
 Exit codes: 0 every number is met or its difference explained; 1 not; 2 a wrong option; 3 the files could not be
 written; others as in `run_command`.
@@ -56,7 +56,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         files = publish(out, {STORED.name: STORED.as_json(table), PAGE: page(table).encode()}, "comparison.benchmarks")
     print_benchmarks(console, table)
     console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)
-    console.print("A report written into the same directory by comparison.run shows them.")
+    console.print("A report written into the same directory by phase-resonance run shows them.")
     return 1 if table.explained()[""] or table.counts()[NOT_COMPARED] else 0
 
 

@@ -127,7 +127,7 @@ def verdict_line(table: Benchmarks) -> str:
     return word_counts_and_largest(table.counts(), where, "published number")
 
 
-STORED = StoredFile(FILE, Benchmarks, "a table of benchmarks", "python -m comparison.benchmarks")
+STORED = StoredFile(FILE, Benchmarks, "a table of benchmarks", "phase-resonance benchmarks")
 
 
 MOST_DIGITS = 7  # of a value

@@ -1,1 +1,1 @@
-"""The paper's statements about its figures, checked on surfaces in the two readings of (5.1)."""
+"""The paper's statements about its figures in both readings of (5.1)."""

@@ -1,4 +1,4 @@
-"""The statements of the paper in both readings of (5.1): `python -m comparison.claims [--grid N]`."""
+"""The statements of the paper in both readings of (5.1): `phase-resonance claims [--grid N]`."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from rich.table import Table
 from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, whole_number
 from comparison.cli.computing import computed
 from comparison.evidence.claims.table import GRID, Claims, ClaimTable, claims_line
-from comparison.evidence.effective.analysis import forced_ratios
+from comparison.evidence.forced_ratios import forced_ratios
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from comparison.study.study import Study
@@ -27,8 +27,6 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     parser.add_computing()
     options = parser.parse_args(argv)
     grid = GRID if options.grid is None else whole_number("--grid", options.grid, 8, 512)
-    if not options.out.name:  # ".": the store beside it takes the name of the folder
-        options.out = options.out.absolute()
     study = Study(tuple(map(load_scene, builtin_scenes())), grid, TOLERANCE)
     console = wide_console()
     claims = Claims(grid)

@@ -106,6 +106,7 @@ class Claims(Analysis[ClaimTable]):
     """Every statement in both readings, on `grid` phases per axis, from the study's surfaces where it has these."""
 
     key, stage, needs_surfaces = "claims", "claims", True
+    seconds = 0.3
     grid: int = GRID
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:

@@ -142,6 +142,7 @@ class Convergence(MappedAnalysis[list[Trend]]):
     """Every limit in every scene that has it, for each body."""
 
     key, stage = "convergence", "convergence"
+    seconds = 1.5
     function, without_value = staticmethod(limit_trends), staticmethod(_without_value)
 
     def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:

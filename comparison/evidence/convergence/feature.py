@@ -3,18 +3,23 @@
 from comparison.evidence.convergence.analysis import Convergence
 from comparison.evidence.trend_panels import trend_panels
 from comparison.evidence.trends import Trend, word_trends
-from comparison.report.section import Feature, Section
+from comparison.report.feature import Feature, ResultField
+from comparison.report.section import Section
 
-FEATURE = Feature(
-    "convergence",
+FOUND = ResultField(
+    Convergence.key,
     list[Trend],
     "what the steps of friction law and contact tend to; null if not computed",
+)
+FEATURE = Feature(
+    Convergence.key,
+    (FOUND,),
     analysis=Convergence(),
     section=Section(
         "Convergence of friction law and contact",
-        "python -m comparison.run makes it, of scenes with phases",
-        lambda report, figures: {"trend_panels": trend_panels},
-        verdict=lambda results: word_trends(results.of("convergence")),
+        "phase-resonance run makes it, of scenes with phases",
+        lambda report: {"trend_panels": trend_panels},
+        verdict=lambda results: word_trends(FOUND.of(results)),
         verifies=True,
     ),
 )

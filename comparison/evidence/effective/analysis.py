@@ -8,14 +8,14 @@ from typing import Annotated, Any
 import numpy as np
 import xarray as xr
 
-from comparison.result_types import Array, Number, Radius, Text, result
+from comparison.result_types import Number, Radius, Text, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import imported
 from comparison.study.models import Model, chain_of
 from comparison.study.study import Study
 from comparison.wording import percent
-from reference.problem import GRAVITY, Outcome, Scene, Trajectory, exponents, ground_acceleration
+from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
 from reference.problem.friction import LEAST_LOAD
 
 PHASES = (0.3, 1.1)  # rad, of the motion that is measured
@@ -90,6 +90,7 @@ class EffectiveValues(MappedAnalysis[list[Effective]]):
     """For every scene what it states, then what the motion of each model shows."""
 
     key, stage, level = "effective", "effective values", 2
+    seconds = 1.0
     function = staticmethod(read_back)
     without_value = staticmethod(lambda task, failed: Effective(task[0].name, task[1].key, error_message=failed.reason))
 
@@ -175,46 +176,3 @@ def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
             return float("nan")
         ratio = law.slow + (ratio - law.slow) / share
     return float(np.median(ratio / speed[fast] if scene.lubricated else ratio))
-
-
-AXES = "x", "y"
-
-
-@result
-class ForcedRatio:
-    """Amplitude of a body over that of the platform under one harmonic, by (4.4) alone."""
-
-    body: Annotated[int, "from 2"]
-    harmonic: Annotated[int, "1 or 2"]
-    axis: Annotated[str, "x or y"]
-    period: Annotated[float, "period of the harmonic, s"]
-    ratio: Annotated[Radius, "with the decay of the loading"]
-    steady: Annotated[Radius, 'without it; "inf" at resonance']
-
-
-def forced_ratios(scene: Scene) -> list[ForcedRatio]:
-    """The ratios by axis, harmonic and body above the platform; none under a recorded motion."""
-    if scene.recorded or len(scene.bodies) == 1:
-        return []
-    return [
-        ForcedRatio(body, harmonic, name, float(2.0 * np.pi / s.imag), float(forced), float(steady))
-        for axis, name in enumerate(AXES)
-        for harmonic, s in enumerate(exponents(scene), start=1)
-        if scene.amplitudes[axis, harmonic - 1] != 0.0
-        for body, (forced, steady) in enumerate(
-            zip(*(_ratios(scene, axis, each) for each in (s, 1j * s.imag))), start=2
-        )
-    ]
-
-
-def _ratios(scene: Scene, axis: int, s: complex) -> Array:
-    """|A_i / A_1| for the bodies above the platform: (m_i s^2 + links) A = link to the platform times A_1."""
-    links = scene.stiffness[:, axis] + s * scene.damping[:, axis]
-    matrix = np.diag(scene.masses[1:] * s**2 + links + np.append(links[1:], 0.0))
-    matrix -= np.diag(links[1:], 1) + np.diag(links[1:], -1)
-    drive = np.zeros(len(links), complex)
-    drive[0] = links[0]
-    if np.linalg.matrix_rank(matrix) < len(matrix):
-        return np.full(len(links), np.inf)
-    sizes: Array = np.abs(np.linalg.solve(matrix, drive))
-    return sizes

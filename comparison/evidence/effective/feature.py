@@ -4,33 +4,36 @@ from comparison.evidence.effective.analysis import (
     PHASES,
     Effective,
     EffectiveValues,
-    ForcedRatio,
-    forced_ratios,
     word_effective,
 )
-from comparison.report.section import Feature, Findings, SceneField, Section
+from comparison.evidence.forced_ratios import ForcedRatio, forced_ratios
+from comparison.report.feature import Feature, Findings, SceneField
+from comparison.report.section import Section
 from reference.problem import Scene
 
 
 def _effective(findings: Findings, scene: Scene) -> list[Effective]:
-    return [each for each in findings.found.get("effective") or [] if each.scene == scene.name]
+    return [each for each in findings.found.get(EffectiveValues.key) or [] if each.scene == scene.name]
 
 
-FORCED = "one per axis, harmonic and body above the platform; empty under a recorded motion"
+EFFECTIVE = SceneField(EffectiveValues.key, list[Effective], "the scene, then every model", _effective)
+FORCED = SceneField(
+    "forced",
+    list[ForcedRatio],
+    "one per axis, harmonic and body above the platform; empty under a recorded motion",
+    lambda findings, scene: forced_ratios(scene),
+)
 FEATURE = Feature(
-    "effective",
+    EffectiveValues.key,
+    scene_fields=(EFFECTIVE, FORCED),
     analysis=EffectiveValues(),
-    scene_fields={
-        "effective": SceneField(list[Effective], "the scene, then every model", _effective),
-        "forced": SceneField(list[ForcedRatio], FORCED, lambda findings, scene: forced_ratios(scene)),
-    },
     section=Section(
         "Effective values",
-        context=lambda report, figures: {
-            "effective": [values for scene in report.results.scenes for values in scene.of("effective")],
+        context=lambda report: {
+            "effective": [values for scene in report.results.scenes for values in EFFECTIVE.of(scene)],
             "phases": PHASES,
         },
         verifies=True,
-        verdict=lambda results: word_effective([each for scene in results.scenes for each in scene.of("effective")]),
+        verdict=lambda results: word_effective([each for scene in results.scenes for each in EFFECTIVE.of(scene)]),
     ),
 )

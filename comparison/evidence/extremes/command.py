@@ -1,5 +1,5 @@
 """
-Numerical stability at the extremes: `python -m comparison.extremes [--out DIR]`.
+Numerical stability at the extremes: `phase-resonance extremes [--out DIR]`.
 
 Exit codes: 0 no cell failed; 1 some did; 2 a wrong option; 3 the files could not be written; others as in
 `run_command`.
@@ -56,7 +56,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     spent = f"{matrix.run['seconds']} s, {matrix.run['cpu_seconds']} s of processor time"
     console.print(f"{sum(matrix.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)
     console.print(f"Matrix: {file}", soft_wrap=True)
-    console.print("A report written into the same directory by comparison.run shows it.")
+    console.print("A report written into the same directory by phase-resonance run shows it.")
     return 1 if matrix.counts()[Verdict.FAILED] else 0
 
 

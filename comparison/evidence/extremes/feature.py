@@ -1,22 +1,26 @@
 """Stability at the extremes: in the report."""
 
 from comparison.evidence.extremes.matrix import MEANING, STORED, Matrix, Verdict, describe
-from comparison.report.section import Feature, Section
+from comparison.report.feature import Feature, ResultField
+from comparison.report.section import Section
 
-FEATURE = Feature(
+FOUND = ResultField(
     "extremes",
     Matrix,
-    "every model at the extremes of every quantity; null unless python -m comparison.extremes left it beside the "
-    "report",
+    "every model at the extremes of every quantity; null unless phase-resonance extremes left it beside the report",
     load=STORED.load,
+)
+FEATURE = Feature(
+    "extremes",
+    (FOUND,),
     section=Section(
         "Stability at the extremes",
-        "python -m comparison.extremes makes it, beside the report; the next run of the study shows it",
-        lambda report, figures: {
+        "phase-resonance extremes makes it, beside the report; the next run of the study shows it",
+        lambda report: {
             "verdicts": [(verdict.value, MEANING[verdict]) for verdict in Verdict],
             "describe": describe,
         },
         verifies=True,
-        verdict=lambda results: results.of("extremes").count_line,
+        verdict=lambda results: FOUND.of(results).count_line,
     ),
 )

@@ -87,7 +87,7 @@ class Matrix:
         ]
 
 
-STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "python -m comparison.extremes")
+STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "phase-resonance extremes")
 
 
 def describe(entry: Entry) -> str:

@@ -87,6 +87,7 @@ class Scaling(MappedAnalysis[list[Trend]]):
     """The trends of every scene and body, for the supremum and, where that differs, the resolved peak."""
 
     key, stage, level = "scaling", "scaling test", 2
+    seconds = 0.1
     function, without_value = staticmethod(scene_trends), staticmethod(_without_value)
 
     def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:

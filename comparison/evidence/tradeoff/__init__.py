@@ -1,1 +1,1 @@
-"""Speed for accuracy: what every model and every numerical parameter gives for its time, measured."""
+"""Error against compute time, for every model and every numerical parameter."""

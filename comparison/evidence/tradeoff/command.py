@@ -1,5 +1,5 @@
 """
-Speed for accuracy: `python -m comparison.tradeoff [SCENE ...] [--quick | --growth] [--out DIR]`.
+Speed for accuracy: `phase-resonance tradeoff [SCENE ...] [--quick | --growth] [--out DIR]`.
 
 Exit codes: 0 done; 2 a wrong scene or option; 3 the files could not be written; others as in `run_command`.
 """

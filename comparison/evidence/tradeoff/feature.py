@@ -2,15 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import groupby
-from pathlib import Path
 from typing import Any
 
 from comparison.evidence.tradeoff import growth, trade
 from comparison.evidence.tradeoff.growth import MeasuredGrowth, Series
 from comparison.evidence.tradeoff.trade import Answered, Entry, Trade
+from comparison.report.feature import Feature, ResultField
 from comparison.report.panels import panel
 from comparison.report.plots import MAX_CURVES, Panel
-from comparison.report.section import Feature, Report, Section
+from comparison.report.section import Report, Section
 from comparison.wording import scientific
 
 TARGETS = 1e-2, 1e-3, 1e-4, 1e-6  # relative errors for which the trade is put into words
@@ -99,33 +99,37 @@ def _curve(method: str, entries: Sequence[Entry], body: int, number: int) -> dic
     return {**line, "dash": "5 3"} if entries[0].model_error else line
 
 
-def _context(report: Report, figures: Path) -> Mapping[str, Any]:
-    measured = report.results.of("growth")
+TRADES = ResultField(
+    "tradeoff",
+    list[Trade],
+    "error against compute time for every model and parameter; null unless phase-resonance tradeoff left it "
+    "beside the report",
+    load=trade.load,
+)
+GROWTH = ResultField(
+    "growth",
+    MeasuredGrowth,
+    "how the cost grows with bodies, duration, phase pairs and workers; null unless phase-resonance tradeoff "
+    "--growth left it beside the report",
+    load=growth.STORED.load,
+)
+
+
+def _context(report: Report) -> Mapping[str, Any]:
+    measured = GROWTH.get(report.results)
     panels, digests = growth_panels(measured.series if measured else ()), {s.digest for s in report.results.scenes}
     functions = {"tradeoff_panels": tradeoff_panels, "tradeoff_answers": tradeoff_answers}
     return {**functions, "growth_panels": panels, "digests": digests}
 
 
-GROWTH = Feature(
-    "growth",
-    MeasuredGrowth,
-    "how the cost grows with bodies, duration, phase pairs and workers; null unless python -m comparison.tradeoff "
-    "--growth left it beside the report",
-    load=growth.STORED.load,
-    selected_as="tradeoff",
-)
 FEATURE = Feature(
     "tradeoff",
-    list[Trade],
-    "error against compute time for every model and parameter; null unless python -m comparison.tradeoff left it "
-    "beside the report",
-    load=trade.load,
+    (TRADES, GROWTH),
     section=Section(
         "Speed for accuracy",
-        "python -m comparison.tradeoff SCENE makes it, beside the report; the next run of the study shows it",
+        "phase-resonance tradeoff SCENE makes it, beside the report; the next run of the study shows it",
         _context,
         verifies=True,
-        verdict=lambda results: word_trades(results.of("tradeoff") or ()),
-        shows=("tradeoff", "growth"),
+        verdict=lambda results: word_trades(TRADES.get(results) or ()),
     ),
 )

@@ -97,7 +97,7 @@ class MeasuredGrowth:
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
 
-STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "python -m comparison.tradeoff --growth")
+STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "phase-resonance tradeoff --growth")
 
 
 def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]) -> Series:

@@ -130,7 +130,7 @@ class TradeFile:
     trades: Annotated[list[Trade], "one per scene"]
 
 
-STORED = StoredFile(FILE, TradeFile, "a measured trade", "python -m comparison.tradeoff")
+STORED = StoredFile(FILE, TradeFile, "a measured trade", "phase-resonance tradeoff")
 
 
 def load(folder: Path) -> list[Trade] | None:

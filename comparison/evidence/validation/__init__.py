@@ -1,1 +1,1 @@
-"""Measured motions beside what both sides compute."""
+"""Measured motions, by the equations and by the engine."""

@@ -1,5 +1,5 @@
 """
-Measured motions, by the equations and by the engine: `python -m comparison.validation [FOLDER]`.
+Measured motions, by the equations and by the engine: `phase-resonance validation [FOLDER]`.
 
 Exit codes: 0 done; 1 a side has no value for a quantity; 2 wrong input; 3 the file could not be written; others as in
 `run_command`.
@@ -51,7 +51,7 @@ def main(argv: Sequence[str]) -> int:
         files = publish(out, {STORED.name: STORED.as_json(table)}, "comparison.validation")
     print_validation(console, table)
     console.print(f"Table: {', '.join(map(str, files))}", soft_wrap=True)
-    console.print("A report written into the same directory by comparison.run shows it.")
+    console.print("A report written into the same directory by phase-resonance run shows it.")
     return 1 if table.counts()[NOT_COMPARED] else 0
 
 

@@ -7,9 +7,10 @@ from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
 from comparison.evidence.validation.statements import verdict_line
 from comparison.evidence.validation.table import STORED, Validation
+from comparison.report.feature import Feature, ResultField
 from comparison.report.panels import panel
 from comparison.report.plots import Panel
-from comparison.report.section import Feature, Section
+from comparison.report.section import Section
 from comparison.verdicts import CLASSES, MEANING
 
 LOOKS: dict[str, dict[str, Any]] = {
@@ -34,23 +35,26 @@ def panels(table: Validation) -> list[Panel]:
     return drawn
 
 
-FEATURE = Feature(
+FOUND = ResultField(
     "validation",
     Validation,
-    "measured motions beside what both sides compute; null unless python -m comparison.validation left it beside the "
-    "report",
+    "measured motions beside what both sides compute; null unless phase-resonance validation left it beside the report",
     load=STORED.load,
+)
+FEATURE = Feature(
+    "validation",
+    (FOUND,),
     section=Section(
         "Measured motions",
-        "python -m comparison.validation FOLDER makes it of measured files, beside the report; the next run of the "
+        "phase-resonance validation FOLDER makes it of measured files, beside the report; the next run of the "
         "study shows it",
-        lambda report, figures: {
+        lambda report: {
             "validation_panels": panels,
             "validation_verdicts": MEANING,
             "validation_colors": CLASSES,
             "validation_sources": (FRAME_SOURCE, PENDULUM_SOURCE),
         },
         verifies=True,
-        verdict=lambda results: verdict_line(results.of("validation")),
+        verdict=lambda results: verdict_line(FOUND.of(results)),
     ),
 )

@@ -119,7 +119,7 @@ class Validation:
         return count_verdicts(each.sides[side].verdict for each in self.quantities for side in (EQUATIONS, ENGINE))
 
 
-STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "python -m comparison.validation")
+STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "phase-resonance validation")
 
 
 def recorded() -> Validation:

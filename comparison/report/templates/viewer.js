@@ -65,7 +65,7 @@ function panels() {
     if (largest) notes.push(`largest of ${surface.phases} × ${surface.phases} phases: ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])}\u00a0▾`);
     else notes.push("no value at any phase pair");
     if (surface.points.some(point => point.error === null)) notes.push("dashed: of unknown error");
-    const worst = k < 2 ? surface.model.worst[body - 1] : null;
+    const worst = k < 2 ? scene.worst?.[k ? pair.second : pair.first]?.[body - 1] : null;
     const own = worst && worst[3] === (k ? pair.second : pair.first);
     if (k < 2) notes.push(worst ? `largest over all phases${own ? "" : `, ${study.titles[worst[3]]}`}: ${digits(worst[2])} at ${at(worst.slice(0, 2))}${own ? "\u00a0▿" : ""}` : "largest over all phases: not searched");
     return { ...common, ...surface, range: k === 2 ? [-reach, reach] : range, color: k === 2 ? signs : light, largest: largest && [largest.a, largest.b], worst: own && worst.slice(0, 2),

@@ -11,8 +11,8 @@ import xarray as xr
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, fingerprint
 from comparison.runner.task_results import TaskResults
-from comparison.study.analyses import EVERYTHING
 from comparison.study.models import Pair
+from comparison.study.selection import Selection
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import figure_file
 
@@ -28,13 +28,14 @@ class Pictures(Analysis[dict[str, bytes]]):
     """Every file of every picture by its name."""
 
     key, stage, needs_surfaces = "pictures", "pictures", True
+    seconds = 3.0
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each picture of the selected sections: a scene without phases has no surfaces."""
         assert surfaces is not None, "they are what is drawn"
         tasks = []
         for scene in study.phased:
-            alone = replace(study, scenes=(scene,), selection=EVERYTHING)
+            alone = replace(study, scenes=(scene,), selection=Selection())
             shown = surfaces[SHOWN].sel(scene=[scene.name])
             bodies = range(1, len(scene.bodies) + 1)
             pictures: list[Picture] = []

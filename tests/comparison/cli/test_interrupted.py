@@ -130,7 +130,7 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     assert extremes.main(words, Interrupted) == 130
     stopped = re.fullmatch(
         r"interrupted: (\d+) results are kept in 'report.tiles'; "
-        r"go on with: python -m comparison.extremes --jobs 2 --out report\n",
+        r"go on with: phase-resonance extremes --jobs 2 --out report\n",
         capsys.readouterr().err,
     )
     assert stopped

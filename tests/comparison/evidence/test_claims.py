@@ -24,7 +24,7 @@ from comparison.evidence.claims.readings import AS_INTEGRATED, CASES, LITERAL_SU
 from comparison.evidence.claims.smoothness import Bend
 from comparison.evidence.claims.table import VERDICTS, Claims, ClaimTable, claims_line, known_surfaces, table_of
 from comparison.evidence.convergence.analysis import Convergence
-from comparison.evidence.effective.analysis import forced_ratios
+from comparison.evidence.forced_ratios import forced_ratios
 from comparison.evidence.scaling.analysis import Scaling
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
@@ -195,7 +195,7 @@ def test_the_line_counts_each_reading_by_its_name() -> None:
 
 
 def test_the_page_says_the_same_in_both_places() -> None:
-    results = SimpleNamespace(of={"claims": KNOWN}.__getitem__)
+    results = SimpleNamespace(claims=KNOWN)
     assert FEATURE.section is not None
     assert FEATURE.section.lead(results) == claims_line(KNOWN)
     assert FEATURE.section.verdict(results) == "of 16 statements, 7 are met as integrated and 9 as literal supremum"

@@ -135,7 +135,7 @@ def test_the_command_writes_the_matrix_and_computes_once(tmp_path, capsys):
     words = ["--models", "small", "--rows", "amplitude, m/s^2 1e", "--jobs", "1", "--out", str(tmp_path / "report")]
     assert main(words, ThreadPoolExecutor) == 0
     matrix = STORED.load(tmp_path / "report")
-    assert matrix.run["command"].startswith("python -m comparison.extremes --models small ")
+    assert matrix.run["command"].startswith("phase-resonance extremes --models small ")
     assert main(words, no_executor) == 0
     assert f"3 of 3 tasks are in {tmp_path / 'report'}.tiles: only the others are computed." in capsys.readouterr().out
     again = STORED.load(tmp_path / "report")

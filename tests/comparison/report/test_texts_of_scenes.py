@@ -13,7 +13,7 @@ from rich.console import Console
 from runs import RUN, Run
 from studies import solved
 
-from comparison.registry import report_of
+from comparison.registry import EVERYTHING, report_of
 from comparison.report.junit import junit
 from comparison.report.panels import draw_panels, panel
 from comparison.report.summary_text import summary_text
@@ -68,7 +68,7 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     title = "[a](http://b) #1 $x$ &copy; ~~c~~ <b>\n| d"
     valid = load_scene("fig3-I")
     scene = Scene.model_construct(**{**dict(valid), "name": "a\x00\x01\ud800\ufffe<b>", "title": title})
-    study = Study((scene,), 2, 1e-3, fake_hierarchy())
+    study = Study((scene,), 2, 1e-3, fake_hierarchy(), selection=EVERYTHING)
     surfaces = solved(study)
     surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0}] = np.nan
     results = report_of(study, surfaces, {}, [], RUN, families=[]).results

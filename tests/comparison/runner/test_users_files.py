@@ -16,11 +16,12 @@ from runs import SMALL, Run
 from comparison.cli import reports
 from comparison.evidence.extremes import command as extremes
 from comparison.report import page
-from comparison.runner.cache import Cache, Key
+from comparison.runner.cache import Cache, Key, store_beside
 from comparison.runner.output import (
     MANIFEST,
     Own,
     clear_dead,
+    destination,
     foreign,
     manifest_json,
     publish,
@@ -305,3 +306,8 @@ def test_what_a_killed_run_left_is_cleared_of_a_living_one_not(tmp_path: Path) -
     clear_dead(tmp_path / "report")
     assert sorted(entry.name for entry in tmp_path.iterdir()) == sorted(alike)
     assert all(is_mine(tmp_path / name / "old" / "photo.jpg") for name in alike)
+
+
+def test_the_working_directory_has_a_store_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert store_beside(destination(Path("."))) == tmp_path.resolve().with_name(f"{tmp_path.name}.tiles")

@@ -64,7 +64,8 @@ def test_every_grid_and_every_level_is_part_of_the_next(grid: int) -> None:
 
 def test_the_first_level_is_coarse_and_the_last_is_whole() -> None:
     models = [*MODEL_HIERARCHY, user_model("mine", {"function": "user_engines:plain"})]
-    first, second, last = (level.study for level in registry.levels(Study((load_scene("fig3-I"),), 48, 1e-3, models)))
+    study = Study((load_scene("fig3-I"),), 48, 1e-3, models, selection=registry.EVERYTHING)
+    first, second, last = (level.study for level in registry.levels(study))
     grids = [[len(study.axis(model)) for model in study.hierarchy[5:]] for study in (first, second, last)]
     assert grids == [[16, 8, 4, 8], [48, 16, 8, 8], [48, 16, 16, 8]]
     why = "follows at a later level of the study"

@@ -7,7 +7,7 @@ from studies import solved
 import multibody
 from comparison.analyses.assumptions.command import main as assumptions
 from comparison.analyses.motions.analysis import chosen_places
-from comparison.registry import ANALYSES, first_tasks
+from comparison.registry import ANALYSES, EVERYTHING, first_tasks
 from comparison.study.batches import refusal_of
 from comparison.study.costs import seconds_per_point
 from comparison.study.models import (
@@ -27,7 +27,7 @@ from reference.problem import Outcome, Scene, load_scene
 
 
 def test_what_needs_phases_is_not_asked_of_a_record(capsys):
-    study = Study((load_scene("synthetic-pair"),), 4, 1e-3)
+    study = Study((load_scene("synthetic-pair"),), 4, 1e-3, selection=EVERYTHING)
     assert {task.stage for task in first_tasks(study, ANALYSES)} == {"effective values"}
     assert Pictures().tasks(study, labeled_surfaces(study, [], [])) == []
     assert reductions(study) == []
