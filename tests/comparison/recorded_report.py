@@ -57,7 +57,14 @@ PLOT = re.compile(r"data-plot='(.*?)'", re.DOTALL)
 REPEATED = re.compile(r'<line class="(?:grid|zero)"[^>]*>| data-tip="[^"]*"| class="number"')  # once is enough
 LONG_NUMBER = re.compile(r"-?\d\.\d{8,}(?:e[-+]\d+)?")
 PAGE = "index.html"
-LEFT_OUT = "drawn", "surfaces.nc", "junit.xml", "summary.md: |", "index.html: <tr", "index.html: <p"  # of the second report
+LEFT_OUT = (
+    "drawn",
+    "surfaces.nc",
+    "junit.xml",
+    "summary.md: |",
+    "index.html: <tr",
+    "index.html: <p",
+)  # of the second report
 ROWS = 8  # of a table: the others are written by the same lines of a template
 OF_ONE = re.compile(r"drawn index.html: (plot|scene 1 body 1 )")  # what scripts draw of one body of one scene
 DEMANDS: list[tuple[str, int | None]] = [
@@ -215,7 +222,10 @@ def recorded_lines(folder: Path) -> list[str]:
         words = [*scenes, "--grid", str(GRID), *engines, "--check"]
         second = reported(lacking, words, lacking_hierarchy())
     known_lines = {*first}
-    return [*first, *(f"lacking {line}" for line in second if line not in known_lines and not line.startswith(LEFT_OUT))]
+    return [
+        *first,
+        *(f"lacking {line}" for line in second if line not in known_lines and not line.startswith(LEFT_OUT)),
+    ]
 
 
 def variables(place: Path) -> list[str]:
