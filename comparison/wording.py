@@ -11,6 +11,7 @@ MAX_DECIMALS = 4  # of a percentage: what is smaller is nothing
 SHOWN_ERROR = 0.01  # of a size: a smaller error is not seen in two digits
 MAX_NAMES = 12  # on an axis of values that are no numbers; of more values every n-th is named
 POWERS = re.compile(r"\^(\w)")
+PERCENT = re.compile(r"(?<=\d) %")
 SUBSCRIPTS = re.compile(r"(?<=[\w>])_(\w+)")
 INDEXED = re.compile(r"\b([^\W\d_]+)_(\w+)")
 SMALL = {"beta": "β", "eta": "η", "lambda": "λ", "mu": "μ", "rho": "ρ", "tau": "τ", "xi": "ξ", "zeta": "ζ"}
@@ -87,8 +88,8 @@ def degrees(phase: float) -> str:
 
 
 def symbols(text: str) -> Markup:
-    """Names such as v_reg, l^3 and rho as they are printed: with indices, powers and Greek letters."""
-    greek = _with_greek(str(escape(text)))
+    """Return names such as v_reg, l^3 and rho with indices, powers and Greek letters; % stays beside its number."""
+    greek = _with_greek(str(escape(PERCENT.sub("\u00a0%", text))))
     return Markup(SUBSCRIPTS.sub(r"<sub>\1</sub>", POWERS.sub(r"<sup>\1</sup>", greek)))
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from comparison.report.glossary import explained, term, unbroken
+from comparison.report.glossary import explained, term
 from comparison.report.page_data import pack, page_data
 from comparison.report.results import VALIDATED_BRIEFLY, Results
 from comparison.report.section import Report
@@ -134,7 +134,7 @@ def _environment() -> jinja2.Environment:
         ]
     )
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    filters = (percent, signed, scientific, degrees, significant, symbols, explained, unbroken)
+    filters = (percent, signed, scientific, degrees, significant, symbols, explained)
     environment.filters.update({function.__name__: function for function in filters})
     environment.globals["term"] = term  # in macros, too
     return environment

@@ -150,7 +150,7 @@ def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset
     empty: dict[Any, Any] = dict.fromkeys(renamed.data_vars, np.nan)
     empty[f"{PREFIX}status"] = NOT_ASKED
     aligned = renamed.reindex(scene=surfaces["scene"], body=surfaces["body"], fill_value=empty)
-    return surfaces.assign(aligned.data_vars)
+    return surfaces.assign(aligned.data_vars).assign_coords(surfaces.coords)  # which have their units
 
 
 def demand_statistics(study: Study, demands: xr.Dataset | None, scene: Scene) -> list[DemandStatistics]:

@@ -1,6 +1,6 @@
 """Families of scenes: in the report and in summary.json."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from comparison.analyses.families.analysis import (
@@ -102,13 +102,16 @@ def _axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
     return values, {"title": family.key}
 
 
-def _over(family: FamilyResult, title: str, label: str, unit: str, lines: Iterable[tuple[Any, ...]]) -> Panel:
-    """A panel over the value that runs. lines: name, color and values, with the smallest and the largest, if any."""
+def _over(family: FamilyResult, title: str, label: str, unit: str, lines: Sequence[tuple[Any, ...]]) -> Panel:
+    """
+    A panel over the value that runs. lines: name, color and values, with the smallest and the largest, if any: a band of
+    the first and of the last model, since those of all hide each other.
+    """
     places, axis = _axis(family)
     series = []
-    for name, color, middle, *band in lines:
+    for number, (name, color, middle, *band) in enumerate(lines):
         line = {"name": name, "x": places, "y": plain(middle), "color": color, "marks": True}
-        if any(low < high for low, high in zip(*band)):
+        if number in (0, len(lines) - 1) and any(low < high for low, high in zip(*band)):
             line |= {**dict(zip(("low", "high"), map(plain, band))), "band": True}
         series.append(line)
     return panel(title, f"{label} over {family.key}", axis, {"title": unit}, series)

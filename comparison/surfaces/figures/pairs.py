@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -48,7 +49,13 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
 def save(figure: Figure, path: Path) -> None:
     """Write the figure to `path`, PNG, and beside it as PDF."""
     figure.savefig(path)
-    figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})  # the same figure gives the same file
+    save_pdf(figure, path)
+
+
+def save_pdf(figure: Figure, path: Path) -> None:
+    """Write the figure as PDF beside `path`: the same figure gives the same file, with fonts as journals take them."""
+    with mpl.rc_context({"pdf.fonttype": 42}):
+        figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
 
 
 def closed(phase: Array, mu: Array) -> tuple[Array, Array]:

@@ -12,8 +12,7 @@ from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.study.models import label_of
 from comparison.study.study import Study
-from comparison.surfaces.figures.file_names import with_ending
-from comparison.surfaces.figures.pairs import PNG, closed_surface, draw_in_space, limits_of
+from comparison.surfaces.figures.pairs import PNG, closed_surface, draw_in_space, limits_of, save_pdf
 from comparison.wording import mathtext
 from reference.problem import Scene
 
@@ -46,7 +45,7 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
                 draw_surface(axes, phase, height, limits, rf"$\mu_{{{row + 1}}}$")
                 label = mathtext(label_of(model, scene))
                 axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {label}", y=1.0, fontsize=9.0)
-        figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
+        save_pdf(figure, path)
         figure.savefig(path, dpi=RESOLUTION, pil_kwargs=PNG)
 
 

@@ -1,9 +1,7 @@
 """All pictures of a study's surfaces, each drawn by whoever has time, and handed back as files."""
 
-import base64
 import tempfile
 from dataclasses import replace
-from io import BytesIO
 from pathlib import Path
 
 import xarray as xr
@@ -70,18 +68,3 @@ def drawn(picture: Picture) -> Files:
             assert pair is not None
             pairs.draw_pair(folder / figure_file(scene.name, f"body{body}", pair.key), surfaces, scene, body, pair)
         return tuple((file.name, file.read_bytes()) for file in sorted(folder.iterdir()))
-
-
-def smaller(png: bytes) -> bytes:
-    """The same picture to the last dot in half the bytes."""
-    from PIL import Image  # as in `drawn`
-
-    found = BytesIO()
-    with Image.open(BytesIO(png)) as picture:
-        picture.convert("RGB").save(found, "WEBP", lossless=True, quality=20, method=1)  # hardly smaller with more
-    return found.getvalue()
-
-
-def inlined(webp: bytes) -> str:
-    """A picture inside the page."""
-    return "data:image/webp;base64," + base64.b64encode(webp).decode()
