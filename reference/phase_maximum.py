@@ -26,13 +26,13 @@ from reference.problem.readings import describe_law, reading_of
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene
 from reference.problem.symmetry import distinct, half_turns
-from reference.support.arguments import checked_choice
+from reference.support.arguments import check_choice
 from reference.surface import amplification
 
 QUANTITIES = ("amplification", "displacement")
 GRID_TOLERANCE = 1e-4  # relative error of mu there
 MAX_ROUNDS = 60
-MAX_SHORTFALL = 0.01  # of the maximum: searches that end lower need not follow their jumps
+MAX_SHORTFALL = 0.01  # share of the maximum: searches that end lower need not follow their jumps
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class PhaseMaximum:
     phases : tuple of float, rad
         (alpha_1, alpha_2) in [0, 2 pi). Symmetries of the scene may give other pairs with the same value.
     kind : {"smooth", "kink", "jump"}
-        What the surface has there: a level tangent, an edge, or a jump beside which the value is approached.
+        Shape of the surface there: a level tangent, an edge, or a jump, next to which the value is approached.
     side : tuple of float
         Of a jump: the direction in the plane of phases from it towards the pairs with large values. Otherwise NaN.
     runner_up : float
@@ -128,7 +128,7 @@ def worst_phases(
     >>> round(worst.value, 3), worst.kind
     (3.06, 'kink')
     """
-    checked_choice("quantity", quantity, QUANTITIES)
+    check_choice("quantity", quantity, QUANTITIES)
     if body not in range(1, len(scene.bodies) + 1):
         raise ValueError(f"body = {body!r}: must be an integer from 1 to {len(scene.bodies)}, the number of bodies")
     if scene.recorded:

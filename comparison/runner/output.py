@@ -28,7 +28,7 @@ from reference.support.files import (
     TEMPORARY,
     clear_staging,
     dead_staging,
-    locked,
+    hold_lock,
     names_after,
     read_file,
     staging,
@@ -150,7 +150,10 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
         with staging(place) as staging_folder:
             report = Report(staging_folder / NEW, place)
             yield report
-            with locked(place.parent), ThreadPoolExecutor(1) as mover:  # what interrupts this thread interrupts no move
+            with (
+                hold_lock(place.parent),
+                ThreadPoolExecutor(1) as mover,
+            ):  # what interrupts this thread interrupts no move
                 report.place = mover.submit(_put, report.folder, place, say).result()
     except BaseException:
         with suppress(OSError):
@@ -171,7 +174,7 @@ def publish(
     """Write files of a command into a folder; one that is not the study's stays, and `say` is told. Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
-    with locked(folder.resolve().parent):
+    with hold_lock(folder.resolve().parent):
         for name, content in files.items():
             file, digest, manifest = folder / name, _hash(content), read_manifest(folder)
             ours = _is_own(file, manifest.get(name))
