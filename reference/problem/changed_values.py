@@ -120,7 +120,7 @@ def _put_in_record(scene: str, data: dict[str, Any], key: str, value: Any) -> tu
 def _index_of(
     scene: str, place: Any, parts: Sequence[str], depth: int, value: Any, keys: Mapping[str, Sequence[str]]
 ) -> Any:
-    """Return the index of one part of a dotted key in its list or table; an optional table is made. Raises SceneError."""
+    """Return the index of one part of a dotted key in its list or table; make an optional table. Raises SceneError."""
     key, part, last = ".".join(parts), parts[depth], depth == len(parts) - 1
     if isinstance(place, list):
         if part.isascii() and part.isdecimal() and len(part) < 9 and int(part) < len(place):

@@ -134,7 +134,7 @@ class DryFriction:
         )
         return coefficient if self.exponent == 0.0 else coefficient * np.maximum(load, LEAST_LOAD) ** self.exponent
 
-    def at_one(self, speed: float, load: float) -> float:
+    def coefficient_at(self, speed: float, load: float) -> float:
         """Return the coefficient at one slip speed and load, as `at` does, for loops over single contacts."""
         coefficient = self.slow - (self.fast - self.slow) * math.expm1(-self.rate * speed)
         return coefficient if self.exponent == 0.0 else coefficient * max(load, LEAST_LOAD) ** self.exponent
