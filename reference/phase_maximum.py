@@ -25,7 +25,7 @@ from reference.problem import Scene, checked_phases
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene
-from reference.problem.symmetry import distinct, half_turns
+from reference.problem.symmetry import allowed_half_turns, distinct_pairs
 from reference.support.arguments import check_choice
 from reference.surface import amplification
 
@@ -136,7 +136,7 @@ def worst_phases(
     law = {"equations": equations, "regularization": regularization, "cutoff": cutoff}
     surface = Surface(scene, amplification, {**law, "tolerance": tolerance}, body - 1, quantity)
     if starts is None:
-        phases, taken = distinct(scene, GRID)
+        phases, taken = distinct_pairs(scene, GRID)
         starts = local_maxima(surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
     points = surface.compute(checked_phases(starts))
     searches = [
@@ -145,7 +145,7 @@ def worst_phases(
     ]
     if not searches:
         raise ValueError(f"scene {scene.name}: no phase pair has an answer; amplification says why")
-    shifts: Array = np.pi * half_turns(scene).astype(float)
+    shifts: Array = np.pi * allowed_half_turns(scene).astype(float)
     for _ in range(MAX_ROUNDS):
         highest = max(search.value for search in searches)
         active = [search for search in searches if search.may_reach(highest)]

@@ -26,12 +26,12 @@ from reference.problem import SceneError
 from reference.support.files import (
     NEW,
     TEMPORARY,
+    abandoned_staging,
     clear_staging,
-    dead_staging,
     hold_lock,
-    names_after,
+    numbered_names,
     read_file,
-    staging,
+    staging_directory,
     write_atomically,
     write_new,
 )
@@ -147,7 +147,7 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
     place = out.resolve()
     made = make_parents(place.parent)
     try:
-        with staging(place) as staging_folder:
+        with staging_directory(place) as staging_folder:
             report = Report(staging_folder / NEW, place)
             yield report
             with (
@@ -164,7 +164,7 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
 
 def clear_dead(out: Path) -> None:
     """Remove the unfinished reports that killed runs left beside `out`."""
-    for staging_folder in dead_staging(out.resolve()):
+    for staging_folder in abandoned_staging(out.resolve()):
         clear_staging(staging_folder)
 
 
@@ -260,7 +260,7 @@ def _put(new: Path, place: Path, say: Callable[[str], None]) -> Path:
         if not is_folder
     }
     why = _in_the_way(place)
-    there = next(name for name in names_after(place) if not os.path.lexists(name)) if why else place
+    there = next(name for name in numbered_names(place) if not os.path.lexists(name)) if why else place
     there.mkdir(exist_ok=True)
     old = read_manifest(there)
     kept = {name: own for name, own in old.items() if own.command != REPORT and name not in mine}

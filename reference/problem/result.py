@@ -13,7 +13,7 @@ from reference.problem.phases import grid_axes, phase_coordinates
 from reference.problem.scene import Scene
 from reference.support.arguments import brief, check_choice, takes
 from reference.support.drawing import draw_motion, draw_surface, verbatim
-from reference.support.html_table import digits, html_table
+from reference.support.html_table import html_table, text_of_number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -123,7 +123,7 @@ class Amplification:
         for body, (mu, error) in enumerate(zip(*(each.reshape(-1, bodies).T for each in (self.mu, self.error))), 1):
             values = np.quantile(mu[np.isfinite(mu)], (0.0, 0.5, 1.0)) if np.isfinite(mu).any() else 3 * [np.nan]
             known = error[np.isfinite(error)].max(initial=-np.inf)
-            rows.append((body, *(digits(value, 5) for value in values), digits(known, 1)))
+            rows.append((body, *(text_of_number(value, 5) for value in values), text_of_number(known, 1)))
         return html_table(repr(self), ("body", "smallest μ", "median μ", "largest μ", "largest error"), rows)
 
     def reshaped(self, shape: tuple[int, ...]) -> Amplification:
@@ -289,7 +289,8 @@ class Trajectory:
     def _repr_html_(self) -> str:
         moved = np.linalg.norm(self.position[:, :, :2], axis=-1).max(axis=0, initial=0.0)
         rows = [
-            (body, digits(1e3 * far, 4), digits(peak, 5)) for body, (far, peak) in enumerate(zip(moved, self.peak), 1)
+            (body, text_of_number(1e3 * far, 4), text_of_number(peak, 5))
+            for body, (far, peak) in enumerate(zip(moved, self.peak), 1)
         ]
         heads = "body", "largest displacement from the ground, mm", "largest absolute acceleration, m/s²"
         return html_table(repr(self), heads, rows)

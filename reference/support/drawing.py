@@ -70,10 +70,10 @@ def _mark_quarter_turns(axis: Axis, span: float) -> None:
 
     if 0.9 * np.pi <= span <= 8.0 * np.pi:
         axis.set_major_locator(MultipleLocator(0.5 * np.pi))
-        axis.set_major_formatter(FuncFormatter(lambda phase, _: in_half_turns(phase)))
+        axis.set_major_formatter(FuncFormatter(lambda phase, _: write_half_turns(phase)))
 
 
-def in_half_turns(phase: float) -> str:
+def write_half_turns(phase: float) -> str:
     """
     Write a multiple of pi / 2.
 

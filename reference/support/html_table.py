@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 
 
-def digits(value: float, count: int) -> str:
+def text_of_number(value: float, count: int) -> str:
     """Write a number with `count` digits; "none" where it is not finite."""
     return f"{value:.{count}g}" if math.isfinite(value) else "none"
 
