@@ -177,6 +177,7 @@ class VelocityFriction(Table):
     The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n, times the temperature factor of `heating`.
     """
 
+    # Without friction at rest nothing ever stops, which is no dry friction.
     slow: Positive = key("coefficient at rest", Range(1e-9, 1e3), default=REQUIRED)
     fast: NonNegative | None = key(
         "coefficient at high speed, above or below slow; without it and rate, slow at every speed", Range(0.0, 1e3)

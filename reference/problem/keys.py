@@ -24,14 +24,9 @@ from reference.support.arguments import Range
 from reference.support.plain_values import hashable, plain
 
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
-
-
-ALL = "all"  # models that read a key
-SPATIAL = "spatial"
-STUDY = "`--check`"
-REPORT = "the report"
-NONE = "none"
-REQUIRED = ...
+# Models, or others, that read a key
+ALL, SPATIAL, STUDY, REPORT, NONE = "all", "spatial", "`--check`", "the report", "none"
+REQUIRED = ...  # default of a key that a file must have
 
 
 def key(

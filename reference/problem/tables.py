@@ -227,6 +227,7 @@ class Body(Table):
 class Excitation(Table):
     """Two-frequency damped ground acceleration (5.2)-(5.4): rows x, y and optionally z, columns the harmonics."""
 
+    # From about 1e150 m/s^2 on the outcome is "non-finite load".
     amplitudes: Annotated[list[Pair], Field(min_length=2, max_length=3)] = key(
         "amplitudes a_ki of (5.4): rows x, y and optionally z, columns the two harmonics",
         Range(-1e308, 1e308, "m/s^2"),
