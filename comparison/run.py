@@ -44,7 +44,7 @@ from comparison.study.costs import WRITING, seconds_of_model
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
-from reference.support.command import stoppable
+from reference.support.command import stop_on_signals
 
 import_module("multibody.models.engine")  # workers load it again: where that fails, the command ends here in one line
 
@@ -65,7 +65,7 @@ def main(
     place as "module:function".
     """
     began = start_time()
-    with stoppable():
+    with stop_on_signals():
         try:
             words = changed(argv, as_words(models or {}))
             options = parsed(words)

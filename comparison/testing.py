@@ -17,7 +17,7 @@ from comparison.surfaces.surfaces import labeled_surfaces
 from comparison.surfaces.unanswered import unanswered
 from reference.problem import Scene, load_scene
 from reference.problem.ranges import TOLERANCE
-from reference.support.arguments import Range, checked_choice, checked_number, checked_whole_number
+from reference.support.arguments import Range, check_choice, check_number, check_whole_number
 
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
 ENGINE, ENGINE_TITLE = "engine", "your engine"  # key and title of the user's engine
@@ -86,13 +86,13 @@ def assert_consistent(
         "total": total,
         "total_maximum": total_maximum,
     }
-    stated = {name: checked_number(name, limit, LIMIT) for name, limit in limits.items() if limit is not None}
+    stated = {name: check_number(name, limit, LIMIT) for name, limit in limits.items() if limit is not None}
     if not stated:
         raise ValueError(f"no limit: give one of {', '.join(limits)}")
-    grid = checked_whole_number("grid", grid, GRID)
-    failed = checked_whole_number("failed", failed, FAILED)
-    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
-    law = checked_choice("law", law, LAWS)
+    grid = check_whole_number("grid", grid, GRID)
+    failed = check_whole_number("failed", failed, FAILED)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    law = check_choice("law", law, LAWS)
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     with_total = any(name.startswith("total") for name in stated)
     hierarchy = [*(with_softened_bars(MODEL_HIERARCHY, (scene,)) if with_total else MODEL_HIERARCHY)]

@@ -16,7 +16,7 @@ from comparison.cli.requirement import requirement
 from comparison.runner.output import destination, make_parents, refuse_unwritable
 from reference.problem import SceneError
 from reference.support.command import OneLineParser
-from reference.support.files import NEW, staging
+from reference.support.files import NEW, staging_directory
 
 PLACE = "DIRECTORY"
 TEMPLATE = {  # file of the study: file of the template
@@ -62,7 +62,7 @@ def write_directory(place: Path, contents: Mapping[str, bytes]) -> None:
     inside = place.is_dir()  # it stays the same directory: it may be the one in which the command was typed
     made = make_parents(place.parent)
     try:
-        with staging(place / NEW if inside else place) as staging_folder:
+        with staging_directory(place / NEW if inside else place) as staging_folder:
             new = staging_folder / NEW
             for name, content in contents.items():
                 (new / name).parent.mkdir(parents=True, exist_ok=True)

@@ -99,7 +99,7 @@ def _refuse_limits_of_no_engine(scenes: Sequence[Scene], engines: Sequence[str])
                 near = get_close_matches(name, [*engines, *Acceptance.model_fields], n=1, cutoff=0.5)
                 hint = f"did you mean {near[0]}?" if near else f"--model {name}=module:function enters it"
                 rule = f"this study has no engine of this name; {hint}"
-                raise SceneError(scene.name, f"acceptance.{name}", limits.stated(), rule)
+                raise SceneError(scene.name, f"acceptance.{name}", limits.limits_by_key(), rule)
 
 
 def _parser() -> CommandParser:

@@ -26,12 +26,12 @@ from reference.problem import SceneError
 from reference.support.files import (
     NEW,
     TEMPORARY,
+    abandoned_staging,
     clear_staging,
-    dead_staging,
-    locked,
-    names_after,
+    hold_lock,
+    numbered_names,
     read_file,
-    staging,
+    staging_directory,
     write_atomically,
     write_new,
 )
@@ -147,10 +147,13 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
     place = out.resolve()
     made = make_parents(place.parent)
     try:
-        with staging(place) as staging_folder:
+        with staging_directory(place) as staging_folder:
             report = Report(staging_folder / NEW, place)
             yield report
-            with locked(place.parent), ThreadPoolExecutor(1) as mover:  # what interrupts this thread interrupts no move
+            with (
+                hold_lock(place.parent),
+                ThreadPoolExecutor(1) as mover,
+            ):  # what interrupts this thread interrupts no move
                 report.place = mover.submit(_put, report.folder, place, say).result()
     except BaseException:
         with suppress(OSError):
@@ -161,7 +164,7 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
 
 def clear_dead(out: Path) -> None:
     """Remove the unfinished reports that killed runs left beside `out`."""
-    for staging_folder in dead_staging(out.resolve()):
+    for staging_folder in abandoned_staging(out.resolve()):
         clear_staging(staging_folder)
 
 
@@ -171,7 +174,7 @@ def publish(
     """Write files of a command into a folder; one that is not the study's stays, and `say` is told. Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
-    with locked(folder.resolve().parent):
+    with hold_lock(folder.resolve().parent):
         for name, content in files.items():
             file, digest, manifest = folder / name, _hash(content), read_manifest(folder)
             ours = _is_own(file, manifest.get(name))
@@ -257,7 +260,7 @@ def _put(new: Path, place: Path, say: Callable[[str], None]) -> Path:
         if not is_folder
     }
     why = _in_the_way(place)
-    there = next(name for name in names_after(place) if not os.path.lexists(name)) if why else place
+    there = next(name for name in numbered_names(place) if not os.path.lexists(name)) if why else place
     there.mkdir(exist_ok=True)
     old = read_manifest(there)
     kept = {name: own for name, own in old.items() if own.command != REPORT and name not in mine}

@@ -13,6 +13,7 @@ from typing import Any, Literal
 from reference.problem import Scene, mirror_symmetric
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, DEFAULT_V_REG, LITERAL_SUPREMUM
 
+V_REG_TEXT, V_C_TEXT = (f"{1e3 * speed:g} mm/s" for speed in (DEFAULT_V_REG, DEFAULT_V_C))
 REFERENCE_TOLERANCE = 1e-6  # asked at least of the equations, which are cheap: their error blurs no difference
 SOFTENED = "softened-"  # begins the key of a model whose bars are softened
 
@@ -250,7 +251,7 @@ def _effect_pair(effect: str, where: str, first: Model, second: Model, base: Mod
 
 
 _PEAK = "largest value the computed motion reaches"
-_RESOLVED_PEAK = "largest value at rest or sliding faster than v_c = 1 mm/s"
+_RESOLVED_PEAK = f"largest value at rest or sliding faster than v_c = {V_C_TEXT}"
 
 
 def _next(before: Model, departs: Mapping[str, str], **changes: Any) -> Model:
@@ -300,8 +301,8 @@ SMALL_RESOLVED = _next(
     {"mu_i": _RESOLVED_PEAK},
     key="small-resolved",
     title="small equations, as integrated",
-    adds="The same motion, read at rest and while sliding faster than v_c = 1 mm/s: what an integration of the printed "
-    "equations with steps of about 1 ms sees, as the paper's own.",
+    adds=f"The same motion, read at rest and while sliding faster than v_c = {V_C_TEXT}: what an integration of the "
+    "printed equations with steps of about 1 ms sees, as the paper's own.",
     settings={**SMALL.settings, "cutoff": DEFAULT_V_C},
     applies=dry,
     reading=AS_INTEGRATED,
@@ -318,14 +319,14 @@ RESOLVED = _next(
     reading=AS_INTEGRATED,
     in_chain=any_scene,
 )
-_LINEAR = {"friction": "the same Coulomb law, times |v| / v_reg below v_reg = 1 mm/s", "mu_i": _PEAK}
+_LINEAR = {"friction": f"the same Coulomb law, times |v| / v_reg below v_reg = {V_REG_TEXT}", "mu_i": _PEAK}
 SMALL_REGULARIZED = _next(
     SMALL_RESOLVED,
     _LINEAR,
     key="small-regularised",
     title="small equations, v_reg",
     effect="regularized friction",
-    adds="The printed equations with friction that is linear below v_reg = 1 mm/s, as most codes have it: what "
+    adds=f"The printed equations with friction that is linear below v_reg = {V_REG_TEXT}, as most codes have it: what "
     "geometry adds under that law is seen from here.",
     settings={"equations": "small", "regularization": DEFAULT_V_REG},
     in_chain=never,
@@ -337,7 +338,7 @@ REGULARIZED = _next(
     key="regularised",
     title="exact equations, v_reg",
     effect="regularized friction",
-    adds="Friction linear below v_reg = 1 mm/s, as an engine has it: no true rest, no jump at a stop.",
+    adds=f"Friction linear below v_reg = {V_REG_TEXT}, as an engine has it: no true rest, no jump at a stop.",
     settings={"equations": "exact", "regularization": DEFAULT_V_REG},
     applies=dry,
     seconds=0.001,
@@ -347,7 +348,8 @@ TRANSLATIONAL = _next(
     {
         "equations": "Newton-Euler of the bodies, assembled by Exudyn",
         "geometry": "exact spheres: support of radius r in a depression of radius R; a plane for a flat slider",
-        "friction": "the same Coulomb law, times |v| / v_reg below v_reg = 1 mm/s, or mu = f_c |v| if lubricated",
+        "friction": f"the same Coulomb law, times |v| / v_reg below v_reg = {V_REG_TEXT}, "
+        "or mu = f_c |v| if lubricated",
         "normal contact": "elastic: spring and damper, so the platform sinks by N/k_c",
         "unknowns": "translations of every body, the platform's vertical one free",
     },

@@ -15,7 +15,7 @@ from comparison.study.batches import Batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, chain_of, pairs_of
 from comparison.study.selection import Selection
 from reference.problem import Scene, SceneError, phase_grid
-from reference.problem.symmetry import sources
+from reference.problem.symmetry import indices_of_solved_pairs
 
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
@@ -141,7 +141,7 @@ class Study:
             return places
         even = self.grid % self.strides[model.key] == 0  # else the last phase and the first are closer than the others
         return (
-            places[sources(scene, len(self.axis(model)))]
+            places[indices_of_solved_pairs(scene, len(self.axis(model)))]
             if model.symmetric(scene) and even and not self.full
             else places
         )

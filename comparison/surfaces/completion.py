@@ -29,7 +29,7 @@ from comparison.study.study import Study
 from comparison.surfaces.model_difference import RESOLVED, drop_worthless, usable_mu
 from reference.measures.distribution import fractile
 from reference.problem import Scene, phase_axis, phase_grid
-from reference.problem.symmetry import sources
+from reference.problem.symmetry import indices_of_solved_pairs
 
 Indices = NDArray[np.intp]
 
@@ -165,7 +165,7 @@ def held_out_places(study: Study, scene: Scene, model: Model) -> Indices:
     The same in every run. No two of them are mirror images of each other, and none of a computed phase pair.
     """
     mirrored = model.symmetric(scene) and study.grid % study.stride(model) == 0 and not study.full
-    same = sources(scene, study.grid) if mirrored else np.arange(study.grid**2)
+    same = indices_of_solved_pairs(scene, study.grid) if mirrored else np.arange(study.grid**2)
     candidates = np.setdiff1d(same, same[study.places(model)])
     seed = hashlib.sha256(f"{scene.digest()} {model.key}".encode()).digest()
     chosen: Indices = np.random.default_rng(list(seed)).permutation(candidates)[:HELD_OUT]

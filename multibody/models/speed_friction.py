@@ -119,7 +119,7 @@ class SpeedFriction:
         """Coefficients of the contacts after `span`, without heat."""
         contacts = zip(self._slip, self._rate, self._load, self._load_rate, strict=True)
         return [
-            self.law.at_one(max(slip + span * rate, 0.0), load + span * load_rate)
+            self.law.coefficient_at(max(slip + span * rate, 0.0), load + span * load_rate)
             for slip, rate, load, load_rate in contacts
         ]
 

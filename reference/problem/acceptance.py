@@ -11,7 +11,7 @@ from pydantic_core import PydanticCustomError
 from reference.problem.keys import STUDY, Positive, Table, key
 from reference.support.scene_error import MisfitError
 
-ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # of an engine of the user
+ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # name of an engine of the user
 
 
 class Limits(Table):
@@ -23,14 +23,14 @@ class Limits(Table):
         "limit of the largest difference in units of u_D = sqrt(u_A^2 + u_B^2) of the two error estimates", models=STUDY
     )
 
-    def stated(self) -> dict[str, float]:
-        """The limits that are present, by key."""
+    def limits_by_key(self) -> dict[str, float]:
+        """Return the limits that are present, by key."""
         limits = {"median": self.median, "maximum": self.maximum, "ratio": self.ratio}
         return {key: limit for key, limit in limits.items() if limit is not None}
 
 
-def _only_a_table(value: Any) -> Any:
-    """A key that is not known may be the name of an engine, whose limits are a table."""
+def _check_table(value: Any) -> Any:
+    """Refuse a key that is neither known nor, with a table, the name of an engine."""
     if isinstance(value, dict | Limits):
         return value
     raise PydanticCustomError("extra_forbidden", "unknown key")
@@ -44,7 +44,7 @@ class Acceptance(Limits):
     """
 
     model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Annotated[Limits, BeforeValidator(_only_a_table)]] = Field(init=False)
+    __pydantic_extra__: dict[str, Annotated[Limits, BeforeValidator(_check_table)]] = Field(init=False)
 
     total: Limits | None = key(
         "table of limits: the paper's printed equations against the most complete model", models=STUDY
@@ -68,13 +68,13 @@ class Acceptance(Limits):
     )
 
     @model_validator(mode="after")
-    def _once(self) -> Acceptance:
-        if twice := sorted(self.stated().keys() & (self.like_for_like or Limits()).stated().keys()):
+    def _check_names(self) -> Acceptance:
+        if twice := sorted(self.limits_by_key().keys() & (self.like_for_like or Limits()).limits_by_key().keys()):
             raise ValueError(f"give {twice[0]} here or in like_for_like, which mean the same, not in both")
         for name, limits in self.of_engines.items():
             if not ENGINE_NAME.fullmatch(name):
                 rule = "must be total, translational, like_for_like or the name of an engine: letters, digits and -"
-                raise MisfitError(f"acceptance.{name}", limits.stated(), rule)
+                raise MisfitError(f"acceptance.{name}", limits.limits_by_key(), rule)
         return self
 
     @property
@@ -83,7 +83,7 @@ class Acceptance(Limits):
         return self.__pydantic_extra__
 
     def differences(self) -> list[tuple[str, str, str, float]]:
-        """Key as written, pair of models, measure and limit of every difference that is limited."""
+        """Return key as written, pair of models, measure and limit of every difference that is limited."""
         tables = (
             ("", "like-for-like", self),
             ("like_for_like.", "like-for-like", self.like_for_like),
@@ -95,7 +95,7 @@ class Acceptance(Limits):
             (f"{start}{key}", pair, key, limit)
             for start, pair, limits in tables
             if limits is not None
-            for key, limit in limits.stated().items()
+            for key, limit in limits.limits_by_key().items()
         ]
 
     @property

@@ -1,4 +1,4 @@
-"""Which analyses a study makes of a scene beside its amplification factors: names that the study knows."""
+"""Names of the analyses that a study makes of a scene in addition to its amplification factors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Analyses(Table):
     also: Names | None = key("analyses besides, of those on request", models=REPORT)
 
     @model_validator(mode="after")
-    def _one_of_them(self) -> Analyses:
+    def _check_selection(self) -> Analyses:
         if self.only is not None and self.skip is not None:
             raise ValueError("give only or skip, not both")
         return self

@@ -19,7 +19,7 @@ from reference.problem.keys import REQUIRED, NonNegative, Positive, Table, key
 from reference.problem.validation import FRICTIONS
 from reference.support.arguments import Range
 
-LEAST_LOAD = 1e-6  # of the weight: friction depends no further on a normal force that is smaller
+LEAST_LOAD = 1e-6  # share of the weight: friction depends no further on a smaller normal force
 
 
 @dataclass(frozen=True)
@@ -45,13 +45,13 @@ class Heat:
 
     @classmethod
     def of(cls, radius: float, conductivity: float, diffusivity: float, initial: float, supports: int) -> Heat:
-        """Under so many equal sliders with round contacts of this radius, m; in W/(m K), m^2/s and degrees C."""
+        """Return the heat of equal sliders with round contacts of this radius, m; in W/(m K), m^2/s and degrees C."""
         area = supports * math.pi * radius**2
         return cls(initial, math.sqrt(diffusivity / math.pi) / (conductivity * area), 0.5 * math.sqrt(math.pi) * radius)
 
     @staticmethod
     def factor(temperature: ArrayLike) -> NDArray[np.float64]:
-        """Coefficient at a temperature, degrees C, over that stated."""
+        """Return the coefficient at a temperature, degrees C, over that stated."""
         return 0.79 * (0.7 ** (0.02 * np.asarray(temperature)) + 0.4)
 
 
@@ -90,22 +90,22 @@ class DryFriction:
 
     @property
     def varies(self) -> bool:
-        """Whether the coefficient depends on the speed."""
+        """True if the coefficient depends on the speed."""
         return self.rate > 0.0 and self.slow != self.fast
 
     @property
     def constant(self) -> bool:
-        """Whether the coefficient depends on neither speed nor load nor heat."""
+        """True if the coefficient depends on neither speed nor load nor heat."""
         return not self.varies and self.exponent == 0.0 and self.heat is None
 
     @property
     def by_load(self) -> bool:
-        """Whether the coefficient depends on the normal force, directly or by the heat of friction under it."""
+        """True if the coefficient depends on the normal force, directly or by the heat of friction under it."""
         return self.exponent != 0.0 or self.heat is not None
 
     @property
     def kind(self) -> str:
-        """What texts call the law: "Coulomb" friction, or "dry" where the coefficient depends on anything."""
+        """Name of the law in texts: "Coulomb" friction, or "dry" where the coefficient depends on anything."""
         return "Coulomb" if self.constant else "dry"
 
     @property
@@ -115,7 +115,7 @@ class DryFriction:
 
     def at(self, speed: ArrayLike, load: ArrayLike = 1.0) -> NDArray[np.float64]:
         """
-        The coefficient at slip speeds.
+        Return the coefficient at slip speeds.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class DryFriction:
         )
         return coefficient if self.exponent == 0.0 else coefficient * np.maximum(load, LEAST_LOAD) ** self.exponent
 
-    def at_one(self, speed: float, load: float) -> float:
+    def coefficient_at(self, speed: float, load: float) -> float:
         """Return the coefficient at one slip speed and load, as `at` does, for loops over single contacts."""
         coefficient = self.slow - (self.fast - self.slow) * math.expm1(-self.rate * speed)
         return coefficient if self.exponent == 0.0 else coefficient * max(load, LEAST_LOAD) ** self.exponent
@@ -147,7 +147,7 @@ class DryFriction:
         return steepness
 
     def in_unit_of_speed(self, unit: float) -> DryFriction:
-        """Return the same law for slip speeds in a unit of so many m/s."""
+        """Return the law for slip speeds in another unit, given in m/s."""
         return replace(self, rate=self.rate * unit)
 
 
@@ -177,6 +177,7 @@ class VelocityFriction(Table):
     The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n, times the temperature factor of `heating`.
     """
 
+    # Without friction at rest nothing ever stops, which is no dry friction.
     slow: Positive = key("coefficient at rest", Range(1e-9, 1e3), default=REQUIRED)
     fast: NonNegative | None = key(
         "coefficient at high speed, above or below slow; without it and rate, slow at every speed", Range(0.0, 1e3)
@@ -193,7 +194,7 @@ class VelocityFriction(Table):
     heating: Heating | None = key("the table below; without it the surface stays cold")
 
     @model_validator(mode="after")
-    def _pairs(self) -> VelocityFriction:
+    def _check_pairs(self) -> VelocityFriction:
         if (self.fast is None) != (self.rate is None):
             raise ValueError("give fast and rate together, or neither")
         if self.fast is None and self.load_exponent is None and self.heating is None:
@@ -204,7 +205,7 @@ class VelocityFriction(Table):
 
 
 def kind_of_friction(friction: Any) -> str:
-    """Which of the two a friction is meant to be."""
+    """Return the form that a friction is meant to have."""
     return FRICTIONS[int(isinstance(friction, dict | VelocityFriction))]
 
 

@@ -1,4 +1,4 @@
-"""What every table of a scene file is made of: keys with their meaning and range, and how tables are compared."""
+"""Keys with their meaning and range, of which every table of a scene file is made; comparison of tables."""
 
 from __future__ import annotations
 
@@ -24,14 +24,9 @@ from reference.support.arguments import Range
 from reference.support.plain_values import hashable, plain
 
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
-
-
-ALL = "all"  # models that read a key
-SPATIAL = "spatial"
-STUDY = "`--check`"
-REPORT = "the report"
-NONE = "none"
-REQUIRED = ...
+# Models, or others, that read a key
+ALL, SPATIAL, STUDY, REPORT, NONE = "all", "spatial", "`--check`", "the report", "none"
+REQUIRED = ...  # default of a key that a file must have
 
 
 def key(
@@ -55,10 +50,10 @@ def key(
 
 def range_of(table: type[Table], name: str) -> Range:
     """Return the range of a key of a table."""
-    return Range(*_said(table, name)["range"])
+    return Range(*_schema_of_key(table, name)["range"])
 
 
-def _said(table: type[Table], name: str) -> dict[str, Any]:
+def _schema_of_key(table: type[Table], name: str) -> dict[str, Any]:
     return cast("dict[str, Any]", table.model_fields[name].json_schema_extra or {})
 
 
@@ -72,7 +67,7 @@ def _numbers_in(value: Any, place: tuple[int, ...] = ()) -> Iterator[tuple[tuple
 
 
 def in_range(allowed: Range) -> AfterValidator:
-    """The rule that a number lies within a range."""
+    """Return the rule that a number lies within a range."""
 
     def check(value: float) -> float:
         if value not in allowed:
@@ -82,13 +77,13 @@ def in_range(allowed: Range) -> AfterValidator:
     return AfterValidator(check)
 
 
-def _without_control_characters(text: str) -> str:
+def _check_text(text: str) -> str:
     if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in text):
         raise ValueError("must have no control characters")
     return text
 
 
-Text = Annotated[str, AfterValidator(_without_control_characters)]
+Text = Annotated[str, AfterValidator(_check_text)]
 Positive = Annotated[float, Field(gt=0.0)]
 NonNegative = Annotated[float, Field(ge=0.0)]
 # JSON has no infinity: there it is the text "inf"
@@ -107,8 +102,8 @@ class Table(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _plain(cls, table: Any) -> Any:
-        """Arrays, tuples and numbers of numpy as a file would have them."""
+    def _make_plain(cls, table: Any) -> Any:
+        """Replace arrays, tuples and numbers of numpy by those of a file."""
         if not isinstance(table, dict):
             return table
         return {key: value if key in cls.long_keys else plain(value) for key, value in table.items()}
@@ -116,7 +111,7 @@ class Table(BaseModel):
     @field_validator("*")
     @classmethod
     def _check_range(cls, value: Any, info: ValidationInfo) -> Any:
-        said = _said(cls, info.field_name or "")
+        said = _schema_of_key(cls, info.field_name or "")
         if "range" in said and not (said["other_form"] and isinstance(value, list)):
             allowed = Range(*said["range"])
             for place, number in _numbers_in(value):
@@ -132,7 +127,7 @@ class Table(BaseModel):
         return hash((type(self).__name__, *short))
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """A copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
+        """Return a copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
         if update:
             raise ValueError(USE_WITH_VALUES)
         return super().model_copy(deep=deep)

@@ -1,4 +1,4 @@
-"""Measured peaks of a scene: what an experiment found, set beside what the models compute."""
+"""Measured peaks of a scene, which a report compares with those of the models."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ OF_ISOLATOR = (
 QUANTITIES = (*OF_BODIES, *OF_ISOLATOR)
 
 
-def _known(quantity: str) -> str:
+def _check_quantity(quantity: str) -> str:
     if quantity not in QUANTITIES:
         nearest = get_close_matches(quantity, QUANTITIES, n=1, cutoff=0.5)
         raise ValueError(f"did you mean {nearest[0]}?" if nearest else f"must be one of {', '.join(QUANTITIES)}")
@@ -37,7 +37,7 @@ def _known(quantity: str) -> str:
 class Measured(Table):
     """One measured peak."""
 
-    quantity: Annotated[str, AfterValidator(_known)] = key(
+    quantity: Annotated[str, AfterValidator(_check_quantity)] = key(
         f"what was measured: {', '.join(QUANTITIES)}", models=REPORT, default=REQUIRED
     )
     body: int | None = key(
@@ -60,7 +60,7 @@ class Measured(Table):
     source: Text | None = key("where the value is from", models=REPORT)
 
     @model_validator(mode="after")
-    def _of_a_body_or_not(self) -> Measured:
+    def _check_body(self) -> Measured:
         first = OF_BODIES.get(self.quantity)
         if first is None and self.body is not None:
             raise ValueError(f"{self.quantity} is of the isolator: remove body")

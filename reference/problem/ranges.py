@@ -12,33 +12,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.support.arguments import Range, brief, checked_array
+from reference.support.arguments import Range, brief, check_array
 
 Array = NDArray[np.float64]
 
 MAX_SUPPORTS = 1000
-SUPPORT_POSITION = Range(-1e6, 1e6, "m")  # of a support, along x and y
-DAMPING_COEFFICIENT = Range(0.0, 1e30, "N s/m")  # of a link along one axis
-MAX_CYCLES = 1e6  # of the loading's shortest period, and of the pendulum's, in the duration
+SUPPORT_POSITION = Range(-1e6, 1e6, "m")  # place of a support along x and y
+DAMPING_COEFFICIENT = Range(0.0, 1e30, "N s/m")  # damper of a link along one axis
+MAX_CYCLES = 1e6  # shortest periods of loading and pendulum in the duration
 
 # rad; beyond, neighboring double-precision numbers are more than 1.2e-10 rad apart, the strictest tolerance
 PHASE = Range(-1e6, 1e6, "rad")
 REGULARIZATION = Range(1e-12, 1e6, "m/s")
 CUTOFF = Range(1e-15, 1e6, "m/s")
-POSITION = Range(-1e12, 1e12, "m")  # of an initial state
+POSITION = Range(-1e12, 1e12, "m")  # displacement of an initial state
 VELOCITY = Range(-1e9, 1e9, "m/s")
 TOLERANCE = Range(1e-10, 0.1)
 
 LEAST_ACCELERATION = 1e-140  # m/s^2: squares of smaller accelerations lose digits; the ground is at rest
 
 
-def checked_state(initial: Any, bodies: int, radius: float, travel: float | None = None) -> tuple[Array, Array]:
+def check_state(initial: Any, bodies: int, radius: float, travel: float | None = None) -> tuple[Array, Array]:
     """
-    Position and velocity (N, 2) of an initial `State`, inside the rim and the travel. Raises ValueError, one line.
+    Return position and velocity (N, 2) of an initial `State`, inside rim and travel. Raises ValueError, one line.
     """
     rule = f"must have finite position and velocity of shape ({bodies}, 2)"
     try:
-        x, v = checked_array("initial", initial.position, rule), checked_array("initial", initial.velocity, rule)
+        x, v = check_array("initial", initial.position, rule), check_array("initial", initial.velocity, rule)
     except AttributeError:
         raise ValueError(f"initial = {brief(initial)}: must be a reference.problem.State") from None
     if x.shape != (bodies, 2) or v.shape != (bodies, 2):

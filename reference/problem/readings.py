@@ -20,7 +20,7 @@ FINER = 0.1
 
 
 def reading_of(scene: Scene, regularization: float | None, cutoff: float | None = None) -> str:
-    """Which reading of (5.1) a factor has; "" without dry friction, where both readings agree."""
+    """Return the reading of (5.1) that a factor has; "" without dry friction, where both readings agree."""
     if not scene.has_dry_friction:
         return ""
     return LITERAL_SUPREMUM if regularization is None and cutoff is None else AS_INTEGRATED
@@ -33,7 +33,7 @@ def describe_law(
     effect: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> str:
     """
-    Law of friction of a result, and what its error leaves out.
+    Describe the law of friction of a result, and what its error leaves out.
 
     Parameters
     ----------

@@ -35,11 +35,11 @@ from reference.problem.keys import (
 )
 from reference.problem.ranges import DAMPING_COEFFICIENT, MAX_SUPPORTS, SUPPORT_POSITION
 from reference.problem.validation import DAMPINGS, EXCITATIONS, SUPPORTS
-from reference.records.formats import checked_samples
+from reference.records.formats import check_samples
 from reference.support.arguments import Range
 
 
-def _ratio_or_coefficients(value: Any) -> Any:
+def _check_damping(value: Any) -> Any:
     if isinstance(value, list) and len(value) == 2:
         return value
     if isinstance(value, int | float) and not isinstance(value, bool):
@@ -55,7 +55,7 @@ Damping = Annotated[
     Annotated[float, Tag(DAMPINGS[0])]
     | Annotated[list[Annotated[float, in_range(DAMPING_COEFFICIENT)]], Tag(DAMPINGS[1])],
     Discriminator(_kind_of_damping),
-    BeforeValidator(_ratio_or_coefficients),
+    BeforeValidator(_check_damping),
 ]
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 PositivePair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
@@ -117,7 +117,7 @@ class Isolator(Table):
     )
 
     @model_validator(mode="after")
-    def _alternatives(self) -> Isolator:
+    def _check_alternatives(self) -> Isolator:
         exactly_one(self, "period", "radius")
         exactly_one(self, "friction", "lubrication")
         return self
@@ -159,7 +159,7 @@ class Bars(Table):
     )
 
     @model_validator(mode="after")
-    def _arrangement(self) -> Bars:
+    def _check_arrangement(self) -> Bars:
         if self.load_effect == "shortening" and self.axial_stiffness is None:
             raise ValueError("load_effect 'shortening' needs axial_stiffness: state it, or take 'softening'")
         if self.axial_stiffness is not None and self.count < MIN_SPREAD_BARS and self.spread != 0.0:
@@ -174,7 +174,7 @@ class Bars(Table):
         return 12.0 * self.count * self.bending_stiffness / self.length / self.length / self.length
 
     def factors(self, load: float) -> LoadFactors:
-        """What a load on all bars together, N, leaves of their stiffness; nothing is lost without `load_effect`."""
+        """Return the factors of stiffness under a load on all bars together, N; 1 without `load_effect`."""
         if self.load_effect is None:
             return load_factors(0.0)
         return load_factors(load / self.count * self.length / (4.0 * self.bending_stiffness) * self.length)
@@ -227,6 +227,7 @@ class Body(Table):
 class Excitation(Table):
     """Two-frequency damped ground acceleration (5.2)-(5.4): rows x, y and optionally z, columns the harmonics."""
 
+    # From about 1e150 m/s^2 on the outcome is "non-finite load".
     amplitudes: Annotated[list[Pair], Field(min_length=2, max_length=3)] = key(
         "amplitudes a_ki of (5.4): rows x, y and optionally z, columns the two harmonics",
         Range(-1e308, 1e308, "m/s^2"),
@@ -241,7 +242,7 @@ class Excitation(Table):
 
 Samples = Annotated[
     NDArray[np.float64],
-    PlainValidator(checked_samples),
+    PlainValidator(check_samples),
     PlainSerializer(np.ndarray.tolist, return_type=list[list[float]]),
     WithJsonSchema({"type": "array"}),
 ]
@@ -272,6 +273,6 @@ class Record(Table):
 
 
 def kind_of_excitation(excitation: Any) -> str:
-    """Which of the two an excitation is meant to be."""
+    """Return the form that an excitation is meant to have."""
     recorded = "record" in excitation if isinstance(excitation, dict) else isinstance(excitation, Record)
     return EXCITATIONS[int(recorded)]

@@ -8,11 +8,11 @@ from pydantic import ValidationError
 
 from reference.support.scene_error import MisfitError, SceneError, keys_of, unknown_key
 
-# what a table or key with several forms may be: pydantic puts which was meant into the place of an error
+# Forms of a table or key with several: pydantic puts the one that was meant into the place of an error
 EXCITATIONS = ("two frequencies", "recorded motion")
 SUPPORTS = ("number of supports", "positions of supports")
 FRICTIONS = ("constant friction", "velocity-dependent friction")
-ALONG_AXES = {"stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s"}  # of a link
+ALONG_AXES = {"stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s"}  # form of the keys of a link
 DAMPINGS = ("damping ratio", "damping coefficients")
 
 
@@ -24,8 +24,8 @@ class PlacedError(ValueError):
         super().__init__(rule)
 
 
-def first_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence[str]]) -> SceneError:
-    """The first error that pydantic reports, in the words of the scene file. keys: of every table, by its name."""
+def first_scene_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence[str]]) -> SceneError:
+    """Return the first error that pydantic reports, in the words of the scene file. keys: by name of the table."""
     errors = invalid.errors(include_url=False)
     # a misspelt key is unknown and its right name is missing: the first says more
     error = next((error for error in errors if error["type"] == "extra_forbidden"), errors[0])

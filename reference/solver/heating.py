@@ -19,7 +19,7 @@ from reference.solver.collocation import DEFECT_POLYNOMIAL, MONOMIALS, NODES, ST
 from reference.solver.compiled import OPTIONS
 from reference.solver.samples import SampledMotion, sample_motion
 from reference.solver.system import REST, Array, StepRecord, System, law_of
-from reference.support.build_cache import cached_on_disk
+from reference.support.build_cache import cache_on_disk
 
 NEWTON_STEPS = 8  # iterations to the instant between two nodes at which covering begins or ends
 # Ends of the pieces behind a kink of the power, as shares of the step: T is not smooth there, like the root of time
@@ -125,7 +125,7 @@ def far_conduction_integral(theta: float, power: Array) -> float:
     return total
 
 
-@cached_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
+@cache_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
 def fill_temperature_factors(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
     """
     Fill k_T at the nodes of pieces (K, S). `power` is that at k_T = 1, times the rise of the temperature.

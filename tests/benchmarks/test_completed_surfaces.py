@@ -19,7 +19,7 @@ from comparison.study.study import Study
 from comparison.surfaces.completion import CompletedSurfaces, completions, held_out_places
 from comparison.surfaces.surfaces import labeled_surfaces
 from reference.problem import load_scene, phase_grid
-from reference.problem.symmetry import sources
+from reference.problem.symmetry import indices_of_solved_pairs
 
 GRID, COMPUTED, FURTHER = 64, 8, 200
 ASKED = 5e-4  # of the engine, and of the completed surface
@@ -46,8 +46,8 @@ def test_completed_surfaces_keep_their_certificate_at_further_phases(name: str) 
     assert runs <= MAX_RUNS
     print(f"\n{name}: {seconds:.1f} s of processor time")
 
-    different = np.unique(sources(scene, GRID))
-    seen = sources(scene, GRID)[study.places(model)]
+    different = np.unique(indices_of_solved_pairs(scene, GRID))
+    seen = indices_of_solved_pairs(scene, GRID)[study.places(model)]
     rest = np.setdiff1d(different, np.concatenate([seen, held_out]))
     places = np.random.default_rng(5).choice(rest, FURTHER, replace=False)
     engine: Callable[..., object] = imported(model.amplification)

@@ -28,7 +28,7 @@ from comparison.study.study import Study, nested_grids
 from comparison.surfaces.sampling import sampling_error
 from reference.problem import Outcome, Scene, phase_grid
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
-from reference.problem.symmetry import distinct
+from reference.problem.symmetry import distinct_pairs
 
 MAX_GRID = 16  # phases per axis of the small equations
 SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # v_c, m/s
@@ -128,7 +128,7 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
 
 def _answers(moving: Scene, question: Question, grid: int) -> _Answers:
     """Ask the model at every speed, and the equations for the literal supremum; NaN at pairs that lack any of it."""
-    phases, taken = distinct(moving, grid) if grid else (FEW, np.arange(len(FEW)))
+    phases, taken = distinct_pairs(moving, grid) if grid else (FEW, np.arange(len(FEW)))
     supremum = reference.amplification(moving, phases, **question.base)
     listed = [
         question.side.amplification(moving, phases, **question.settings, **{question.argument: speed})

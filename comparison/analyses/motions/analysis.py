@@ -16,7 +16,7 @@ from comparison.surfaces.model_difference import difference_of
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
 from reference.measures.demands import ANSWERED
 from reference.problem import Outcome, Scene, Trajectory
-from reference.support.build_cache import cached_on_disk
+from reference.support.build_cache import cache_on_disk
 
 SHARE = 0.003  # of the swing of a component: what a decimated motion may be off by
 MIN_SWING = 0.01  # of its largest value: a component that changes less is as good as constant
@@ -44,7 +44,7 @@ def decimated(time: Array, values: Array, peaks: NDArray[np.intp], share: float 
     return np.flatnonzero(kept)
 
 
-@cached_on_disk(__file__, error_model="numpy", nogil=True)
+@cache_on_disk(__file__, error_model="numpy", nogil=True)
 def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.bool_]) -> None:
     """Add to `kept` (T,), wherever a straight line misses one of `values` (T, C) by too much, the row missed most."""
     start = 0

@@ -19,7 +19,7 @@ from comparison.evidence.benchmarks.table import Row
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, SceneError, Trajectory, load_scene
 from reference.problem.readings import DEFAULT_V_REG
-from reference.records.formats import LARGEST, RecordError, csv_samples
+from reference.records.formats import LARGEST, RecordError, read_csv_samples
 from reference.support.files import read_file
 
 SCENES = resources.files("comparison.evidence.benchmarks") / "scenes"
@@ -233,7 +233,7 @@ FRICTION = {
 def mastodon(path: Path) -> Case:
     """The benchmark with the input motion of a CSV file: time, s, ax, ay and the vertical az. Raises SceneError."""
     try:
-        samples = csv_samples(read_file(path, LARGEST).decode("utf-8-sig"))
+        samples = read_csv_samples(read_file(path, LARGEST).decode("utf-8-sig"))
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "must be text in UTF-8"
         raise SceneError("command line", OPTION, str(path), reason) from None

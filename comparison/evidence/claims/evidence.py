@@ -10,7 +10,7 @@ from comparison.evidence.claims.smoothness import Bend, bends
 from comparison.result_types import Array
 from comparison.runner.task import TaskResult
 from reference.problem import Amplification, Scene, exponents, ground_peak, phase_grid
-from reference.problem.symmetry import surface
+from reference.problem.symmetry import complete_surface
 
 TOLERANCE = 1e-3  # relative, of surfaces that the study does not have: peaks are counted in parts of their range
 SHARP = 1e-6  # relative error of the values that tell a fold from a curvature
@@ -67,7 +67,7 @@ def gather_evidence(question: CaseInReading) -> Evidence:
 
     surfaces = question.known
     if surfaces is None:
-        mu, error, statuses = surface(scene, question.grid, solve)
+        mu, error, statuses = complete_surface(scene, question.grid, solve)
         surfaces = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses), case=question.case)
     if not surfaces.complete or len(scene.bodies) == 1:
         return surfaces

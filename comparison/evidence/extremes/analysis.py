@@ -22,7 +22,7 @@ from comparison.study.study import Study
 from comparison.wording import exception_line
 from reference.problem import Outcome, Scene
 from reference.problem.scene import KEYS
-from reference.problem.validation import first_error
+from reference.problem.validation import first_scene_error
 
 Finer = tuple[str, Array, Array]  # status, mu and error of a finer run at a phase pair
 
@@ -182,7 +182,7 @@ def read_scene(stated: Mapping[str, Any]) -> Scene:
     try:
         return Scene.model_validate({**stated, "name": "extreme"})
     except ValidationError as error:
-        raise first_error("extreme", error, KEYS) from None
+        raise first_scene_error("extreme", error, KEYS) from None
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from comparison.evidence.tradeoff.trade import Stated
-from comparison.study.models import Model, dry, has_spatial_data
+from comparison.study.models import V_REG_TEXT, Model, dry, has_spatial_data
 from comparison.study.user_models import engine_of
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_REG
@@ -72,8 +72,8 @@ _TIGHT = {question: (REFERENCE, {**law, "tolerance": TIGHT}) for question, law i
 QUESTIONS = (
     Question("exact", "exact equations, supremum", _TIGHT["exact"], 48, 12, 0.006),
     Question("small", "small equations, supremum", _TIGHT["small"], 48, 12, 0.006),
-    Question("regularised", "exact equations, v_reg = 1e-3 m/s", _TIGHT["regularised"], 12, 3, 0.01),
-    Question("spatial", "spatial engine model, v_reg = 1e-3 m/s", (ENGINE, _SPATIAL), 6, 2, 3.0),
+    Question("regularised", f"exact equations, v_reg = {V_REG_TEXT}", _TIGHT["regularised"], 12, 3, 0.01),
+    Question("spatial", f"spatial engine model, v_reg = {V_REG_TEXT}", (ENGINE, _SPATIAL), 6, 2, 3.0),
 )
 
 

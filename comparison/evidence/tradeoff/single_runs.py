@@ -12,7 +12,7 @@ from comparison.result_types import Array
 from reference.problem import Outcome, Scene, checked_phases, ground_peak
 from reference.solver.error_estimate import peaks_at
 from reference.solver.system import SOLVED
-from reference.surface import checked_demand
+from reference.surface import prepare_run
 
 DISCONTINUOUS = 1.0  # the engine's own default
 USUAL_LEVEL = 1  # of the engine: it usually answers at a tolerance of 1e-3
@@ -23,7 +23,7 @@ def reference_run(
 ) -> tuple[Array, float]:
     """mu of one run of the reference for each phase pair at a tolerance inside a step, and the mean step, s."""
     pairs = checked_phases(phases)
-    system, demand = checked_demand(scene, equations, regularization, 1e-6, None, "consistent")
+    system, demand = prepare_run(scene, equations, regularization, 1e-6, None, "consistent")
     peaks = peaks_at(system, pairs, demand, inside)
     mu = np.where((peaks.code == SOLVED)[:, None], peaks.value, np.nan) / ground_peak(scene, pairs)[:, None]
     return mu, float(scene.duration / peaks.steps.mean())

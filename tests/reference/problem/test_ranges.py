@@ -17,7 +17,7 @@ from reference.problem.keys import Table
 from reference.problem.ranges import REGULARIZATION
 from reference.problem.scene import KEYS, Scene
 from reference.support.arguments import Range
-from reference.surface import checked_demand
+from reference.surface import prepare_run
 
 FIG3 = load_scene("fig3-I")
 PHASES = [(0.1, 0.2)]
@@ -169,5 +169,5 @@ def test_a_ground_whose_squares_lose_digits_is_at_rest() -> None:
 
 def test_a_loading_without_decay_is_refused_after_so_many_steps_and_not_hours_later() -> None:
     scene = load_scene("fig3-I").with_values({"duration": 8e5, "excitation.decay": [0.0, 0.0]})
-    _, demand = checked_demand(scene, "exact", None, 1e-6, None, "consistent")
+    _, demand = prepare_run(scene, "exact", None, 1e-6, None, "consistent")
     assert demand.step_limit < 0.01 * (1000.0 * scene.duration / 0.9)
