@@ -207,19 +207,26 @@ def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
     end, phases = max(((extreme.low, extreme.low_phases), (extreme.high, extreme.high_phases)), key=lambda x: abs(x[0]))
     at = ", ".join(map(degrees, phases))
     single = extreme.phases_per_axis > 1
+    differs = [extreme.second_name] if extreme.second_name != largest.second_name else []
+    differs += [extreme.reading] if extreme.reading != largest.reading else []
+    where = ", ".join([extreme.scene, extreme.name, *differs])
     parts = [
         f"Read {largest.reading}, the paper's equations can be trusted to {percent(abs(largest.mean))}"
         f"{f' in the mean and {percent(abs(end))} at single phase pairs' if single else ''}: so far at most is "
         f"{largest.second_name} from them ({largest.scene}, {largest.name}: {difference(largest.mean, largest.error)}"
-        f"{f'; {extreme.scene}, {extreme.name}: {signed(end)} at ({at})' if single else ''})."
+        f"{f'; {where}: {signed(end)} at ({at})' if single else ''})."
     ]
     second = []
     alike = [each for each in known if math.isfinite(each.like_for_like)]
     if alike:
         worst = max(each.like_for_like for each in alike)
-        beyond = [f"{each.scene}, {each.name}" for each in alike if each.like_for_like_met is not True]
-        errors = f"beyond the errors for {', '.join(beyond)}" if beyond else "within their errors"
-        second.append(f"where both codes solve the same they agree to {percent(worst)}, {errors}")
+        errors = [
+            f"{words} for {', '.join(places)}"
+            for met, words in ((False, "beyond the errors"), (None, "with an unknown error"))
+            if (places := [f"{each.scene}, {each.name}" for each in alike if each.like_for_like_met is met])
+        ]
+        verdict = ", ".join(errors) or "within their errors"
+        second.append(f"where both codes solve the same they agree to {percent(worst)}, {verdict}")
     higher = [each for each in known if math.isfinite(each.supremum_mean)]
     if higher:
         most = max(higher, key=lambda each: each.supremum_mean)

@@ -187,6 +187,10 @@ def test_the_verdict_answers_how_far_in_which_reading_and_what_was_measured() ->
 def test_the_verdict_names_where_the_codes_do_not_agree() -> None:
     beyond = replace(OTHER, like_for_like_met=False)
     assert "they agree to 0.044 %, beyond the errors for tower, body 2; " in word_verdict([KNOWN, beyond], "m")
+    unknown = replace(KNOWN, like_for_like_met=None)
+    place = "with an unknown error for tower, platform; "
+    assert f"they agree to 0.044 %, {place}" in word_verdict([unknown, OTHER], "m")
+    assert f"they agree to 0.044 %, beyond the errors for tower, body 2, {place}" in word_verdict([unknown, beyond], "m")
     alone = replace(KNOWN, like_for_like=NAN, supremum_mean=NAN, phases_per_axis=1)
     assert word_verdict([alone], "nothing was measured") == (
         "Read as integrated, the paper's equations can be trusted to 7.5 %: so far at most is Exudyn (spatial) from them "
@@ -202,3 +206,16 @@ def test_the_verdict_finds_the_worst_phase_pair_below_zero() -> None:
     assert "and 40 % at single phase pairs" in said
     assert "tower, body 2: −40 % at (90°, 0°))" in said
     assert "the literal supremum is 50 % higher in the mean and up to 60 % (tower, platform)" in said
+
+
+def test_the_verdict_names_model_reading_and_grid_of_each_of_its_two_differences() -> None:
+    """A record without phases differs most in the mean, another model in another reading at a phase pair."""
+    record = replace(KNOWN, scene="record", mean=0.3, low=0.3, high=0.3, phases_per_axis=1, points=1)
+    other = replace(OTHER, second="translational", second_name="Exudyn (translational)", reading="in both readings")
+    said = word_verdict([other, replace(record, low=0.01, high=0.01)], "m")
+    assert said.startswith(
+        "Read as integrated, the paper's equations can be trusted to 30 % in the mean and 19 % at single phase pairs: so far "
+        "at most is Exudyn (spatial) from them (record, platform: +30 %; tower, body 2, Exudyn (translational), "
+        "in both readings: +19 % at (180°, 270°))."
+    ), said
+    assert "at single phase pairs" not in word_verdict([other, record], "m"), "the record is the extreme, too"
