@@ -220,9 +220,11 @@ def _word_largest(known: Sequence[Headline]) -> str:
     ends = [*((each.low, each.low_error) for each in known), *((each.high, each.high_error) for each in known)]
     low, high = min(ends), max(ends)
     single = f", and by {difference(*low)} to {difference(*high)} at single phase pairs" if phased else ""
+    names = {each.second_name for each in known}
+    models = largest.second_name if len(names) == 1 else " or ".join(sorted(names))
     return (
         f"The largest accelerations that {largest.first_name} give, read {largest.reading}, differ from those of "
-        f"{largest.second_name} by at most {size}{over} ({largest.scene}, {largest.name}: {largest.second_name} is "
+        f"{models} by at most {size}{over} ({largest.scene}, {largest.name}: {largest.second_name} is "
         f"{than}{rest}){single}."
     )
 
@@ -233,13 +235,13 @@ def _word_codes(known: Sequence[Headline]) -> str:
     alike = [each for each in known if math.isfinite(each.like_for_like)]
     if alike:
         worst = max(each.like_for_like for each in alike)
-        beyond = [f"{each.scene}, {each.name}" for each in alike if each.like_for_like_met is not True]
-        errors = (
-            f"not within the errors that both state for {', '.join(beyond)}"
-            if beyond
-            else "within the errors that both state"
-        )
-        parts.append(f"given the same equations and friction law the two codes agree to {percent(worst)}, {errors}")
+        errors = [
+            f"{words} for {', '.join(places)}"
+            for met, words in ((False, "not within the errors that both state"), (None, "with an unknown error"))
+            if (places := [f"{each.scene}, {each.name}" for each in alike if each.like_for_like_met is met])
+        ]
+        verdict = ", ".join(errors) or "within the errors that both state"
+        parts.append(f"given the same equations and friction law the two codes agree to {percent(worst)}, {verdict}")
     higher = [each for each in known if math.isfinite(each.supremum_mean)]
     if higher:
         mean = max(higher, key=lambda each: each.supremum_mean)

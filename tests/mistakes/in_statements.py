@@ -113,7 +113,7 @@ MISTAKES = (
             ("tests/comparison/surfaces/test_statements.py::test_the_verdict_finds_the_worst_phase_pair_below_zero",)),
     Mistake(WORDS, "worst = max(each.like_for_like for each in alike)", "worst = min(each.like_for_like for each in alike)",
             "The codes are said to agree as well as at their best.", SAID),
-    Mistake(WORDS, "if each.like_for_like_met is not True]", "if each.like_for_like_met is None]",
+    Mistake(WORDS, "for each in alike if each.like_for_like_met is met])", "for each in alike if each.like_for_like_met is not met])",
             "Codes that do not agree are not named.", SAID),
     Mistake(WORDS, "most = max(higher, key=lambda each: each.supremum_maximum)", "most = mean",
             "The literal supremum is that of the first body.",

@@ -189,7 +189,10 @@ def test_the_verdict_names_where_the_codes_do_not_agree() -> None:
     beyond = replace(OTHER, like_for_like_met=False)
     said = "the two codes agree to 0.044 %, not within the errors that both state for tower, body 2; "
     assert said in word_verdict([KNOWN, beyond], "m")
-    assert "not within" in word_verdict([KNOWN, replace(OTHER, like_for_like_met=None)], "m")
+    unknown = word_verdict([KNOWN, replace(OTHER, like_for_like_met=None)], "m")
+    assert "the two codes agree to 0.044 %, with an unknown error for tower, body 2; " in unknown
+    other = replace(OTHER, second="translational", second_name="Exudyn (translational)")
+    assert "those of Exudyn (spatial) or Exudyn (translational) by at most" in word_verdict([KNOWN, other], "m")
     alone = replace(KNOWN, mean=0.0749, like_for_like=NAN, supremum_mean=NAN, phases_per_axis=1)
     assert word_verdict([alone], "nothing was measured") == (
         "The largest accelerations that the paper's equations give, read as integrated, differ from those of Exudyn (spatial) by at "
