@@ -118,7 +118,7 @@ def command(main: Callable[Concatenate[Sequence[str], Rest], int]) -> Callable[.
 
 
 def invocation(command: str) -> list[str]:
-    """Return the words that start a command; those of the study are `python -m` unless the console script started it."""
+    """Return the words that start a command; the study has `python -m` unless the console script started it."""
     script = ["phase-resonance", command]
     by_script = command != "run" or sys.argv[0] == " ".join(script)
     return script if by_script else ["python", "-m", f"comparison.{command}"]

@@ -35,8 +35,8 @@ VALIDATED = (
 # the same by `word_validated_briefly`, for the first screen
 VALIDATED_BRIEFLY = (
     "measurements of a shaken frame test dry friction alone: both codes predict its half range within the "
-    "uncertainties at 2 of 2 loads where friction depends on the load, at 1 of 3 with a constant coefficient; no building has been "
-    "compared"
+    "uncertainties at 2 of 2 loads where friction depends on the load, at 1 of 3 with a constant coefficient; no "
+    "building has been compared"
 )
 
 

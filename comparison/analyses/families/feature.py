@@ -104,8 +104,8 @@ def _axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
 
 def _over(family: FamilyResult, title: str, label: str, unit: str, lines: Sequence[tuple[Any, ...]]) -> Panel:
     """
-    A panel over the value that runs. lines: name, color and values, with the smallest and the largest, if any: a band of
-    the first and of the last model, since those of all hide each other.
+    Return a panel over the value that runs. lines: name, color and values, with the smallest and the largest, if any: a
+    band of the first and of the last model, since those of all hide each other.
     """
     places, axis = _axis(family)
     series = []
