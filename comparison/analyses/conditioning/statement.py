@@ -28,8 +28,8 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     integrated, deep, deepest = (_written(*_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
     values = (
         f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} where speeds above "
-        f"{speed_text(DEFAULT_V_C)} m/s count (as integrated), {deep} above {speed_text(DEEP)} m/s, {deepest} above {speed_text(DEEPEST)} m/s "
-        f"(mean of {pairs})"
+        f"{speed_text(DEFAULT_V_C)} m/s count (as integrated), {deep} above {speed_text(DEEP)} m/s, "
+        f"{deepest} above {speed_text(DEEPEST)} m/s (mean of {pairs})"
     )
     if abs(size) >= ILL and abs(size) > error:
         return f"The literal supremum is ill-conditioned: {values}{_of_engine(curve, result or ())}."
