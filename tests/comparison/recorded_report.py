@@ -13,7 +13,7 @@ import math
 import re
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import replace
@@ -65,6 +65,7 @@ LEFT_OUT = (
     "index.html: <tr",
     "index.html: <p",
 )  # of the second report
+ROW = re.compile(r"<tr|\||  ?\S.* $")  # of a table on the page, in Markdown and on the terminal
 ROWS = 8  # of a table: the others are written by the same lines of a template
 OF_ONE = re.compile(r"drawn index.html: (plot|scene 1 body 1 )")  # what scripts draw of one body of one scene
 DEMANDS: list[tuple[str, int | None]] = [
@@ -146,20 +147,23 @@ def lines_of(place: Path) -> list[str]:
     shown = REPEATED.sub(first, re.sub(r"</(?!strong|code|a\b)\w+>", "", shown))
     shown = LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", shown)
     parts = [" ".join(part.split()) for part in BLOCKS.split(shown) if part.strip()]
-    for is_row, group in groupby(parts, key=lambda part: part.startswith("<tr")):
-        lines += [f"{PAGE}: {part}" for part in (some(list(group)) if is_row else group)]
+    lines += [f"{PAGE}: {part}" for part in some_rows(parts)]
     assert schema_errors(place) == []
     lines += variables(place)
     for name in ("summary.md", "junit.xml", "terminal"):
-        lines += [f"{name}: {line}" for line in (place / name).read_text(encoding="utf-8").splitlines() if line.strip()]
+        text = (place / name).read_text(encoding="utf-8").splitlines()
+        lines += [f"{name}: {line}" for line in some_rows([line for line in text if line.strip()])]
     for changing, masked in CHANGING.items():
         lines = [re.sub(changing, masked, line.replace(str(place.parent), "")) for line in lines]
     return [*filter(None, lines)]
 
 
-def some(rows: list[str]) -> list[str]:
-    """Head and first rows of a table, and a few of the others."""
-    return rows if len(rows) <= ROWS else [*rows[: ROWS // 2], *rows[ROWS // 2 :: -(-2 * len(rows) // ROWS)]]
+def some_rows(lines: Sequence[str]) -> Iterator[str]:
+    """The lines; of a table on page or terminal or in Markdown its head, its first rows and a few of the others."""
+    for is_row, group in groupby(lines, key=lambda line: bool(ROW.match(line))):
+        rows = list(group)
+        long = is_row and len(rows) > ROWS
+        yield from [*rows[: ROWS // 2], *rows[ROWS // 2 :: -(-2 * len(rows) // ROWS)]] if long else rows
 
 
 def compact(value: Any) -> str:
