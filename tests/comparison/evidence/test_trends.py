@@ -11,12 +11,13 @@ import multibody
 import reference
 from comparison.evidence.convergence import analysis as convergence
 from comparison.evidence.convergence.analysis import LIMITS, PENETRATIONS, Convergence, limit_trends
-from comparison.evidence.scaling.analysis import CUTOFF, PRINTED, STEP, Scaling, scaled
+from comparison.evidence.scaling.analysis import PRINTED, STEP, Scaling, scaled
 from comparison.evidence.trends import Trend, fitted, trend
 from comparison.study.shorten import shorten
 from comparison.study.study import Study
 from reference import trajectory
 from reference.problem import Amplification, Scene, load_scene
+from reference.problem.readings import DEFAULT_V_C
 
 Array = NDArray[np.float64]
 SCALES = (1.0, 0.5, 0.25, 0.125)
@@ -94,7 +95,7 @@ def _model(step: Callable[[float], float], error: float = 1e-9) -> Callable[...,
 
     def amplification(scene: Scene, phases: Array, equations: str, **settings: object) -> Amplification:
         s = float(np.abs(scene.amplitudes).max())
-        assert settings["cutoff"] in (None, CUTOFF * s)
+        assert settings["cutoff"] in (None, DEFAULT_V_C * s)
         share = 1.0 if settings["cutoff"] is None else 0.5
         factor = (1.0 + 0.01 * s**2) * (1.0 + (share * step(s) if equations == "exact" else 0.0))
         mu = factor * (2.0 + np.arange(len(scene.bodies)) + 0.1 * np.cos(phases[:, :1]))
