@@ -1,5 +1,8 @@
+# ruff: noqa: E501 (a sentence stands on one line where it can)
 """What pages say of the default study is their record: body, pair, grid, mean and largest each in its place."""
 
+import json
+from pathlib import Path
 from typing import Any
 
 import default_study
@@ -69,3 +72,19 @@ def test_the_table_of_answers_has_the_cells_of_the_first_screen(monkeypatch: pyt
     order = ("mean, range", "causes", "same equations", "literal supremum")
     places = [head.index(words) for words in order]
     assert places == sorted(places)
+
+
+@pytest.mark.parametrize("page", default_study.pages(), ids=lambda page: page.stem)
+def test_every_passage_of_a_page_is_that_of_the_record(page: Path) -> None:
+    recorded = json.loads(default_study.RECORD.read_text(encoding="utf-8"))
+    text = page.read_text(encoding="utf-8")
+    assert with_passages(text, recorded) == text
+
+
+def test_the_record_is_in_the_words_of_today() -> None:
+    """Its headlines, worded again, are the sentences that are recorded."""
+    recorded = json.loads(default_study.RECORD.read_text(encoding="utf-8"))
+    for line in default_study.headlines(recorded):
+        assert default_study.word_headline(line) == line.sentence
+    words = default_study.word_verdict(default_study.headlines(recorded), recorded["measured"])
+    assert words == recorded["verdict"]

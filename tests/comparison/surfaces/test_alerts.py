@@ -1,3 +1,4 @@
+# ruff: noqa: E501 (a sentence stands on one line where it can)
 """Whatever a reader must know before trusting a number is an alert, and nothing else is."""
 
 from collections.abc import Callable
