@@ -21,10 +21,9 @@ from pydantic import TypeAdapter
 from comparison.registry import FEATURES, StudyResults
 from comparison.report.page import measured_sentence
 from comparison.surfaces.headline import Headline
-from comparison.surfaces.statements import CELLS, word_headline, word_verdict
+from comparison.surfaces.statements import CELLS, word_verdict
 from comparison.wording import percent, signed
 
-__all__ = ["word_headline"]  # for the test that words the record again
 DOCS = Path(__file__).parent
 RECORD = DOCS / "default_study.json"
 MARKED = re.compile(r"(<!-- default study: ([\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)

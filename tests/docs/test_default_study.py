@@ -9,6 +9,8 @@ import default_study
 import pytest
 from default_study import GRID, PASSAGES, READINGS, with_passages
 
+from comparison.surfaces.statements import word_headline, word_verdict
+
 SCENES = ("fig3-I", "fig4-dry")
 
 
@@ -52,7 +54,9 @@ def test_every_pair_is_named_by_its_reading_models_and_effect(pair: str) -> None
 
 
 def test_a_passage_is_that_of_its_name_and_the_rest_of_the_page_stays() -> None:
-    page = "a\n<!-- default study: conditioning -->\nold\n<!-- end -->\nb\n<!-- default study: answer -->\n<!-- end -->\n"
+    page = (
+        "a\n<!-- default study: conditioning -->\nold\n<!-- end -->\nb\n<!-- default study: answer -->\n<!-- end -->\n"
+    )
     assert with_passages(page, KNOWN) == (
         "a\n<!-- default study: conditioning -->\nIt is ill-conditioned.\n<!-- end -->\nb\n<!-- default study: answer -->\n"
         "Read as integrated, they can be trusted. Of the paper's statements 9 are met.\n<!-- end -->\n"
@@ -85,6 +89,6 @@ def test_the_record_is_in_the_words_of_today() -> None:
     """Its headlines, worded again, are the sentences that are recorded."""
     recorded = json.loads(default_study.RECORD.read_text(encoding="utf-8"))
     for line in default_study.headlines(recorded):
-        assert default_study.word_headline(line) == line.sentence
-    words = default_study.word_verdict(default_study.headlines(recorded), recorded["measured"])
+        assert word_headline(line) == line.sentence
+    words = word_verdict(default_study.headlines(recorded), recorded["measured"])
     assert words == recorded["verdict"]
