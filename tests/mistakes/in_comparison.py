@@ -238,11 +238,11 @@ MISTAKES = (
     # commands
     Mistake("comparison/run.py", "return 1 if options.check and found.broken else 0", "return 0",
             "--check passes whatever is broken.", (CHECK + "check_exits_1_and_names_scene_body_key_found_and_limit",)),
-    Mistake("comparison/run.py", "raise EndedEarlyError(3, f\"command line: --budget", "raise EndedEarlyError(0, f\"command line: --budget",
+    Mistake("comparison/run.py", "raise EndedEarlyError(3, line)", "raise EndedEarlyError(0, line)",
             "A run without any report ends well.", (LEVELS + "an_end_before_the_first_level_is_one_line",)),
     Mistake("comparison/run.py", "{options.tolerance / 10.0:g}", "{options.tolerance:g}",
             "The limits are asked twice at one tolerance.", (TESTS + "cli/test_check_and_plan.py::test_a_limit_must_hold_at_a_tenth_of_the_tolerance",)),
-    Mistake("comparison/run.py", "        if stopped is not None:\n            raise stopped\n", "",
+    Mistake("comparison/run.py", "        if stop is not None:\n            raise stop\n", "",
             "A run that was stopped ends well.", (LEVELS + "a_run_that_ends_early_has_its_last_level_and_goes_on_alike",)),
     Mistake(CLI + "computing.py", "raise EndedEarlyError(3, f\"{error}; {hint(words)}\")", "raise EndedEarlyError(4, f\"{error}; {hint(words)}\")",
             "A full disk has the exit code of a lost cluster.",
