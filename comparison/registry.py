@@ -84,14 +84,14 @@ StudyResults = _results_type(FEATURES)
 report_of = partial(build_report, features=FEATURES, kind=StudyResults)
 
 
-def chosen_analyses(study: Study) -> list[Analysis[Any]]:
+def select_analyses(study: Study) -> list[Analysis[Any]]:
     """Those of ANALYSES that are made of a scene of the study."""
     return [analysis for analysis in ANALYSES if study.selecting(analysis.key).scenes]
 
 
 def seconds_by_stage(study: Study) -> dict[str, float]:
     """Rough processor time of every stage of the analyses of a study, s."""
-    analyses = chosen_analyses(study)
+    analyses = select_analyses(study)
     return {each.stage: seconds_of_analysis(study, each.key, each.seconds) for each in analyses}
 
 
@@ -107,4 +107,4 @@ def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
 
 def levels(study: Study) -> list[StudyLevel]:
     """The levels of a study, from coarse to fine."""
-    return levels_of(study, {analysis.key: analysis.level for analysis in chosen_analyses(study)})
+    return levels_of(study, {analysis.key: analysis.level for analysis in select_analyses(study)})

@@ -22,15 +22,15 @@ from contextlib import suppress
 from dataclasses import replace
 from importlib import import_module
 
-from comparison.cli.arguments import EndedEarlyError, changed, command, command_line, resume_hint
+from comparison.cli.arguments import EndedEarlyError, command, command_line, edit_command_line, resume_hint
 from comparison.cli.closing import print_check, print_closing, print_faults, print_level
 from comparison.cli.computing import workers
-from comparison.cli.options import Options, parsed
-from comparison.cli.reports import Complete, Reports, computed_level
+from comparison.cli.options import Options, parse_options
+from comparison.cli.reports import CompleteLevel, Reports, compute_level
 from comparison.cli.start import Clock, start_time
 from comparison.cli.terminal import print_models_left_out, print_plan, print_stored
 from comparison.cli.user_models import Engines, as_words
-from comparison.registry import chosen_analyses, first_tasks, levels, seconds_by_stage
+from comparison.registry import first_tasks, levels, seconds_by_stage, select_analyses
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.output import clear_dead
 from comparison.runner.processes import Pool, process_pool
@@ -64,8 +64,8 @@ def main(
     began = start_time()
     with stop_on_signals():
         try:
-            words = changed(argv, as_words(models or {}))
-            options = parsed(words)
+            words = edit_command_line(argv, as_words(models or {}))
+            options = parse_options(words)
             run = StudyRun(options, words, hierarchy, began)
             if options.plan:
                 run.plan()
@@ -74,7 +74,8 @@ def main(
             if options.check and code < 2 and any(scene.acceptance.confirm for scene in options.scenes):
                 words = _tighter(options, words)
                 run.say(f"Again at a tenth of the tolerance: {command_line(words)}")
-                return max(code, StudyRun(parsed(words), words, hierarchy, Clock.now()).compute(executor))
+                again = StudyRun(parse_options(words), words, hierarchy, Clock.now()).compute(executor)
+                return max(code, again)
             return code
         except KeyboardInterrupt:
             print("interrupted before anything was computed", file=sys.stderr)
@@ -85,7 +86,7 @@ def _tighter(options: Options, words: Sequence[str]) -> list[str]:
     """Return the command that computes the differences at a tenth of the tolerance, its report beside the first."""
     beside = options.out.with_name(f"{options.out.name}-tighter")
     tighter = ["--tolerance", f"{options.tolerance / 10.0:g}", "--out", str(beside), "--only", "differences,budget"]
-    return changed(words, tighter, options=["--tolerance", "--out", "--only", "--skip", "--also"])
+    return edit_command_line(words, tighter, options=["--tolerance", "--out", "--only", "--skip", "--also"])
 
 
 def _study(options: Options, hierarchy: Sequence[Model]) -> Study:
@@ -157,7 +158,7 @@ class StudyRun:
 
     def _open_results(self) -> TaskResults:
         """Return the results of earlier runs, less those that this one computes anew, and say how many there are."""
-        first, surfaces = first_tasks(self._study, chosen_analyses(self._study)), surface_tasks(self._study)
+        first, surfaces = first_tasks(self._study, select_analyses(self._study)), surface_tasks(self._study)
         keys = [task.key for task in surfaces]
         self._cache.trim(keys)
         if self._options.fresh:  # gone before anything is computed: what an interrupted run left is new
@@ -168,11 +169,11 @@ class StudyRun:
 
     def _compute_levels(self, runner: Runner, reports: Reports, deadline: Deadline) -> KeyboardInterrupt | None:
         """Compute every level, from coarse to fine, each with its report; return what interrupted that, or None."""
-        complete: Complete | None = None
+        complete: CompleteLevel | None = None
         try:
             planned = levels(self._study)
             for level in planned if runner.results.missing(surface_tasks(self._study)) else planned[-1:]:
-                complete = computed_level(level, runner)
+                complete = compute_level(level, runner)
                 if level.last or reports.is_due(complete, runner):
                     before = reports.results
                     said = reports.write(complete, runner)

@@ -13,7 +13,7 @@ from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with
 from comparison.study.study import Study
 from comparison.study.user_models import LAWS, user_model
 from comparison.surfaces.model_difference import difference_of
-from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.surfaces import label_surfaces
 from comparison.surfaces.unanswered import unanswered
 from reference.problem import Scene, load_scene
 from reference.problem.ranges import TOLERANCE
@@ -105,12 +105,12 @@ def assert_consistent(
     study = Study((scene,), grid, tolerance, [model for model in hierarchy if model.key in needed])
     batches = study.batches()
     answers = [execute_batch(batch) for batch in batches]
-    surfaces = labeled_surfaces(study, batches, answers)
+    surfaces = label_surfaces(study, batches, answers)
     broken = [
         line
         for name, limit in stated.items()
         for compared, measure, _ in [name.partition("_maximum")]
-        for line in _broken(surfaces, scene, asked[name], compared, bool(measure), limit)
+        for line in _word_breaches(surfaces, scene, asked[name], compared, bool(measure), limit)
     ]
     gaps = unanswered(study, surfaces)
     if sum(gap.points + gap.unusable for gap in gaps) > failed:
@@ -120,7 +120,7 @@ def assert_consistent(
         raise AssertionError("\n".join(broken))
 
 
-def _broken(
+def _word_breaches(
     surfaces: xr.Dataset, scene: Scene, pair: Pair | None, name: str, maximum: bool, limit: float
 ) -> Iterator[str]:
     """One line for each body beyond the limit, which is on the largest difference or on the median."""

@@ -67,7 +67,7 @@ def _decimals(size: float, error: float) -> int | None:
     return max(0, -math.floor(math.log10(100.0 * error)))
 
 
-def shortened(text: str, letters: int) -> str:
+def shorten_text(text: str, letters: int) -> str:
     """A text of at most so many letters; of a longer one the end is three dots."""
     return text if len(text) <= letters else text[: letters - 1] + "…"
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import changed, command_line
+from comparison.cli.arguments import command_line, edit_command_line
 from comparison.cli.options import Options
 from comparison.cli.terminal import new_table
 from comparison.report.results import Results
@@ -98,7 +98,7 @@ def next_commands(results: Results, words: Sequence[str]) -> list[str]:
         largest, source = max(filmed, key=lambda pair: abs(pair[0].maximum))
         lines.append(f"Next: a film of the largest difference: {_film(largest, source)}")
     if results.phased and not any(word.startswith("--budget") for word in words):
-        finer = command_line(changed(words, ["--grid", str(2 * results.grid), "--plan"], options=["--grid"]))
+        finer = command_line(edit_command_line(words, ["--grid", str(2 * results.grid), "--plan"], options=["--grid"]))
         lines.append(f"Next: what a finer grid costs: {finer}")
     return lines
 

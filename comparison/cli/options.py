@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from comparison.cli.arguments import CommandParser, jobs, number, whole_number
+from comparison.cli.arguments import CommandParser, number_of_jobs, read_number, read_whole_number
 from comparison.cli.user_models import add_models, user_models
 from comparison.registry import EVERYTHING, FEATURES, SELECTABLE
 from comparison.runner.cache import refuse_foreign_store
@@ -46,20 +46,20 @@ class Options:
         return tuple(scene for family in self.families for scene in family.scenes)
 
 
-def parsed(argv: Sequence[str]) -> Options:
+def parse_options(argv: Sequence[str]) -> Options:
     """Options of `python -m comparison.run`, all checked. Raises SceneError, UsageError."""
     words = _parser().parse_args(argv)
     names: list[str] = words.scenes or builtin_scenes()
-    amplitude = None if words.amplitude is None else number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
+    amplitude = None if words.amplitude is None else read_number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
     families = tuple(load_family(name, amplitude) for name in names)
     only, skip, also = (_analyses(f"--{name}", getattr(words, name)) for name in ("only", "skip", "also"))
     if only is not None and skip is not None:
         raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
     options = Options(
         families=families,
-        grid=DEFAULT_GRID if words.grid is None else whole_number("--grid", words.grid, 2, 512),
+        grid=DEFAULT_GRID if words.grid is None else read_whole_number("--grid", words.grid, 2, 512),
         out=destination(words.out),
-        jobs=jobs(words),
+        jobs=number_of_jobs(words),
         tolerance=_optional("--tolerance", words.tolerance, TIGHTEST, 0.1, "relative error of mu") or DEFAULT_TOLERANCE,
         budget=_optional("--budget", words.budget, 1.0, 1e7, "s of the whole run"),
         check=words.check,
@@ -160,4 +160,4 @@ def _analyses(option: str, text: str | None) -> list[str] | None:
 
 
 def _optional(option: str, text: str | None, least: float, most: float, unit: str) -> float | None:
-    return None if text is None else number(option, text, least, most, unit)
+    return None if text is None else read_number(option, text, least, most, unit)

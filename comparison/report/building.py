@@ -11,7 +11,7 @@ from comparison.report.scene_result import ModelOutcome, RecordValue
 from comparison.report.section import Report
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from comparison.surfaces.acceptance import checked_limits, unchecked_pairs
+from comparison.surfaces.acceptance import check_limits, pairs_without_limit
 from comparison.surfaces.alerts import Alert, alerts
 from comparison.surfaces.body_comparison import BodyComparison, body_comparisons
 from comparison.surfaces.budget import budget
@@ -40,7 +40,7 @@ def build_report(
         each for scene in study.scenes for each in completions(study, surfaces, scene, found.get(CompletedSurfaces.key))
     ]
     surfaces = with_completed(surfaces, completed)
-    limits = checked_limits(comparisons, lacking)
+    limits = check_limits(comparisons, lacking)
     parts: dict[str, Sequence[Any]] = {
         "differences": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.pairs],
         "effects": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.effect_pairs],
@@ -90,7 +90,7 @@ def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequen
         "models": {model.key: _model(study, surfaces, scene, model) for model in models_of(scene, study.hierarchy)},
         "headlines": [headline(*each) for each in zip(comparisons, waterfalls)],
         "waterfalls": waterfalls,
-        "unchecked": unchecked_pairs(study, scene),
+        "unchecked": pairs_without_limit(study, scene),
         "distributions": [] if scene.recorded else distributions(study, surfaces, scene),
         "grid_maxima": grid_maxima(study, surfaces, scene),
         "values": _values(study, surfaces, scene) if scene.recorded else [],

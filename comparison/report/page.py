@@ -14,7 +14,7 @@ from comparison.report.glossary import explained, term
 from comparison.report.page_data import pack, page_data
 from comparison.report.results import VALIDATED_BRIEFLY, Results
 from comparison.report.section import Report
-from comparison.report.surface_sections import applied_models
+from comparison.report.surface_sections import models_in_use
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.statements import CELLS, word_verdict
 from comparison.surfaces.waterfall import PHASES, Waterfall
@@ -32,14 +32,12 @@ def pages(report: Report) -> dict[str, str]:
     drawn = [(bars, line) for bars, line in waterfalls if is_drawn(bars)]
     answers = {
         "alerts": _alert_groups(results),
-        "has_engine": any(model.side == "engine" for model in applied_models(study)),
+        "has_engine": any(model.side == "engine" for model in models_in_use(study)),
         "verdict": word_verdict(
-            [line for scene in results.scenes for line in scene.headlines], measured_sentence(results)
+            [line for scene in results.scenes for line in scene.headlines], word_measurements(results)
         ),
         "lead_lines": lead_lines(report),
-        "second_title": "Exudyn"
-        if any(model.side == "engine" for model in applied_models(study))
-        else "the last model",
+        "second_title": "Exudyn" if any(model.side == "engine" for model in models_in_use(study)) else "the last model",
         "cells": CELLS,
         "drawn": drawn,
         "hidden_bodies": len(waterfalls) - len(drawn),
@@ -64,7 +62,7 @@ def is_drawn(bars: Waterfall) -> bool:
     return any(abs(bar.size) >= DRAWN for bar in every)
 
 
-def measured_sentence(results: Results) -> str:
+def word_measurements(results: Results) -> str:
     """Return what measurements say, without the full stop."""
     return "; ".join([VALIDATED_BRIEFLY, *results.clauses])
 

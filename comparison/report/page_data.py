@@ -105,7 +105,7 @@ def _model(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     place = scene.name, model.key
     completed = {each.body: each for each in report.completions if (each.scene, each.model) == place}
 
-    def listed(name: str, digits: int) -> list[Rows]:
+    def list_rows(name: str, digits: int) -> list[Rows]:
         values = values_of(report.surfaces, name, scene.name, model)
         return [_rows(values[body - 1], digits) for body in bodies]
 
@@ -113,13 +113,13 @@ def _model(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
         "phases": len(report.study.axis(model, scene)),
         "computed": len(report.study.solved(scene, model)),
         "surface": surface,
-        "mu": listed("mu", DIGITS),
-        "error": None if surface else listed("error", ERROR_DIGITS),
-        "completed": [_completed(completed.get(body)) for body in bodies],
+        "mu": list_rows("mu", DIGITS),
+        "error": None if surface else list_rows("error", ERROR_DIGITS),
+        "completed": [_completion_data(completed.get(body)) for body in bodies],
     }
 
 
-def _completed(completion: Completion | None) -> dict[str, Any] | None:
+def _completion_data(completion: Completion | None) -> dict[str, Any] | None:
     if completion is None:
         return None
     return {

@@ -13,7 +13,7 @@ from comparison.surfaces.figures.pictures import Pictures
 from comparison.surfaces.waterfall_chart import log_scale
 
 
-def applied_models(study: Study) -> list[Any]:
+def models_in_use(study: Study) -> list[Any]:
     """The models that some scene of the study has."""
     return [model for model in study.hierarchy if any(model.applies(scene) for scene in study.scenes)]
 
@@ -37,7 +37,7 @@ def _costs(report: Report) -> Mapping[str, Any]:
 
 
 def _models(report: Report) -> Mapping[str, Any]:
-    models = applied_models(report.study)
+    models = models_in_use(report.study)
     own = [model for model in models if model.side != "user"]
     names = dict.fromkeys(name for model in own for name in model.assumptions)
     return {"hierarchy": own, "supplied": [model for model in models if model.side == "user"], "names": names}

@@ -79,7 +79,7 @@ class Cache:
             digest, content = file[len(MAGIC) : len(MAGIC) + DIGEST], file[len(MAGIC) + DIGEST :]
             if not file.startswith(MAGIC) or _checksum(key, content) != digest:
                 return None  # damaged, or of another question
-            value = _unpacked(content, declared)
+            value = _unpack(content, declared)
         except Exception:  # whatever is wrong with a file, the result is computed again
             return None
         self.kept[key.kind] += 1
@@ -98,7 +98,7 @@ class Cache:
         place = self.folder / key.name
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
-            content = _packed(json.loads(key.about), value)
+            content = _pack(json.loads(key.about), value)
             write_atomically(place, MAGIC + _checksum(key, content) + content)
         except OSError as error:
             raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {error.strerror}") from None
@@ -200,7 +200,7 @@ def _size(group: Path) -> int:
     return total
 
 
-def _packed(about: Any, value: Any) -> bytes:
+def _pack(about: Any, value: Any) -> bytes:
     """A line of JSON, and the arrays that it refers to; about: what the value depends on. Raises TypeError."""
     arrays = BytesIO()
     count = 0
@@ -226,7 +226,7 @@ def _packed(about: Any, value: Any) -> bytes:
     return text.encode() + b"\n" + arrays.getvalue()
 
 
-def _unpacked(content: bytes, declared: Any) -> Any:
+def _unpack(content: bytes, declared: Any) -> Any:
     """The value of type `declared` that `_packed` has written. Raises an exception for anything else."""
     text, _, rest = content.partition(b"\n")
     arrays, stream = [], BytesIO(rest)

@@ -52,7 +52,7 @@ def engine_fingerprint(module: str) -> dict[str, str]:
     names = {package if spec is not None and spec.origin is not None else module}  # a folder alone has no source
     file = find_spec(module)
     if file is not None and file.origin is not None and file.origin.endswith(".py"):
-        names |= _imported_packages(Path(file.origin).read_text(encoding="utf-8"))
+        names |= _packages_in_use(Path(file.origin).read_text(encoding="utf-8"))
     installed = packages_distributions()
     versions = {part: version(part) for name in names for part in installed.get(name.split(".")[0], ())}
     local = {name for name in names if name in OURS or name.split(".")[0] not in installed}
@@ -62,7 +62,7 @@ def engine_fingerprint(module: str) -> dict[str, str]:
     }
 
 
-def _imported_packages(source: str) -> set[str]:
+def _packages_in_use(source: str) -> set[str]:
     """The packages that a module imports anywhere in its text, without those of Python."""
     names = set()
     for node in ast.walk(ast.parse(source)):

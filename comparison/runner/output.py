@@ -154,7 +154,7 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
                 hold_lock(place.parent),
                 ThreadPoolExecutor(1) as mover,
             ):  # what interrupts this thread interrupts no move
-                report.place = mover.submit(_put, report.folder, place, say).result()
+                report.place = mover.submit(_install_report, report.folder, place, say).result()
     except BaseException:
         with suppress(OSError):
             for parent in made:
@@ -179,7 +179,7 @@ def publish(
             file, digest, manifest = folder / name, _hash(content), read_manifest(folder)
             ours = _is_own(file, manifest.get(name))
             if ours or not os.path.lexists(file):  # noted before: whatever ends the writing, the file remains ours
-                _note(folder, manifest | {name: _either(manifest.get(name), Own(command, (digest,)))}, say)
+                _note(folder, manifest | {name: _old_or_new(manifest.get(name), Own(command, (digest,)))}, say)
             if ours:
                 write_atomically(file, content)
             else:
@@ -191,7 +191,7 @@ def publish(
     return written
 
 
-def _either(old: Own | None, new: Own) -> Own:
+def _old_or_new(old: Own | None, new: Own) -> Own:
     """A file that is as it was, or as it will be."""
     return Own(new.command, (*(old.hashes[-1:] if old else ()), *new.hashes))
 
@@ -209,7 +209,7 @@ def netcdf(values: xr.Dataset) -> bytes:
     return bytes(values.to_netcdf(engine="h5netcdf"))
 
 
-def made_by(*writers: Callable[[Path], object]) -> dict[str, bytes]:
+def files_written_by(*writers: Callable[[Path], object]) -> dict[str, bytes]:
     """The files that the writers leave in the folder they are given."""
     with tempfile.TemporaryDirectory() as name:
         for write in writers:
@@ -224,7 +224,7 @@ def foreign(folder: Path) -> list[str]:
         return sorted(os.listdir(folder))
     folders = {str(parent) for name in manifest for parent in Path(name).parents}
     foreign_files = []
-    for path, is_folder in _inside(folder):
+    for path, is_folder in _walk_folder(folder):
         name = path.relative_to(folder).as_posix()
         if name != MANIFEST and not (name in folders if is_folder else _is_own(path, manifest.get(name))):
             foreign_files.append(name)
@@ -252,11 +252,11 @@ def manifest_json(manifest: Mapping[str, Own]) -> bytes:
     return json.dumps({"schema": SCHEMA, "files": files}, indent=1).encode()
 
 
-def _put(new: Path, place: Path, say: Callable[[str], None]) -> Path:
+def _install_report(new: Path, place: Path, say: Callable[[str], None]) -> Path:
     """Move the files of a new report to their place, or beside it; the place."""
     mine = {
         path.relative_to(new).as_posix(): Own(REPORT, (_hash(path.read_bytes()),))
-        for path, is_folder in _inside(new)
+        for path, is_folder in _walk_folder(new)
         if not is_folder
     }
     why = _in_the_way(place)
@@ -270,7 +270,7 @@ def _put(new: Path, place: Path, say: Callable[[str], None]) -> Path:
         with suppress(OSError):
             (there / name).parent.rmdir()
     # before the files: whatever ends the moving, all of them are the study's own
-    replaced = {name: _either(old.get(name), own) for name, own in mine.items()}
+    replaced = {name: _old_or_new(old.get(name), own) for name, own in mine.items()}
     (new / MANIFEST).write_bytes(manifest_json(kept | replaced))
     for name in (MANIFEST, *mine):
         (there / name).parent.mkdir(parents=True, exist_ok=True)
@@ -293,13 +293,13 @@ def _in_the_way(place: Path) -> str:
     return f"{found[0]!r} there is not a file of this study" if found else ""
 
 
-def _inside(folder: Path) -> Iterator[tuple[Path, bool]]:
+def _walk_folder(folder: Path) -> Iterator[tuple[Path, bool]]:
     """All that is below a folder, and whether it is a folder itself, these before what they hold. Raises OSError."""
     for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
         is_folder = entry.is_dir(follow_symlinks=False)
         yield Path(entry.path), is_folder
         if is_folder:
-            yield from _inside(Path(entry.path))
+            yield from _walk_folder(Path(entry.path))
 
 
 def _is_own(file: Path, entry: Own | None) -> bool:

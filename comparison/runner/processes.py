@@ -212,10 +212,10 @@ def _serve(pipe: Connection, collections: tuple[int, int, int], safe_path: str |
     numba.set_num_threads(1)
     with suppress(EOFError):
         while True:
-            pipe.send_bytes(_answered(pipe.recv_bytes()))
+            pipe.send_bytes(_call_function(pipe.recv_bytes()))
 
 
-def _answered(message: bytes) -> bytes:
+def _call_function(message: bytes) -> bytes:
     """What the call in a message returned and what it raised."""
     value: Any = None
     error: BaseException | None = None

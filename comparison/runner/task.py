@@ -102,7 +102,7 @@ def execute(task: Task) -> TaskResult:
     return TaskResult(value, time.process_time() - clock)
 
 
-def unfinished(outcome: Outcome, error_message: str) -> TaskResult:
+def result_without_value(outcome: Outcome, error_message: str) -> TaskResult:
     """The result of a task that raised, took too long or whose worker died; the message is one line."""
     return TaskResult(None, 0.0, outcome, error_message)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, get_type_hints
 
 from comparison.runner.cache import Cache, Key
-from comparison.runner.task import GIVEN_UP, Task, TaskResult, unfinished
+from comparison.runner.task import GIVEN_UP, Task, TaskResult, result_without_value
 from reference.problem import Outcome
 
 
@@ -89,7 +89,7 @@ class TaskResults:
         if isinstance(stored, Overrun):
             if task.timeout is None or task.timeout > stored.timeout:
                 return False
-            self._remember(task, unfinished(Outcome.TIME_LIMIT, stored.ending))
+            self._remember(task, result_without_value(Outcome.TIME_LIMIT, stored.ending))
         elif stored is not None and (task.batch is None or task.batch.accepts(stored[0])):
             self._remember(task, TaskResult(*stored))
         else:

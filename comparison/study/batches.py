@@ -101,7 +101,7 @@ class BatchResult:
     displacement: Array
 
 
-def imported(path: str) -> Any:
+def import_function(path: str) -> Any:
     """The object "package.module:name"."""
     module, name = path.split(":")
     return getattr(import_module(module), name)
@@ -131,13 +131,13 @@ def refusal_of(scene: Scene, model: Model, tolerance: float, full: bool = False)
     if model.refusal is None or not model.applies(scene):
         return ""
     asked = {"full": True} if full else {}
-    return str(imported(model.refusal)(scene, **model.settings, tolerance=tolerance, **asked))
+    return str(import_function(model.refusal)(scene, **model.settings, tolerance=tolerance, **asked))
 
 
 def execute_batch(batch: Batch) -> BatchResult:
     """Ask the batch's model, inside a worker process. What raises or has a wrong shape becomes points without result"""
     try:
-        found = imported(batch.amplification)(batch.scene, batch.phases, **batch.settings)
+        found = import_function(batch.amplification)(batch.scene, batch.phases, **batch.settings)
         parts = (found.mu, found.error, found.instant, found.displacement)
         mu, error, instant, displacement = (np.array(part, dtype=float) for part in parts)
         status = [str(outcome) for outcome in found.status]

@@ -398,7 +398,7 @@ BESIDE_THE_CHAIN = (
 )
 
 
-def _softened(model: Model, applies: Callable[[Scene], bool]) -> Model:
+def _soften(model: Model, applies: Callable[[Scene], bool]) -> Model:
     """The step after an engine model that softens its bars."""
     return _next(
         model,
@@ -412,8 +412,8 @@ def _softened(model: Model, applies: Callable[[Scene], bool]) -> Model:
     )
 
 
-SOFTENED_TRANSLATIONAL = _softened(TRANSLATIONAL, with_unloaded_bars)
-SOFTENED_SPATIAL = _softened(SPATIAL, with_unloaded_bars_in_space)
+SOFTENED_TRANSLATIONAL = _soften(TRANSLATIONAL, with_unloaded_bars)
+SOFTENED_SPATIAL = _soften(SPATIAL, with_unloaded_bars_in_space)
 
 
 def with_softened_bars(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:

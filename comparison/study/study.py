@@ -146,7 +146,7 @@ class Study:
             else places
         )
 
-    def solved_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
+    def places_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
         """The places that the model is asked for, by the nested grid of its phases that is the first with them."""
         solved, stride = np.unique(self.sources(scene, model)), self.stride(model, scene)
         level = levels(len(self.axis(model, scene)))
@@ -155,7 +155,7 @@ class Study:
 
     def solved(self, scene: Scene, model: Model) -> NDArray[np.intp]:
         """The places that the model is asked for, from coarse to fine."""
-        return np.concatenate(self.solved_by_level(scene, model))
+        return np.concatenate(self.places_by_level(scene, model))
 
     def batches(self) -> list[Batch]:
         """The whole work, model by model, from coarse to fine; the cut does not depend on the number of workers."""
@@ -172,7 +172,7 @@ class Study:
         settings = model.arguments(self.tolerance, self.full)
         group = model.key if model.side == "user" else ""  # engines of the user share no worker with anything else
         batches, first = [], 0
-        for level, places in enumerate(self.solved_by_level(scene, model)):
+        for level, places in enumerate(self.places_by_level(scene, model)):
             for start in range(0, len(places), model.batch):
                 part = phases[places[start : start + model.batch]]
                 about = first + start, part, level

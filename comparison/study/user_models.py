@@ -24,7 +24,7 @@ import numpy as np
 from comparison.result_types import Array
 from comparison.study.batches import LARGEST_MU, drop_unusable
 from comparison.study.models import MODEL_HIERARCHY, Model
-from comparison.wording import shortened
+from comparison.wording import shorten_text
 from reference.problem import Amplification, Outcome, Scene
 
 CALLED_THROUGH = "comparison.study.user_models:amplification"
@@ -51,7 +51,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
         function = user_function(engine["function"])
         begin = _processor_time()
         try:
-            answer = function(scene, np.array(phases), **_named_by(function, settings))
+            answer = function(scene, np.array(phases), **_names_by(function, settings))
         except SystemExit as ended:
             raise RuntimeError(f"the engine asked the process to end: exit code {ended.code}") from None
         except Exception as error:
@@ -97,7 +97,7 @@ def user_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
     if not callable(function):
         raise TypeError(f"{name} is {type(function).__name__}, not a function")
     with suppress(ValueError):  # some compiled functions have no signature
-        inspect.signature(function).bind(None, None, **_named_by(function, dict.fromkeys(ALWAYS_GIVEN)))
+        inspect.signature(function).bind(None, None, **_names_by(function, dict.fromkeys(ALWAYS_GIVEN)))
     return function  # type: ignore[no-any-return]
 
 
@@ -128,10 +128,10 @@ def engine_of(settings: Mapping[str, Any]) -> Mapping[str, str]:
 
 def names_of(function: Callable[..., Any]) -> str:
     """Which of ALWAYS_GIVEN a function takes, separated by spaces."""
-    return " ".join(_named_by(function, dict.fromkeys(ALWAYS_GIVEN)))
+    return " ".join(_names_by(function, dict.fromkeys(ALWAYS_GIVEN)))
 
 
-def _named_by(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict[str, Any]:
+def _names_by(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict[str, Any]:
     """The settings that a function names among its arguments, or all of them if it takes any."""
     try:
         parameters = inspect.signature(function).parameters.values()
@@ -193,7 +193,7 @@ def _outcomes(stated: Sequence[Any] | None, points: int) -> tuple[list[str], str
         raise ValueError(f"the engine's status has {len(texts)} entries, asked: {points}")
     known = {outcome.value: outcome.value for outcome in Outcome}
     own_words = dict.fromkeys(text for text in texts if text not in known and not text.startswith(Outcome.OK))
-    messages = [f"the engine's status is {shortened(text, LONGEST_STATUS)!r}" for text in own_words]
+    messages = [f"the engine's status is {shorten_text(text, LONGEST_STATUS)!r}" for text in own_words]
     otherwise = (Outcome.OK if text.startswith(Outcome.OK) else Outcome.SOLVER_FAILED for text in texts)
     return [known.get(text, other.value) for text, other in zip(texts, otherwise)], "; ".join(messages)
 

@@ -49,7 +49,7 @@ def alerts(
     faults: Sequence[Alert],
 ) -> list[Alert]:
     """Every alert of a run: red, where a model has no value or a limit is broken, before amber; faults: of solvers."""
-    listed = [*_gaps(unanswered), *_broken(limits), *faults, *_far_motions(study, surfaces)]
+    listed = [*_gaps(unanswered), *_limit_alerts(limits), *faults, *_far_motions(study, surfaces)]
     return sorted(listed, key=lambda alert: alert.level != "red")
 
 
@@ -74,7 +74,7 @@ def _gaps(unanswered: Sequence[Unanswered]) -> list[Alert]:
     return rows
 
 
-def _broken(limits: Sequence[Limit]) -> list[Alert]:
+def _limit_alerts(limits: Sequence[Limit]) -> list[Alert]:
     return [
         Alert(
             level="red",
@@ -84,7 +84,7 @@ def _broken(limits: Sequence[Limit]) -> list[Alert]:
             help=DEFAULT_BROKEN if limit.default else STATED_BROKEN,
         )
         for limit in limits
-        for text in limit.broken_texts
+        for text in limit.breach_texts
     ]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from comparison.result_types import Number, Phases, Text, result
 from comparison.study.study import nested_grids
 from comparison.surfaces.model_difference import RESOLVED, ModelDifference
-from comparison.surfaces.sampling import known_mean, sampling_error
+from comparison.surfaces.sampling import mean_of_known, sampling_error
 from reference.measures.distribution import fractile
 
 AGREEMENT = 2.0  # largest |D| in units of u_D of two models that agree: beyond it one of their errors is false
@@ -121,7 +121,7 @@ def difference_row(scene: str, difference: ModelDifference, independent: int, no
         pair=pair.key,
         effect=pair.effect,
         reading=" to ".join(readings),
-        mean=known_mean(size),
+        mean=mean_of_known(size),
         numerical_error=float(difference.uncertainty[known].mean()) if known.any() else nan,
         sampling_error=0.0 if difference.recorded else sampling_error(size, independent),
         spread=float(size[known].std()) if known.any() else nan,
@@ -144,4 +144,4 @@ def difference_row(scene: str, difference: ModelDifference, independent: int, no
 
 def _grid_mean(sizes: np.ndarray) -> GridMean:
     known = np.abs(sizes[np.isfinite(sizes)])
-    return GridMean(len(sizes), known_mean(sizes), float(known.max()) if known.size else float("nan"))
+    return GridMean(len(sizes), mean_of_known(sizes), float(known.max()) if known.size else float("nan"))

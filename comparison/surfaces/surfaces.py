@@ -56,7 +56,7 @@ def batch_results(tasks: Sequence[Task], results: TaskResults) -> list[BatchResu
     ]
 
 
-def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult]) -> xr.Dataset:
+def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult]) -> xr.Dataset:
     """
     The answers on dimensions scene, model, body, alpha1, alpha2 (rad).
 

@@ -82,7 +82,7 @@ class ComparedStudy(Study):
         return self.without_results.get(scene.name, ())
 
 
-def compared_study(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
+def study_of_results(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
     """The study whose comparisons leave out models without any usable value, unless fewer than two would be left."""
     without_results = {}
     for scene in study.scenes:
@@ -103,7 +103,7 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
     for scene in study.scenes:
         left_out = study.left_out(scene)
         for model in models_of(scene, study.hierarchy):
-            answered, usable = _answered(surfaces, scene, model), _usable(surfaces, scene, model)
+            answered, usable = _has_answer(surfaces, scene, model), _usable(surfaces, scene, model)
             lacking, unusable = int((~answered).sum()), int((answered & ~usable).sum())
             if lacking or unusable:
                 asked = study.points(model, scene)
@@ -125,7 +125,7 @@ def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
     return refused or ADVICE[Outcome(outcome)]
 
 
-def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
+def _has_answer(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
     """At which phase pairs asked of a model every body has a value."""
     return np.asarray(np.isfinite(values_of(surfaces, "mu", scene.name, model)[: len(scene.bodies)]).all(axis=0))
 

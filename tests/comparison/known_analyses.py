@@ -73,12 +73,12 @@ def known_others() -> dict[str, Any]:
 def with_engine_off_by(monkeypatch: pytest.MonkeyPatch, factor: float, error: float = 1e-6) -> None:
     """Every model answers with mu = 2, the engine's models with `factor` times that."""
 
-    def imported(path: str):  # type: ignore[no-untyped-def]
+    def import_function(path: str):  # type: ignore[no-untyped-def]
         if path.endswith(":refusal"):
             return lambda scene, **settings: ""
         return answering(factor if "multibody" in path else 1.0, error)
 
-    monkeypatch.setattr("comparison.study.batches.imported", imported)
+    monkeypatch.setattr("comparison.study.batches.import_function", import_function)
 
 
 def answering(factor: float, error: float):  # type: ignore[no-untyped-def]

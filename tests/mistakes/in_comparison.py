@@ -263,7 +263,7 @@ MISTAKES = (
             "Wall time is called processor time.", (CLOSING + "the_times_of_a_run_are_the_same_in_every_place",)),
     Mistake(CLI + "study_template/study.py", "demands.base_shear.value / 1e3:.1f} kN", "demands.base_shear.value:.1f} kN",
             "The script of a new study prints N as kN.", (TESTS + "cli/test_init.py::test_the_script_prints_the_numbers_of_the_worst_phases",)),
-    Mistake(CLI + "init.py", "with writing(place, PLACE):", "if True:", "A full disk is an unexpected error.",
+    Mistake(CLI + "init.py", "with report_write_errors(place, PLACE):", "if True:", "A full disk is an unexpected error.",
             (TESTS + "cli/test_init.py::test_a_full_disk_leaves_nothing_behind",)),
     # analyses
     Mistake(ANALYSES + "ensemble/analysis.py", "(before.error + after.error) / size", "before.error / size",

@@ -225,7 +225,7 @@ MISTAKES = (
             "Mirror images tell a sampling error of zero.", SAMPLING),
     Mistake(SURFACES + "sampling.py", "max(scatter, float(np.nanstd(sizes)) / grid)", "min(scatter, float(np.nanstd(sizes)) / grid)",
             "The smaller of two estimates is the error.", SAMPLING),
-    Mistake(SURFACES + "sampling.py", "known_mean(sizes[row::factor, column::factor])", "known_mean(sizes[::factor, ::factor])",
+    Mistake(SURFACES + "sampling.py", "mean_of_known(sizes[row::factor, column::factor])", "mean_of_known(sizes[::factor, ::factor])",
             "One shifted grid stands for all.", SAMPLING),
     Mistake(SURFACES + "body_comparison.py", "reduced = replace(study, full=False)", "reduced = study",
             "A full study has more independent phases.", WATERFALL),

@@ -21,7 +21,7 @@ from comparison.analyses.assumptions.variations import (
 )
 from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.task import TaskResult
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import Model
 from reference.problem import Scene, SceneError, untilted
 
@@ -100,7 +100,7 @@ def amplification_of(
     varied = scene if variation is None else variation.of(scene)
     whole = {"full": True} if untilted(varied) else {}  # a check of assumption (vi) must not make use of it
     asked = {**model.settings, **{key: value for key, value in settings.items() if key in model.settings}}
-    found = imported(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
+    found = import_function(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
     return Trial(variation, found.mu, found.error, tuple(map(str, found.status)), "", float(found.cost))
 
 

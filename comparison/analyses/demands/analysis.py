@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from comparison.result_types import Array, Number, Phases, UncertainNumber, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import SMALL_REGULARIZED, Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.distribution import CURVE, Fractile
@@ -65,7 +65,7 @@ class DemandStatistics:
 def moved_demands(task: Arguments) -> Batch:
     """Demands of the motions of one task. Runs inside a worker process."""
     scene, model, tolerance, phases = task
-    trajectory, settings = imported(model.trajectory), dict(model.settings)
+    trajectory, settings = import_function(model.trajectory), dict(model.settings)
     demands = demands_of_motions(scene, phases, lambda phase: trajectory(scene, phase, tolerance=tolerance, **settings))
     return dict(demands), [str(status) for status in demands.status]
 

@@ -15,7 +15,7 @@ from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL, Model, has_spatial_data, why_not_spatial
 from comparison.study.study import Study
 from reference.measures import Demands, Estimate, FloorSpectra, demands, effective_isolator, floor_spectra
@@ -238,7 +238,7 @@ def answered(task: Arguments) -> Answer:
     """The demands of one motion by one model, and its floor spectra by the equations."""
     scene, model, tolerance = task
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
-    motion = imported(model.trajectory)(scene, REST, tolerance=tolerance, **settings)
+    motion = import_function(model.trajectory)(scene, REST, tolerance=tolerance, **settings)
     return demands(motion), floor_spectra(motion) if model == EXACT else None
 
 

@@ -28,10 +28,17 @@ from comparison.analyses.ensemble.feature import (
 )
 from comparison.analyses.ensemble.result import PICTURE, STORED, EnsembleResult
 from comparison.analyses.ensemble.target import matched
-from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, writing
-from comparison.cli.computing import computed, run_facts
+from comparison.cli.arguments import (
+    CommandParser,
+    command,
+    number_of_jobs,
+    read_number,
+    read_whole_number,
+    report_write_errors,
+)
+from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.terminal import new_table, print_implausible_values
-from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
+from comparison.runner.output import destination, files_written_by, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Display, wide_console
 from comparison.runner.task_results import TaskResults
@@ -56,8 +63,8 @@ NAMED = 12  # motions that are named one by one
 def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Compute the ensemble that the command line names, and write what it shows; the exit code."""
     options = _parser().parse_args(argv)
-    jobs(options)  # refused before anything else is looked at
-    subset = None if options.engine == "all" else whole_number("--engine", options.engine, 0, 1000)
+    number_of_jobs(options)  # refused before anything else is looked at
+    subset = None if options.engine == "all" else read_whole_number("--engine", options.engine, 0, 1000)
     members, model = members_of([asked_family(options, scene) for scene in options.scenes]), ENGINES[options.model]
     target = None
     if options.target is not None:
@@ -86,8 +93,8 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
         result = part.result(points, run)
         files = {STORED.name: STORED.as_json(result), TABLE: table_text(points).encode()}
-        files |= made_by(lambda folder: draw_ensemble(folder / PICTURE, result))
-        with writing(out):
+        files |= files_written_by(lambda folder: draw_ensemble(folder / PICTURE, result))
+        with report_write_errors(out):
             written = publish(out, files, "comparison.ensemble")
         print_ensemble(console, result, cost)
         console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
@@ -98,7 +105,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         console.print(f"Next: {count} by the {model.title}, about {display.left:.0f} s; then all tables again.")
 
     first = equations.tasks(), show_equations
-    show(ensemble, computed("ensemble", options, argv, tasks, MODELS, console, executor, *first))
+    show(ensemble, compute_tasks("ensemble", options, argv, tasks, MODELS, console, executor, *first))
     return 0
 
 
@@ -114,8 +121,8 @@ def asked_family(options: argparse.Namespace, source: str) -> Family:
         loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}}
         data.setdefault("combine", "product")
     if options.scales is not None:
-        low, high = (number("--scales", text, 1e-6, 1e6, "LOW and HIGH") for text in options.scales[:2])
-        count = whole_number("--scales", options.scales[2], 1, MAX_SCALES)
+        low, high = (read_number("--scales", text, 1e-6, 1e6, "LOW and HIGH") for text in options.scales[:2])
+        count = read_whole_number("--scales", options.scales[2], 1, MAX_SCALES)
         asked: Any = {"range": [low, high], "steps": count} if count > 1 else {"values": [low]}
         loading = {**loading, "scale": asked} if isinstance(loading, dict) else loading
     data["excitation"] = loading

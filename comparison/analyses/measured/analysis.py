@@ -15,7 +15,7 @@ from pydantic import computed_field
 from comparison.result_types import Number, Phases, Text, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.verdicts import (
@@ -118,11 +118,11 @@ def peaks_at(task: Arguments) -> list[Peak]:
     status = Outcome.OK.value
     known: dict[str, Any] = {}  # estimates by quantity: of the isolator, of every body, or None
     if any(quantity == "mu" for quantity, _ in asked):
-        answer = imported(model.amplification)(scene, [phases], tolerance=tolerance, **settings)
+        answer = import_function(model.amplification)(scene, [phases], tolerance=tolerance, **settings)
         known["mu"] = tuple(map(Estimate, answer.mu[0].tolist(), answer.error[0].tolist()))
         status = str(answer.status[0])
     if any(quantity != "mu" for quantity, _ in asked):
-        motion = imported(model.trajectory)(scene, phases, tolerance=tolerance, **settings)
+        motion = import_function(model.trajectory)(scene, phases, tolerance=tolerance, **settings)
         known, status = vars(demands(motion)) | known, str(motion.status)
     listed = ((known[name], body - OF_BODIES.get(name, 0)) for name, body in asked)
     numbers = [(each[place] if isinstance(each, tuple) else each) or LACKING for each, place in listed]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from comparison.result_types import Array
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import difference_of
@@ -156,7 +156,7 @@ def moved(task: Arguments) -> StoredMotion:
     scene, model, tolerance, place, phase = task
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
-        motion: Trajectory = imported(model.trajectory)(scene, phase, tolerance=tolerance, **settings)
+        motion: Trajectory = import_function(model.trajectory)(scene, phase, tolerance=tolerance, **settings)
         if len(motion.time) == 0:  # refused before its first step
             return replace(_nothing(place, model.key, Outcome(motion.status), ""), demands=demands(motion))
         return _stored(place, model, motion)

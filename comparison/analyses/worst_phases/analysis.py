@@ -21,7 +21,7 @@ import reference
 from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import EXACT, SMALL, SMALL_RESOLVED, Model, models_of, pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import usable_mu
@@ -193,7 +193,7 @@ def _larger_of_grid_and_worst(worst: Worst, scene: Scene, on_grid: OnGrid, toler
 
 
 def _surface(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:
-    return Surface(scene, imported(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
+    return Surface(scene, import_function(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
 
 
 def _estimated(middle: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases) -> ComputedPhases:

@@ -15,7 +15,7 @@ from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
 from comparison.study.study import Study
 from comparison.verdicts import MET, NOT_MET
@@ -72,7 +72,7 @@ def solve(question: tuple[Case, str]) -> Answer:
         place = np.array(case.start)
         settings["initial"] = State(place, np.zeros_like(place))
     clock = time.process_time()
-    trajectory = imported(MODELS[side].trajectory)
+    trajectory = import_function(MODELS[side].trajectory)
     motion: Trajectory = trajectory(case.scene, case.phases, tolerance=TOLERANCES[side], **settings)
     return Answer(*_read(case.reading, motion), str(motion.status), time.process_time() - clock)
 
@@ -118,7 +118,7 @@ def _row(case: Case, place: int, answers: Mapping[str, Answer]) -> Row:
         if len(answer.values) == len(case.published):
             numbers[side] = answer.values[place], answer.errors[place]
 
-    def number(side: str) -> Number:
+    def read_number(side: str) -> Number:
         value, error = map(finite_or_none, numbers[side])
         verdict = row.judge(value, error)
         return Number(value, error, verdict, explain(side) if verdict == NOT_MET else "")
@@ -130,7 +130,7 @@ def _row(case: Case, place: int, answers: Mapping[str, Answer]) -> Row:
         same = replace(row, published=smoothed, uncertainty=its_error, numbers={})
         return FRICTION if side != EQUATIONS and same.judge(value, error) == MET else ""
 
-    return replace(row, numbers={side: number(side) for side in numbers})
+    return replace(row, numbers={side: read_number(side) for side in numbers})
 
 
 def _failed(question: tuple[Case, str], failed: TaskResult) -> Answer:

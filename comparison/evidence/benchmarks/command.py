@@ -12,8 +12,8 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, jobs, writing
-from comparison.cli.computing import computed, run_facts
+from comparison.cli.arguments import CommandParser, command, number_of_jobs, report_write_errors
+from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.terminal import new_table
 from comparison.evidence.benchmarks.analysis import MODELS, BenchmarkTable
 from comparison.evidence.benchmarks.cases import Case, cases, mastodon
@@ -44,15 +44,15 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         help="CSV with the input of MASTODON's friction pendulum test, which is not shipped: adds that benchmark",
     )
     options = parser.parse_args(argv)
-    jobs(options)  # refused before anything else is looked at
+    number_of_jobs(options)  # refused before anything else is looked at
     analysis = BenchmarkTable(_chosen(options.only, options.mastodon))
     out = destination(options.out)
     refuse_foreign_files(out, [STORED.name, PAGE])
     console = wide_console()
-    results = computed("benchmarks", options, argv, analysis.tasks(), SOLVERS, console, executor)
+    results = compute_tasks("benchmarks", options, argv, analysis.tasks(), SOLVERS, console, executor)
     solved = analysis.collect(None, None, results)
     table = replace(solved, run=run_facts("benchmarks", options, argv, begin))
-    with writing(out):
+    with report_write_errors(out):
         files = publish(out, {STORED.name: STORED.as_json(table), PAGE: page(table).encode()}, "comparison.benchmarks")
     print_benchmarks(console, table)
     console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.table import Table
 
-from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, whole_number
-from comparison.cli.computing import computed
+from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, read_whole_number
+from comparison.cli.computing import compute_tasks
 from comparison.evidence.claims.table import GRID, Claims, ClaimTable, claims_line
 from comparison.evidence.forced_ratios import forced_ratios
 from comparison.runner.processes import Pool, process_pool
@@ -26,11 +26,11 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     parser.add_out(STORED_RESULTS)
     parser.add_computing()
     options = parser.parse_args(argv)
-    grid = GRID if options.grid is None else whole_number("--grid", options.grid, 8, 512)
+    grid = GRID if options.grid is None else read_whole_number("--grid", options.grid, 8, 512)
     study = Study(tuple(map(load_scene, builtin_scenes())), grid, TOLERANCE)
     console = wide_console()
     claims = Claims(grid)
-    results = computed("claims", options, argv, claims.tasks(study), {SURFACES}, console, executor)
+    results = compute_tasks("claims", options, argv, claims.tasks(study), {SURFACES}, console, executor)
     table = claims.collect(study, None, results)
     assert table is not None, "the study has every scene of the paper"
     print_claims(console, table)

@@ -11,7 +11,7 @@ import xarray as xr
 from comparison.result_types import Number, Radius, Text, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import Model, chain_of
 from comparison.study.study import Study
 from comparison.wording import percent
@@ -79,7 +79,7 @@ def read_back(task: tuple[Scene, Model]) -> Effective:
     short = scene.with_values({"duration": lasting})
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
-        motion: Trajectory = imported(model.trajectory)(short, PHASES, **settings)
+        motion: Trajectory = import_function(model.trajectory)(short, PHASES, **settings)
         ended = {"error_message": f"the motion ended: {motion.status}"}
         return replace(nothing, **(_measured(short, motion) if motion.status == Outcome.OK else ended))
     except Exception as error:

@@ -17,7 +17,7 @@ from comparison.result_types import Array
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.study import Study
 from comparison.wording import exception_line
 from reference.problem import Outcome, Scene
@@ -167,7 +167,7 @@ def _ask(row: Row, function: str, settings: Mapping[str, Any]) -> Reply:
     settings = {key: row.max_work if key == "max_work" else value for key, value in settings.items()}
     try:
         scene = read_scene(row.scene)
-        result = imported(function)(scene, np.array(row.phases), **settings)
+        result = import_function(function)(scene, np.array(row.phases), **settings)
         status = tuple(str(outcome) for outcome in result.status)
         return Reply(np.array(result.mu, dtype=float), np.array(result.error, dtype=float), status)
     except Exception as error:

@@ -12,8 +12,8 @@ from dataclasses import replace
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, jobs, number, writing
-from comparison.cli.computing import computed, run_facts
+from comparison.cli.arguments import CommandParser, command, number_of_jobs, read_number, report_write_errors
+from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.user_models import add_models, user_models
 from comparison.evidence.extremes.analysis import LIMIT, Extremes, cells, reduced
 from comparison.evidence.extremes.matrix import FILE, STORED, Matrix, Verdict
@@ -47,7 +47,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     refuse_foreign_files(out, [FILE])
     console = wide_console()
     matrix = judged_matrix(extremes, options, argv, console, executor)
-    with writing(out):
+    with report_write_errors(out):
         (file,) = publish(out, {FILE: STORED.as_json(matrix)}, "comparison.extremes")
     for verdict in (Verdict.LIMIT, Verdict.FAILED):
         for row, title, entry in matrix.listed(verdict):
@@ -65,7 +65,7 @@ def judged_matrix(
 ) -> Matrix:
     """The matrix with all that is known of its run; stored cells are not judged again."""
     begin, tasks = time.monotonic(), extremes.tasks()
-    results = computed("extremes", options, words, tasks, MODELS, console, executor)
+    results = compute_tasks("extremes", options, words, tasks, MODELS, console, executor)
     matrix = extremes.collect(None, None, results)
     totals = [entry.total or 0.0 for row in matrix.rows for entry in row.entries.values()]
     run = {
@@ -83,8 +83,8 @@ def _chosen(options: argparse.Namespace) -> Extremes:
     if options.only is not None:
         rule = "selects analyses of a study; the extremes are chosen with --rows TEXT"
         raise SceneError("command line", "--only", options.only, rule)
-    limit = LIMIT if options.limit is None else number("--limit", options.limit, 0.1, 1e6, "s of processor time")
-    jobs(options)  # refused before anything else is looked at
+    limit = LIMIT if options.limit is None else read_number("--limit", options.limit, 0.1, 1e6, "s of processor time")
+    number_of_jobs(options)  # refused before anything else is looked at
     supplied = user_models(options.model, options.model_limit, options.scheduler)
     every = list(rows())
     kept = [row for row in (reduced(every) if options.reduced else every) if options.rows in row.name]

@@ -15,7 +15,7 @@ from comparison.result_types import Array
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.study.user_models import engine_of
@@ -73,7 +73,7 @@ def measure(measurement: Measurement) -> Measured:
 def _called(scene: Scene, phases: Array, path: str, settings: Settings) -> Measured:
     nothing, step, clock = np.full((len(phases), len(scene.bodies)), np.nan), np.nan, time.process_time()
     try:
-        answer = imported(path)(scene, phases, **settings)
+        answer = import_function(path)(scene, phases, **settings)
     except Exception as error:
         return Measured(nothing, nothing, time.process_time() - clock, np.nan, exception_line(error))
     seconds = time.process_time() - clock

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, jobs, writing
-from comparison.cli.computing import computed, run_facts
+from comparison.cli.arguments import CommandParser, command, number_of_jobs, report_write_errors
+from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.terminal import new_table
 from comparison.cli.user_models import add_models, user_models
 from comparison.evidence.tradeoff import growth
@@ -53,7 +53,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     add_models(parser)
     parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
     options = parser.parse_args(argv)
-    jobs(options)  # refused before anything else is looked at
+    number_of_jobs(options)  # refused before anything else is looked at
     scenes = [_phased(name) for name in options.scenes or [DEFAULT]]
     refuse_same_names((scene.name, scene.name) for scene in scenes)
     out = destination(options.out)
@@ -64,7 +64,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     if options.growth:
         return _grown(scenes[0], options, argv, out, console, executor)
     measured = measured_trades(scenes, options, argv, console, executor)
-    with writing(out):
+    with report_write_errors(out):
         for each in measured:
             publish(out, {_values_file(each.trade.scene): netcdf(each.values)}, COMMAND)
         trades = {trade.scene: trade for trade in [*_stored(out), *(each.trade for each in measured)]}
@@ -81,11 +81,11 @@ def _grown(
     begin, study = time.monotonic(), Study((scene,), 1, TOLERANCE)
     tasks = Growth().tasks(study)
     models = {task.argument.function[0] for task in tasks}
-    results = computed("tradeoff", options, words, tasks, models, console, executor)
+    results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)
     series = [*Growth().collect(study, None, results), by_workers(scene, process_pool)]
     facts = run_facts("tradeoff", options, words, begin)
     measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
-    with writing(out):
+    with report_write_errors(out):
         publish(out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
     print_growth(console, series)
     console.print(f"Growth: {out / growth.FILE}", soft_wrap=True)
@@ -131,13 +131,13 @@ def measured_trades(
     """The trades of the scenes with all that is known of their run; what is stored is not measured again."""
     supplied = user_models(options.model, options.model_limit, options.scheduler)
     tradeoff, study = TradeOff(options.quick, supplied), Study(tuple(scenes), 1, TOLERANCE)
-    tasks, width = tradeoff.tasks(study), jobs(options)
+    tasks, width = tradeoff.tasks(study), number_of_jobs(options)
     about = STARTING + sum(task.seconds for task in tasks) / width
     for scene in scenes:
         console.print(f"{scene.title} ({scene.name})")
     console.print(f"Unless they are stored: about {about:.0f} s with {width} workers.")
     begin = time.monotonic()
-    results = computed("tradeoff", options, words, tasks, MODELS, console, executor)
+    results = compute_tasks("tradeoff", options, words, tasks, MODELS, console, executor)
     more = {"quick": options.quick, "stored_before": results.parts[tradeoff.stage].stored}
     run = run_facts("tradeoff", options, words, begin) | more
     attributes = {"command": run["command"], **run["provenance"]}

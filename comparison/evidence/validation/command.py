@@ -11,7 +11,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, writing
+from comparison.cli.arguments import CommandParser, command, report_write_errors
 from comparison.cli.terminal import new_table
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import frame, pendulum
@@ -47,7 +47,7 @@ def main(argv: Sequence[str]) -> int:
     out = destination(options.out)
     refuse_foreign_files(out, [STORED.name])
     table = compared(options.folder)
-    with writing(out):
+    with report_write_errors(out):
         files = publish(out, {STORED.name: STORED.as_json(table)}, "comparison.validation")
     print_validation(console, table)
     console.print(f"Table: {', '.join(map(str, files))}", soft_wrap=True)

@@ -31,7 +31,7 @@ PNG = {"compress_level": 3}  # of the dense surfaces: smaller than with the usua
 
 def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: Pair) -> None:
     """Write the two surfaces on one height scale and the map of their relative difference to `path`, PNG."""
-    both = [closed_surface(surfaces, scene, model, body) for model in (pair.first, pair.second)]
+    both = [surface_to_two_pi(surfaces, scene, model, body) for model in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
     figure.suptitle(
         verbatim(f"{scene.title} ({scene.name}), body {body}: {pair.title} difference"), fontsize=12, y=0.98
@@ -58,7 +58,7 @@ def save_pdf(figure: Figure, path: Path) -> None:
         figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
 
 
-def closed(phase: Array, mu: Array) -> tuple[Array, Array]:
+def close_period(phase: Array, mu: Array) -> tuple[Array, Array]:
     """The phases up to 2 pi and the surface on them: its first row and column repeated where the period closes."""
     return np.append(phase, 2.0 * np.pi), np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
 
@@ -72,7 +72,7 @@ def limits_of(heights: Sequence[Array]) -> tuple[float, float]:
 
 def draw_map(axes: Axes, phase: Array, values: Array, ticks: Ticks = QUARTER_TICKS, **style: Any) -> QuadMesh:
     """Values at the phases as colors, alpha1 to the right and alpha2 upward; gray where there is none."""
-    phase, height = closed(phase, values)
+    phase, height = close_period(phase, values)
     axes.set_facecolor("0.75")
     image = axes.pcolormesh(phase, phase, height.T, shading="nearest", **style)
     axes.set(xlim=TURN, ylim=TURN, aspect="equal")
@@ -81,10 +81,10 @@ def draw_map(axes: Axes, phase: Array, values: Array, ticks: Ticks = QUARTER_TIC
     return image
 
 
-def closed_surface(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[Array, Array]:
+def surface_to_two_pi(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[Array, Array]:
     """The phases of a model up to 2 pi, and mu on them."""
     phase = surfaces["alpha1"].values[:: stride_of(surfaces, scene.name, model)]
-    return closed(phase, values_of(surfaces, "mu", scene.name, model)[body - 1])
+    return close_period(phase, values_of(surfaces, "mu", scene.name, model)[body - 1])
 
 
 def draw_in_space(

@@ -42,7 +42,9 @@ class Pictures(Analysis[dict[str, bytes]]):
                 totals = [pair for pair in study.pairs(scene) if pair.key == "total"]
                 pictures += [("total", alone, shown, body, pair) for body in bodies for pair in totals]
             about = fingerprint(shown)
-            tasks += [Task(drawn, each, self.stage, about=about, needs_compiled_reference=False) for each in pictures]
+            tasks += [
+                Task(draw_picture, each, self.stage, about=about, needs_compiled_reference=False) for each in pictures
+            ]
         return tasks
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> dict[str, bytes]:
@@ -50,11 +52,11 @@ class Pictures(Analysis[dict[str, bytes]]):
         return {
             name: content
             for task in self.tasks(study, surfaces)
-            for name, content in results.value(task, lambda picture, *failure: drawn(picture))
+            for name, content in results.value(task, lambda picture, *failure: draw_picture(picture))
         }
 
 
-def drawn(picture: Picture) -> Files:
+def draw_picture(picture: Picture) -> Files:
     """The files of one picture. Runs inside a worker process."""
     from comparison.surfaces.figures import pairs, paper  # plotting: not needed to list what is drawn
 

@@ -195,7 +195,7 @@ def test_a_number_that_is_off_or_lacking_is_an_exit_code(number, code, said, mon
     (known,) = known_benchmarks().benchmarks
     numbers = {**known.rows[0].numbers, ENGINE: number}
     table = Benchmarks([replace(known, rows=[replace(known.rows[0], numbers=numbers)])], {})
-    monkeypatch.setattr("comparison.evidence.benchmarks.command.computed", lambda *rest: None)
+    monkeypatch.setattr("comparison.evidence.benchmarks.command.compute_tasks", lambda *rest: None)
     monkeypatch.setattr(BenchmarkTable, "collect", lambda *rest: table)
     assert main(["--only", "frame", "--out", str(tmp_path / "report")]) == code
     stored = STORED.load(tmp_path / "report")

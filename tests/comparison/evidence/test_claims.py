@@ -31,7 +31,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import Batch, BatchResult
 from comparison.study.models import SMALL
 from comparison.study.study import Study
-from comparison.surfaces.surfaces import labeled_surfaces, surface_tasks
+from comparison.surfaces.surfaces import label_surfaces, surface_tasks
 from reference import amplification, modes, trajectory
 from reference.problem import builtin_scenes, load_scene
 
@@ -258,7 +258,7 @@ def test_the_surfaces_of_the_study_are_used_where_it_has_the_grid() -> None:
     scenes = tuple(load_scene(name) for name in builtin_scenes())
     study = Study(scenes, 8, 1e-3, (SMALL,))
     batches = [task.argument for task in surface_tasks(study)]
-    surfaces = labeled_surfaces(study, batches, [_planted_result(batch) for batch in batches])
+    surfaces = label_surfaces(study, batches, [_planted_result(batch) for batch in batches])
     for case in ("fig3-I", "fig4-viscous"):
         known = known_surfaces(study, surfaces, case, LITERAL_SUPREMUM, 4)
         assert known is not None

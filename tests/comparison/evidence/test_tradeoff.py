@@ -17,7 +17,7 @@ from comparison.evidence.tradeoff.analysis import Measured, Measurement, entry, 
 from comparison.evidence.tradeoff.growth import QUANTITIES, STORED, Growth, fitted_slope, tall, with_slope
 from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
 from comparison.evidence.tradeoff.trade import load, quantile, unbeaten, with_pareto_fronts
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.study import Study
 from reference import amplification
 from reference.problem import Amplification, Scene, load_scene
@@ -123,7 +123,7 @@ def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
     loosest = {each.method: each.value for each in reversed(every) if each.question == "exact"}
     assert [loosest[f"reference, {runs}"] for runs in ("two runs and an estimate", "one run")] == [1e-2, 1e-1]
     for each in every:
-        inspect.signature(imported(each.function)).bind(SCENE, sample(1), **each.settings)
+        inspect.signature(import_function(each.function)).bind(SCENE, sample(1), **each.settings)
     model_errors = [each for each in every if each.model_error]
     for each in model_errors:
         assert each.settings == {"tolerance": 1e-6, "regularization": each.value}
@@ -215,7 +215,7 @@ def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.Monk
 def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path):
     bodies = with_slope("bodies", "", "exact", (2.0, 4.0, 8.0), (0.5, 2.0, 8.0))
     workers = with_slope("workers", "", "exact", (1.0, 2.0), (3.0, float("nan")))
-    monkeypatch.setattr(command, "computed", lambda *rest: None)
+    monkeypatch.setattr(command, "compute_tasks", lambda *rest: None)
     monkeypatch.setattr(Growth, "collect", lambda *rest: [bodies])
     monkeypatch.setattr(command, "by_workers", lambda *rest: workers)
     assert command.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0

@@ -51,14 +51,14 @@ def load_without(copy, key):
     from comparison import registry
     from comparison.report.writing import write_report
     from comparison.study.study import Study
-    from comparison.surfaces.surfaces import labeled_surfaces
+    from comparison.surfaces.surfaces import label_surfaces
     for command in commands().values():
         importlib.import_module(command.module)
     assert key not in commands()
     os.chdir(copy)
     assert main(["fig3-I", "--grid", "2", "--plan"]) == 0
     study = Study((reference.load_scene("fig3-I"),), 2, 1e-3, selection=registry.EVERYTHING)
-    surfaces = labeled_surfaces(study, [], [])
+    surfaces = label_surfaces(study, [], [])
     for name, value in {"mu": 2.0, "error": 1e-9, "status": "ok"}.items():
         surfaces[name][:] = value
     report = registry.report_of(study, surfaces, {}, [], RUN, families=())

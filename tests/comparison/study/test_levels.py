@@ -79,7 +79,7 @@ def test_each_level_has_a_whole_report_that_names_it(
 ) -> None:
     write, seen = reports.Reports.write, []
 
-    def noting(self: reports.Reports, complete: reports.Complete, *rest: Any, **more: Any) -> Any:
+    def noting(self: reports.Reports, complete: reports.CompleteLevel, *rest: Any, **more: Any) -> Any:
         said = write(self, complete, *rest, **more)
         seen.append((summary_of(self.place), xr.load_dataset(self.place / "surfaces.nc"), page_of(self.place)))
         return said
@@ -147,15 +147,15 @@ def test_an_end_before_the_first_level_is_one_line(
 def test_finished_analyses_are_in_the_report_of_a_stopped_run(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    finished = command_module.computed_level
+    finished = command_module.compute_level
 
-    def computed(level: Any, runner: Any) -> Any:
+    def compute(level: Any, runner: Any) -> Any:
         complete = finished(level, runner)
         if level.number == 2:
             raise TimeUpError  # everything of the second level is computed, but it is not taken for complete
         return complete
 
-    monkeypatch.setattr(command_module, "computed_level", computed)
+    monkeypatch.setattr(command_module, "compute_level", compute)
     summary = summary_of(command(*WORDS, "--budget", "1000").report)
     assert summary["run"]["level"] == 1
     assert ("effective" in summary["absent"], "motions" in summary["absent"]) == (False, True)

@@ -11,14 +11,14 @@ from places import scene_text
 from report_texts import both_pages, schema_errors, summary_of
 from runs import Run
 
-from comparison.cli.options import parsed
-from comparison.registry import EVERYTHING, FEATURES, SELECTABLE, chosen_analyses, first_tasks
+from comparison.cli.options import parse_options
+from comparison.registry import EVERYTHING, FEATURES, SELECTABLE, first_tasks, select_analyses
 from comparison.runner.cache import Key
 from comparison.runner.task import Task
 from comparison.study.selection import select, select_names
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures
-from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.surfaces import label_surfaces
 from reference.problem import load_scene
 
 GRID = ("--grid", "4")
@@ -40,8 +40,8 @@ def test_a_selected_analysis_has_its_tasks_and_pictures_and_no_others() -> None:
 
     def tasks(only: list[str] | None, skip: list[str] | None) -> tuple[list[Task], set[Key]]:
         part = replace(study, selection=select(SELECTABLE, study.scenes, only, skip))
-        pictures = Pictures().tasks(part, labeled_surfaces(study, [], []))
-        return first_tasks(part, chosen_analyses(part)), {task.key for task in pictures}
+        pictures = Pictures().tasks(part, label_surfaces(study, [], []))
+        return first_tasks(part, select_analyses(part)), {task.key for task in pictures}
 
     every, all_pictures = tasks(None, None)
     for analysis, stage in STAGES.items():
@@ -84,7 +84,7 @@ def test_the_command_line_selects_before_the_scene(command: Callable[..., Run], 
     table = page.split('id="differences">')[1].split("</table>")[0]
     assert [f"<td>{name}</td>" in table for name in ("fig4-viscous", "mine")] == [True, False]
     assert [f'<option value="{number}">' in page for number in (1, 0)] == [True, False]
-    options = parsed([mine, "--only", "budget", "--out", str(tmp_path / "other")])
+    options = parse_options([mine, "--only", "budget", "--out", str(tmp_path / "other")])
     assert options.selection.by_scene == {"mine": ("budget",)}
 
 
@@ -139,7 +139,7 @@ def test_demands_of_every_phase_are_computed_on_request(command: Callable[..., R
         (asking, (None, None, []), False),
     ):
         study = Study((of,), 4, 1e-3, selection=select(SELECTABLE, (of,), *asked))
-        assert ("demands" in {analysis.key for analysis in chosen_analyses(study)}) == made
+        assert ("demands" in {analysis.key for analysis in select_analyses(study)}) == made
     plans = (command("fig3-I", *GRID, *words, "--plan").out for words in ((), ("--also", "demands")))
     usual, also = (" ".join(plan.split()) for plan in plans)
     assert (", demands (" in usual, ", demands (" in also) == (False, True)

@@ -40,7 +40,7 @@ from comparison.surfaces.body_comparison import body_comparisons
 from comparison.surfaces.budget import budget
 from comparison.surfaces.headline import headline
 from comparison.surfaces.surfaces import surface_tasks
-from comparison.surfaces.unanswered import compared_study, unanswered
+from comparison.surfaces.unanswered import study_of_results, unanswered
 from comparison.surfaces.waterfall import waterfall
 from comparison.wording import percent
 from reference.problem import Outcome, SceneError, load_scene, phase_grid
@@ -63,7 +63,7 @@ def studied(*models: Model) -> tuple[Study, xr.Dataset]:
     """A study with models of known answer and these, computed here."""
     study = Study((SCENE,), 4, 1e-3, [*fake_hierarchy(gap=0.01), *models])
     surfaces = solved(study)
-    return compared_study(study, surfaces), surfaces
+    return study_of_results(study, surfaces), surfaces
 
 
 def test_the_engine_of_the_documentation_appears_in_the_report(

@@ -91,7 +91,7 @@ DEFAULT = Limit("tower", "mine.ratio", 2.0, (LARGEST,), default=True)
 def test_a_broken_limit_says_where_and_by_how_much(limit: Limit, breach: Breach, said: str) -> None:
     assert word_breach(limit, breach) == said
     broken = replace(limit, breaches=(breach,))
-    assert (broken.broken_texts, broken.broken) == ([said], [f"tower: {said}"])
+    assert (broken.breach_texts, broken.broken) == ([said], [f"tower: {said}"])
 
 
 REST = "ot checked, as no limit is stated: total of b; total, like-for-like of a"

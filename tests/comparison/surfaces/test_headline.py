@@ -13,7 +13,7 @@ from studies import GRID, KEYS, planted_study, solved
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.headline import Headline, headline
-from comparison.surfaces.unanswered import compared_study
+from comparison.surfaces.unanswered import study_of_results
 from comparison.surfaces.waterfall import waterfall
 from reference.problem import Scene, load_scene
 
@@ -22,7 +22,7 @@ MEAN = "Exudyn (spatial) gives {} than the paper's equations in the mean over 4 
 
 
 def told(study: Study, surfaces: xr.Dataset, body: int = 1) -> Headline:
-    study = compared_study(study, surfaces)
+    study = study_of_results(study, surfaces)
     comparison = BodyComparison(study, surfaces, study.scenes[0], body)
     return headline(comparison, waterfall(comparison))
 
