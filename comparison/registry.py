@@ -96,7 +96,7 @@ def seconds_by_stage(study: Study) -> dict[str, float]:
 
 
 def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
-    """What can be computed without knowing the surfaces."""
+    """Return what can be computed without knowing the surfaces."""
     return [
         task
         for analysis in analyses

@@ -7,8 +7,8 @@ from markupsafe import Markup, escape
 
 from reference.support.drawing import verbatim
 
-MAX_DECIMALS = 4  # of a percentage: what is smaller is nothing
-SHOWN_ERROR = 0.01  # of a size: a smaller error is not seen in two digits
+MAX_DECIMALS = 4  # percentage below which a size is nothing
+SHOWN_ERROR = 0.01  # share of a size below which its error is not seen in two digits
 MAX_NAMES = 12  # on an axis of values that are no numbers; of more values every n-th is named
 POWERS = re.compile(r"\^(\w)")
 PERCENT = re.compile(r"(?<=\d) %")
@@ -20,7 +20,7 @@ LETTERS = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK)})(?![a-zA-Z])")
 
 
 def exception_line(error: BaseException) -> str:
-    """What was raised, and what its notes say of the place, in one line."""
+    """Return what was raised, and what its notes say of the place, in one line."""
     notes = "".join(f" ({note})" for note in getattr(error, "__notes__", ()))
     return " ".join(f"{type(error).__name__}: {error}{notes}".split())
 

@@ -52,7 +52,7 @@ class CommandParser(OneLineParser):
         )
 
     def add_computing(self) -> None:
-        """Where is computed, and whether what is stored is computed anew."""
+        """Add the options that say where to compute, and whether to compute anew what is stored."""
         self.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {cores()})")
         self.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
         self.add_argument(
@@ -154,7 +154,7 @@ def edit_command_line(
 
 
 def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
-    """How much is kept where, and the command for the rest; batches: number of those of a study."""
+    """Return how much is kept where, and the command for the rest; batches: number of those of a study."""
     rest = edit_command_line(words, flags=["--fresh"])
     tasks = cache.kept[RESULT]
     if batches is None:

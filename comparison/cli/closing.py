@@ -19,7 +19,7 @@ from comparison.surfaces.statements import word_unchecked
 from comparison.wording import percent, signed
 from reference.problem import builtin_scenes, example_scenes
 
-FIRST_SENTENCES = 8  # of the terminal after a level
+FIRST_SENTENCES = 8  # sentences that the terminal shows after a level
 FILMED = ("translational", "spatial")  # models that multibody.animate knows, by their keys
 LABELS = {
     "refused": "No answer",
@@ -70,7 +70,7 @@ def print_closing(console: Console, results: Results, options: Options, words: S
 
 
 def print_level(console: Console, results: Results, before: Results | None, level: StudyLevel, report: Path) -> None:
-    """What there is after a level that is not the last: the place of its report, and its first new sentences."""
+    """Print what there is after a level that is not the last: the place of its report, and its first new sentences."""
     console.print(f"{level.title.capitalize()}: {report / 'index.html'}", soft_wrap=True)
     known = set(_sentences(before)) if before else set()
     sentences = [sentence for sentence in _sentences(results) if sentence not in known]
@@ -85,7 +85,7 @@ def _sentences(results: Results) -> list[str]:
 
 
 def next_commands(results: Results, words: Sequence[str]) -> list[str]:
-    """What to type next: a film of the largest difference, and what a finer grid would cost."""
+    """Return what to type next: a film of the largest difference, and what a finer grid would cost."""
     lines = []
     filmed = [
         (headline, source)
@@ -110,7 +110,9 @@ def _film(headline: Headline, source: str) -> str:
 
 
 def _source(scene: SceneResult, words: Sequence[str]) -> str:
-    """How the scene is named on a command line, "" for one of a family and one whose loading the command changed."""
+    """
+    Return how the scene is named on a command line, "" for one of a family and one whose loading the command changed.
+    """
     if any(word.startswith("--amplitude") for word in words):
         return ""
     if scene.name in (*builtin_scenes(), *example_scenes()):

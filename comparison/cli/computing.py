@@ -29,7 +29,10 @@ from comparison.runner.task_results import TaskResults
 
 
 def run_facts(command: str, options: argparse.Namespace, words: Sequence[str], begin: float) -> dict[str, Any]:
-    """What is known of a run that ends now: command line, beginning, duration, workers, provenance; for a JSON file."""
+    """
+    Return what is known of a run that ends now: command line, beginning, duration, workers, provenance; for a JSON
+    file.
+    """
     seconds = time.monotonic() - begin
     return {
         "command": command_line(words, command),

@@ -36,7 +36,7 @@ class CompleteLevel:
 
     level: StudyLevel
     study: Study
-    tasks: Sequence[Task]  # of the surfaces
+    tasks: Sequence[Task]  # those of the surfaces
     surfaces: xr.Dataset
 
 
@@ -71,7 +71,9 @@ class Reports:
         self.seconds = 0.0
 
     def is_due(self, complete: CompleteLevel, runner: Runner) -> bool:
-        """Whether a level gets a report although others follow: not where an earlier run has computed all of it."""
+        """
+        Return whether a level gets a report although others follow: not where an earlier run has computed all of it.
+        """
         new = any(task.key not in runner.results.stored for task in complete.tasks)
         return new and time.monotonic() - self._last >= PATIENCE
 
@@ -137,7 +139,7 @@ class Reports:
 
 
 def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
-    """What solvers reported, once for each scene, model and message."""
+    """Return what solvers reported, once for each scene, model and message."""
     texts = {
         (task.argument.scene.name, f"{task.stage}: {result.error_message}")
         for task, result in zip(tasks, batch_results(tasks, results))
@@ -147,7 +149,7 @@ def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
 
 
 def _load(field: ResultField[Any], out: Path) -> Any:
-    """What another command left beside the report; None for a file that has come since and cannot be read."""
+    """Return what another command left beside the report; None for a file that has come since and cannot be read."""
     assert field.load is not None
     try:
         return field.load(out)

@@ -35,7 +35,7 @@ def requirement() -> str:
 
 
 def _pip_record() -> dict[str, Any]:
-    """What pip has recorded of the place from which it installed the package (PEP 610); empty for an index."""
+    """Return what pip has recorded of the place from which it installed the package (PEP 610); empty for an index."""
     try:
         about: dict[str, Any] = json.loads(distribution(NAME).read_text("direct_url.json") or "{}")
     except PackageNotFoundError:
@@ -44,7 +44,7 @@ def _pip_record() -> dict[str, Any]:
 
 
 def _commit_elsewhere(folder: Path) -> str:
-    """Where others find the commit of a checkout; empty if nobody does."""
+    """Return where others find the commit of a checkout; empty if nobody does."""
     try:
         commit = git(folder, "rev-parse", "HEAD")
         if not git(folder, "branch", "--remotes", "--contains", commit):

@@ -35,7 +35,7 @@ class Command(NamedTuple):
     purpose: str
 
 
-COMMANDS = {  # of no feature
+COMMANDS = {  # those that belong to no feature
     "run": Command("comparison.run", "compare the equations with Exudyn and write the report"),
     "init": Command("comparison.cli.init", "a directory with a study to start from"),
     "animate": Command("multibody.animate", "a film of the motion"),

@@ -20,11 +20,11 @@ from comparison.surfaces.surfaces import surface_tasks
 from reference.problem import Scene
 from reference.problem.plausibility import implausible_values
 
-NAMES = 4  # of a list on the terminal
+NAMES = 4  # names of a list that the terminal shows
 
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
-    """What would be computed, and roughly how long it would take."""
+    """Print what would be computed, and roughly how long it would take."""
     for reason, of in _refusals(study).items():
         console.print(f"{_list_names(of)}: {reason}.", soft_wrap=True)
     table = new_table("file", "scenes", "model", "phase pairs", "computed", "tolerance")
@@ -105,7 +105,7 @@ def _refusals(study: Study) -> dict[str, list[str]]:
 
 
 def _print_reductions(console: Console, study: Study) -> None:
-    """What the scenes do not require."""
+    """Print what the scenes do not require."""
     if study.full:
         console.print("Every phase pair and every model is computed in full (--full).")
     elif rows := reductions(study):

@@ -100,7 +100,7 @@ def _parts(spec: str) -> tuple[str, str, str]:
 
 
 def _inspect_function(spec: str, path: str) -> dict[str, Any]:
-    """What is known of a function. Raises SceneError where it cannot be called."""
+    """Return what is known of a function. Raises SceneError where it cannot be called."""
     workers = Workers(1)
     try:
         fault, about = workers.start(partial(look_at, path), IMPORTING).result()

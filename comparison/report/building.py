@@ -76,7 +76,7 @@ def build_report(
 
 
 def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequence[BodyComparison]) -> dict[str, Any]:
-    """What the surfaces of a scene say."""
+    """Return what the surfaces of a scene say."""
     waterfalls = [waterfall(comparison) for comparison in comparisons]
     return {
         "name": scene.name,

@@ -25,7 +25,7 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class Findings:
-    """What a run found: by its study, in its surfaces, and by its features. families: of the study's scenes."""
+    """Findings of a run: by its study, in its surfaces, and by its features. families: of the study's scenes."""
 
     study: Study
     surfaces: xr.Dataset
@@ -118,5 +118,5 @@ class Feature:
 
     @property
     def choice(self) -> Selectable:
-        """What a selection must know of it."""
+        """Return what a selection must know of it."""
         return Selectable(self.key, self.on_request, self.of_the_paper, self.needs)

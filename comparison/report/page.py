@@ -57,7 +57,7 @@ def pages(report: Report) -> dict[str, str]:
 
 
 def is_drawn(bars: Waterfall) -> bool:
-    """Whether a bar, of the means or at the largest difference, is as long as a reader can see."""
+    """Return whether a bar, of the means or at the largest difference, is as long as a reader can see."""
     every = (*bars.bars, bars.total, *bars.largest.bars, bars.largest.total)
     return any(abs(bar.size) >= DRAWN for bar in every)
 

@@ -19,7 +19,7 @@ from reference.problem import Scene
 Rows = list[list[float | None]]
 
 DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
-LEVEL = 6  # of compression: the next one takes half as long again for 2 % less
+LEVEL = 6  # level of compression: the next one takes half as long again for 2 % less
 
 
 def page_data(report: Report) -> str:
@@ -63,7 +63,7 @@ def pack(content: bytes) -> str:
 
 
 def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[float]]]:
-    """Where |size| = uncertainty on the closed square, both (alpha1, alpha2): polylines of phases, rad."""
+    """Return where |size| = uncertainty on the closed square, both (alpha1, alpha2): polylines of phases, rad."""
     over = np.pad(np.abs(size) - uncertainty, ((0, 1), (0, 1)), mode="wrap")
     axis = np.append(phase, 2.0 * np.pi)
     lines = contourpy.contour_generator(axis, axis, np.ma.masked_invalid(over.T)).lines(0.0)
@@ -86,7 +86,7 @@ def _pair(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
 
 
 def _surface(report: Report, scene: Scene, model: Model) -> bool:
-    """Whether the values of a model are drawn as a surface as they are: what may need completing is not."""
+    """Return whether the values of a model are drawn as a surface as they are: what may need completing is not."""
     incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in report.completions)
     return model.side != "user" and not incomplete
 

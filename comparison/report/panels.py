@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 COLORS = ("#1f4e8c", "#b3541e", "#2a7f4f", "#7b3f98", "#8a6d00", "#37808c", "#b3124b", "#5b9bd5")
-DASHES = ("", "7 3", "2 2", "10 3 2 3", "14 4", "4 4")  # of curves that lie on each other: the later ones leave gaps
+DASHES = ("", "7 3", "2 2", "10 3 2 3", "14 4", "4 4")  # curves that lie on each other: the later ones leave gaps
 GRAYS = {"ink": "#222222", "gray": "0.5"}
 LEGEND_ROWS, LEGEND_ROW = 4, 11.5  # rows of a legend in one column; height of a row, points
 MARKERS = "os^Dv<>PX*"  # told apart without colors, too

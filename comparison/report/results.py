@@ -110,7 +110,7 @@ class Results(Part):
 
     @property
     def gate(self) -> str:
-        """Whether the acceptance limits hold, and what has none."""
+        """Return whether the acceptance limits hold, and what has none."""
         return word_gate(len(self.limits), len(self.broken), self.unchecked)
 
     @property
@@ -120,13 +120,13 @@ class Results(Part):
 
     @property
     def clauses(self) -> list[str]:
-        """What the features add to the statement on measurements."""
+        """Return what the features add to the statement on measurements."""
         said = [feature.clause(self) for feature in self.features if feature.clause]
         return [clause for clause in said if clause]
 
     @property
     def measurements(self) -> str:
-        """What measurements say of the models, in a clause."""
+        """Return what measurements say of the models, in a clause."""
         return "; ".join(self.clauses) or "this study has no measured peaks"
 
     @property

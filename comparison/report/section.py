@@ -62,6 +62,6 @@ class Section:
     shows: tuple[str, ...] = ()
 
     def present(self, results: Results) -> bool:
-        """Whether the section was asked for and the results hold any of what it shows."""
+        """Return whether the section was asked for and the results hold any of what it shows."""
         held = [getattr(results, name) is not None for name in self.shows]
         return self.name not in results.absent and (not held or any(held))

@@ -88,7 +88,7 @@ class Cache:
         return value
 
     def holds(self, key: Key) -> bool:
-        """Whether there is a file for it, whatever its state."""
+        """Return whether there is a file for it, whatever its state."""
         return (self.folder / key.name).exists()
 
     def put(self, key: Key, value: Any) -> None:
@@ -127,7 +127,7 @@ class Cache:
 
 
 def store_beside(out: Path) -> Path:
-    """Where the results of a report are kept."""
+    """Return where the results of a report are kept."""
     return out.with_name(f"{out.name}.tiles")
 
 
@@ -151,7 +151,7 @@ def refuse_foreign_store(out: Path) -> None:
 
 
 def faulty(result: Any) -> bool:
-    """Whether a result, or a part of it, names a fault."""
+    """Return whether a result, or a part of it, names a fault."""
     if isinstance(result, tuple | list):
         return any(map(faulty, result))
     return bool(getattr(result, "error_message", ""))
@@ -173,12 +173,12 @@ def _drop(group: Path) -> None:
 
 
 def _is_group(entry: os.DirEntry[str]) -> bool:
-    """Whether an entry of a store looks like a directory of results. What is removed is proved file by file."""
+    """Return whether an entry of a store looks like a directory of results. What is removed is proved file by file."""
     return entry.is_dir(follow_symlinks=False) and GROUP.fullmatch(entry.name) is not None
 
 
 def _is_result(entry: os.DirEntry[str]) -> bool:
-    """Whether a file is a result, or what a killed run left of one: by its first bytes."""
+    """Return whether a file is a result, or what a killed run left of one: by its first bytes."""
     if not entry.is_file(follow_symlinks=False):
         return False
     with suppress(OSError), open(entry.path, "rb") as stream:

@@ -15,11 +15,11 @@ class MappedAnalysis(Analysis[Result]):
     """One task for each argument, a tuple that begins with its scene."""
 
     function: ClassVar[Any]  # runs inside a worker process
-    without_value: ClassVar[Any]  # of an argument and its result, in place of what its task did not return
+    without_value: ClassVar[Any]  # makes the value of a task that returned none, from its argument and result
     needs_compiled_reference: ClassVar[bool] = True
 
     def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterable[tuple[Any, ...]]:
-        """What the function is called with."""
+        """Return what the function is called with."""
         raise NotImplementedError
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
@@ -28,9 +28,9 @@ class MappedAnalysis(Analysis[Result]):
         return [Task(self.function, each, self.stage, 1.0, each[0], compiled) for each in arguments]
 
     def values(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Any]:
-        """What the tasks returned, in the order of the arguments."""
+        """Return what the tasks returned, in the order of the arguments."""
         return [results.value(task, self.without_value) for task in self.tasks(study, surfaces)]
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Any:
-        """All that the tasks listed; None if they listed nothing."""
+        """Return all that the tasks listed; None if they listed nothing."""
         return [each for listed in self.values(study, surfaces, results) for each in listed] or None

@@ -79,7 +79,7 @@ def destination(path: Path, option: str = "--out") -> Path:
             raise refusal("cannot be written: Not a directory")
     except UnicodeError:
         raise refusal("is not text in UTF-8: give a path that is") from None
-    except RuntimeError:  # of older versions of Python
+    except RuntimeError:  # raised by older versions of Python
         raise refusal("is a symbolic link that leads back to itself: give another directory") from None
     except OSError as error:
         raise refusal(f"cannot be used: {error.strerror}: give another directory") from None
@@ -218,7 +218,7 @@ def files_written_by(*writers: Callable[[Path], object]) -> dict[str, bytes]:
 
 
 def foreign(folder: Path) -> list[str]:
-    """What is in a folder and is not the study's own, as paths below it, sorted. Raises OSError."""
+    """Return what is in a folder and is not the study's own, as paths below it, sorted. Raises OSError."""
     manifest = read_manifest(folder)
     if not manifest:
         return sorted(os.listdir(folder))
@@ -228,7 +228,7 @@ def foreign(folder: Path) -> list[str]:
         name = path.relative_to(folder).as_posix()
         if name != MANIFEST and not (name in folders if is_folder else _is_own(path, manifest.get(name))):
             foreign_files.append(name)
-    # of a folder that is not ours the files in it say more
+    # the files in a folder that is not ours say more than its name
     return sorted(name for name in foreign_files if not any(other.startswith(f"{name}/") for other in foreign_files))
 
 
@@ -281,7 +281,7 @@ def _install_report(new: Path, place: Path, say: Callable[[str], None]) -> Path:
 
 
 def _in_the_way(place: Path) -> str:
-    """What keeps a report from its place, in words; empty if nothing does."""
+    """Return what keeps a report from its place, in words; empty if nothing does."""
     if not os.path.lexists(place):
         return ""
     if place.is_symlink() or not place.is_dir():
@@ -294,7 +294,11 @@ def _in_the_way(place: Path) -> str:
 
 
 def _walk_folder(folder: Path) -> Iterator[tuple[Path, bool]]:
-    """All that is below a folder, and whether it is a folder itself, these before what they hold. Raises OSError."""
+    """
+    Return all that is below a folder, and whether it is a folder itself, these before what they hold.
+
+    Raises OSError.
+    """
     for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
         is_folder = entry.is_dir(follow_symlinks=False)
         yield Path(entry.path), is_folder

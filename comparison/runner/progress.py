@@ -56,7 +56,7 @@ class Display:
 
     @property
     def text(self) -> str:
-        """What is done last, and the time left."""
+        """Return what is done last, and the time left."""
         return f"{self._what}, about {self.left:.0f} s left"
 
     @property

@@ -180,7 +180,7 @@ def _start_task(task: Task, executor: Executor) -> Future[TaskResult]:
 
 
 def _error(future: Future[TaskResult]) -> BaseException | None:
-    """What the task raised, None if nothing."""
+    """Return what the task raised, None if nothing."""
     try:
         return future.exception()
     except CancelledError as cancelled:

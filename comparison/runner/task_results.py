@@ -12,7 +12,7 @@ from reference.problem import Outcome
 
 @dataclass
 class Part:
-    """What one stage cost: its tasks, how many of them an earlier run had stored, s of processor time of all."""
+    """Cost of one stage: its tasks, how many of them an earlier run had stored, s of processor time of all."""
 
     tasks: int = 0
     stored: int = 0
@@ -47,7 +47,9 @@ class TaskResults:
         return task.key in self._results
 
     def value(self, task: Task, on_failure: Callable[[Any, TaskResult], Any]) -> Any:
-        """What a task returned; of one without a value what `on_failure` makes of its argument and its result."""
+        """
+        Return what a task returned; of one without a value what `on_failure` makes of its argument and its result.
+        """
         result = self[task]
         failed = result.value is None and result.outcome != Outcome.OK
         return on_failure(task.argument, result) if failed else result.value
@@ -57,7 +59,7 @@ class TaskResults:
         return [task for task in tasks if not (task.key in self._results or self._read(task))]
 
     def holds(self, task: Task) -> bool:
-        """Whether the cache has a file for the task, whatever its state."""
+        """Return whether the cache has a file for the task, whatever its state."""
         return self.cache is not None and not self._fresh and self.cache.holds(task.key)
 
     def put(self, task: Task, result: TaskResult) -> None:

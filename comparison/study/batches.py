@@ -15,7 +15,7 @@ from comparison.wording import exception_line
 from reference.problem import Outcome, Scene
 
 LARGEST_MU = 1e12  # far above mu of any building, and so small that no sum of squares of mu or of a ratio overflows
-USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET  # of our own models: mu counts with the larger error that is stated
+USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET  # our own models: mu counts with the larger error that is stated
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,9 @@ class Batch:
     settings: Mapping[str, object]
     first: int
     phases: Array
-    level: int = 0  # of the nested grids, the first that has these phases
+    level: int = 0  # the first of the nested grids that has these phases
     timeout: float | None = None  # most processor time of the call, s
-    group: str = ""  # of the workers that it may use; of an engine of the user, whose error may be unknown
+    group: str = ""  # group of workers that it may use; of an engine of the user, whose error may be unknown
 
     @property
     def points(self) -> int:
@@ -39,11 +39,11 @@ class Batch:
 
     @property
     def question(self) -> dict[str, object]:
-        """What all batches of a surface have in common: not the name or title of the scene."""
+        """Return what all batches of a surface have in common: not the name or title of the scene."""
         return {"scene": self.scene.digest(), "model": self.amplification, "settings": self.settings}
 
     def identity(self) -> dict[str, object]:
-        """All that its numbers depend on besides the code."""
+        """Return all that its numbers depend on besides the code."""
         return {**self.question, "phases": self.phases}
 
     def halves(self) -> list[Batch]:
@@ -73,11 +73,11 @@ class Batch:
         return BatchResult(nothing, nothing.copy(), status, none, 0.0, error_message, none.copy())
 
     def accepts(self, result: BatchResult) -> bool:
-        """Whether a result fits the phase pairs and bodies, with numbers wherever it is ok."""
+        """Return whether a result fits the phase pairs and bodies, with numbers wherever it is ok."""
         return self.fits(result) and not self.ok_without_numbers(result.mu, result.error, result.status)
 
     def fits(self, result: BatchResult) -> bool:
-        """Whether a result has the shape of the phase pairs and bodies."""
+        """Return whether a result has the shape of the phase pairs and bodies."""
         points, plane = (self.points,), (self.points, len(self.scene.bodies))
         shapes = result.mu.shape, result.error.shape, result.instant.shape, result.displacement.shape
         return shapes == (plane, plane, points, points) and len(result.status) == self.points

@@ -10,7 +10,7 @@ from reference.problem import Scene
 
 COMPILING = 20.0  # s: the reference, on its first call on a machine
 STARTING, WRITING = 4.0, 4.0  # s: modules and workers; a report
-DURATION, BODIES = 20.0, 2  # of the scenes that the seconds of the models are for
+DURATION, BODIES = 20.0, 2  # s and number: the scenes that the seconds of the models are for
 
 
 def seconds_per_point(scene: Scene, model: Model) -> float:

@@ -19,17 +19,17 @@ SOFTENED = "softened-"  # begins the key of a model whose bars are softened
 
 
 def dry(scene: Scene) -> bool:
-    """Whether there is dry friction, which may be regularized."""
+    """Return whether there is dry friction, which may be regularized."""
     return scene.has_dry_friction
 
 
 def any_scene(scene: Scene) -> bool:
-    """Whether a model applies that applies to every scene."""
+    """Return whether a model applies that applies to every scene."""
     return True
 
 
 def smooth(scene: Scene) -> bool:
-    """Whether no friction is dry, so that both readings of (5.1) are the same."""
+    """Return whether no friction is dry, so that both readings of (5.1) are the same."""
     return not dry(scene)
 
 
@@ -39,7 +39,9 @@ def never(scene: Scene) -> bool:
 
 
 def _spatial_data(scene: Scene) -> dict[str, object]:
-    """What a scene says, by key, of where its supports are and how high and large its bodies; None if not stated."""
+    """
+    Return what a scene says, by key, of where its supports are and how high and large its bodies; None if not stated.
+    """
     isolator = scene.isolator
     data: dict[str, object] = {
         "isolator.supports": isolator.supports,
@@ -52,7 +54,7 @@ def _spatial_data(scene: Scene) -> dict[str, object]:
 
 
 def has_spatial_data(scene: Scene) -> bool:
-    """Whether the scene states all that the spatial model needs."""
+    """Return whether the scene states all that the spatial model needs."""
     return None not in _spatial_data(scene).values()
 
 
@@ -67,12 +69,12 @@ def why_not_spatial(scene: Scene) -> str:
 
 
 def with_unloaded_bars(scene: Scene) -> bool:
-    """Whether bars are stated without load in a scene that the spatial model cannot take."""
+    """Return whether bars are stated without load in a scene that the spatial model cannot take."""
     return scene.has_unloaded_bars and not has_spatial_data(scene)
 
 
 def with_unloaded_bars_in_space(scene: Scene) -> bool:
-    """Whether bars are stated without load in a scene that the spatial model can take."""
+    """Return whether bars are stated without load in a scene that the spatial model can take."""
     return scene.has_unloaded_bars and has_spatial_data(scene)
 
 
@@ -114,7 +116,7 @@ class Model:
 
     @property
     def is_spatial(self) -> bool:
-        """Whether bodies turn in it."""
+        """Return whether bodies turn in it."""
         return self.settings.get("model") == "spatial"
 
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:

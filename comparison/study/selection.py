@@ -55,11 +55,13 @@ class Selection:
         return f"on request; --also {analysis} makes it" if analysis in self.on_request else "not asked for"
 
     def without(self, analyses: Collection[str]) -> Selection:
-        """The same without these analyses, which follow later."""
+        """Return the selection without these analyses, which follow later."""
         return replace(self, later=tuple(analyses))
 
     def has(self, analysis: str, scene: str) -> bool:
-        """Whether the analysis is made of the scene; what cannot be selected, such as a step towards others, is."""
+        """
+        Return whether the analysis is made of the scene; what cannot be selected, such as a step towards others, is.
+        """
         usual = [each.name for each in self.analyses if not each.on_request]
         return analysis not in self.later and (
             analysis not in self.names or analysis in self.by_scene.get(scene, usual)

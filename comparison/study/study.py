@@ -46,7 +46,7 @@ def nested_grids(grid: int) -> tuple[int, ...]:
 
 def levels(grid: int) -> NDArray[np.intp]:
     """
-    Which of `nested_grids` is the first with each phase of an axis.
+    Return which of `nested_grids` is the first with each phase of an axis.
 
     >>> levels(8).tolist()
     [0, 2, 1, 2, 0, 2, 1, 2]
@@ -122,7 +122,9 @@ class Study:
         return self.grid if scene is not None and scene.recorded else self.strides[model.key]
 
     def axis(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
-        """Which of the `grid` phases of either axis a model computes, in a scene with phases if none is given."""
+        """
+        Return which of the `grid` phases of either axis a model computes, in a scene with phases if none is given.
+        """
         return np.arange(0, self.grid, self.stride(model, scene))
 
     def points(self, model: Model, scene: Scene | None = None) -> int:

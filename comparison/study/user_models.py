@@ -34,7 +34,7 @@ MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call 
 TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
 ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it
 OURS, INSTALLED = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
-UNKNOWN_ERROR = np.nan  # of an engine that states none
+UNKNOWN_ERROR = np.nan  # time limit, s, of an engine that states none
 LONGEST_STATUS = 60  # letters of a status of its own words that a message repeats
 
 
@@ -46,7 +46,9 @@ class EngineAnswer(Amplification):
 
 
 def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> EngineAnswer:
-    """What a supplied function answers, in the form of `multibody.amplification`, asked with the settings it names."""
+    """
+    Return what a supplied function answers, in the form of `multibody.amplification`, asked with the settings it names.
+    """
     with quiet():
         function = user_function(engine["function"])
         begin = _processor_time()
@@ -81,7 +83,7 @@ def note_line(error: BaseException, file: Path | None) -> None:
 def _file_of(function: Callable[..., Any]) -> Path | None:
     try:
         return Path(inspect.getfile(inspect.unwrap(function)))
-    except TypeError:  # of a compiled function, or an object that can be called
+    except TypeError:  # a compiled function, or an object that can be called
         return None
 
 
@@ -121,13 +123,15 @@ def user_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit: fl
 
 
 def engine_of(settings: Mapping[str, Any]) -> Mapping[str, str]:
-    """What is known of the engine that settings are for: its function, what that takes, versions; empty for none."""
+    """
+    Return what is known of the engine that settings are for: its function, what that takes, versions; empty for none.
+    """
     engine: Mapping[str, str] = settings.get("engine", {})
     return engine
 
 
 def names_of(function: Callable[..., Any]) -> str:
-    """Which of ALWAYS_GIVEN a function takes, separated by spaces."""
+    """Return which of ALWAYS_GIVEN a function takes, separated by spaces."""
     return " ".join(_names_by(function, dict.fromkeys(ALWAYS_GIVEN)))
 
 

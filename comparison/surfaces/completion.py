@@ -37,7 +37,7 @@ MIN_SPATIAL_PER_AXIS = 9  # phases per axis: fewer of the spatial model are draw
 MIN_VALUES = 16  # phase pairs that an interpolation is made from
 CONFIDENCE = 0.95
 HELD_OUT = 59  # phase pairs of a model and scene: 1 - 0.05^(1/59) = 5 %
-MAX_SHARE = 0.1  # of the phase pairs may be off by more than the stated error; fewer held-out values state nothing
+MAX_SHARE = 0.1  # largest share of the phase pairs that may be off by more than the stated error; fewer held-out values state nothing
 POINTS = 8  # phase pairs of one task
 CERTIFICATE = {  # what is stored of a completed surface
     "error": "largest relative error of `completed` at phase pairs that were computed and not used",
@@ -95,7 +95,7 @@ class Completion:
 
     @property
     def certificate(self) -> str:
-        """How far the surface is off, in words."""
+        """Return how far the surface is off, in words."""
         return (
             f"off by at most {100.0 * self.error:.2g} % at {self.held_out} held-out phase pairs, where the model's own "
             f"error is up to {100.0 * self.model_error:.2g} %; with {100.0 * self.confidence:g} % confidence at most "
@@ -126,7 +126,7 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
         found = {}
         for scene, model, tasks in self._list_tasks(study):
             if not all(task in results for task in tasks):
-                continue  # of a level of the study that holds out no phase pairs
+                continue  # a level of the study that holds out no phase pairs
             parts = [results.value(task, _without_value) for task in tasks]
             mu, error = (np.concatenate([getattr(part, name) for part in parts]) for name in ("mu", "error"))
             found[scene.name, model.key] = HeldOut(mu, error)

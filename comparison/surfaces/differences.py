@@ -81,12 +81,14 @@ class Difference(DifferenceStatistics):
 
     @property
     def agrees(self) -> bool | None:
-        """Whether the models agree within their errors wherever both have a value; None where an error is unknown."""
+        """
+        Return whether the models agree within their errors wherever both have a value; None where an error is unknown.
+        """
         return None if math.isnan(self.ratio) else self.ratio <= AGREEMENT
 
     @property
     def mean_is_resolved(self) -> bool:
-        """Whether the mean exceeds its sampling error, and five times the numerical one."""
+        """Return whether the mean exceeds its sampling error, and five times the numerical one."""
         return abs(self.mean) > self.sampling_error and abs(self.mean) > RESOLVED * self.numerical_error
 
 

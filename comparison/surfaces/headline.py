@@ -14,7 +14,7 @@ from comparison.surfaces.surfaces import outcome_counts
 from comparison.surfaces.waterfall import NAN, Waterfall
 
 NAMED = 0.2  # share of the total: an effect above it is named as a cause; share of an effect: an interaction is stated
-BOTH_READINGS = "in both readings"  # of (5.1), which are the same where no friction is dry
+BOTH_READINGS = "in both readings"  # both readings of (5.1) are the same where no friction is dry
 # the same effect in another order: key of the pair in the chain; of the pair beside it, and what is different there
 ELSEWHERE = {
     "geometry": ("geometry-regularized", "under regularized friction"),
@@ -40,7 +40,7 @@ class Effect:
 
     @property
     def depends_on_order(self) -> bool:
-        """Whether the interaction exceeds a fifth of the effect."""
+        """Return whether the interaction exceeds a fifth of the effect."""
         return abs(self.interaction) > NAMED * abs(self.mean)
 
 

@@ -55,7 +55,7 @@ class Unanswered:
 
     @property
     def description(self) -> str:
-        """The same without the scene."""
+        """Return the same without the scene."""
         rest = "" if self.used else ". Comparisons leave this model out"
         return f"{self.title}: {self.where}{f': {self.why}' if self.why else ''}{rest}"
 
@@ -116,7 +116,7 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
 
 
 def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
-    """What an outcome of a model on a scene means, and what helps."""
+    """Return what an outcome of a model on a scene means, and what helps."""
     if model.side == "user" and outcome in (Outcome.SOLVER_FAILED, Outcome.TIME_LIMIT, Outcome.WORKER_DIED):
         return "see what the solvers reported"
     refused = ""

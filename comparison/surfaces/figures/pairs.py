@@ -26,7 +26,7 @@ SIGN_COLORS = "RdBu_r"
 TURN = (0.0, 2.0 * np.pi)
 Ticks = tuple[Sequence[float], Sequence[str]]
 QUARTER_TICKS: Ticks = ([0.0, np.pi / 2.0, np.pi, 1.5 * np.pi, 2.0 * np.pi], ["0", "π/2", "π", "3π/2", "2π"])
-PNG = {"compress_level": 3}  # of the dense surfaces: smaller than with the usual 6, in 0.6 of the time
+PNG = {"compress_level": 3}  # compression of the dense surfaces: smaller than with the usual 6, in 0.6 of the time
 
 
 def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: Pair) -> None:

@@ -14,7 +14,7 @@ from comparison.study.selection import Selection
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import figure_file
 
-SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
+SHOWN = ["mu", "error", "stride", "recorded"]  # variables of the surfaces that pictures are made of
 
 
 Files = tuple[tuple[str, bytes], ...]  # names and contents
