@@ -139,7 +139,7 @@ def edit_command_line(
 
     Examples
     --------
-    >>> edit_command_line(["--grid", "4", "--fresh", "--", "-a.toml"], ["--plan"], flags=["--fresh"], options=["--grid"])
+    >>> edit_command_line(["--grid", "4", "--", "-a.toml"], ["--plan"], options=["--grid"])
     ['--plan', '--', '-a.toml']
     """
     end = words.index("--") if "--" in words else len(words)

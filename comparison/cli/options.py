@@ -23,7 +23,7 @@ DEFAULT_GRID = 48  # phases per axis of the equations; the engine's models have 
 
 @dataclass(frozen=True)
 class Options:
-    """What the command line asks for, valid."""
+    """Valid options of the command line."""
 
     families: tuple[Family, ...]
     grid: int

@@ -49,7 +49,7 @@ class WorkPart(Part):
 
 
 class Run(Part):
-    """How the report was made."""
+    """Facts of the run that made the report."""
 
     command: Text = Field(description="the command line")
     began: str = Field(description="date and time, UTC")

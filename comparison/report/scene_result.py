@@ -16,7 +16,7 @@ from reference.problem.acceptance import Acceptance
 
 
 class ModelOutcome(Part):
-    """What one model did in one scene."""
+    """Outcome of one model in one scene."""
 
     phases_per_axis: int = Field(description="values of alpha1, and of alpha2")
     points: int = Field(description="phase pairs that the model was asked for")

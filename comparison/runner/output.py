@@ -128,7 +128,7 @@ def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
 
 
 @dataclass
-class Report:
+class StagedReport:
     """A report that is being written into `folder`, and where it goes."""
 
     folder: Path
@@ -136,7 +136,7 @@ class Report:
 
 
 @contextmanager
-def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterator[Report]:
+def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterator[StagedReport]:
     """
     A new folder to write a report into; if the block ends without exception its files go to `out`, each whole.
 
@@ -148,12 +148,10 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
     made = make_parents(place.parent)
     try:
         with staging_directory(place) as staging_folder:
-            report = Report(staging_folder / NEW, place)
+            report = StagedReport(staging_folder / NEW, place)
             yield report
-            with (
-                hold_lock(place.parent),
-                ThreadPoolExecutor(1) as mover,
-            ):  # what interrupts this thread interrupts no move
+            # a thread of its own: what interrupts this one interrupts no move
+            with hold_lock(place.parent), ThreadPoolExecutor(1) as mover:
                 report.place = mover.submit(_install_report, report.folder, place, say).result()
     except BaseException:
         with suppress(OSError):

@@ -11,7 +11,7 @@ from reference.problem import Outcome
 
 
 @dataclass
-class Part:
+class StageCost:
     """Cost of one stage: its tasks, how many of them an earlier run had stored, s of processor time of all."""
 
     tasks: int = 0
@@ -37,7 +37,7 @@ class TaskResults:
     def __init__(self, cache: Cache | None = None, fresh: bool = False) -> None:
         self.cache, self._fresh = cache, fresh
         self._results: dict[Key, TaskResult] = {}
-        self.parts: dict[str, Part] = defaultdict(Part)
+        self.parts: dict[str, StageCost] = defaultdict(StageCost)
         self.stored: set[Key] = set()
 
     def __getitem__(self, task: Task) -> TaskResult:

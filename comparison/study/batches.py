@@ -90,7 +90,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """What a batch gave, as `reference.problem.Amplification`; error_message: what the solver reported, or ""."""
+    """Result of a batch, as `reference.problem.Amplification`; error_message: what the solver reported, or ""."""
 
     mu: Array
     error: Array

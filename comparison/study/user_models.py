@@ -40,7 +40,7 @@ LONGEST_STATUS = 60  # letters of a status of its own words that a message repea
 
 @dataclass(frozen=True)
 class EngineAnswer(Amplification):
-    """What a user-supplied engine answers. error_message: statuses in its own words; "" without any."""
+    """Answer of a user-supplied engine. error_message: statuses in its own words; "" without any."""
 
     error_message: str = ""
 

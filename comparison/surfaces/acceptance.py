@@ -22,7 +22,7 @@ NAN = float("nan")
 
 @result
 class Breach:
-    """Where an acceptance limit is broken."""
+    """One place where an acceptance limit is broken."""
 
     body: Annotated[int, "number of the body; 0 where the limit is of the scene"]
     found: Annotated[Number, "value that exceeds the limit; null without one"]

@@ -37,7 +37,9 @@ MIN_SPATIAL_PER_AXIS = 9  # phases per axis: fewer of the spatial model are draw
 MIN_VALUES = 16  # phase pairs that an interpolation is made from
 CONFIDENCE = 0.95
 HELD_OUT = 59  # phase pairs of a model and scene: 1 - 0.05^(1/59) = 5 %
-MAX_SHARE = 0.1  # largest share of the phase pairs that may be off by more than the stated error; fewer held-out values state nothing
+# Largest share of the phase pairs that may be off by more than the stated error. With fewer held-out values nothing is
+# stated.
+MAX_SHARE = 0.1
 POINTS = 8  # phase pairs of one task
 CERTIFICATE = {  # what is stored of a completed surface
     "error": "largest relative error of `completed` at phase pairs that were computed and not used",

@@ -16,7 +16,7 @@ AGREEMENT = 2.0  # largest |D| in units of u_D of two models that agree: beyond 
 
 @result
 class DifferenceStatistics:
-    """How large the difference of two models is in one body, over the phase pairs where both have a value."""
+    """Sizes of the difference of two models in one body, over the phase pairs where both have a value."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
