@@ -25,7 +25,7 @@ SUPREMA = {"geometry": "geometry-supremum"}  # the effect of the chain, and the 
 
 @result
 class Effect:
-    """Share of mu of a body that one step of the chain of models adds in the mean, and what it adds in another order."""
+    """Share of mu of a body that one step of the chain adds in the mean, and what it adds in another order."""
 
     effect: Annotated[str, "name of the effect"]
     model: Annotated[str, "key of the model that has it, the one before in the chain has not"]

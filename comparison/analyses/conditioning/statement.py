@@ -27,8 +27,8 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     pairs = f"{curve.grid} × {curve.grid} phases"
     integrated, deep, deepest = (_written(*_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
     values = (
-        f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} where speeds above "
-        f"{speed_text(DEFAULT_V_C)} m/s count (as integrated), {deep} above {speed_text(DEEP)} m/s, "
+        f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} where speeds "
+        f"above {speed_text(DEFAULT_V_C)} m/s count (as integrated), {deep} above {speed_text(DEEP)} m/s, "
         f"{deepest} above {speed_text(DEEPEST)} m/s (mean of {pairs})"
     )
     if abs(size) >= ILL and abs(size) > error:
