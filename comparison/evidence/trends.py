@@ -20,7 +20,7 @@ NONE: Array = np.empty((0, 1))  # sizes and errors where nothing has a value
 KNOWN = 1.0 / RESOLVED  # largest error of a value that enters the fit, as its fraction
 SETTLED = 0.25  # largest uncertainty of an exponent that says something
 SLOW = 0.3  # exponent below which a difference is no smaller at any value in use
-AGREES = 0.15  # of an exponent with its theory: the largest parameter is not yet in the asymptotic range
+AGREES = 0.15  # allowed distance of an exponent from theory: the largest parameter is not yet in the asymptotic range
 
 
 class Slope(NamedTuple):

@@ -17,7 +17,7 @@ NO_EFFECT = "no effect by symmetry"
 Base = Literal["the translational model", "the stated spatial model"]
 TRANSLATIONAL: Base = "the translational model"
 STATED: Base = "the stated spatial model"
-SHARE = WITHIN[0]  # of mu_i: a larger change shows an assumption false
+SHARE = WITHIN[0]  # change of mu_i: a larger change shows an assumption false
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
             "with bodies and links turned by up to {holds:.2g} rad {sense}", "no longer by {fails:.2g} rad",
             "the largest tried"),
 }  # fmt: skip
-# of a line of variations: where nothing holds; where only its zero holds; what holds; what does not; where all holds
+# ends of a line of variations: where nothing holds; where only zero holds; what holds; what does not; where all holds
 
 
 def describe_range(validity: ValidityRange) -> str:

@@ -26,7 +26,7 @@ from comparison.study.models import Model
 from reference.problem import Scene, SceneError, untilted
 
 DURATION = 6.0  # s: the loading is strongest in its first seconds
-WITHIN = (0.01, 0.05)  # of mu_i
+WITHIN = (0.01, 0.05)  # limits on the change of mu_i
 CLOSE_ENOUGH = 0.2 * WITHIN[0]  # relative error of mu_i that says whether it stays within: no smaller one is asked for
 DIRECTION_PHASES = ((2.0, 0.7),)  # rad: directions are told apart at one phase pair
 DIRECTION_V_REG = 1e-2  # m/s: ten times that of the study, at a third of its cost; which direction is worst is the same

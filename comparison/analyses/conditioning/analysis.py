@@ -34,7 +34,7 @@ MAX_GRID = 16  # phases per axis of the small equations
 SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # v_c, m/s
 REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # v_reg, m/s
 FEW = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])  # rad, for the engine: no two related by a symmetry
-FEW_PERIODS = 3.0  # of the slower harmonic: the loading is strongest in them
+FEW_PERIODS = 3.0  # periods of the slower harmonic: the loading is strongest in them
 REFERENCE_TOLERANCE, ENGINE_TOLERANCE = 1e-6, 1e-3
 
 NOTHING = (*[np.nan] * 4, (np.nan, np.nan), np.nan, np.nan)  # statistics at a speed without an answer

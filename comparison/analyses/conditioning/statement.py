@@ -8,7 +8,7 @@ from comparison.wording import difference
 from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C
 
 DEEP, DEEPEST = 1e-6, 1e-12  # m/s: below what any instrument, and below what any computation, sees of a slide
-ILL = 1e-3  # of mu below DEEP: more than the engine's tolerance
+ILL = 1e-3  # change of mu below DEEP: more than the engine's tolerance
 IN_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}
 
 

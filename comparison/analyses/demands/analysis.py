@@ -26,7 +26,7 @@ from reference.measures.peak_demands import PER_BODY, QUANTITIES, demands_of_mot
 from reference.problem import Scene, phase_axis, phase_grid
 
 BATCH = {"reference": 32, "engine": 4}  # motions of one task: about two seconds
-PREFIX = "demand_"  # of a demand in surfaces.nc
+PREFIX = "demand_"  # name of a demand in surfaces.nc
 
 # scene, model, relative error asked, phases (M, 2), rad
 Arguments = tuple[Scene, Model, float, Array]

@@ -30,7 +30,7 @@ MEDIAN = FRACTILES.index(0.5)
 SMALLEST = ("contact_force_min", "support_force_min")  # demands of which the smallest value is the worst
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # steps of which fill an interval evenly
 REST = (0.0, 0.0)  # a record has no phases
-SECONDS_PER_KNOT = {"reference": 8e-5, "engine": 1e-3, "spatial": 7e-3}  # of processor time, for six bodies
+SECONDS_PER_KNOT = {"reference": 8e-5, "engine": 1e-3, "spatial": 7e-3}  # s of processor time, for six bodies
 LIMIT = 900.0  # s of processor time of one motion
 TOLERANCE = 1e-2  # asked of the engine's largest accelerations: motions differ by far more
 
@@ -43,10 +43,10 @@ class Member:
 
     structure: str  # file, and the values that run in it beside motion and scale
     motion: str
-    scale: float  # of the ensemble; a factor of the motion itself comes on top
+    scale: float  # scale of the ensemble; a factor of the motion itself comes on top
     scene: Scene
     place: int = 0  # among the members
-    factor: float = 1.0  # of the motion, to a target spectrum
+    factor: float = 1.0  # factor of the motion, to a target spectrum
 
 
 @dataclass(frozen=True)

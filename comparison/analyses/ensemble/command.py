@@ -130,7 +130,7 @@ def asked_family(options: argparse.Namespace, source: str) -> Family:
 
 
 def how_paired(suite: str | None) -> str:
-    """How the components of .AT2 files were found; "" for another suite."""
+    """Return how the components of .AT2 files were found; "" for another suite."""
     if suite is None or ":" in suite:
         return ""
     motions = suite_files(suite, Path())
@@ -192,7 +192,7 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
 
 
 def missing_sentences(rows: Sequence[dict[str, Any]], result: EnsembleResult, structure: str) -> list[str]:
-    """Which motions of a structure lack which demands at the largest scale, and why."""
+    """Return which motions of a structure lack which demands at the largest scale, and why."""
     lacking: dict[tuple[str, int], list[str]] = {}
     for row in rows:
         for reason in row["stripe"].reasons.items():

@@ -31,8 +31,8 @@ SHOWN = ("displacement", "residual", "base_shear", "uplift", "support_force_max"
 OF_BODY = {"acceleration": "acceleration of body {}", "drift": "drift below body {}", "torsion": "rotation of body {}"}
 NAMED = 6  # motions of the engine that are named one by one
 PERIOD = {"title": "period, s", "log": True}  # an axis
-UNSEEN = 5e-5  # of a value: a smaller error is not seen in four digits
-WIDTH = 0.3  # of a strip, in steps from one structure to the next
+UNSEEN = 5e-5  # share of a value: a smaller error is not seen in four digits
+WIDTH = 0.3  # width of a strip, in steps from one structure to the next
 READ = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "J": ("kJ", 1e-3), "rad": ("mrad", 1e3), "m/s^2": ("g", 1.0 / GRAVITY)}
 
 
@@ -75,7 +75,7 @@ def heading(ensemble: EnsembleResult, structure: Structure, scale: float) -> str
 
 
 def labels(ensemble: EnsembleResult) -> dict[str, str]:
-    """What tells the structures apart, by their names: of those of one file the values in which they differ."""
+    """Return what tells the structures apart, by their names: of those of one file the values in which they differ."""
     names = [each.name for each in ensemble.structures]
     files, values = zip(*(name.rstrip("]").partition("[")[::2] for name in names))
     parts = [re.split(r", |\+(?!\d)", text) for text in values]
@@ -174,7 +174,7 @@ def _spectra(ensemble: EnsembleResult) -> list[Panel]:
 
 
 def target_sentence(target: Target) -> str:
-    """What the motions are scaled to."""
+    """Return what the motions are scaled to."""
     between = f"from {target.low:.3g} to {target.high:.3g} s, in the logarithm, at 5 % damping"
     return f"Scale 1 is that of the target spectrum: least squares over periods {between}."
 
@@ -204,7 +204,7 @@ def largest_differences(ensemble: EnsembleResult) -> list[tuple[str, float | Non
 
 
 def agreement_sentence(ensemble: EnsembleResult) -> str:
-    """How closely both codes agree under the same friction law."""
+    """Return how closely both codes agree under the same friction law."""
     engine = ensemble.engine
     ran = ", ".join(
         dict.fromkeys(f"{point.get('motion', point['scene'])} ({point['status']})" for point in engine.points[:NAMED])

@@ -166,17 +166,17 @@ class EnsembleResult:
     target: Annotated[Target | None, "spectrum to which the motions are scaled; null without --target"] = None
 
     def stripes_of(self, structure: str, quantity: str) -> list[Stripe]:
-        """Of one demand of the isolator over the scales, by the equations, or else by the engine."""
+        """Return the stripes of one demand of the isolator over the scales, by the equations, or else by the engine."""
         own = [each for each in self.stripes if (each.structure, each.quantity) == (structure, quantity)]
         return [each for each in own if each.model == EXACT.key] or own
 
     def profile(self, structure: str, quantity: str) -> list[Stripe]:
-        """Of one demand of every body at the largest scale, by the equations."""
+        """Return the profile of one demand of every body at the largest scale, by the equations."""
         asked = structure, quantity, EXACT.key, max(self.scales)
         return [each for each in self.stripes if (each.structure, each.quantity, each.model, each.scale) == asked]
 
     def curves_of(self, structure: str, quantity: str) -> tuple[list[Curve], list[Curve]]:
-        """Of one demand of the isolator, by the equations and by the engine."""
+        """Return the curves of one demand of the isolator, by the equations and by the engine."""
         own = [each for each in self.curves if (each.structure, each.quantity) == (structure, quantity)]
         return [each for each in own if each.model == EXACT.key], [each for each in own if each.model != EXACT.key]
 

@@ -19,7 +19,7 @@ from comparison.surfaces.waterfall import NAN, Waterfall, WaterfallBar
 from reference.measures.peak_demands import list_demands
 from reference.problem import Family, Scene
 
-if TYPE_CHECKING:  # of what other features found, where the study has them
+if TYPE_CHECKING:  # types of what other features found, where the study has them
     from comparison.analyses.demands.analysis import DemandStatistics
     from comparison.analyses.motions.analysis import StoredMotion
 

@@ -24,7 +24,7 @@ from comparison.surfaces.waterfall import PHASES
 from comparison.wording import MAX_NAMES
 
 MOTION = "excitation.record.motion"  # a number that no axis has: motions are named
-DECADES = 30.0  # of its largest over its smallest value: beyond it the axis is logarithmic
+DECADES = 30.0  # ratio of its largest to its smallest value: beyond it the axis is logarithmic
 
 
 class FamilyResult(Part):
@@ -49,7 +49,7 @@ class FamilyResult(Part):
 
 
 def family_results(findings: Findings, scenes: Sequence[SceneResult]) -> list[FamilyResult] | None:
-    """Of every family of the study; None without any."""
+    """Return the results of every family of the study; None without any."""
     statistics = {scene.name: getattr(scene, "demand_statistics", []) for scene in scenes}
     motions, found = findings.found.get("motions") or [], []
     for family in findings.families:

@@ -103,7 +103,7 @@ def phases_of(peak: Measured) -> tuple[float, float]:
 
 
 def _asked(scene: Scene, phases: tuple[float, float], model: Model) -> list[Asked]:
-    """What the test measured; of a model that reads the same motion otherwise mu alone."""
+    """Return what the test measured; of a model that reads the same motion otherwise mu alone."""
     return [
         (peak.quantity, peak.body or 0)
         for peak in scene.measured or ()

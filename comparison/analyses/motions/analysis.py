@@ -18,8 +18,8 @@ from reference.measures.demands import ANSWERED
 from reference.problem import Outcome, Scene, Trajectory
 from reference.support.build_cache import cache_on_disk
 
-SHARE = 0.003  # of the swing of a component: what a decimated motion may be off by
-MIN_SWING = 0.01  # of its largest value: a component that changes less is as good as constant
+SHARE = 0.003  # share of the swing of a component: what a decimated motion may be off by
+MIN_SWING = 0.01  # share of its largest value: a component that changes less is as good as constant
 SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
 
 
@@ -119,7 +119,7 @@ class StoredMotion:
                 raise ValueError(f"{self.time.shape} instants of {name} {values.shape}")
 
     def blocks(self) -> dict[str, Array]:
-        """What the motion has, (T, C) each, by name; "time" comes first."""
+        """Return what the motion has, (T, C) each, by name; "time" comes first."""
         names = ("time", "position", "acceleration", "contact_force", "isolator_force", "support_force", "yaw")
         arrays = {name: np.asarray(getattr(self, name)) for name in names}
         return {name: values.reshape(len(values), -1) for name, values in arrays.items() if values.size}
@@ -129,7 +129,9 @@ Arguments = tuple[Scene, Model, float, Place, tuple[float, float]]
 
 
 def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Place, set[str]]:
-    """Where the difference of each body is largest, and an even spread; with the engine's models that move there."""
+    """
+    Return where the difference of each body is largest, and an even spread; with the engine's models that move there.
+    """
     engines = {model.key for model in shown_models(study, scene) if model.side == "engine"}
     if scene.recorded:
         return {Place(scene.name, 0, 0, ""): engines}

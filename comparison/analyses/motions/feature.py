@@ -51,7 +51,7 @@ class _Motion(Part):
 
 
 def _kind(annotation: str) -> Any:
-    """Of a field of `Demands`: of the isolator, or of every body; null in a model that lacks it."""
+    """Return the type of a field of `Demands`: of the isolator, or of every body; null in a model that lacks it."""
     kind: Any = list[UncertainNumber] if annotation.startswith("tuple") else UncertainNumber
     return kind | None if annotation.endswith("None") else kind
 
@@ -72,7 +72,7 @@ MotionDemands: Any = create_model("MotionDemands", __base__=_Motion, __doc__=_Mo
 
 
 def _demands(findings: Findings, scene: Scene) -> list[MotionDemands]:
-    """Of every stored motion that was computed."""
+    """Return the demands of every stored motion that was computed."""
     alpha1, alpha2 = (findings.surfaces[name].values for name in ("alpha1", "alpha2"))
     motions: Sequence[StoredMotion] = findings.found.get(Motions.key) or []
     listed = []

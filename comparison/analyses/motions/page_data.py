@@ -48,9 +48,9 @@ from reference.problem import Scene
 
 Starts = dict[tuple[Place, str], int]
 
-ROUNDING = 7e-4  # of the swing of a column
-DIGITS = 4  # of a spectrum: a line on a screen shows no more
-TIME_ROUNDING = 1e-6  # of the duration
+ROUNDING = 7e-4  # share of the swing of a column
+DIGITS = 4  # digits of a spectrum: a line on a screen shows no more
+TIME_ROUNDING = 1e-6  # share of the duration
 
 
 def motion_numbers(report: Report) -> bytes:
@@ -108,7 +108,7 @@ def spectrum_axis(report: Report, scene: Scene) -> dict[str, Any]:
 
 def contact_geometry(scene: Scene) -> dict[str, Any]:
     """
-    Where the contact points are.
+    Return where the contact points are.
 
     lever: radius of the spheres over rho, null where the scene does not state it or is flat. supports: [x, y] of each
     from the center of mass of the platform at rest, m, null where the scene does not state them.
@@ -121,7 +121,7 @@ def contact_geometry(scene: Scene) -> dict[str, Any]:
 
 
 def _exponents(motion: StoredMotion) -> NDArray[np.int_]:
-    """Of the unit that each column is rounded to."""
+    """Return the exponents of the units that columns are rounded to."""
     values = _columns(motion)
     steps = ROUNDING * swing(values)
     steps[:1] = TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)
@@ -140,7 +140,7 @@ def _numbers(motion: StoredMotion) -> bytes:
 
 
 def starts_of(motions: Sequence[StoredMotion]) -> Starts:
-    """Where the first number of every motion stands among all of them."""
+    """Return where the first number of every motion stands among all of them."""
     sizes = [sum(block.size for block in motion.blocks().values()) for motion in motions]
     return {(motion.place, motion.model): last for motion, last in zip(motions, accumulate(sizes, initial=0))}
 

@@ -114,7 +114,7 @@ def _release() -> Case:
 
 
 def _coulomb_damping() -> Case:
-    stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # of the time: from 386 in/s^2 and 10 lb to a radius of 981 m
+    stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # time factor: from 386 in/s^2 and 10 lb to a radius of 981 m
     times = (0.09, 0.102, 0.183)
     return Case(
         title="ANSYS VM73: free vibration with Coulomb damping",
@@ -217,7 +217,7 @@ READ_TO = 3.0  # mm, from the published loops
 RADIUS = 2.2352  # m
 HEAVY = 6285710.0  # N, of the pendulum
 LASTING = 8.0  # s of 50: later displacements are smaller
-SAMPLES, STEP = 5002, 0.01  # of their input; the step in s, of all samples but the first
+SAMPLES, STEP = 5002, 0.01  # samples of their input; the step in s, of all samples but the first
 PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, of their input along x, y and z
 ROUNDED = 1e-3  # relative, by how much a copy of their input in other units or digits may be off
 LIMITS = (-432.0, 330.0, -197.0, 152.0)  # mm: smallest and largest along x, then along y

@@ -25,7 +25,7 @@ from comparison.runner.progress import wide_console
 from comparison.verdicts import NOT_COMPARED
 from reference.problem import SceneError
 
-DIGITS = 6  # of a number on the terminal
+DIGITS = 6  # digits of a number on the terminal
 SOLVERS = {model.trajectory for model in MODELS.values()}  # what the workers ask
 
 

@@ -14,7 +14,7 @@ from reference.problem import Trajectory
 
 PARTS = 16  # between two instants, for extremes and lengths
 ROUNDING = 1e-12  # relative, of the last instant
-STILL = 1e-3  # of the largest speed: slower turns are creep, not swings
+STILL = 1e-3  # share of the largest speed: slower turns are creep, not swings
 
 
 def positions_at(motion: Trajectory, times: ArrayLike) -> Array:
@@ -25,11 +25,11 @@ def positions_at(motion: Trajectory, times: ArrayLike) -> Array:
 
 
 def turning_points(motion: Trajectory) -> Array:
-    """Where the platform's velocity along x changes sign, m; at last where a swing ends in rest or creep."""
+    """Return where the platform's velocity along x changes sign, m; at last where a swing ends in rest or creep."""
     speed = motion.velocity[:, 0, 0]
     moving = np.flatnonzero(np.abs(speed) > STILL * np.abs(speed).max())
     sign = np.sign(speed[moving])
-    last = np.flatnonzero(np.diff(sign))  # of every swing but the last one, among the moving samples
+    last = np.flatnonzero(np.diff(sign))  # last sample of every swing but the last one, among the moving samples
     place = _along(motion, 0)
     turns = []
     for end, begin in [*zip(moving[last], moving[last + 1]), (moving[-1], len(speed) - 1)]:

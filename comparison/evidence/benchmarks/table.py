@@ -102,7 +102,7 @@ class Benchmarks:
         return count_verdicts(number.verdict for _, _, _, number in self.judged())
 
     def explained(self) -> dict[str, int]:
-        """How many of the numbers that are not met each explanation has, "" for those that have none."""
+        """Return how many of the numbers that are not met each explanation has, "" for those that have none."""
         found = [number.explanation for _, _, _, number in self.judged() if number.verdict == NOT_MET]
         return {why: found.count(why) for why in (FRICTION, MODEL, "")}
 
@@ -130,7 +130,7 @@ def verdict_line(table: Benchmarks) -> str:
 STORED = StoredFile(FILE, Benchmarks, "a table of benchmarks", "phase-resonance benchmarks")
 
 
-MOST_DIGITS = 7  # of a value
+MOST_DIGITS = 7  # digits of a value
 SHORT = (("sdnd104-1.5", 0), ("sdnd100", 2), ("frame", 0), ("den-hartog", 0), ("newmark", 0))  # name, and row
 
 

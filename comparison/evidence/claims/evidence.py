@@ -34,13 +34,13 @@ class Evidence:
     case: str = ""  # its name
 
     def flat(self, body: int) -> bool:
-        """Whether a surface varies by less than its errors, or so little that it shows no resonance."""
+        """Return whether a surface varies by less than its errors, or so little that it shows no resonance."""
         mu = self.mu[..., body - 1]
         return bool(np.ptp(mu) <= max(2.0 * self.error, FLAT * abs(float(mu.mean()))))
 
     @property
     def complete(self) -> bool:
-        """Whether every point has a value."""
+        """Return whether every point has a value."""
         return self.mu.size > 0 and bool(np.isfinite(self.mu).all())
 
 

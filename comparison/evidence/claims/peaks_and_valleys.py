@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from comparison.result_types import Array
 
-SHARE = 0.3  # of the range
+SHARE = 0.3  # share of the range
 LEAST_SHARE, MOST_SHARE = 0.2, 0.4  # a count that changes between these depends on the definition
 
 
@@ -79,9 +79,9 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
     rank = [0] * len(height)
     for place, node in enumerate(order):
         rank[node] = place
-    parent = [-1] * len(height)  # of what stands above the falling water: every island's root is its highest node
+    parent = [-1] * len(height)  # islands above the falling water: every island's root is its highest node
     top_of = [-1] * len(height)  # the maximum that steepest ascent leads to
-    into = list(range(len(height)))  # of lesser maxima, the one across their saddle
+    into = list(range(len(height)))  # for lesser maxima, the one across their saddle
     tops = []
     for node in order:
         islands: dict[int, int] = {}  # beside this node, with their highest node beside it

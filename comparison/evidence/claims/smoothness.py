@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from comparison.result_types import Array
 
 DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])
-PLACES = 2  # of the grid, that are looked at
+PLACES = 2  # places of the grid that are looked at
 HALVINGS = 5
 JUDGED = 3  # the last halvings, from which the exponent is taken: the first still see the shape of the peak
 FOLD, JUMP = 1.5, 0.5  # exponents below these are a fold, a jump
@@ -33,7 +33,7 @@ class Bend:
 
     @property
     def smooth(self) -> bool:
-        """Whether the surface is smooth there."""
+        """Return whether the surface is smooth there."""
         return self.exponent > FOLD
 
     @property

@@ -44,7 +44,9 @@ class Statement:
 
     @property
     def reasons(self) -> list[str]:
-        """What decides: one text where both readings say the same, else one for each that begins with its name."""
+        """
+        Return what decides: one text where both readings say the same, else one for each that begins with its name.
+        """
         texts = {name: verdict.reason for name, verdict in self.verdicts.items()}
         same = len({*texts.values()}) == 1
         return [*{*texts.values()}] if same else [f"{name}: {text}" for name, text in texts.items()]

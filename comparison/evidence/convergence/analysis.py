@@ -31,17 +31,17 @@ Values = tuple[Array, Array]  # relative sizes and their errors, (P, S, N)
 
 PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
 FEW = PHASES[[0, 3]]  # for the engine
-PERIODS = 6.0  # of the slower harmonic: the loading is strongest in the first of them
+PERIODS = 6.0  # periods of the slower harmonic: the loading is strongest in the first of them
 FEW_PERIODS = 3.0  # for the engine
 FEWEST_PERIODS = 2.5  # for the engine at constant step
 REGULARIZATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s
 ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s
-PENETRATIONS = (3e-3, 1e-3, 3e-4)  # of rho, under the weight
+PENETRATIONS = (3e-3, 1e-3, 3e-4)  # shares of rho, under the weight
 V_REG = 1e-2  # m/s, for the stiffness: a constant step resolves it
-STEPS_PER_PERIOD = 2250  # of the faster harmonic, and twice as many
+STEPS_PER_PERIOD = 2250  # steps per period of the faster harmonic, and twice as many
 MOST_STEPS = 20_000
 REFERENCE_TOLERANCE, ENGINE_TOLERANCE = 1e-7, 1e-3
-NEWTON, RESIDUAL = 1e-8, 1e-12  # of the engine's steps
+NEWTON, RESIDUAL = 1e-8, 1e-12  # tolerances of the engine's steps
 SAFETY = 1.5  # on the difference of two steps, which is half to once the error of the coarser one
 
 

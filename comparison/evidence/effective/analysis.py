@@ -20,7 +20,7 @@ from reference.problem.friction import LEAST_LOAD
 
 PHASES = (0.3, 1.1)  # rad, of the motion that is measured
 DURATION = 6.0  # s: two frequencies are strongest in their first seconds; a record is followed to its end
-LEAST_SHARE = 0.1  # of the change from slow to fast friction: motions that see less of it do not tell the fast one
+LEAST_SHARE = 0.1  # share of the change from slow to fast: motions that see less of it do not tell the fast one
 LEVEL = 1e-5  # rise of a flat slider over its displacement that counts as none: what contacts give way by
 FASTEST = 0.9  # friction is measured where the platform slides faster than this part of its largest speed
 
@@ -56,7 +56,7 @@ def word_effective(values: Sequence[Effective]) -> str:
 
 
 def stated(scene: Scene) -> Effective:
-    """The same values as the scene states them; the platform begins at rest on the plate and moves with it."""
+    """Return the values as the scene states them; the platform begins at rest on the plate and moves with it."""
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
     return Effective(
         scene=scene.name,
@@ -171,7 +171,7 @@ def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
     if law.exponent:  # back to the weight
         ratio /= np.maximum(along[fast] / (scene.total_mass * GRAVITY), LEAST_LOAD) ** law.exponent
     if law.varies:
-        share = -np.expm1(-law.rate * speed[fast])  # of the change from slow to fast
+        share = -np.expm1(-law.rate * speed[fast])  # share of the change from slow to fast
         if not share.min() > LEAST_SHARE:
             return float("nan")
         ratio = law.slow + (ratio - law.slow) / share

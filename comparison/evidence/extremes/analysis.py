@@ -34,7 +34,7 @@ ROUNDING = 1e-12  # relative: two runs this close are the same
 BRIEF = {"lubrication, s/m", "start at the friction limit", "outside the rules"}  # for the engine's models, too
 LIMIT = 300.0  # s of processor time for one cell with its finer runs: twice what the dearest takes on a busy machine
 SECONDS_OF_LONG_ROWS = 30.0  # in place of the column's, recorded for the equations
-FAILURES = {Outcome.TIME_LIMIT: "hangs:", Outcome.WORKER_DIED: "crashes:"}  # of processes; all else was raised
+FAILURES = {Outcome.TIME_LIMIT: "hangs:", Outcome.WORKER_DIED: "crashes:"}  # failures of processes; all else was raised
 STRICTEST = 1e-10  # relative error that a model can be asked for
 
 
@@ -154,7 +154,9 @@ def solve_cell(cell: Cell) -> Entry:
 
 
 def answers(reply: Reply) -> bool:
-    """Whether there is anything that a finer run could contradict: not a value whose error is as large as itself."""
+    """
+    Return whether there is anything that a finer run could contradict: not a value whose error is as large as itself.
+    """
     return not (reply.invalid or reply.raised) and any(
         (error < np.abs(mu)).any() if status == Outcome.TOLERANCE_NOT_MET else status not in NUMERICS
         for status, mu, error in zip(reply.status, reply.mu, reply.error)
@@ -162,7 +164,7 @@ def answers(reply: Reply) -> bool:
 
 
 def _ask(row: Row, function: str, settings: Mapping[str, Any]) -> Reply:
-    """What a function replies at the row's phase pairs; one of the engine does the work that the row allows."""
+    """Return what a function replies at the row's phase pairs; one of the engine does the work that the row allows."""
     nothing = np.empty((0, 0))
     settings = {key: row.max_work if key == "max_work" else value for key, value in settings.items()}
     try:

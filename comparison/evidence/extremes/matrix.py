@@ -91,7 +91,7 @@ STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "phase-resonance extre
 
 
 def describe(entry: Entry) -> str:
-    """What stands in the field: the error claimed, or the status in its own words."""
+    """Return what stands in the field: the error claimed, or the status in its own words."""
     if entry.verdict == Verdict.CONVERGED and entry.error is not None:
         return f"{entry.error:.0e}"
     return "FAILED" if entry.verdict == Verdict.FAILED else entry.status or "against a rule"

@@ -31,12 +31,12 @@ class Column:
     key: str
     title: str
     amplification: str  # "package:function"
-    settings: Mapping[str, Any]  # of the function
+    settings: Mapping[str, Any]  # arguments of the function
     tolerance: float  # relative error asked
     # how a value is confirmed, in this order until one answers: function, settings, relative error asked
     finer: tuple[tuple[str, Mapping[str, Any], float], ...]
     seconds: float = 0.5  # rough processor time of a cell with its finer runs
-    like: str = ""  # of an engine of the user: the column whose rows concern it, too
+    like: str = ""  # for an engine of the user: the column whose rows concern it, too
 
 
 # steps of the engine for a phase pair, and for one of a tower by its number of bodies, whose steps cost more: a cell
@@ -55,11 +55,11 @@ class Row:
     scene: Mapping[str, Any]  # as in a scene file
     columns: tuple[str, ...]  # keys of the models it concerns
     phases: Phases = PHASES
-    settings: Mapping[str, Any] = field(default_factory=dict)  # of the models, in place of the column's
+    settings: Mapping[str, Any] = field(default_factory=dict)  # settings of the models, in place of the column's
     invalid: bool = False  # the rules of the input refuse it
     right: tuple[str, ...] = ()  # outcomes that may stand in place of an answer, where they are known; any if empty
     quick: bool = True  # takes the equations less than a second
-    max_work: float = MAX_WORK  # of the engine's models
+    max_work: float = MAX_WORK  # steps that the engine's models may take
     amplification: str = ""  # function in place of the column's
 
     @property
@@ -325,7 +325,7 @@ def _starts_and_supports() -> Iterator[Row]:
 
 def _uneven() -> Iterator[Row]:
     """Uneven buildings: the equations and translation do not read what makes them so."""
-    for share in (1e-6, 0.1, 0.45, 0.5, 1.0):  # of the ring, towards a support: at 0.5 its opposite carries nothing
+    for share in (1e-6, 0.1, 0.45, 0.5, 1.0):  # shares of the ring, to a support: at 0.5 its opposite carries nothing
         moved, beyond = _with_bodies(offset=[share * math.sqrt(0.5)] * 2), share >= 0.5
         work = MAX_WORK if beyond else 1e5
         yield Row("offset over the ring", f"{share:g}", moved, SPATIAL, invalid=beyond, max_work=work)

@@ -22,7 +22,7 @@ from comparison.study.user_models import engine_of
 from comparison.wording import exception_line
 from reference.problem import Amplification, Scene
 
-SEED = 20  # of the sample of phase pairs: the same in every run
+SEED = 20  # seed of the sample of phase pairs: the same in every run
 SHORT = 0.2  # s of motion, to warm up
 CHUNK = 3.0  # s of work in one task, about
 CHEAP = 0.01  # s per point of a reference solution of its own, about
@@ -47,7 +47,7 @@ class Measured:
 
     mu: Array  # (M, N), NaN without a value
     error_estimate: Array  # (M, N), absolute, NaN without
-    seconds: float  # of processor time
+    seconds: float  # s of processor time
     step: float  # mean step, s; NaN where the function does not tell it
     error_message: str = ""  # what went wrong, or empty
 
@@ -158,7 +158,7 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
 
 
 def entry(setting: Setting, measured: Measured, reference_solution: Array) -> trade.Entry:
-    """What one setting gave at M phase pairs, against mu (M, N) of the reference solution there."""
+    """Return what one setting gave at M phase pairs, against mu (M, N) of the reference solution there."""
     error = np.abs(measured.mu / reference_solution - 1.0)
     error_estimate = measured.error_estimate / np.abs(measured.mu)
     points = len(measured.mu)
@@ -192,7 +192,9 @@ def _answered(question: Question, reference_solution: Measured, entries: Sequenc
 
 
 def _agreements(question: Question, entries: Sequence[trade.Entry]) -> list[str]:
-    """How far the most accurate setting of other methods, else of the same one, agrees with the reference solution."""
+    """
+    Return how far the most accurate setting of other methods, else of the same one, agrees with the reference solution.
+    """
     by_engine = question.reference_solution[0].startswith("multibody")
     candidates = [each for each in entries if each.question == question.key and not each.model_error and each.answered]
     families = [(what, [each for each in candidates if each.method.startswith(family)])

@@ -33,7 +33,7 @@ DEFAULT = "fig3-I"
 COMMAND = "comparison.tradeoff"
 STARTING = 8.0  # s of a worker before its first task: imports, compiled code loaded
 MODELS = {REFERENCE, ENGINE, RUN, LEVEL, CONSTANT, SCIPY}  # what the workers ask
-TOLERANCE = 1e-3  # of a study; every setting has one of its own
+TOLERANCE = 1e-3  # tolerance of a study; every setting has one of its own
 
 
 @command

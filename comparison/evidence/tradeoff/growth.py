@@ -21,7 +21,7 @@ from comparison.study.study import Study
 from reference.problem import Scene
 
 TOLERANCE = 1e-3  # asked of the engine; the equations are asked for their own
-CALLS, PAIRS = 16, 64  # of the equations, shared by the workers
+CALLS, PAIRS = 16, 64  # calls and phase pairs of the equations, shared by the workers
 
 FILE = "growth.json"
 SCHEMA: Literal["phase-resonance/growth"] = "phase-resonance/growth"

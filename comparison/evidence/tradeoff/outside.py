@@ -16,8 +16,8 @@ from reference.solver.equations import exact_acceleration
 from reference.solver.system import pack
 
 ABSOLUTE = 1e-2  # absolute tolerance of a step, m and m/s, over its relative one
-SAMPLES = 2001  # of the motion besides the solver's own steps, to find where the peaks are
-NEAR = 1e-3  # of the peak: samples as high as that are looked at again, FINER times as closely
+SAMPLES = 2001  # samples of the motion besides the solver's own steps, to find where the peaks are
+NEAR = 1e-3  # share of the peak: samples as high as that are looked at again, FINER times as closely
 FINER = 50
 ALWAYS_LINEAR = 1e6  # m/s, corner of the lubricated law mu = f_c |v|: above any speed
 
@@ -68,7 +68,7 @@ def slopes(times: Array, states: Array, constants: Any) -> Array:
 
 
 def constants_of(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...]:
-    """What `slope` is called with after t and y."""
+    """Return what `slope` is called with after t and y."""
     system = pack(scene, False, v_reg)
     if scene.lubricated:
         system, v_reg = system._replace(friction=system.friction * ALWAYS_LINEAR), ALWAYS_LINEAR

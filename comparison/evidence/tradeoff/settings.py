@@ -46,7 +46,7 @@ class Question:
     reference_solution: tuple[str, Settings]
     points: int
     quick: int
-    seconds: float  # of the reference solution, per point, about
+    seconds: float  # s of the reference solution, per point, about
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ _LAWS: Mapping[str, Settings] = {
     "exact": {},
     "small": {"equations": "small"},
     "regularised": {"regularization": DEFAULT_V_REG},
-}  # of the equations, by question
+}  # settings of the equations, by question
 _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "tolerance": SPATIAL_TIGHT}
 _TIGHT = {question: (REFERENCE, {**law, "tolerance": TIGHT}) for question, law in _LAWS.items()}
 QUESTIONS = (

@@ -15,7 +15,7 @@ from reference.solver.system import SOLVED
 from reference.surface import prepare_run
 
 DISCONTINUOUS = 1.0  # the engine's own default
-USUAL_LEVEL = 1  # of the engine: it usually answers at a tolerance of 1e-3
+USUAL_LEVEL = 1  # level of the engine: it usually answers at a tolerance of 1e-3
 
 
 def reference_run(

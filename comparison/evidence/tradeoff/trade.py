@@ -55,7 +55,7 @@ class Entry(Stated):
 
     @property
     def complete(self) -> bool:
-        """Whether it has a value at every point."""
+        """Return whether it has a value at every point."""
         return self.answered == self.points
 
 
@@ -102,7 +102,7 @@ def quantile(errors: Array, share: float) -> float | None:
 
 
 def unbeaten(mine: tuple[float, float], others: Sequence[tuple[float, float]]) -> bool:
-    """Whether nothing else is at least as good in cost and error and better in one."""
+    """Return whether nothing else is at least as good in cost and error and better in one."""
     beaten = any(other != mine and other[0] <= mine[0] and other[1] <= mine[1] for other in others)
     return math.isfinite(sum(mine)) and not beaten
 

@@ -136,5 +136,5 @@ def _series(file: Path, name: str, values: Any, count: int | None = None) -> Arr
 
 
 def wrong_file(file: Path | str, rule: str) -> SceneError:
-    """What is wrong with a file, in one line."""
+    """Return what is wrong with a file, in one line."""
     return SceneError("command line", "FOLDER", str(file), rule)

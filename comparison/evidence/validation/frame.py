@@ -32,17 +32,17 @@ from reference.problem import GRAVITY, Scene, Trajectory
 HEAVY, LOOSE = 10.0, 1e4  # mass of the second body over that of the platform; period of its link, s
 FAST = 1.0  # by how much friction would grow at infinite speed: the slope at zero is what counts
 CYCLES = 12  # computed, of which the last is read
-SAMPLES = 250  # of a cycle, as measured
+SAMPLES = 250  # samples of a cycle, as measured
 FEWEST = 3  # whole cycles of a run
 HARMONICS = 6  # fitted to the base motion
 SPEED = 2.0  # mm/s: slower is at rest
 WIDTH = 4  # samples to either side of a velocity
 REGULARIZATION = 1e-4  # m/s, of the engine
-TOLERANCE = 1e-3  # of the engine
+TOLERANCE = 1e-3  # relative error asked of the engine
 FIRST = 0.250  # kg, weight of the disc in the run that the ratio is fitted to, if the folder has it
 SECOND = 0.450  # kg, in the second run that friction of the load is fitted to, if the folder has it
 LOADED = ", friction of the load"  # behind the name of a run
-STEP = 0.005  # of ratio and scale, for slopes
+STEP = 0.005  # step of ratio and scale, for slopes
 NAMES = ("half range", "rms about the mean", "share of time at rest", "phase of the starts", "phase of the stops")
 UNITS = ("mm", "mm", CYCLE, DEGREES, DEGREES)
 
@@ -53,7 +53,7 @@ class Setup(NamedTuple):
     mass: float = 3.0799  # kg
     stiffness: float = 1191.0  # N/m
     damping: float = 0.6690  # N s/m
-    scale: float = 1.0  # of the base motion
+    scale: float = 1.0  # factor of the base motion
     second: float = 0.0  # share of the measured second harmonic
     disc: float = 1.0  # its weight over the stated one
     ratio: float = 0.3  # friction

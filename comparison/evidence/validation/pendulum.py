@@ -17,8 +17,8 @@ from comparison.evidence.validation.table import COVERAGE, INPUT, LAW, OPEN, SID
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
-REGULARIZATION, TOLERANCE = 1e-5, 1e-4  # of the engine; v_reg in m/s
-STEPS = 3  # of the encoder: going back by more is a turn
+REGULARIZATION, TOLERANCE = 1e-5, 1e-4  # settings of the engine; v_reg in m/s
+STEPS = 3  # steps of the encoder: going back by more is a turn
 COULOMB, HALF = 10, 5  # half swings that lose the same angle; of these, how many have their period fitted
 SHOWN = (5, 10, 11, 12, 13)  # turning points in the table, the first one being number 0
 PARTS = 20_001  # instants of a half swing

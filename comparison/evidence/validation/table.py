@@ -146,7 +146,7 @@ class Found(NamedTuple):
 
 
 def joined(parts: Sequence[Found]) -> Found:
-    """What several experiments add."""
+    """Return what several experiments add."""
     return Found(*([each for part in column for each in part] for column in zip(*parts)))
 
 
@@ -179,7 +179,7 @@ def motion_of(
 
 
 def answer(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> Answer:
-    """What is read from a motion, `count` values, and its errors; NaN from one that ended early."""
+    """Return what is read from a motion, `count` values, and its errors; NaN from one that ended early."""
     nothing = np.full(count, np.nan)
     if motion.status not in ANSWERED or motion.accuracy is None:
         return Answer(nothing, nothing)
