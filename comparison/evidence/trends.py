@@ -50,7 +50,7 @@ class Trend:
     verdict: Annotated[Text, "what the fit allows to say"]
 
 
-def fitted(parameter: Sequence[float], sizes: Array, errors: Array) -> Slope:
+def fit_slope(parameter: Sequence[float], sizes: Array, errors: Array) -> Slope:
     """One exponent for all rows of sizes (P, S) with absolute errors (P, S), over the parameter (S,)."""
     known = np.isfinite(sizes) & (errors <= KNOWN * np.abs(sizes)) & (sizes != 0.0)
     rows = np.flatnonzero(known.sum(axis=1) > 1)
@@ -82,7 +82,7 @@ def trend(
     error_message: str = "",
 ) -> Trend:
     """A trend from signed sizes and their errors, (P, S), NaN without an answer; error_message: what went wrong."""
-    slope = fitted(parameter, sizes, errors)
+    slope = fit_slope(parameter, sizes, errors)
     columns = [column[np.isfinite(column)] for column in np.abs(sizes).T] if len(sizes) else [sizes] * len(parameter)
     medians = tuple(float(np.median(column)) if column.size else math.nan for column in columns)
     return Trend(

@@ -184,7 +184,7 @@ def assumption_lines(found: Validity, scene: Scene) -> list[str]:
     return lines + describe_uneven(found, scene) + describe_shortening(loaded)
 
 
-def stated_changes(found: Validity, scene: str) -> list[Change]:
+def changes_with_errors(found: Validity, scene: str) -> list[Change]:
     """Return the change of mu of every body by turning, in the scene as stated; none if it was not tried."""
     stated = next((cell for cell in found.cells if (cell.scene, cell.variation) == (scene, Variation())), None)
     return [largest_change(found, stated, body + 1) for body in range(len(stated.change[0]))] if stated else []
@@ -194,7 +194,7 @@ def describe_verdict(found: Validity) -> str:
     """Return one line: whether mu bears assumption (vi), that no body turns, in every scene as stated."""
     parts = []
     for scene in dict.fromkeys(cell.scene for cell in found.cells):
-        changes = stated_changes(found, scene)
+        changes = changes_with_errors(found, scene)
         if not changes:
             continue
         worst = max(changes, key=lambda change: np.nan_to_num(abs(change.size) + change.error, nan=np.inf))

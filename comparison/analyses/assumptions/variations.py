@@ -117,14 +117,14 @@ def blind_by_symmetry(scene: Scene, variation: Variation) -> str:
     """Return why symmetry leaves mu of the spatial model as that of the translational one; "" where it does not."""
     if variation.bars is not None or any(link is not None for link in scene.bar_links):
         return ""  # bars that bend tilt what stands on them, in a plane as well
-    if variation.yaw and replace(variation, yaw=0.0) == Variation() and turned_links_are_the_same(scene):
+    if variation.yaw and replace(variation, yaw=0.0) == Variation() and are_turned_links_the_same(scene):
         return TURNED_LINK
     if scene.isolator.support_stiffness is not None or scene.dry_friction.by_load:
         return ""  # unequal loads of the supports tilt the platform, or change the friction
     return "" if plane_of_symmetry(variation.of(scene)) is None else ONE_PLANE
 
 
-def turned_links_are_the_same(scene: Scene) -> bool:
+def are_turned_links_the_same(scene: Scene) -> bool:
     """Return whether links and boxes above the platform look the same at every angle about the vertical."""
     links = itertools.chain(scene.stiffness, scene.damping)
     return all(x == y for x, y in links) and all(body.size is None or is_square(body.size) for body in scene.bodies[1:])

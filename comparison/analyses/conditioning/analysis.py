@@ -154,7 +154,7 @@ def _curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answ
     relative_error = np.hypot(error, mu / supremum * supremum_error) / supremum
     rows = [_statistics(*each, answers, task[2]) for each in zip(mu, error, relative, relative_error)]
     pairs = int(np.isfinite(mu).any(axis=0).sum())
-    return _described(task, body, speeds, list(zip(*rows)), pairs, "" if pairs else answers.lost)
+    return _describe(task, body, speeds, list(zip(*rows)), pairs, "" if pairs else answers.lost)
 
 
 def _statistics(mu: Array, error: Array, relative: Array, relative_error: Array, answers: _Answers, grid: int) -> Any:
@@ -175,10 +175,10 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurv
     scene, number, _ = task
     speeds = QUESTIONS[number].speeds
     columns = list(zip(*[NOTHING] * len(speeds)))
-    return [_described(task, body, speeds, columns, 0, failed.reason) for body in range(1, len(scene.bodies) + 1)]
+    return [_describe(task, body, speeds, columns, 0, failed.reason) for body in range(1, len(scene.bodies) + 1)]
 
 
-def _described(
+def _describe(
     task: Arguments, body: int, speeds: tuple[float, ...], columns: Any, pairs: int, reason: str
 ) -> ConditioningCurve:
     scene, number, grid = task

@@ -19,13 +19,13 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     Empty without a scene with phases and dry friction. Sizes are relative to the literal supremum and have its base in
     front; their errors contain that of sampling.
     """
-    found = [curve for curve in result or () if curve.grid and curve.speed == "v_c" and _asked(curve)]
+    found = [curve for curve in result or () if curve.grid and curve.speed == "v_c" and _question(curve)]
     if not found:
         return ""
     curve = max(found, key=lambda each: abs(_at(each, DEEP)[0]))
     size, error = _at(curve, DEEP)
     pairs = f"{curve.grid} × {curve.grid} phases"
-    integrated, deep, deepest = (_written(*_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
+    integrated, deep, deepest = (_write(*_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
     values = (
         f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} where speeds "
         f"above {speed_text(DEFAULT_V_C)} m/s count (as integrated), {deep} above {speed_text(DEEP)} m/s, "
@@ -48,7 +48,7 @@ def speed_text(speed: float) -> str:
     return f"{speed:.0e}".replace("e-0", "e-")
 
 
-def _asked(curve: ConditioningCurve) -> bool:
+def _question(curve: ConditioningCurve) -> bool:
     return curve.reading == AS_INTEGRATED and all(math.isfinite(_at(curve, v)[0]) for v in (DEFAULT_V_C, DEEP, DEEPEST))
 
 
@@ -68,7 +68,7 @@ def _of_engine(curve: ConditioningCurve, result: Sequence[ConditioningCurve]) ->
         and all(map(math.isfinite, each.mean[-2:]))
     ]
     pairs = max((each.pairs for each in engines), default=0)
-    changes = [f"{_written(*_last_change(each))} {IN_WORDS[each.model]}" for each in engines if each.pairs == pairs]
+    changes = [f"{_write(*_last_change(each))} {IN_WORDS[each.model]}" for each in engines if each.pairs == pairs]
     if not changes:
         return ""
     before, after = engines[0].v[-2:]
@@ -82,5 +82,5 @@ def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
     return after / before - 1.0, sum(errors) / before
 
 
-def _written(size: float, error: float) -> str:
+def _write(size: float, error: float) -> str:
     return difference(size, error) if math.isfinite(error) else f"{difference(size, error)} (error unknown)"

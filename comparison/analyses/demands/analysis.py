@@ -62,7 +62,7 @@ class DemandStatistics:
         return self.fractiles[FRACTILES.index(probability)].value
 
 
-def moved_demands(task: Arguments) -> Batch:
+def compute_demands(task: Arguments) -> Batch:
     """Demands of the motions of one task. Runs inside a worker process."""
     scene, model, tolerance, phases = task
     trajectory, settings = import_function(model.trajectory), dict(model.settings)
@@ -75,7 +75,7 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
 
     key, stage, level = "demands", "demands", 2
     seconds = 10.0
-    function = staticmethod(moved_demands)
+    function = staticmethod(compute_demands)
     without_value = staticmethod(lambda task, failed: ({}, [failed.outcome.value] * len(task[3])))
 
     def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:

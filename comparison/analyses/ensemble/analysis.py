@@ -253,12 +253,12 @@ def stripes(points: Sequence[Point]) -> Iterator[result.Stripe]:
                 fractiles = [result.Fractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)]
                 lost = [pair for pair in zip(numbers, at_scale) if not math.isfinite(pair[0].value)]
                 lacking = Counter(number.reason or point.status for number, point in lost)
-                about = name, *_named(quantity), own[0].model, unit_of(quantity[0]), scale
+                about = name, *_name_points(quantity), own[0].model, unit_of(quantity[0]), scale
                 answered = len(numbers) - lacking.total()
                 yield result.Stripe(*about, answered, mean, fractiles, largest, smallest, dict(lacking))
 
 
-def _named(quantity: Quantity) -> tuple[str, int | None]:
+def _name_points(quantity: Quantity) -> tuple[str, int | None]:
     return quantity[0], quantity[1] or None
 
 
@@ -304,7 +304,7 @@ def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[resu
                     numbers = [_statistic(point.estimate(quantity)) for point in points]
                     values, errors = [each.value for each in numbers], [each.error for each in numbers]
                     scales = [point.member.scale for point in points]
-                    yield result.Curve(name, *_named(quantity), points[0].model, motion, scales, values, errors)
+                    yield result.Curve(name, *_name_points(quantity), points[0].model, motion, scales, values, errors)
 
 
 def quantities(points: Sequence[Point]) -> list[Quantity]:
@@ -334,7 +334,7 @@ def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Poi
             apart, same = ([*_differences(quantity, first, own)] for first in (matching, same_law))
             closest = max(same, default=(math.nan, math.nan))
             largest, alike_apart, errors = map(finite_or_none, (max(apart, default=closest)[0], *closest))
-            yield result.Difference(name, *_named(quantity), largest, alike_apart, errors, len(apart))
+            yield result.Difference(name, *_name_points(quantity), largest, alike_apart, errors, len(apart))
 
 
 def _differences(quantity: Quantity, first: Sequence[Point], second: Sequence[Point]) -> Iterator[tuple[float, float]]:

@@ -27,7 +27,7 @@ from comparison.analyses.ensemble.feature import (
     target_sentence,
 )
 from comparison.analyses.ensemble.result import PICTURE, STORED, EnsembleResult
-from comparison.analyses.ensemble.target import matched
+from comparison.analyses.ensemble.target import match_spectrum
 from comparison.cli.arguments import (
     CommandParser,
     command,
@@ -65,10 +65,10 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     options = _parser().parse_args(argv)
     number_of_jobs(options)  # refused before anything else is looked at
     subset = None if options.engine == "all" else read_whole_number("--engine", options.engine, 0, 1000)
-    members, model = members_of([asked_family(options, scene) for scene in options.scenes]), ENGINES[options.model]
+    members, model = members_of([family_of_options(options, scene) for scene in options.scenes]), ENGINES[options.model]
     target = None
     if options.target is not None:
-        members, target = matched(members, options.target, options.periods)
+        members, target = match_spectrum(members, options.target, options.periods)
     elif options.periods is not None:
         raise SceneError("command line", "--periods", " ".join(options.periods), "needs --target")
     if subset != 0:
@@ -109,7 +109,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     return 0
 
 
-def asked_family(options: argparse.Namespace, source: str) -> Family:
+def family_of_options(options: argparse.Namespace, source: str) -> Family:
     """The scene with every motion of `--suite` at every scale of `--scales`. Raises SceneError."""
     data = scene_tables(scene_text(source), source)
     loading: Any = data.get("excitation")

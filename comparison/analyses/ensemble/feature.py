@@ -53,7 +53,7 @@ def ensemble_panels(ensemble: EnsembleResult) -> list[Panel]:
     """Isolator, base shear and supports over the scale or as strips; profiles over the height; floor spectra."""
     shown = [quantity for quantity in SHOWN if any(curve.quantity == quantity for curve in ensemble.curves)]
     panels = [_panel(ensemble, quantity) for quantity in shown]
-    return [*panels, *_profiles(ensemble), *_spectra(ensemble), *_matched(ensemble)] if ensemble.curves else []
+    return [*panels, *_profiles(ensemble), *_spectra(ensemble), *_spectra_panels(ensemble)] if ensemble.curves else []
 
 
 def draw_ensemble(path: Path, ensemble: EnsembleResult) -> None:
@@ -115,7 +115,7 @@ def _values(curves: Sequence[Curve], factor: float, place: float | None, **look:
     series = []
     for number, curve in enumerate(curves):
         x = list(curve.scales) if place is None else [place + WIDTH * ((number + 0.5) / len(curves) - 0.5)]
-        line = {"x": x, "y": [_scaled(value, factor) for value in curve.values], "legend": number == 0} | look
+        line = {"x": x, "y": [_scale(value, factor) for value in curve.values], "legend": number == 0} | look
         for key, side in (("low", -1.0), ("high", 1.0)) if "line" in look else ():
             both = zip(curve.values, curve.errors)
             line[key] = [None if None in pair else factor * (pair[0] + side * pair[1]) for pair in both]  # type: ignore[operator]
@@ -133,7 +133,7 @@ def _median(
 ) -> dict[str, Any]:
     """Median of a structure with its band, from low, median and high at every x."""
     columns = zip(("low", "y", "high"), fractiles)
-    numbers = {key: [_scaled(each.value, factor) for each in column] for key, column in columns}
+    numbers = {key: [_scale(each.value, factor) for each in column] for key, column in columns}
     name = labels(ensemble)[ensemble.structures[place].name]
     return {"name": name, "color": place, "x": x, **numbers, "band": True, "marks": True, "width": 2.4, **look}
 
@@ -222,7 +222,7 @@ def agreement_sentence(ensemble: EnsembleResult) -> str:
     return f"{title} {agreement} (worst: {name})."
 
 
-def _matched(ensemble: EnsembleResult) -> list[Panel]:
+def _spectra_panels(ensemble: EnsembleResult) -> list[Panel]:
     """Response spectra of the motions with their factors, at scale 1, and the target."""
     if (target := ensemble.target) is None:
         return []
@@ -246,7 +246,7 @@ def _from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:
     return {"title": title, "range": [0.0, 1.06 * max(values, default=0.0) or 1.0]}
 
 
-def _scaled(value: float | None, factor: float) -> float | None:
+def _scale(value: float | None, factor: float) -> float | None:
     return None if value is None else factor * value
 
 

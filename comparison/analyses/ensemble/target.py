@@ -39,7 +39,9 @@ def read_target(file: str) -> tuple[Array, Array]:
     return period, factor * acceleration
 
 
-def matched(members: Sequence[Member], file: str, ends: Sequence[str] | None) -> tuple[tuple[Member, ...], Target]:
+def match_spectrum(
+    members: Sequence[Member], file: str, ends: Sequence[str] | None
+) -> tuple[tuple[Member, ...], Target]:
     """The members with the factors of their motions, and the spectrum. ends: of the periods, s. Raises SceneError."""
     period, wanted = read_target(file)
     unit = "s: a period of the target spectrum"

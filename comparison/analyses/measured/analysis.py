@@ -102,7 +102,7 @@ def phases_of(peak: Measured) -> tuple[float, float]:
     return (0.0, 0.0) if peak.phases is None else (peak.phases[0], peak.phases[1])
 
 
-def _asked(scene: Scene, phases: tuple[float, float], model: Model) -> list[Asked]:
+def _questions(scene: Scene, phases: tuple[float, float], model: Model) -> list[Asked]:
     """Return what the test measured; of a model that reads the same motion otherwise mu alone."""
     return [
         (peak.quantity, peak.body or 0)
@@ -153,7 +153,7 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
                 for model in models_of(scene, study.hierarchy):
                     if model.side == "user":
                         continue
-                    yield scene, model, model.tolerance(study.tolerance), phases, _asked(scene, phases, model)
+                    yield scene, model, model.tolerance(study.tolerance), phases, _questions(scene, phases, model)
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredPeak] | None:
         """In the order of the scene files; None where no scene has measured peaks."""

@@ -31,7 +31,7 @@ def swing(values: Array) -> Array:
     return np.where(scale > 0.0, scale, 1.0)
 
 
-def decimated(time: Array, values: Array, peaks: NDArray[np.intp], share: float = SHARE) -> NDArray[np.intp]:
+def decimate(time: Array, values: Array, peaks: NDArray[np.intp], share: float = SHARE) -> NDArray[np.intp]:
     """
     Indices to keep of `values` (T, C) at `time` (T,): both ends, `peaks`, and as many more as it takes for straight
     lines between them to miss no value by more than `share` of its component's `swing`.
@@ -128,11 +128,11 @@ class StoredMotion:
 Arguments = tuple[Scene, Model, float, Place, tuple[float, float]]
 
 
-def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Place, set[str]]:
+def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Place, set[str]]:
     """
     Return where the difference of each body is largest, and an even spread; with the engine's models that move there.
     """
-    engines = {model.key for model in shown_models(study, scene) if model.side == "engine"}
+    engines = {model.key for model in models_to_show(study, scene) if model.side == "engine"}
     if scene.recorded:
         return {Place(scene.name, 0, 0, ""): engines}
     places: dict[tuple[int, int], tuple[str, set[str]]] = {}
@@ -147,13 +147,13 @@ def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Plac
     return {Place(scene.name, *place, why): moving for place, (why, moving) in places.items()}
 
 
-def shown_models(study: Study, scene: Scene) -> list[Model]:
+def models_to_show(study: Study, scene: Scene) -> list[Model]:
     """The models whose surfaces the page shows, each once; those that have motions."""
     shown = {model.key: model for pair in study.pairs(scene) for model in (pair.first, pair.second)}
     return [model for model in shown.values() if model.trajectory]
 
 
-def moved(task: Arguments) -> StoredMotion:
+def compute_motion(task: Arguments) -> StoredMotion:
     """The motion of one task, decimated; what goes wrong is said in `error_message`."""
     scene, model, tolerance, place, phase = task
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
@@ -161,12 +161,12 @@ def moved(task: Arguments) -> StoredMotion:
         motion: Trajectory = import_function(model.trajectory)(scene, phase, tolerance=tolerance, **settings)
         if len(motion.time) == 0:  # refused before its first step
             return replace(_nothing(place, model.key, Outcome(motion.status), ""), demands=demands(motion))
-        return _stored(place, model, motion)
+        return _store_motion(place, model, motion)
     except Exception as error:
         return _nothing(place, model.key, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
 
 
-def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
+def _store_motion(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
     """The motion with its demands and spectra, decimated. Raises ValueError for numbers that are not finite."""
     whole = StoredMotion(
         place, model.key, motion.time, motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2],
@@ -181,7 +181,7 @@ def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
         raise ValueError("the motion holds numbers that are not finite")
     extremes = [size.argmax(axis=0), values.argmax(axis=0), values.argmin(axis=0)]
     extremes += [np.linalg.norm(part, axis=1).argmax()[None] for part in (whole.position[:, 0], whole.isolator_force)]
-    kept = decimated(whole.time, values, np.unique(np.concatenate(extremes)))
+    kept = decimate(whole.time, values, np.unique(np.concatenate(extremes)))
     arrays = {name: getattr(whole, name)[kept] for name in whole.blocks()}
     return replace(whole, **arrays)
 
@@ -202,7 +202,7 @@ class Motions(MappedAnalysis[list[StoredMotion]]):
 
     key, stage, needs_surfaces = "motions", "motions", True
     seconds = 4.0
-    function, without_value, collect = staticmethod(moved), staticmethod(_without_value), MappedAnalysis.values
+    function, without_value, collect = staticmethod(compute_motion), staticmethod(_without_value), MappedAnalysis.values
 
     def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Arguments]:
         """Every place with every model that moves there, in the order scene, place, model."""
@@ -211,8 +211,8 @@ class Motions(MappedAnalysis[list[StoredMotion]]):
         return [
             (scene, model, model.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
             for scene in study.scenes
-            for place, engines in chosen_places(study, surfaces, scene).items()
-            for model in shown_models(study, scene)
+            for place, engines in choose_places(study, surfaces, scene).items()
+            for model in models_to_show(study, scene)
             if (model.side != "engine" or model.key in engines)
             and place.row % study.stride(model, scene) == place.column % study.stride(model, scene) == 0
         ]

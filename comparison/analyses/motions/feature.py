@@ -56,14 +56,14 @@ def _kind(annotation: str) -> Any:
     return kind | None if annotation.endswith("None") else kind
 
 
-def _described(name: str) -> Any:
+def _describe(name: str) -> Any:
     of = f"; by body, from body {PER_BODY[name] + 1} on" if name in PER_BODY else ""
     meaning, unit = QUANTITIES[name]
     return Field(description=f"{meaning}, {unit}{of}; null where the motion does not have it")
 
 
 _DEMANDS: dict[str, Any] = {
-    each.name: (Residual if each.name == "residual" else _kind(str(each.type)), _described(each.name))
+    each.name: (Residual if each.name == "residual" else _kind(str(each.type)), _describe(each.name))
     for each in fields(Demands)
     if each.name in QUANTITIES
 }

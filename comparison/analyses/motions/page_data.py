@@ -88,7 +88,7 @@ def places(report: Report, scene: Scene) -> Iterator[dict[str, Any]]:
                     "count": len(motion.time),
                     "blocks": _blocks(motion),
                     "exponents": _exponents(motion).tolist(),
-                    "demands": None if motion.demands is None else _listed(motion.demands),
+                    "demands": None if motion.demands is None else _list_demands(motion.demands),
                     "spectra": None
                     if motion.spectra is None
                     else significant_digits(motion.spectra.acceleration, DIGITS),
@@ -158,7 +158,7 @@ def significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:
     return [float(f"{value:.{digits}g}") for value in values]
 
 
-def _listed(demands: Demands) -> dict[str, Any]:
+def _list_demands(demands: Demands) -> dict[str, Any]:
     """The demands as JSON, without the status, which the motion has, too."""
 
     def pair(estimate: Any) -> list[Any] | None:

@@ -151,7 +151,7 @@ def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolera
     (corners, _), (square, _) = square_nodes(2), square_nodes(3)
     computed = engine.compute(search.phases + ENGINE_HALF_WIDTH * corners)
     equations = _surface(scene, like, TOLERANCE, worst.body).compute(search.phases + ENGINE_HALF_WIDTH * square)
-    highest, _ = predict_best(engine, search, _estimated(start, computed, equations))
+    highest, _ = predict_best(engine, search, _estimate(start, computed, equations))
     search.move_to_best(computed)
     search.move_to_best(engine.compute(highest[None]))
     if not math.isfinite(search.value):
@@ -196,7 +196,7 @@ def _surface(scene: Scene, model: Model, tolerance: float, body: int) -> Surface
     return Surface(scene, import_function(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
 
 
-def _estimated(middle: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases) -> ComputedPhases:
+def _estimate(middle: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases) -> ComputedPhases:
     """The engine at the 3 x 3 places of a square that the equations have, from its ratio to them at five of these."""
     like = equations.numerator.reshape(3, 3)
     ratio = np.empty((3, 3))

@@ -61,10 +61,10 @@ def _worst_of_models(report: Report, scene: Scene) -> Mapping[str, Any]:
     keys = [each.key for each in models_of(scene, report.study.hierarchy)]
     searched, bodies = report.found.get(WorstPhases.key) or (), range(1, len(scene.bodies) + 1)
     nearest = {key: [nearest_search(searched, keys, scene.name, key, body) for body in bodies] for key in keys}
-    return {"worst": {key: [worst and _marked(worst) for worst in of_bodies] for key, of_bodies in nearest.items()}}
+    return {"worst": {key: [worst and _mark(worst) for worst in of_bodies] for key, of_bodies in nearest.items()}}
 
 
-def _marked(worst: Worst) -> list[float | str]:
+def _mark(worst: Worst) -> list[float | str]:
     return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{DIGITS}g}"), worst.model]
 
 

@@ -52,7 +52,9 @@ class BenchmarkTable(Analysis[Benchmarks]):
 
     def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> Benchmarks:
         """The table, without what the command knows of the run."""
-        answers = [{side: results.value(self._task(case, side), _failed) for side in MODELS} for case in self.cases]
+        answers = [
+            {side: results.value(self._task(case, side), _answer_of_failure) for side in MODELS} for case in self.cases
+        ]
         return Benchmarks([_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
 
     def _task(self, case: Case, side: str) -> Task:
@@ -82,14 +84,14 @@ def _read(reading: Reading, motion: Trajectory) -> tuple[list[float], list[float
     if motion.status not in ANSWERED or len(motion.time) < 2:
         return [], []
     values, accuracy = reading.of(motion), motion.accuracy
-    others = [] if accuracy is None else [reading.of(each) for each in (decimated(motion), *accuracy.coarser)]
+    others = [] if accuracy is None else [reading.of(each) for each in (decimate(motion), *accuracy.coarser)]
     if accuracy is None or any(len(other) != len(values) for other in others):  # another number of swings
         return values, [math.nan] * len(values)
     rows = zip(values, *others)
     return values, [accuracy.error_of(value, rest) + abs(value - halved) / 3.0 for value, halved, *rest in rows]
 
 
-def decimated(motion: Trajectory) -> Trajectory:
+def decimate(motion: Trajectory) -> Trajectory:
     """Every second sample of a motion: what is read of it is four times as wrong, at kinks, and more elsewhere."""
     kept = np.append(np.arange(0, len(motion.time) - 1, 2), len(motion.time) - 1)
     arrays = {name: getattr(motion, name)[kept] for name in ("time", "position", "velocity", "absolute_acceleration")}
@@ -133,5 +135,5 @@ def _row(case: Case, place: int, answers: Mapping[str, Answer]) -> Row:
     return replace(row, numbers={side: read_number(side) for side in numbers})
 
 
-def _failed(question: tuple[Case, str], failed: TaskResult) -> Answer:
+def _answer_of_failure(question: tuple[Case, str], failed: TaskResult) -> Answer:
     return Answer([], [], failed.reason, 0.0)

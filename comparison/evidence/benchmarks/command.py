@@ -45,7 +45,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     )
     options = parser.parse_args(argv)
     number_of_jobs(options)  # refused before anything else is looked at
-    analysis = BenchmarkTable(_chosen(options.only, options.mastodon))
+    analysis = BenchmarkTable(_choose_cases(options.only, options.mastodon))
     out = destination(options.out)
     refuse_foreign_files(out, [STORED.name, PAGE])
     console = wide_console()
@@ -77,7 +77,7 @@ def print_benchmarks(console: Console, table: Benchmarks) -> None:
         console.print(f"{sentence}.", soft_wrap=True)
 
 
-def _chosen(only: str, mastodon_input: Path | None) -> list[Case]:
+def _choose_cases(only: str, mastodon_input: Path | None) -> list[Case]:
     """The benchmarks that the options leave. Raises SceneError."""
     known = cases() + ([] if mastodon_input is None else [mastodon(mastodon_input)])
     chosen = [case for case in known if only in case.scene.name]

@@ -48,7 +48,7 @@ def periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
 
 def drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     """Peaks, and valleys between two peaks, on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges."""
-    return _bounded(np.pad(mu, ((0, 1), (0, 1)), mode="wrap"), error, share)
+    return _count_bounded(np.pad(mu, ((0, 1), (0, 1)), mode="wrap"), error, share)
 
 
 def profiled(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
@@ -58,10 +58,10 @@ def profiled(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])
     if np.ptp(along) < share * np.ptp(mu):
         return Counts(0, 0)
-    return _bounded(np.concatenate([along, along, along[:1]])[:, None], error, share)
+    return _count_bounded(np.concatenate([along, along, along[:1]])[:, None], error, share)
 
 
-def _bounded(mu: Array, error: float, share: float) -> Counts:
+def _count_bounded(mu: Array, error: float, share: float) -> Counts:
     peaks, valleys = (relief(side * mu, error, share, closed=False) for side in (1.0, -1.0))
     between = [np.unique(peaks.regions[valleys.regions == number]) for number in range(len(valleys.tops))]
     return Counts(len(peaks.tops), sum(len(sides) > 1 for sides in between))

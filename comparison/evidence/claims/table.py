@@ -140,12 +140,12 @@ class Claims(Analysis[ClaimTable]):
             nested = len(make().bodies) == 1 and self.grid % COARSE == 0
             grid = self.grid // COARSE if nested else self.grid
             for reading in dict.fromkeys(effective_reading(each, make()) for each in READINGS):
-                question = CaseInReading(case, reading, grid, known_surfaces(study, surfaces, case, reading, grid))
+                question = CaseInReading(case, reading, grid, surfaces_of_study(study, surfaces, case, reading, grid))
                 tasks[case, reading] = Task(gather_evidence, question, self.stage)
         return tasks
 
 
-def known_surfaces(
+def surfaces_of_study(
     study: Study, surfaces: xr.Dataset | None, case: str, reading: PeakReading, grid: int
 ) -> Evidence | None:
     """

@@ -66,7 +66,7 @@ def _relative(pairs: Iterable[tuple[Amplification, Amplification]]) -> Values:
     return sizes, errors
 
 
-def _stiffened(scene: Scene) -> Values:
+def _stiffen(scene: Scene) -> Values:
     """The engine with ever stiffer contacts against the rigid contact of the exact equations."""
     short = shorten(scene, FEWEST_PERIODS)
     v_reg = None if scene.lubricated else V_REG
@@ -111,7 +111,7 @@ LIMITS = (
     Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, partial(_by_equations, True), dry),
     Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, partial(_by_equations, False), dry),
     Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, dry),
-    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffened, lambda scene: True),
+    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffen, lambda scene: True),
 )
 
 Arguments = tuple[Scene, int]  # and the number of the limit

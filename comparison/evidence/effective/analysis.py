@@ -81,7 +81,7 @@ def read_back(task: tuple[Scene, Model]) -> Effective:
     try:
         motion: Trajectory = import_function(model.trajectory)(short, PHASES, **settings)
         ended = {"error_message": f"the motion ended: {motion.status}"}
-        return replace(nothing, **(_measured(short, motion) if motion.status == Outcome.OK else ended))
+        return replace(nothing, **(_read_values(short, motion) if motion.status == Outcome.OK else ended))
     except Exception as error:
         return replace(nothing, error_message=f"{type(error).__name__}: {error}")
 
@@ -105,7 +105,7 @@ class EffectiveValues(MappedAnalysis[list[Effective]]):
         return [value for values in of_scenes for value in values]
 
 
-def _measured(scene: Scene, motion: Trajectory) -> dict[str, Any]:
+def _read_values(scene: Scene, motion: Trajectory) -> dict[str, Any]:
     place = motion.position[:, 0]
     ground = ground_acceleration(scene, PHASES, motion.time)
     swing = (place**2).sum(axis=1)

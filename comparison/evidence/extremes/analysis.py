@@ -205,7 +205,7 @@ class Extremes(Analysis[Matrix]):
         entries: dict[tuple[str, str], dict[str, Entry]] = {}
         for cell in cells(self.rows, self.columns):
             row = entries.setdefault((cell.row.group, cell.row.title), {})
-            row[cell.column.key] = results.value(self._task(cell), _failed)
+            row[cell.column.key] = results.value(self._task(cell), _entry_of_failure)
         used = {key for row in entries.values() for key in row}
         titles = {column.key: column.title for column in self.columns if column.key in used}
         return Matrix(titles, [Extreme(group, title, row) for (group, title), row in entries.items()], {})
@@ -219,7 +219,7 @@ class Extremes(Analysis[Matrix]):
         return Task(solve_cell, cell, self.stage, seconds, None, compiled, self.limit, group)
 
 
-def _failed(cell: Cell, failed: TaskResult) -> Entry:
+def _entry_of_failure(cell: Cell, failed: TaskResult) -> Entry:
     reason = f"{FAILURES.get(failed.outcome, 'raises')} {failed.error_message}"
     return Entry(Verdict.FAILED, reason, failed.outcome.value)
 

@@ -42,11 +42,11 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     add_models(parser)
     parser.add_argument("--reduced", action="store_true", help="what takes little: mostly the equations alone")
     options = parser.parse_args(argv)
-    extremes = _chosen(options)
+    extremes = _choose_cells(options)
     out = destination(options.out)
     refuse_foreign_files(out, [FILE])
     console = wide_console()
-    matrix = judged_matrix(extremes, options, argv, console, executor)
+    matrix = judge_matrix(extremes, options, argv, console, executor)
     with report_write_errors(out):
         (file,) = publish(out, {FILE: STORED.as_json(matrix)}, "comparison.extremes")
     for verdict in (Verdict.LIMIT, Verdict.FAILED):
@@ -60,7 +60,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     return 1 if matrix.counts()[Verdict.FAILED] else 0
 
 
-def judged_matrix(
+def judge_matrix(
     extremes: Extremes, options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> Matrix:
     """The matrix with all that is known of its run; stored cells are not judged again."""
@@ -78,7 +78,7 @@ def judged_matrix(
     return replace(matrix, run=run)
 
 
-def _chosen(options: argparse.Namespace) -> Extremes:
+def _choose_cells(options: argparse.Namespace) -> Extremes:
     """The cells that the options leave. Raises SceneError."""
     if options.only is not None:
         rule = "selects analyses of a study; the extremes are chosen with --rows TEXT"

@@ -31,7 +31,7 @@ PRINTED = "small, s minus s/2"
 Arguments = tuple[Scene, bool]  # and whether the supremum is taken
 
 
-def scaled(scene: Scene, s: float) -> Scene:
+def scale_scene(scene: Scene, s: float) -> Scene:
     """The scene with loading, dry friction and travel times s, the rate of friction with speed over s."""
     values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
     law = scene.dry_friction
@@ -48,7 +48,7 @@ def scaled(scene: Scene, s: float) -> Scene:
 def scene_trends(task: Arguments) -> list[Trend]:
     """Both trends of one scene for each body. Runs inside a worker process."""
     scene, supremum = task
-    answers = [_both(scaled(scene, s), supremum, s) for s in SCALES]
+    answers = [_both(scale_scene(scene, s), supremum, s) for s in SCALES]
     mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (S, 2, P, N)
     (small, exact), (small_error, exact_error) = np.moveaxis(mu, 1, 0), np.moveaxis(error, 1, 0)
     step, step_error = exact / small - 1.0, np.hypot(exact_error, small_error) / small

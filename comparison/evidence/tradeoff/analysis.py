@@ -66,11 +66,11 @@ def measure(measurement: Measurement) -> Measured:
     path, settings = measurement.function
     if path not in _warm:
         _warm.add(path)
-        _called(measurement.scene.with_values({"duration": SHORT}), measurement.phases[:1], path, settings)
-    return _called(measurement.scene, measurement.phases, path, settings)
+        _call_function(measurement.scene.with_values({"duration": SHORT}), measurement.phases[:1], path, settings)
+    return _call_function(measurement.scene, measurement.phases, path, settings)
 
 
-def _called(scene: Scene, phases: Array, path: str, settings: Settings) -> Measured:
+def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -> Measured:
     nothing, step, clock = np.full((len(phases), len(scene.bodies)), np.nan), np.nan, time.process_time()
     try:
         answer = import_function(path)(scene, phases, **settings)
@@ -149,7 +149,7 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
         rows = [(setting, next(measured), next(measured)) for setting in self._settings(scene)]
         entries = [entry(setting, answer, against.mu) for setting, answer, against in rows]
         entries = trade.with_pareto_fronts(entries, len(scene.bodies))
-        answered = [_answered(*solution, entries) for solution in solutions]
+        answered = [_count_answers(*solution, entries) for solution in solutions]
         numbers = zip(*((answer.mu, against.mu, answer.error_estimate) for _, answer, against in rows))
         values = dict(zip(trade.MEANINGS, map(list, numbers)))
         phases = sample(max(question.points for question in answered))
@@ -179,7 +179,7 @@ def entry(setting: Setting, measured: Measured, reference_solution: Array) -> tr
     )
 
 
-def _answered(question: Question, reference_solution: Measured, entries: Sequence[trade.Entry]) -> trade.Answered:
+def _count_answers(question: Question, reference_solution: Measured, entries: Sequence[trade.Entry]) -> trade.Answered:
     """The question with its reference solution, and what is known about that."""
     error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
     error = float(np.nanmax(error_estimate)) if np.isfinite(error_estimate).any() else float("inf")

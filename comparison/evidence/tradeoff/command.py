@@ -54,20 +54,20 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
     options = parser.parse_args(argv)
     number_of_jobs(options)  # refused before anything else is looked at
-    scenes = [_phased(name) for name in options.scenes or [DEFAULT]]
+    scenes = [_load_phased_scene(name) for name in options.scenes or [DEFAULT]]
     refuse_same_names((scene.name, scene.name) for scene in scenes)
     out = destination(options.out)
-    _stored(out)  # a file that is no trade is refused before anything is measured
+    _load_trades(out)  # a file that is no trade is refused before anything is measured
     written = [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)]
     refuse_foreign_files(out, written)
     console = wide_console()
     if options.growth:
-        return _grown(scenes[0], options, argv, out, console, executor)
-    measured = measured_trades(scenes, options, argv, console, executor)
+        return _measure_growth(scenes[0], options, argv, out, console, executor)
+    measured = measure_trades(scenes, options, argv, console, executor)
     with report_write_errors(out):
         for each in measured:
             publish(out, {_values_file(each.trade.scene): netcdf(each.values)}, COMMAND)
-        trades = {trade.scene: trade for trade in [*_stored(out), *(each.trade for each in measured)]}
+        trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
         (file,) = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
     for each in measured:
         print_trade(console, each.trade)
@@ -75,7 +75,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     return 0
 
 
-def _grown(
+def _measure_growth(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
 ) -> int:
     begin, study = time.monotonic(), Study((scene,), 1, TOLERANCE)
@@ -104,7 +104,7 @@ def print_growth(console: Console, series: Sequence[Series]) -> None:
     console.print(table)
 
 
-def _phased(name: str) -> Scene:
+def _load_phased_scene(name: str) -> Scene:
     scene = load_scene(name)
     if scene.recorded:
         rule = "reference solutions need phases, which a recorded motion has not: give a scene of two frequencies"
@@ -117,7 +117,7 @@ def _phased(name: str) -> Scene:
     return scene
 
 
-def _stored(out: Path) -> list[Trade]:
+def _load_trades(out: Path) -> list[Trade]:
     """The trades that are in the folder. Raises UsageError for a file that is none."""
     try:
         return load(out) or []
@@ -125,7 +125,7 @@ def _stored(out: Path) -> list[Trade]:
         raise UsageError(str(error)) from None
 
 
-def measured_trades(
+def measure_trades(
     scenes: Sequence[Scene], options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
 ) -> list[MeasuredTrade]:
     """The trades of the scenes with all that is known of their run; what is stored is not measured again."""

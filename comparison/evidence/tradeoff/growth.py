@@ -102,11 +102,11 @@ STORED = StoredFile(FILE, MeasuredGrowth, "a measured growth", "phase-resonance 
 
 def with_slope(quantity: str, unit: str, model: str, values: Sequence[float], seconds: Sequence[float]) -> Series:
     """The series with its slope; NaN where there is no measurement."""
-    slope = map(finite_or_none, fitted_slope(values, seconds))
+    slope = map(finite_or_none, fit_slope(values, seconds))
     return Series(quantity, unit, model, list(values), [finite_or_none(each) for each in seconds], *slope)
 
 
-def fitted_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
+def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float, float]:
     """Exponent of the larger half of the values before the first NaN, and its standard error; NaN for fewer than 3."""
     known = int(np.isfinite([*seconds, np.nan]).argmin())  # what is behind one without a measurement is no trend
     if known < 3:

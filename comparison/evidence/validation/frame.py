@@ -259,7 +259,7 @@ def compare(runs: Sequence[Shaken]) -> Found:
         table.given(f"frame: {name}", getattr(setup, key), size, unit, source)
         for key, (size, name, unit, source) in ASSUMED.items()
     ]
-    inputs.append(_given_ratio(fitted))
+    inputs.append(_ratio_of_setup(fitted))
     parts = [
         _compare_run(each, "calibrated" if each is first else "predicted", setup, varied, fitted.shifted, best)
         for each, best in zip(folded, own)
@@ -274,7 +274,7 @@ def _slides(cycles: Cycles) -> bool:
     return bool(read_cycle(cycles.mean, cycles.frequency)[2] < 100.0)
 
 
-def _given_ratio(fitted: Fitted) -> str:
+def _ratio_of_setup(fitted: Fitted) -> str:
     source = f"fitted to the motion of the run with {1e3 * fitted.cycles.run.weight:g} g; its scatter over the cycles"
     return table.given("frame: friction ratio", fitted.setup.ratio, fitted.spread, "", source)
 
@@ -291,7 +291,7 @@ def _compare_by_load(first: Fitted, rest: Sequence[tuple[Cycles, Setup]]) -> Fou
         f"frame: the friction ratios fitted to {first.cycles.run.name} and to {second.cycles.run.name} "
         f"grow as the load to the power {exponent:.3f}"
     )
-    found = [Found([], [_given_ratio(second)], [fact], [], [])]
+    found = [Found([], [_ratio_of_setup(second)], [fact], [], [])]
     for cycles, own in rest if len(rest) > 1 else ():
         share = (math.log(cycles.run.weight) - begin) / (end - begin)
 

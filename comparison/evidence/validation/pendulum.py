@@ -53,7 +53,7 @@ def compare_decay(swing: Swing) -> Found:
     )
 
     def read(motion: Trajectory) -> Array:
-        passed, angles = _computed_turns(motion)
+        passed, angles = _compute_turns(motion)
         return 1e3 * np.array([*angles[list(SHOWN)], (passed[2 * HALF] - passed[HALF]) / HALF])
 
     def compute(side: str, values: Array) -> Trajectory:
@@ -71,7 +71,7 @@ def compare_decay(swing: Swing) -> Found:
         f"pendulum, decay: each of the first {COULOMB} half swings loses {loss:.5f} rad; the turning points are within "
         f"{np.abs(residuals).max() / step:.1f} steps of the encoder ({step:.6f} rad) of a line"
     )
-    drawn = {"measured": sizes} | {side: 1e3 * _computed_turns(motions[side])[1] for side in (EQUATIONS, ENGINE)}
+    drawn = {"measured": sizes} | {side: 1e3 * _compute_turns(motions[side])[1] for side in (EQUATIONS, ENGINE)}
     axes = ("number of the turning point", "angle, mrad")
     curves = table.curves("pendulum, decay", axes, {name: (numbers, y) for name, y in drawn.items()})
     given = [table.given(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named]
@@ -179,7 +179,7 @@ def _zeros(motion: Trajectory) -> Array:
     return zeros
 
 
-def _computed_turns(motion: Trajectory) -> tuple[Array, Array]:
+def _compute_turns(motion: Trajectory) -> tuple[Array, Array]:
     """Instants and angles, towards the side of each turn, of the turning points from the first on; at last the rest."""
     place, end = table.spline(motion), float(motion.time[-1])
     found: list[tuple[float, float]] = []

@@ -22,7 +22,7 @@ from comparison.evidence.claims.feature import FEATURE
 from comparison.evidence.claims.peaks_and_valleys import Counts
 from comparison.evidence.claims.readings import AS_INTEGRATED, CASES, LITERAL_SUPREMUM, READINGS, effective_reading
 from comparison.evidence.claims.smoothness import Bend
-from comparison.evidence.claims.table import VERDICTS, Claims, ClaimTable, claims_line, known_surfaces, table_of
+from comparison.evidence.claims.table import VERDICTS, Claims, ClaimTable, claims_line, surfaces_of_study, table_of
 from comparison.evidence.convergence.analysis import Convergence
 from comparison.evidence.forced_ratios import forced_ratios
 from comparison.evidence.scaling.analysis import Scaling
@@ -260,17 +260,17 @@ def test_the_surfaces_of_the_study_are_used_where_it_has_the_grid() -> None:
     batches = [task.argument for task in surface_tasks(study)]
     surfaces = label_surfaces(study, batches, [_planted_result(batch) for batch in batches])
     for case in ("fig3-I", "fig4-viscous"):
-        known = known_surfaces(study, surfaces, case, LITERAL_SUPREMUM, 4)
+        known = surfaces_of_study(study, surfaces, case, LITERAL_SUPREMUM, 4)
         assert known is not None
         found = surfaces["mu"].sel(scene=case, model="small").values[:2, ::2, ::2]
         assert np.array_equal(known.mu, np.moveaxis(found, 0, -1), equal_nan=True)
         assert (known.case, known.mu.shape, known.error, known.statuses) == (case, (4, 4, 2), 0.01, ("ok",))
-    assert known_surfaces(study, surfaces, "fig3-I", LITERAL_SUPREMUM, 3) is None
-    assert known_surfaces(study, surfaces, "fig3-I", AS_INTEGRATED, 4) is None
-    assert known_surfaces(study, surfaces, "fig3-I alone", LITERAL_SUPREMUM, 4) is None
-    assert known_surfaces(study, None, "fig3-I", LITERAL_SUPREMUM, 4) is None
+    assert surfaces_of_study(study, surfaces, "fig3-I", LITERAL_SUPREMUM, 3) is None
+    assert surfaces_of_study(study, surfaces, "fig3-I", AS_INTEGRATED, 4) is None
+    assert surfaces_of_study(study, surfaces, "fig3-I alone", LITERAL_SUPREMUM, 4) is None
+    assert surfaces_of_study(study, None, "fig3-I", LITERAL_SUPREMUM, 4) is None
     changed = tuple(scene.with_values({"duration": 19.0}) for scene in scenes)
-    assert known_surfaces(replace(study, scenes=changed), surfaces, "fig3-I", LITERAL_SUPREMUM, 4) is None
+    assert surfaces_of_study(replace(study, scenes=changed), surfaces, "fig3-I", LITERAL_SUPREMUM, 4) is None
     tasks = {(t.argument.case, t.argument.reading): t.argument.known for t in Claims(4).tasks(study, surfaces)}
     assert tasks["fig3-I", LITERAL_SUPREMUM] is not None
     assert tasks["fig3-I", AS_INTEGRATED] is None

@@ -14,7 +14,7 @@ from scipy.stats import linregress
 
 from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs
 from comparison.evidence.tradeoff.analysis import Measured, Measurement, entry, joined, sample
-from comparison.evidence.tradeoff.growth import QUANTITIES, STORED, Growth, fitted_slope, tall, with_slope
+from comparison.evidence.tradeoff.growth import QUANTITIES, STORED, Growth, fit_slope, tall, with_slope
 from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
 from comparison.evidence.tradeoff.trade import load, quantile, unbeaten, with_pareto_fronts
 from comparison.study.batches import import_function
@@ -170,11 +170,11 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
 def test_a_known_slope_is_found_in_the_larger_half() -> None:
     values = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0]
     seconds = [1.0, 1.0, 1.0, *(value**1.5 for value in values[3:])]
-    assert fitted_slope(values, seconds) == pytest.approx((1.5, 0.0), abs=1e-12)
-    assert fitted_slope([*values, 64.0], [*seconds, np.nan])[0] == pytest.approx(1.5), "no answer does not count"
-    assert np.isnan(fitted_slope(values[:2], seconds[:2])[0])
+    assert fit_slope(values, seconds) == pytest.approx((1.5, 0.0), abs=1e-12)
+    assert fit_slope([*values, 64.0], [*seconds, np.nan])[0] == pytest.approx(1.5), "no answer does not count"
+    assert np.isnan(fit_slope(values[:2], seconds[:2])[0])
     line = linregress(np.log([1.0, 2.0, 4.0]), np.log([1.0, 3.0, 5.0]))
-    assert fitted_slope([1.0, 2.0, 4.0], [1.0, 3.0, 5.0]) == pytest.approx((line.slope, line.stderr))
+    assert fit_slope([1.0, 2.0, 4.0], [1.0, 3.0, 5.0]) == pytest.approx((line.slope, line.stderr))
 
 
 def test_a_tall_scene_has_its_bodies_one_above_the_other() -> None:

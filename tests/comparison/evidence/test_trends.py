@@ -11,8 +11,8 @@ import multibody
 import reference
 from comparison.evidence.convergence import analysis as convergence
 from comparison.evidence.convergence.analysis import LIMITS, PENETRATIONS, Convergence, limit_trends
-from comparison.evidence.scaling.analysis import PRINTED, STEP, Scaling, scaled
-from comparison.evidence.trends import Trend, fitted, trend
+from comparison.evidence.scaling.analysis import PRINTED, STEP, Scaling, scale_scene
+from comparison.evidence.trends import Trend, fit_slope, trend
 from comparison.study.shorten import shorten
 from comparison.study.study import Study
 from reference import trajectory
@@ -32,19 +32,19 @@ def test_a_power_is_found_whatever_its_size_and_sign() -> None:
     for exponent in (0.5, 1.0, 2.0):
         sizes = _power(exponent, 1e-2, -3e-4)
         for points in (8, 7):
-            slope = fitted(SCALES, sizes, 1e-9 * np.abs(sizes))
+            slope = fit_slope(SCALES, sizes, 1e-9 * np.abs(sizes))
             assert slope.exponent == pytest.approx(exponent, abs=1e-9)
             assert slope.uncertainty < 1e-6
             assert (slope.points, slope.pairs) == (points, 2)
             sizes[0, 1] = np.nan  # a point without a value is left out
-    nothing = fitted(SCALES, np.full((2, 4), np.nan), np.full((2, 4), np.nan))
+    nothing = fit_slope(SCALES, np.full((2, 4), np.nan), np.full((2, 4), np.nan))
     assert (nothing.points, np.isnan(nothing.exponent)) == (0, True)
 
 
 def test_the_uncertainty_covers_the_scatter() -> None:
     """Two standard errors of a least-squares line with a height of its own for each phase pair."""
     sizes = _power(2.0, 1e-2, 2e-2, 3e-3) * np.exp(np.random.default_rng(4).normal(0.0, 0.1, (3, 4)))
-    slope = fitted(SCALES, sizes, 1e-6 * np.abs(sizes))
+    slope = fit_slope(SCALES, sizes, 1e-6 * np.abs(sizes))
     design = np.column_stack([np.tile(np.log(S), 3), np.kron(np.eye(3), np.ones((4, 1)))])
     found, [left], *_ = np.linalg.lstsq(design, np.log(sizes.ravel()), rcond=None)
     deviation = np.sqrt(left / (12 - 4) * np.linalg.inv(design.T @ design)[0, 0])
@@ -55,18 +55,18 @@ def test_error_bars_alone_make_an_uncertainty() -> None:
     """The logarithms lie 1.5, 0.5, -0.5 and -1.5 times log 2 off their mean: squares of 5 together."""
     sizes = _power(1.0, 1e-2)
     scattered = sizes * np.exp([[0.01, -0.03, 0.03, -0.01]])  # of no slope
-    spread = fitted(SCALES, scattered, 1e-9 * scattered).uncertainty
+    spread = fit_slope(SCALES, scattered, 1e-9 * scattered).uncertainty
     for share in (0.1, 0.01):
         expected = 2.0 * share / (np.sqrt(5.0) * np.log(2.0))
-        assert fitted(SCALES, sizes, share * sizes).uncertainty == pytest.approx(expected, rel=1e-6)
-        both = fitted(SCALES, scattered, share * scattered).uncertainty
+        assert fit_slope(SCALES, sizes, share * sizes).uncertainty == pytest.approx(expected, rel=1e-6)
+        both = fit_slope(SCALES, scattered, share * scattered).uncertainty
         assert both == pytest.approx(np.hypot(expected, spread), rel=1e-6)
 
 
 def test_values_within_their_error_bars_are_not_fitted() -> None:
     sizes = _power(2.0, 1e-3)
     errors = np.full_like(sizes, 1e-4)  # the last two sizes, 6e-5 and 1.6e-5, drown, and 2.5e-4 is not known to a fifth
-    assert np.isnan(fitted(SCALES, sizes, errors).exponent)
+    assert np.isnan(fit_slope(SCALES, sizes, errors).exponent)
     noise = trend("s", 1, "w", SCALES, sizes, errors, 2.0)
     assert noise.verdict == "within the error bars: no slope can be told"
 
@@ -153,9 +153,9 @@ LOADED = {"slow": 0.1, "load_exponent": -0.2}
 def test_the_scaled_scene_moves_as_the_scene_scaled(name: str, friction: object) -> None:
     """Small equations without the kept terms would do so exactly; with them to s^2 of the swing, 1e-2 here."""
     scene = load_scene(name).with_values({"duration": 2.0, **({"isolator.friction": friction} if friction else {})})
-    larger, smaller = (trajectory(scaled(scene, s), (2.0, 0.7), equations="small").position for s in (0.25, 0.125))
+    larger, smaller = (trajectory(scale_scene(scene, s), (2.0, 0.7), equations="small").position for s in (0.25, 0.125))
     np.testing.assert_allclose(larger, 2.0 * smaller, atol=1e-2 * np.abs(larger).max())
-    assert scaled(scene.with_values({"isolator.travel": 0.2}), 0.25).isolator.travel == 0.05
+    assert scale_scene(scene.with_values({"isolator.travel": 0.2}), 0.25).isolator.travel == 0.05
 
 
 @pytest.mark.long

@@ -6,7 +6,7 @@ from studies import solved
 
 import multibody
 from comparison.analyses.assumptions.command import main as assumptions
-from comparison.analyses.motions.analysis import chosen_places
+from comparison.analyses.motions.analysis import choose_places
 from comparison.registry import ANALYSES, EVERYTHING, first_tasks
 from comparison.study.batches import refusal_of
 from comparison.study.costs import seconds_per_point
@@ -31,7 +31,7 @@ def test_what_needs_phases_is_not_asked_of_a_record(capsys):
     assert {task.stage for task in first_tasks(study, ANALYSES)} == {"effective values"}
     assert Pictures().tasks(study, label_surfaces(study, [], [])) == []
     assert reductions(study) == []
-    (place,) = chosen_places(study, None, study.scenes[0])
+    (place,) = choose_places(study, None, study.scenes[0])
     assert (place.row, place.column) == (0, 0)
     assert assumptions(["synthetic-pair"]) == 2
     assert capsys.readouterr().err.count("\n") == 1, "rings of a record are not varied"

@@ -13,7 +13,7 @@ from runs import Run
 from studies import solved
 
 from comparison.analyses.motions import analysis as motions
-from comparison.analyses.motions.analysis import moved
+from comparison.analyses.motions.analysis import compute_motion
 from comparison.study.models import MODEL_HIERARCHY, chain_of
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import body_comparisons
@@ -117,7 +117,7 @@ def test_a_motion_is_asked_for_with_the_equations_and_friction_of_its_model(monk
     monkeypatch.setattr(motions, "imported", lambda path: lambda *motion, **settings: asked.append(settings))
     place = motions.Place("fig3-I", 0, 0, "")
     for model in MODEL_HIERARCHY[:6]:
-        moved((load_scene("fig3-I"), model, 1e-3, place, (0.0, 0.0)))
+        compute_motion((load_scene("fig3-I"), model, 1e-3, place, (0.0, 0.0)))
     assert [(settings["equations"], settings["regularization"]) for settings in asked] == [
         ("small", None), ("exact", None), ("small", None), ("exact", None), ("small", 1e-3), ("exact", 1e-3),
     ]  # fmt: skip
