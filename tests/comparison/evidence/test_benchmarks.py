@@ -131,7 +131,7 @@ def test_a_file_whose_verdict_contradicts_its_numbers_is_refused(tmp_path):
         (b'"met"', b'"law"'),
     ):
         (tmp_path / STORED.name).write_bytes(known.replace(right, wrong))
-        with pytest.raises(ValueError, match=r"not a table of benchmarks: .*run python -m comparison\.benchmarks"):
+        with pytest.raises(ValueError, match=r"not a table of benchmarks: .*run phase-resonance benchmarks"):
             STORED.load(tmp_path)
 
 

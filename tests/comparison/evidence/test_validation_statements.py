@@ -127,5 +127,5 @@ def test_a_record_whose_verdict_contradicts_its_numbers_is_refused(tmp_path) -> 
     content = STORED.as_json(recorded())
     for wrong in (b'"verdict": "met"', b'"verdict": "law"', b'"verdict": "not compared"'):
         (tmp_path / STORED.name).write_bytes(content.replace(b'"verdict": "not met"', wrong, 1))
-        with pytest.raises(ValueError, match=r"not a table of measured quantities: .*: run python -m comparison"):
+        with pytest.raises(ValueError, match=r"not a table of measured quantities: .*: run phase-resonance"):
             STORED.load(tmp_path)
