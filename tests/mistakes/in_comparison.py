@@ -11,6 +11,7 @@ SECTIONS = REPORT + "templates/sections/"
 TESTS = "tests/comparison/"
 NUMBERS = TESTS + "report/test_distinct_numbers.py::test_"
 RECORDED = TESTS + "report/test_recorded_report.py::test_the_report_says_what_was_last_read"
+PRINT = TESTS + "report/test_print.py::test_"
 BUDGET = TESTS + "surfaces/test_budget.py::test_"
 WATERFALL = TESTS + "surfaces/test_waterfall.py::test_"
 HEADLINE = TESTS + "surfaces/test_headline.py::test_"
@@ -122,6 +123,28 @@ MISTAKES = (
             "A difference names one model twice.", (RECORDED,)),
     Mistake(ANALYSES + "motions/feature.py", "(alpha1[place.row], alpha2[place.column])",
             "(alpha1[place.column], alpha2[place.row])", "Stored motions are at swapped phases.",
+            (TESTS + "report/test_report_files.py::test_motions_of_the_summary_are_at_the_phases_of_the_page",)),
+    # the page on paper, plots as files
+    Mistake(REPORT + "templates/page.js", "unfolded.forEach(details => { details.open = true; });", "",
+            "What is folded is not printed.", (PRINT + "paper_is_light_and_unfolded_and_has_every_surface_sharp",)),
+    Mistake(REPORT + "templates/page.js", 'document.documentElement.dataset.paper = "";', "",
+            "Paper is printed in the colors of a dark screen.", (PRINT + "paper_is_light_and_unfolded_and_has_every_surface_sharp",)),
+    Mistake(REPORT + "templates/viewer.js", "recorded ? 0 : study.scenes[number].bodies }", "recorded ? 0 : 1 }",
+            "Surfaces of the platform alone are printed.", (PRINT + "paper_is_light_and_unfolded_and_has_every_surface_sharp",)),
+    Mistake(REPORT + "templates/canvas.js", "ratio = paper.printing ? 4 : devicePixelRatio", "ratio = devicePixelRatio",
+            "Surfaces are printed at 96 dots to the inch.", (PRINT + "paper_is_light_and_unfolded_and_has_every_surface_sharp",)),
+    Mistake(REPORT + "templates/report.css", "table.data { font-size: 6.5pt;", "table.data { font-size: 9.5pt;",
+            "Wide tables are cut at the edge of the paper.", (PRINT + "nothing_reaches_beyond_the_paper_or_is_cut",)),
+    Mistake(REPORT + "templates/report.css", "figure, tr, .body, .sheet,", "main, figure, tr, .body, .sheet,",
+            "The first sheet has the title alone.", (PRINT + "the_first_sheet_has_the_verdict_and_the_whole_table",)),
+    Mistake(REPORT + "templates/plot.js", "STYLES.forEach(name => copy", "STYLES.slice(1).forEach(name => copy",
+            "A saved plot lacks what fills it.",
+            (TESTS + "report/test_page_in_a_browser.py::test_every_plot_is_saved_as_svg_that_needs_nothing_else",)),
+    Mistake(REPORT + "templates/plot.js", 'dataset.paper = "";  // light', "// light", "A plot is saved in the colors of a dark screen.",
+            (TESTS + "report/test_page_in_a_browser.py::test_every_plot_is_saved_as_svg_that_needs_nothing_else",)),
+    Mistake(FIGURES + "pairs.py", '{"pdf.fonttype": 42}', '{"pdf.fonttype": 3}', "PDF figures embed fonts of type 3.",
+            (TESTS + "surfaces/test_pictures.py::test_fonts_of_a_figure_in_the_manner_of_the_paper_are_such_as_journals_take",)),
+    Mistake(ANALYSES + "demands/analysis.py", ".assign_coords(surfaces.coords)", "", "Phases beside demands have no unit.",
             (RECORDED,)),
     Mistake(ANALYSES + "measured/analysis.py", "NOT_COMPARED if self.exceeds is None else NOT_MET",
             "NOT_MET if self.exceeds is None else NOT_MET", "An unknown difference counts as one that is not met.",
