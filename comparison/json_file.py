@@ -51,7 +51,11 @@ class StoredFile(Generic[T]):
         return json_text(asdict(results)).encode()  # type: ignore[call-overload]
 
     def load(self, folder: Path) -> T | None:
-        """What the command left in a folder, None without a file. Raises ValueError, one line, for anything else."""
+        """
+        Return what the command left in a folder, None without a file.
+
+        Raises ValueError, one line, for anything else.
+        """
         file = folder / self.name
         if not file.exists():
             return None

@@ -1,103 +1,102 @@
-"""The features of a study, in the order of the page: what is run, planned, reported, and selected by key."""
+"""
+The features of a study, in the order of the pages: what is run, planned, reported, and selected by key.
+
+A feature is one folder, whose module `feature` has a `FEATURE`, and one line of `FEATURES`.
+"""
 
 from collections.abc import Sequence
 from functools import partial
+from importlib import import_module
 from typing import Any
 
 from pydantic import Field, create_model
 
-from comparison.analyses.assumptions import feature as assumptions
-from comparison.analyses.benchmarks import feature as benchmarks
-from comparison.analyses.claims import feature as claims
-from comparison.analyses.conditioning import feature as conditioning
-from comparison.analyses.convergence import feature as convergence
-from comparison.analyses.demands import feature as demands
-from comparison.analyses.effective_values import feature as effective_values
-from comparison.analyses.ensemble import feature as ensemble
-from comparison.analyses.extremes import feature as extremes
-from comparison.analyses.families import feature as families
-from comparison.analyses.measured import feature as measured
-from comparison.analyses.motions import feature as motions
-from comparison.analyses.scaling import feature as scaling
-from comparison.analyses.tradeoff import feature as tradeoff
-from comparison.analyses.validation import feature as validation
-from comparison.analyses.worst_phases import feature as worst_phases
+from comparison.report import surface_sections as core
 from comparison.report.building import build_report
+from comparison.report.feature import Feature
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
-from comparison.report.section import Feature
-from comparison.report.surface_sections import (
-    BUDGET,
-    DIFFERENCES,
-    MODELS,
-    OUTCOMES,
-    PROVENANCE,
-    SURFACES,
-    VERIFICATION,
-)
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
+from comparison.study.costs import seconds_of_analysis
 from comparison.study.levels import StudyLevel, levels_of
+from comparison.study.selection import Selection
 from comparison.study.study import Study
-from comparison.surfaces.completion import CompletedSurfaces
-from comparison.surfaces.figures.pictures import Pictures
+
+
+def _feature(folder: str) -> Feature:
+    feature: Feature = import_module(f"comparison.{folder}.feature").FEATURE
+    return feature
+
 
 FEATURES: tuple[Feature, ...] = (
-    SURFACES,
-    motions.FEATURE,
-    families.FEATURE,
-    worst_phases.FEATURE,
-    demands.FEATURE,
-    ensemble.FEATURE,
-    DIFFERENCES,
-    BUDGET,
-    conditioning.FEATURE,
-    scaling.FEATURE,
-    convergence.FEATURE,
-    OUTCOMES,
-    MODELS,
-    claims.FEATURE,
-    assumptions.FEATURE,
-    measured.FEATURE,
-    validation.FEATURE,
-    benchmarks.FEATURE,
-    extremes.FEATURE,
-    tradeoff.FEATURE,
-    tradeoff.GROWTH,
-    effective_values.FEATURE,
-    VERIFICATION,
-    PROVENANCE,
-    Feature("completion", analysis=CompletedSurfaces()),
-    Feature("pictures", analysis=Pictures()),
+    core.SURFACES,
+    _feature("analyses.motions"),
+    _feature("analyses.families"),
+    _feature("analyses.worst_phases"),
+    _feature("analyses.demands"),
+    _feature("analyses.ensemble"),
+    core.DIFFERENCES,
+    core.BUDGET,
+    _feature("analyses.conditioning"),
+    _feature("evidence.scaling"),
+    _feature("evidence.convergence"),
+    core.OUTCOMES,
+    core.MODELS,
+    _feature("evidence.claims"),
+    _feature("analyses.assumptions"),
+    _feature("analyses.measured"),
+    _feature("evidence.validation"),
+    _feature("evidence.benchmarks"),
+    _feature("evidence.extremes"),
+    _feature("evidence.tradeoff"),
+    _feature("evidence.effective"),
+    core.VERIFICATION,
+    core.PROVENANCE,
+    core.COMPLETION,
+    core.PICTURES,
 )
 ANALYSES: tuple[Analysis[Any], ...] = tuple(feature.analysis for feature in FEATURES if feature.analysis)
-EARLIER = tuple(feature for feature in FEATURES if feature.load)  # what other commands leave beside a report
-
-_FIELDS: dict[str, Any] = {
-    feature.key: (feature.result | None, Field(description=feature.meaning))
-    for feature in FEATURES
-    if feature.result is not None
-}
-_OF_SCENES: dict[str, Any] = {
-    name: (each.kind, Field(description=each.meaning))
-    for feature in FEATURES
-    for name, each in feature.scene_fields.items()
-}
-_Scene = create_model("SceneResult", __base__=SceneResult, __doc__=SceneResult.__doc__, **_OF_SCENES)
-_FIELDS["scenes"] = list[_Scene], Field(description="in the order of the command")  # type: ignore[valid-type]
-StudyResults: type[Results] = create_model("Results", __base__=Results, __doc__=Results.__doc__, **_FIELDS)
+SELECTABLE = tuple(feature.choice for feature in FEATURES if feature.selectable)
+EVERYTHING = Selection(SELECTABLE)  # all but what is made on request, of every scene
 
 
+def _results_type(features: Sequence[Feature]) -> type[Results]:
+    """Return the results of a study with the fields of its features."""
+    of_scenes: dict[str, Any] = {
+        field.name: (field.kind, Field(description=field.meaning))
+        for feature in features
+        for field in feature.scene_fields
+    }
+    scene = create_model("SceneResult", __base__=SceneResult, __doc__=SceneResult.__doc__, **of_scenes)
+    fields: dict[str, Any] = {
+        field.name: (field.kind | None, Field(description=field.meaning))
+        for feature in features
+        for field in feature.fields
+    }
+    fields["scenes"] = list[scene], Field(description="in the order of the command")  # type: ignore[valid-type]
+    results: type[Results] = create_model("Results", __base__=Results, __doc__=Results.__doc__, **fields)
+    results.features = tuple(features)
+    return results
+
+
+StudyResults = _results_type(FEATURES)
 report_of = partial(build_report, features=FEATURES, kind=StudyResults)
 
 
-def chosen_analyses(study: Study) -> list[Analysis[Any]]:
+def select_analyses(study: Study) -> list[Analysis[Any]]:
     """Those of ANALYSES that are made of a scene of the study."""
     return [analysis for analysis in ANALYSES if study.selecting(analysis.key).scenes]
 
 
+def seconds_by_stage(study: Study) -> dict[str, float]:
+    """Rough processor time of every stage of the analyses of a study, s."""
+    analyses = select_analyses(study)
+    return {each.stage: seconds_of_analysis(study, each.key, each.seconds) for each in analyses}
+
+
 def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
-    """What can be computed without knowing the surfaces."""
+    """Return what can be computed without knowing the surfaces."""
     return [
         task
         for analysis in analyses
@@ -108,4 +107,4 @@ def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:
 
 def levels(study: Study) -> list[StudyLevel]:
     """The levels of a study, from coarse to fine."""
-    return levels_of(study, {analysis.key: analysis.level for analysis in chosen_analyses(study)})
+    return levels_of(study, {analysis.key: analysis.level for analysis in select_analyses(study)})

@@ -20,31 +20,28 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import partial
 from importlib import import_module
 
-from rich.console import Console
-
-from comparison.cli.arguments import EndedEarlyError, changed, command, command_line, resume_hint
+from comparison.cli.arguments import EndedEarlyError, command, command_line, edit_command_line, resume_hint
 from comparison.cli.closing import print_check, print_closing, print_faults, print_level
 from comparison.cli.computing import workers
-from comparison.cli.options import Options, parsed
-from comparison.cli.reports import Complete, Reports, computed_level
+from comparison.cli.options import Options, parse_options
+from comparison.cli.reports import CompleteLevel, Reports, compute_level
 from comparison.cli.start import Clock, start_time
 from comparison.cli.terminal import print_models_left_out, print_plan, print_stored
 from comparison.cli.user_models import Engines, as_words
-from comparison.registry import chosen_analyses, first_tasks, levels
+from comparison.registry import first_tasks, levels, seconds_by_stage, select_analyses
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.output import clear_dead
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Deadline, TimeUpError, progress, wide_console
 from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
-from comparison.study.costs import WRITING, seconds_of_analysis, seconds_of_model
+from comparison.study.costs import WRITING, seconds_of_model
 from comparison.study.models import MODEL_HIERARCHY, Model, with_max_work, with_softened_bars
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
-from reference.support.command import stoppable
+from reference.support.command import stop_on_signals
 
 import_module("multibody.models.engine")  # workers load it again: where that fails, the command ends here in one line
 
@@ -57,7 +54,7 @@ def main(
     models: Engines | None = None,
 ) -> int:
     """
-    Run the study the command line asks for.
+    Run the study that the command line asks for.
 
     argv: words of the command line; those of this process if none are given. hierarchy: the models, each adding one
     effect to the one before. executor: what makes an executor for a number of workers, or any executor, which is left
@@ -65,22 +62,19 @@ def main(
     place as "module:function".
     """
     began = start_time()
-    with stoppable():
+    with stop_on_signals():
         try:
-            words = changed(argv, as_words(models or {}))
-            options = parsed(words)
-            console = wide_console()
-            study = _study(options, hierarchy)
-            print_models_left_out(console, study)
+            words = edit_command_line(argv, as_words(models or {}))
+            options = parse_options(words)
+            run = StudyRun(options, words, hierarchy, began)
             if options.plan:
-                print_plan(console, study, options)
+                run.plan()
                 return 0
-            code = _ended(study, options, console, words, executor, began)
+            code = run.compute(executor)
             if options.check and code < 2 and any(scene.acceptance.confirm for scene in options.scenes):
                 words = _tighter(options, words)
-                console.print(f"Again at a tenth of the tolerance: {command_line(words)}", soft_wrap=True)
-                options = parsed(words)
-                again = _ended(_study(options, hierarchy), options, console, words, executor, Clock.now())
+                run.say(f"Again at a tenth of the tolerance: {command_line(words)}")
+                again = StudyRun(parse_options(words), words, hierarchy, Clock.now()).compute(executor)
                 return max(code, again)
             return code
         except KeyboardInterrupt:
@@ -89,14 +83,14 @@ def main(
 
 
 def _tighter(options: Options, words: Sequence[str]) -> list[str]:
-    """The command that computes the differences again at a tenth of the tolerance, with a report beside the first."""
+    """Return the command that computes the differences at a tenth of the tolerance, its report beside the first."""
     beside = options.out.with_name(f"{options.out.name}-tighter")
     tighter = ["--tolerance", f"{options.tolerance / 10.0:g}", "--out", str(beside), "--only", "differences,budget"]
-    return changed(words, tighter, options=["--tolerance", "--out", "--only", "--skip", "--also"])
+    return edit_command_line(words, tighter, options=["--tolerance", "--out", "--only", "--skip", "--also"])
 
 
 def _study(options: Options, hierarchy: Sequence[Model]) -> Study:
-    """The whole question."""
+    """Return the whole question."""
     hierarchy = with_softened_bars(hierarchy, options.scenes)
     if options.max_work is not None:
         hierarchy = with_max_work(hierarchy, options.max_work)
@@ -104,55 +98,96 @@ def _study(options: Options, hierarchy: Sequence[Model]) -> Study:
     return Study(options.scenes, options.grid, options.tolerance, hierarchy, options.full, selection=options.selection)
 
 
-def _ended(study: Study, options: Options, console: Console, words: Sequence[str], executor: Pool, began: Clock) -> int:
-    """The exit code; whatever ends the run early, what is finished is kept, and the line printed says how to go on."""
-    store = Cache(store_beside(options.out))
-    models = {model.amplification for model in study.hierarchy}
-    hint = partial(resume_hint, store, batches=len(study.batches()))
-    with workers(options.jobs, options.scheduler, models, executor, words, hint) as (jobs, pool):
-        clear_dead(options.out)
-        analyses = chosen_analyses(study)
-        first = first_tasks(study, analyses)
-        surfaces = surface_tasks(study)
-        keys = [task.key for task in surfaces]
-        store.trim(keys)
-        if options.fresh:  # gone before anything is computed: what an interrupted run left is new
-            store.remove([*keys, *(task.key for task in first)])
-        results = TaskResults(store, options.fresh)
-        print_stored(console, results, surfaces, first)
-        stages = {analysis.stage: seconds_of_analysis(study, analysis.key, analysis.stage) for analysis in analyses}
-        total = WRITING + sum(stages.values()) + sum(seconds_of_model(study, model) for model in study.hierarchy)
-        reports = Reports(options, jobs, words, began)
-        complete: Complete | None = None
-        stopped: KeyboardInterrupt | None = None
-        with progress(console, total, jobs) as display, Deadline(began.wall, options.budget) as deadline:
-            runner = Runner(results, jobs, pool, display, stages)
-            try:
-                planned = levels(study)
-                for level in planned if results.missing(surfaces) else planned[-1:]:
-                    complete = computed_level(level, runner)
-                    if level.last or reports.is_due(complete, runner):
-                        before = reports.results
-                        said = reports.write(complete, runner)
-                        deadline.keep_free(reports.seconds)
-                        if not level.last:
-                            print_level(console, said, before, level, reports.place)
-            except TimeUpError:
-                deadline.keep_free(0.0)
-                with suppress(TimeUpError):  # then the report before stays
-                    reports.write_stopped(complete, runner)
-            except KeyboardInterrupt as stop:
-                reports.write_stopped(complete, runner)
-                stopped = stop
-        found = reports.results
+class StudyRun:
+    """
+    A study that the command line asks for: planned, or computed level by level and closed.
+
+    Whatever ends it early, what is finished is kept, and the line printed says how to go on.
+    """
+
+    def __init__(self, options: Options, words: Sequence[str], hierarchy: Sequence[Model], began: Clock) -> None:
+        self._options, self._words, self._began = options, words, began
+        self._study, self._console = _study(options, hierarchy), wide_console()
+        self._cache = Cache(store_beside(options.out))
+        print_models_left_out(self._console, self._study)
+
+    def plan(self) -> None:
+        """Print what would be computed, and roughly how long it would take."""
+        print_plan(self._console, self._study, self._options)
+
+    def compute(self, executor: Pool) -> int:
+        """Compute the study on the workers of the options and close it; return the exit code."""
+        options, models = self._options, {model.amplification for model in self._study.hierarchy}
+        with workers(options.jobs, options.scheduler, models, executor, self._words, self._hint) as (jobs, pool):
+            clear_dead(options.out)
+            results = self._open_results()
+            stages = seconds_by_stage(self._study)
+            models_seconds = sum(seconds_of_model(self._study, model) for model in self._study.hierarchy)
+            total = WRITING + sum(stages.values()) + models_seconds
+            reports = Reports(options, jobs, self._words, self._began)
+            with (
+                progress(self._console, total, jobs) as display,
+                Deadline(self._began.wall, options.budget) as deadline,
+            ):
+                stop = self._compute_levels(Runner(results, jobs, pool, display, stages), reports, deadline)
+            return self.close(reports, jobs, stop)
+
+    def close(self, reports: Reports, jobs: int, stop: KeyboardInterrupt | None) -> int:
+        """
+        Print what the last report says and what to do next; return the exit code.
+
+        Raises `stop`, what interrupted the run, and EndedEarlyError without any report.
+        """
+        options, found = replace(self._options, jobs=jobs), reports.results
         if found is not None:
             print_faults(found)
-            print_closing(console, found, replace(options, jobs=jobs), words, reports.place)
+            print_closing(self._console, found, options, self._words, reports.place)
             if options.check:
                 print_check(found)
-        if stopped is not None:
-            raise stopped
+        if stop is not None:
+            raise stop
         if found is None:
             rule = "no level of the study was complete by then"
-            raise EndedEarlyError(3, f"command line: --budget = {options.budget:g}: {rule}: {hint(words)}")
+            line = f"command line: --budget = {options.budget:g}: {rule}: {self._hint(self._words)}"
+            raise EndedEarlyError(3, line)
         return 1 if options.check and found.broken else 0
+
+    def say(self, line: str) -> None:
+        """Print a line that is not wrapped."""
+        self._console.print(line, soft_wrap=True)
+
+    def _open_results(self) -> TaskResults:
+        """Return the results of earlier runs, less those that this one computes anew, and say how many there are."""
+        first, surfaces = first_tasks(self._study, select_analyses(self._study)), surface_tasks(self._study)
+        keys = [task.key for task in surfaces]
+        self._cache.trim(keys)
+        if self._options.fresh:  # gone before anything is computed: what an interrupted run left is new
+            self._cache.remove([*keys, *(task.key for task in first)])
+        results = TaskResults(self._cache, self._options.fresh)
+        print_stored(self._console, results, surfaces, first)
+        return results
+
+    def _compute_levels(self, runner: Runner, reports: Reports, deadline: Deadline) -> KeyboardInterrupt | None:
+        """Compute every level, from coarse to fine, each with its report; return what interrupted that, or None."""
+        complete: CompleteLevel | None = None
+        try:
+            planned = levels(self._study)
+            for level in planned if runner.results.missing(surface_tasks(self._study)) else planned[-1:]:
+                complete = compute_level(level, runner)
+                if level.last or reports.is_due(complete, runner):
+                    before = reports.results
+                    said = reports.write(complete, runner)
+                    deadline.keep_free(reports.seconds)
+                    if not level.last:
+                        print_level(self._console, said, before, level, reports.place)
+        except TimeUpError:
+            deadline.keep_free(0.0)
+            with suppress(TimeUpError):  # then the report before stays
+                reports.write_stopped(complete, runner)
+        except KeyboardInterrupt as stop:
+            reports.write_stopped(complete, runner)
+            return stop
+        return None
+
+    def _hint(self, words: Sequence[str]) -> str:
+        return resume_hint(self._cache, words, batches=len(self._study.batches()))

@@ -13,11 +13,11 @@ from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with
 from comparison.study.study import Study
 from comparison.study.user_models import LAWS, user_model
 from comparison.surfaces.model_difference import difference_of
-from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.surfaces import label_surfaces
 from comparison.surfaces.unanswered import unanswered
 from reference.problem import Scene, load_scene
 from reference.problem.ranges import TOLERANCE
-from reference.support.arguments import Range, checked_choice, checked_number, checked_whole_number
+from reference.support.arguments import Range, check_choice, check_number, check_whole_number
 
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
 ENGINE, ENGINE_TITLE = "engine", "your engine"  # key and title of the user's engine
@@ -86,13 +86,13 @@ def assert_consistent(
         "total": total,
         "total_maximum": total_maximum,
     }
-    stated = {name: checked_number(name, limit, LIMIT) for name, limit in limits.items() if limit is not None}
+    stated = {name: check_number(name, limit, LIMIT) for name, limit in limits.items() if limit is not None}
     if not stated:
         raise ValueError(f"no limit: give one of {', '.join(limits)}")
-    grid = checked_whole_number("grid", grid, GRID)
-    failed = checked_whole_number("failed", failed, FAILED)
-    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
-    law = checked_choice("law", law, LAWS)
+    grid = check_whole_number("grid", grid, GRID)
+    failed = check_whole_number("failed", failed, FAILED)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    law = check_choice("law", law, LAWS)
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     with_total = any(name.startswith("total") for name in stated)
     hierarchy = [*(with_softened_bars(MODEL_HIERARCHY, (scene,)) if with_total else MODEL_HIERARCHY)]
@@ -105,12 +105,12 @@ def assert_consistent(
     study = Study((scene,), grid, tolerance, [model for model in hierarchy if model.key in needed])
     batches = study.batches()
     answers = [execute_batch(batch) for batch in batches]
-    surfaces = labeled_surfaces(study, batches, answers)
+    surfaces = label_surfaces(study, batches, answers)
     broken = [
         line
         for name, limit in stated.items()
         for compared, measure, _ in [name.partition("_maximum")]
-        for line in _broken(surfaces, scene, asked[name], compared, bool(measure), limit)
+        for line in _word_breaches(surfaces, scene, asked[name], compared, bool(measure), limit)
     ]
     gaps = unanswered(study, surfaces)
     if sum(gap.points + gap.unusable for gap in gaps) > failed:
@@ -120,7 +120,7 @@ def assert_consistent(
         raise AssertionError("\n".join(broken))
 
 
-def _broken(
+def _word_breaches(
     surfaces: xr.Dataset, scene: Scene, pair: Pair | None, name: str, maximum: bool, limit: float
 ) -> Iterator[str]:
     """One line for each body beyond the limit, which is on the largest difference or on the median."""

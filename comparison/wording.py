@@ -7,10 +7,11 @@ from markupsafe import Markup, escape
 
 from reference.support.drawing import verbatim
 
-MAX_DECIMALS = 4  # of a percentage: what is smaller is nothing
-SHOWN_ERROR = 0.01  # of a size: a smaller error is not seen in two digits
+MAX_DECIMALS = 4  # percentage below which a size is nothing
+SHOWN_ERROR = 0.01  # share of a size below which its error is not seen in two digits
 MAX_NAMES = 12  # on an axis of values that are no numbers; of more values every n-th is named
 POWERS = re.compile(r"\^(\w)")
+PERCENT = re.compile(r"(?<=\d) %")
 SUBSCRIPTS = re.compile(r"(?<=[\w>])_(\w+)")
 INDEXED = re.compile(r"\b([^\W\d_]+)_(\w+)")
 SMALL = {"beta": "β", "eta": "η", "lambda": "λ", "mu": "μ", "rho": "ρ", "tau": "τ", "xi": "ξ", "zeta": "ζ"}
@@ -19,7 +20,7 @@ LETTERS = re.compile(rf"(?<![a-zA-Z^])(d?)({'|'.join(GREEK)})(?![a-zA-Z])")
 
 
 def exception_line(error: BaseException) -> str:
-    """What was raised, and what its notes say of the place, in one line."""
+    """Return what was raised, and what its notes say of the place, in one line."""
     notes = "".join(f" ({note})" for note in getattr(error, "__notes__", ()))
     return " ".join(f"{type(error).__name__}: {error}{notes}".split())
 
@@ -66,7 +67,7 @@ def _decimals(size: float, error: float) -> int | None:
     return max(0, -math.floor(math.log10(100.0 * error)))
 
 
-def shortened(text: str, letters: int) -> str:
+def shorten_text(text: str, letters: int) -> str:
     """A text of at most so many letters; of a longer one the end is three dots."""
     return text if len(text) <= letters else text[: letters - 1] + "…"
 
@@ -87,8 +88,8 @@ def degrees(phase: float) -> str:
 
 
 def symbols(text: str) -> Markup:
-    """Names such as v_reg, l^3 and rho as they are printed: with indices, powers and Greek letters."""
-    greek = _with_greek(str(escape(text)))
+    """Return names such as v_reg, l^3 and rho with indices, powers and Greek letters; % stays beside its number."""
+    greek = _with_greek(str(escape(PERCENT.sub("\u00a0%", text))))
     return Markup(SUBSCRIPTS.sub(r"<sub>\1</sub>", POWERS.sub(r"<sup>\1</sup>", greek)))
 
 

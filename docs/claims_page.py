@@ -3,7 +3,7 @@ Write docs/claims.md from docs/claims.json: what the paper says about its figure
 
     python docs/claims_page.py [--measure]
 
---measure computes the table of `python -m comparison.claims` again, keeps it in claims.json with its commit, and draws
+--measure computes the table of `phase-resonance claims` again, keeps it in claims.json with its commit, and draws
 the surfaces. The search and the literal (4.6) in claims.json were recorded by an earlier version and stay as they are.
 """
 
@@ -23,11 +23,11 @@ from matplotlib.figure import Figure
 from PIL import Image
 from pydantic import TypeAdapter
 
-from comparison.analyses.claims.checks import MET
-from comparison.analyses.claims.evidence import CaseInReading, gather_evidence
-from comparison.analyses.claims.readings import CASES, READINGS, PeakReading, effective_reading
-from comparison.analyses.claims.table import GRID, Claims, ClaimTable, claims_line
-from comparison.analyses.effective_values.analysis import forced_ratios
+from comparison.evidence.claims.checks import MET
+from comparison.evidence.claims.evidence import CaseInReading, gather_evidence
+from comparison.evidence.claims.readings import CASES, READINGS, PeakReading, effective_reading
+from comparison.evidence.claims.table import GRID, Claims, ClaimTable, claims_line
+from comparison.evidence.forced_ratios import forced_ratios
 from comparison.json_file import json_text
 from comparison.runner.environment import provenance
 from comparison.runner.task import execute
@@ -46,7 +46,7 @@ TABLE = TypeAdapter(ClaimTable)
 
 
 def compute_table(grid: int = GRID) -> ClaimTable:
-    """Return the table that `python -m comparison.claims --grid GRID` prints, in this process."""
+    """Return the table that `phase-resonance claims --grid GRID` prints, in this process."""
     study, claims, results = Study(tuple(map(load_scene, builtin_scenes())), 1, 1e-3), Claims(grid), TaskResults()
     for task in claims.tasks(study):
         results.put(task, execute(task))

@@ -29,7 +29,7 @@ from comparison.runner.processes import Workers
 from comparison.study.user_models import amplification
 from reference.problem import GRAVITY, load_scene, phase_grid
 from reference.problem.excitation import exponents
-from reference.problem.symmetry import sources
+from reference.problem.symmetry import indices_of_solved_pairs
 
 DOCS = Path(__file__).parent
 GRID, SCENES = 8, ("fig3-I", "fig3-II")
@@ -231,7 +231,7 @@ def _measured(engine: Engine) -> Iterator[dict[str, Any]]:
 def _asked(function: str, name: str, settings: dict[str, Any]) -> tuple[Any, dict[str, Any], float]:
     """mu of an engine and of every solution, (64, N), and processor time of 64 phase pairs, s. In a worker process."""
     scene, phases = load_scene(name), phase_grid(GRID)
-    alike = sources(scene, GRID)
+    alike = indices_of_solved_pairs(scene, GRID)
     solved = np.unique(alike)
     law = {"regularization": V_REG} if function.startswith("multibody") else {}
     engine = {"engine": {"function": function}, **law, **settings}

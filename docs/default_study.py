@@ -19,7 +19,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from comparison.registry import FEATURES, StudyResults
-from comparison.report.page import measured_sentence
+from comparison.report.page import word_measurements
 from comparison.surfaces.headline import Headline
 from comparison.surfaces.statements import CELLS, word_verdict
 from comparison.wording import percent, signed
@@ -59,7 +59,8 @@ def record(report: Path) -> dict[str, Any]:
     return {
         "command": "python -m comparison.run",
         "commit": summary["run"]["provenance"].get("commit", ""),
-        "verdict": word_verdict([h for s in results.scenes for h in s.headlines], measured_sentence(results)),
+        "measured": word_measurements(results),
+        "verdict": word_verdict([h for s in results.scenes for h in s.headlines], word_measurements(results)),
         "leads": leads,
         "headlines": [line for scene in summary["scenes"] for line in scene["headlines"]],
         "rows": rows,

@@ -3,9 +3,9 @@ What the pages state from records: `python docs/evidence_table.py` writes it ane
 
 - evidence.json holds what the tests of the checks found: `python docs/evidence_table.py --measure [WORD]` runs them, or
   those whose names hold a word.
-- recorded.json of comparison/analyses/validation holds the measured motions: `python docs/evidence_table.py --measured
+- recorded.json of comparison/evidence/validation holds the measured motions: `python docs/evidence_table.py --measured
   FOLDER` computes it from the published files.
-- benchmarks.json is what `python -m comparison.benchmarks --mastodon FILE` writes.
+- benchmarks.json is what `phase-resonance benchmarks --mastodon FILE` writes.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from xml.etree import ElementTree
 
-from comparison.analyses.benchmarks.table import STORED as PUBLISHED
-from comparison.analyses.benchmarks.table import Benchmarks, page
-from comparison.analyses.sides import ENGINE, EQUATIONS
-from comparison.analyses.validation import statements
-from comparison.analyses.validation.command import compared
-from comparison.analyses.validation.table import STORED as MEASURED
-from comparison.analyses.validation.table import recorded
+from comparison.evidence.benchmarks.table import STORED as PUBLISHED
+from comparison.evidence.benchmarks.table import Benchmarks, page
+from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.evidence.validation import statements
+from comparison.evidence.validation.command import compared
+from comparison.evidence.validation.table import STORED as MEASURED
+from comparison.evidence.validation.table import recorded
 from comparison.report.verification import CHECKS, Check
 from comparison.verdicts import NOT_COMPARED, NOT_MET, count_verdicts, judge, word_counts, word_verdict
 
@@ -69,7 +69,7 @@ def measured_rows() -> list[str]:
         rows.append(
             f"| the {each.name} of the {each.experiment}, {each.measured:.4g} {each.unit} | measurement ({each.use}) "
             f"| E = {found} {each.unit} (equations, engine) | u<sub>val</sub> = {sides[0].validation:.2g} {each.unit} "
-            f"| {each.word_both()} | `comparison.validation FOLDER` | {commit} |"
+            f"| {each.word_both()} | `phase-resonance validation FOLDER` | {commit} |"
         )
     return rows
 
@@ -85,7 +85,7 @@ def published_rows() -> list[str]:
         rows.append(
             f"| {name} numbers published elsewhere | closed forms and other programs, [all](benchmarks.md) "
             f"| {word_counts(counts, 'number')} | the error of both | {verdict} "
-            f"| `comparison.benchmarks --mastodon FILE` | {table.run['provenance']['commit'][:7]} |"
+            f"| `phase-resonance benchmarks --mastodon FILE` | {table.run['provenance']['commit'][:7]} |"
         )
     return rows
 
@@ -114,7 +114,7 @@ def measure(word: str) -> None:
 
 def record_measured(folder: Path) -> None:
     """Compute the measured motions and keep all but the curves, which are of the files of others."""
-    place = ROOT / "comparison/analyses/validation/recorded.json"
+    place = ROOT / "comparison/evidence/validation/recorded.json"
     place.write_bytes(MEASURED.as_json(replace(compared(folder), curves=[])))
 
 

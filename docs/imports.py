@@ -19,7 +19,7 @@ ROWS = [  # of boxes, from above; a box stands for the modules whose names begin
     ["comparison.run"],
     ["comparison.cli"],
     ["comparison.registry"],
-    ["comparison.analyses"],
+    ["comparison.analyses", "comparison.evidence"],
     ["comparison.report"],
     ["comparison.surfaces"],
     ["comparison.runner"],

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from comparison.study.analyses import ANALYSES
+from comparison.registry import EVERYTHING
 from reference.problem import Scene
-from reference.problem.ranges import MAX_CYCLES, SCENE
+from reference.problem.ranges import MAX_CYCLES
+from reference.support.arguments import Range
 
 PAGE = Path(__file__).with_name("scene.md")
 SET_BY_THE_READER = {"name", "samples"}  # fields of the models that are no keys of a file
@@ -69,8 +70,8 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         "`[analyses]`",
         "Analyses",
         "analyses",
-        f"Analyses of the report beside the amplification factors: {', '.join(ANALYSES)}. `--only`, `--skip` and"
-        " `--also` of the command line override this table.",
+        f"Analyses of the report beside the amplification factors: {', '.join(EVERYTHING.names)}. `--only`, `--skip`"
+        " and `--also` of the command line override this table.",
     ),
     (
         "`[[measured]]`",
@@ -120,20 +121,17 @@ def _rows(table: dict[str, Any], dotted: str) -> Iterator[str]:
             continue
         default = "required" if key in required else _literal(field.get("default"))
         unit = field["unit"] or "-"
-        limits = _limits(f"{dotted}.{key}" if dotted else key, field)
-        yield f"| `{key}` | {field['description']} | {unit} | {default} | {limits} | {field['models']} |"
+        yield f"| `{key}` | {field['description']} | {unit} | {default} | {_limits(field)} | {field['models']} |"
 
 
 def _literal(default: Any) -> str:
     return "none" if default is None else f"{default:g}"
 
 
-def _limits(key: str, field: dict[str, Any]) -> str:
-    """The range of a key: the one that `ranges.SCENE` states, or what its type says."""
-    if key in SCENE:
-        allowed = SCENE[key]
-        table = ", or table" if any(part.startswith(f"{key}.") for part in SCENE) else ""
-        return f"{allowed.lowest:g} to {allowed.highest:g}{', or inf' if allowed.or_infinite else ''}{table}"
+def _limits(field: dict[str, Any]) -> str:
+    """Return the range of a key: the stated one, or what its type says."""
+    if "range" in field:
+        return Range(*field["range"]).text + (", or table" if "$ref" in repr(field) else "")
     kinds = [kind for kind in field.get("anyOf", [field]) if kind.get("type") != "null"]
     if "enum" in kinds[0]:
         return " or ".join(f'"{choice}"' for choice in kinds[0]["enum"])

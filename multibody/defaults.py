@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-# Slip speed v_reg, m/s, below which dry friction is linear in the slip velocity.
-DEFAULT_V_REG = 1e-3
+from reference.problem.readings import DEFAULT_V_REG as DEFAULT_V_REG
 
 # Relative error that is asked of every mu.
 DEFAULT_TOLERANCE = 1e-3

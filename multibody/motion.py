@@ -16,10 +16,10 @@ from multibody.integration.refine import MAX_WORK, WORK, refine
 from multibody.models.assembly import assemble
 from multibody.models.system import EngineModel
 from reference.problem import Accuracy, Scene, State, Trajectory, checked_phase, ground_acceleration
-from reference.problem.ranges import TOLERANCE, checked_state
+from reference.problem.ranges import TOLERANCE, check_state
 from reference.problem.readings import describe_law
 from reference.problem.scene import takes_scene
-from reference.support.arguments import Range, checked_choice, checked_number
+from reference.support.arguments import Range, check_choice, check_number
 
 # Largest number of steps of a single run, which is held in memory whole.
 MAX_STEPS = 1e7
@@ -86,8 +86,8 @@ def trajectory(
     """
     scene = scene.softened() if softened else scene
     checked = checked_phase(phase)
-    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
-    max_work = checked_number("max_work", max_work, WORK)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    max_work = check_number("max_work", max_work, WORK)
     initial = _check_initial(scene, initial)
     with silence_engine():
         built = assemble(scene, model, regularization, loading=loading, contact_force=True)
@@ -173,9 +173,9 @@ def single_run(
     pair = checked_phase(phase)
     if (level is None) == (step is None):
         raise ValueError("level, step: give exactly one of the two")
-    checked_choice("integrator", integrator, INTEGRATORS)
-    penetration = checked_number("penetration", penetration, PENETRATION)
-    newton = checked_number("newton", newton, NEWTON)
+    check_choice("integrator", integrator, INTEGRATORS)
+    penetration = check_number("penetration", penetration, PENETRATION)
+    newton = check_number("newton", newton, NEWTON)
     with silence_engine():
         built = assemble(scene, model, regularization, contact_force=True)
         point = PhasePair(scene, built, pair, _check_initial(scene, initial))
@@ -183,7 +183,7 @@ def single_run(
             run = point.run_level(level, Budget(MAX_STEPS), keep=True)
         else:
             allowed = Range(scene.duration / MAX_STEPS, scene.duration, "s")
-            count = round(scene.duration / checked_number("step", step, allowed))
+            count = round(scene.duration / check_number("step", step, allowed))
             residual = 1e-3 * newton if residual is None else residual
             run = point.run_constant_step(count, penetration, newton, residual, integrator, discontinuous)
     motion = _make_trajectory(point, run, run.outcome, run.instant * built.units.time)
@@ -194,7 +194,7 @@ def _check_initial(scene: Scene, initial: State | None) -> State | None:
     """Return an initial state whose arrays fit the scene. Raises ValueError for a wrong one."""
     if initial is None:
         return None
-    return State(*checked_state(initial, len(scene.bodies), scene.radius, scene.isolator.travel))
+    return State(*check_state(initial, len(scene.bodies), scene.radius, scene.isolator.travel))
 
 
 def _make_trajectory(pair: PhasePair, run: EngineRun, status: str, instant: float) -> Trajectory:

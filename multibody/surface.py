@@ -29,7 +29,7 @@ from reference.problem import (
 from reference.problem.ranges import LEAST_ACCELERATION, TOLERANCE
 from reference.problem.readings import FINER, describe_law, reading_of
 from reference.problem.scene import takes_scene
-from reference.support.arguments import checked_number
+from reference.support.arguments import check_number
 
 Array = NDArray[np.float64]
 
@@ -112,8 +112,8 @@ def amplification(
     """
     stated, scene = scene, scene.softened() if softened else scene
     pairs, leading = flat_phases(phases)
-    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
-    max_work = checked_number("max_work", max_work, WORK)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    max_work = check_number("max_work", max_work, WORK)
     clock = time.process_time()
     shape = (len(pairs), len(scene.bodies))
     mu, error = np.full(shape, np.nan), np.full(shape, np.nan)

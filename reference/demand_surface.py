@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
+from reference.defaults import DEFAULT_TOLERANCE
 from reference.measures import PeakDemands
 from reference.measures.peak_demands import demands_of_motions
 from reference.motion import trajectory
 from reference.problem import Scene, Trajectory
 from reference.problem.scene import takes_scene
-from reference.surface import checked_demand
+from reference.surface import prepare_run
 
 
 @takes_scene
@@ -18,7 +19,7 @@ def peak_demands(
     phases: ArrayLike,
     equations: str = "exact",
     regularization: float | None = None,
-    tolerance: float = 1e-6,
+    tolerance: float = DEFAULT_TOLERANCE,
     rest_condition: str = "consistent",
 ) -> PeakDemands:
     """
@@ -54,7 +55,7 @@ def peak_demands(
     >>> demands["drift"].value.shape, bool((demands["base_shear"].error < 1e-2).all())
     ((2, 1), True)
     """
-    checked_demand(scene, equations, regularization, tolerance, None, rest_condition)
+    prepare_run(scene, equations, regularization, tolerance, None, rest_condition)
 
     def move(phase: ArrayLike) -> Trajectory:
         return trajectory(scene, phase, equations, regularization, tolerance, rest_condition)

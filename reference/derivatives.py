@@ -1,4 +1,4 @@
-"""Derivatives of a computed quantity with respect to values of the scene, by either side, and kinks beside them."""
+"""Derivatives of a computed quantity with respect to values of the scene, by either side, and kinks nearby."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ Array = NDArray[np.float64]
 Quantity = Callable[[Scene], Any]
 
 STEPS = (1e-3, 4e-3, 1.6e-2)  # shares of the value; each derivative also takes twice its step
-SHARES = (-0.05, -0.01, 0.01, 0.05)  # of the value: its finite changes
+SHARES = (-0.05, -0.01, 0.01, 0.05)  # finite changes of the value, as shares of it
 RUNS_PER_KEY = 4 * len(STEPS) + len(SHARES)
-# Least departure of a mean slope from the derivative, over the largest slope, at which a kink is looked for: a power
-# of the value departs by less over 5 % of it, up to the tenth power
+# Least departure of a mean slope from the derivative, over the largest slope, at which a kink is looked for: powers
+# up to the tenth depart by less over 5 % of the value
 CONTRADICTION = 0.05
 MAX_HALVINGS = 12
-KINK_WIDTH = 1e-4  # of the value: an interval in which a kink is known well enough
+KINK_WIDTH = 1e-4  # width, as a share of the value, of an interval that locates a kink well enough
 # Part of the change of slope, or of the jump, that remains in the last interval: of a smooth curve less remains
 LEAST_REMAINDER = 0.25
-LEAST_SHRINKING = 0.125  # of the first interval: errors hide a kink that is known no better
+LEAST_SHRINKING = 0.125  # share of the first interval: errors hide a kink that is located no better
 PROGRESS_AFTER = 2.0  # s
 
 
@@ -95,7 +95,7 @@ class _Numbers(NamedTuple):
 
 
 class _Corner(NamedTuple):
-    """Where the slope of a number changes: between `low` and `high`, from one slope to another, with a jump or 0."""
+    """Change of slope of a number between `low` and `high`, with a jump or 0."""
 
     low: float
     high: float
@@ -106,7 +106,7 @@ class _Corner(NamedTuple):
 @takes_scene
 def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[str, Sensitivity]:
     """
-    Derivatives of a quantity with respect to numbers in the scene, by central differences, and kinks beside them.
+    Return derivatives of a quantity with respect to numbers in the scene, by central differences, and kinks nearby.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
         By key: the derivative in the quantity's unit per unit of the value, in the shape of the quantity. Its error is
         that of the difference (what the last order of extrapolation changes), of a kink within the step, and of the
         quantity over the step; of three steps, 0.1 to 1.6 % of the value, the one with the smallest error is taken.
-        NaN where a run has no answer. Beside it the changes of the quantity over 1 % and 5 % of the value, either way.
+        NaN where a run has no answer. `change` has its changes over 1 % and 5 % of the value, either way.
         `reading` and `law` say which reading of (5.1) and which law of friction the numbers have.
 
     Raises
@@ -166,12 +166,12 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
             raise ValueError(f"keys: {key} is {value!r} in this scene: must be a number other than zero")
         values[key] = float(value)
     progress = _Progress(RUNS_PER_KEY * len(values))
-    middle = _numbers(quantity(scene)) if values else None
+    middle = _numbers_of(quantity(scene)) if values else None
     found = {}
     for number, (key, value) in enumerate(values.items(), start=1):
         progress.start(f"sensitivity to {key}, key {number} of {len(values)}")
         assert middle is not None
-        found[key] = _sensitivity(_Line(scene, key, value, quantity, middle, progress))
+        found[key] = _find_sensitivity(_Line(scene, key, value, quantity, middle, progress))
     return found
 
 
@@ -186,7 +186,7 @@ class _Progress:
         self._line = line
 
     def count(self, seconds: float) -> None:
-        """Take in one run and its time."""
+        """Add one run and its time."""
         self._left, self._done, self._spent = max(self._left - 1, 0), self._done + 1, self._spent + seconds
         shown = multiprocessing.parent_process() is None and sys.stderr is not None
         if self._line and shown and time.monotonic() - self._began > PROGRESS_AFTER:
@@ -196,7 +196,7 @@ class _Progress:
 
 
 class _Line:
-    """The quantity along one key of the scene, with all that is known of it by the value of the key."""
+    """Quantity along one key of the scene: its computed numbers by the value of the key."""
 
     def __init__(
         self, scene: Scene, key: str, value: float, quantity: Quantity, middle: _Numbers, progress: _Progress
@@ -206,15 +206,15 @@ class _Line:
         self.known: dict[float, _Numbers] = {value: middle}
 
     def at(self, value: float) -> _Numbers:
-        """The quantity of the scene with this value."""
+        """Return the quantity of the scene with this value of the key."""
         if value not in self.known:
             began = time.monotonic()
-            self.known[value] = _numbers(self._quantity(self.scene.with_values({self.key: value})))
+            self.known[value] = _numbers_of(self._quantity(self.scene.with_values({self.key: value})))
             self._progress.count(time.monotonic() - began)
         return self.known[value]
 
     def answer_at(self, value: float) -> _Numbers:
-        """The same, NaN where the scene with this value is none or has no answer."""
+        """Return the quantity as `at`, NaN where the value makes no scene or the scene has no answer."""
         try:
             return self.at(value)
         except ValueError:
@@ -223,14 +223,14 @@ class _Line:
             return self.known[value]
 
 
-def _sensitivity(line: _Line) -> Sensitivity:
-    """The derivative, the finite changes, and the kink that makes them contradict each other."""
-    derivative, middle = _derivative(line), line.middle
+def _find_sensitivity(line: _Line) -> Sensitivity:
+    """Return the derivative, the finite changes, and the kink that makes them contradict each other."""
+    derivative, middle = _differentiate(line), line.middle
     moved = [line.answer_at(line.value * (1.0 + share)) for share in SHARES]
     change = Estimates(
         np.array([each.value - middle.value for each in moved]), np.array([each.error + middle.error for each in moved])
     )
-    place, departure, contradicted = _contradiction(derivative, change, line.value)
+    place, departure, contradicted = _find_contradiction(derivative, change, line.value)
     corner = None if place is None else _locate_corner(line, place)
     nowhere = float("nan")
     kink, slopes, jump = Estimate(nowhere, nowhere), (nowhere, nowhere), 0.0
@@ -264,12 +264,12 @@ def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, floa
     return f"{kind} at {place}: slope {slopes[0]:.3g} below and {slopes[1]:.3g} beyond it"
 
 
-def _derivative(line: _Line) -> Estimates:
-    """The derivative from the step with the smallest error."""
+def _differentiate(line: _Line) -> Estimates:
+    """Return the derivative from the step with the smallest error."""
     middle, value = line.middle, line.value
 
     def difference(step: float) -> tuple[Array, Array, Array]:
-        """Its central difference, half the jump of slope at the value, and the error of either."""
+        """Return the central difference, half the jump of slope at the value, and the error of either."""
         high, low = (line.at(value + sign * step) for sign in (1.0, -1.0))
         error = (high.error + low.error + 2.0 * middle.error) / (2.0 * step)
         return (
@@ -281,16 +281,16 @@ def _derivative(line: _Line) -> Estimates:
     slopes, errors = [], []
     for step in (share * abs(value) for share in STEPS):
         (near, near_jump, near_error), (far, far_jump, far_error) = difference(step), difference(2.0 * step)
-        kink = 2.0 * np.abs(2.0 * near_jump - far_jump)  # of a smooth quantity the jump is proportional to the step
+        kink = 2.0 * np.abs(2.0 * near_jump - far_jump)  # a smooth quantity has a jump proportional to the step
         slopes.append((4.0 * near - far) / 3.0)
         errors.append(np.abs(near - far) / 3.0 + kink + (4.0 * near_error + far_error) / 3.0)
     best = np.argmin(np.where(np.isfinite(errors), errors, np.inf), axis=0)[np.newaxis]
     return Estimates(*(np.take_along_axis(np.array(rows), best, axis=0)[0] for rows in (slopes, errors)))
 
 
-def _contradiction(derivative: Estimates, change: Estimates, value: float) -> tuple[int | None, float, bool]:
+def _find_contradiction(derivative: Estimates, change: Estimates, value: float) -> tuple[int | None, float, bool]:
     """
-    Where finite changes and derivative contradict each other most.
+    Find the element whose finite changes and derivative contradict each other most.
 
     Returns the element of the flattened quantity at which a kink is to be looked for, None without one, the departure
     of the mean slope over 5 % there, and whether it is larger than the errors.
@@ -316,7 +316,7 @@ def _contradiction(derivative: Estimates, change: Estimates, value: float) -> tu
 
 
 def _locate_corner(line: _Line, place: int) -> _Corner | None:
-    """The kink or jump of one element within the finite changes; None where its slope changes smoothly or in noise."""
+    """Return the kink or jump of one element within the finite changes; None for a smooth or noisy slope."""
 
     def point(at: float) -> tuple[float, float, float]:
         numbers = line.answer_at(at)
@@ -338,7 +338,7 @@ def _locate_corner(line: _Line, place: int) -> _Corner | None:
         high = point(x[-1] - 0.1 * (x[-1] - x[-2]))
     below = slope[node - 2] if node > 1 else (low[1] - f[0]) / (low[0] - x[0])
     beyond = slope[node + 1] if node < len(points) - 2 else (f[-1] - high[1]) / (x[-1] - high[0])
-    turned, gapped, width = float(beyond - below), _gap(low, high, below, beyond), high[0] - low[0]
+    turned, gapped, width = float(beyond - below), _gap_between(low, high, below, beyond), high[0] - low[0]
     for _ in range(MAX_HALVINGS):
         if high[0] - low[0] <= KINK_WIDTH * abs(line.value):
             break
@@ -361,19 +361,19 @@ def _locate_corner(line: _Line, place: int) -> _Corner | None:
             low, below = middle, left
     if high[0] - low[0] > LEAST_SHRINKING * width:
         return None
-    gap, slopes = _gap(low, high, below, beyond), (float(below), float(beyond))
+    gap, slopes = _gap_between(low, high, below, beyond), (float(below), float(beyond))
     if abs(gap) > max(LEAST_REMAINDER * abs(gapped), 10.0 * (low[2] + high[2])):
         return _Corner(low[0], high[0], slopes, gap)
     return _Corner(low[0], high[0], slopes, 0.0) if abs(beyond - below) > LEAST_REMAINDER * abs(turned) else None
 
 
-def _gap(low: tuple[float, ...], high: tuple[float, ...], below: float, beyond: float) -> float:
-    """What is left of the change between two points by the mean of the slopes outside them."""
+def _gap_between(low: tuple[float, ...], high: tuple[float, ...], below: float, beyond: float) -> float:
+    """Return the change between two points less that by the mean of the slopes outside them."""
     return float(high[1] - low[1] - 0.5 * (below + beyond) * (high[0] - low[0]))
 
 
-def _numbers(found: Any) -> _Numbers:
-    """Value and error of whatever a quantity returns, with its reading of (5.1) and its law of friction."""
+def _numbers_of(found: Any) -> _Numbers:
+    """Return value and error of whatever a quantity returns, with its reading of (5.1) and its law of friction."""
     several = isinstance(found, tuple | list) and len(found) > 0
     parts = list(found) if several else [found]
     numbers: Any = None
@@ -385,16 +385,16 @@ def _numbers(found: Any) -> _Numbers:
     elif isinstance(found, tuple) and len(found) == 2:
         numbers = found
     else:
-        raise _not_taken(found)
+        raise _refusal_of(found)
     try:
         value, error = (np.asarray(part, dtype=float) for part in numbers)
     except (TypeError, ValueError):
-        raise _not_taken(found) from None
+        raise _refusal_of(found) from None
     if value.shape != error.shape or not value.size:
-        raise _not_taken(found)
+        raise _refusal_of(found)
     return _Numbers(value, error, getattr(parts[0], "reading", ""), getattr(parts[0], "law", ""))
 
 
-def _not_taken(found: Any) -> TypeError:
+def _refusal_of(found: Any) -> TypeError:
     kinds = "an Amplification, an object with value and error, several of these, or a pair (value, error)"
     return TypeError(f"quantity: returns {brief(found)}: must return {kinds}")

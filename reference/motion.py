@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference.defaults import DEFAULT_TOLERANCE
 from reference.problem import (
     GRAVITY,
     Accuracy,
@@ -19,7 +20,7 @@ from reference.problem import (
     ground_acceleration,
     loading_period,
 )
-from reference.problem.ranges import checked_state
+from reference.problem.ranges import check_state
 from reference.problem.readings import describe_law
 from reference.problem.scene import takes_scene
 from reference.solver.error_estimate import (
@@ -32,8 +33,8 @@ from reference.solver.error_estimate import (
 )
 from reference.solver.samples import SampledMotion, sample_motion, step_instants
 from reference.solver.system import Array, RunSettings, StepRecord, System, allocate_record
-from reference.support.arguments import checked_array
-from reference.surface import OUTCOMES, checked_demand, loads_are_finite
+from reference.support.arguments import check_array
+from reference.surface import OUTCOMES, loads_are_finite, prepare_run
 
 SAMPLES_PER_PERIOD = 64  # default samples per shorter loading period
 STEP_SAMPLES = 8000  # default samples in the steps, where these are few
@@ -49,7 +50,7 @@ def trajectory(
     phase: ArrayLike,
     equations: str = "exact",
     regularization: float | None = None,
-    tolerance: float = 1e-6,
+    tolerance: float = DEFAULT_TOLERANCE,
     rest_condition: str = "consistent",
     times: ArrayLike | None = None,
     initial: State | None = None,
@@ -64,7 +65,7 @@ def trajectory(
     equations, regularization, rest_condition
         As in `reference.amplification`.
     tolerance : float
-        Relative error of the accelerations inside each step.
+        Relative error of the accelerations inside each step; 1e-06 (`DEFAULT_TOLERANCE`) if not given.
     times : array_like, (T,), s, optional
         Rising instants within the duration. By default 64 per shorter loading period, and the solver's own, which are
         closer at stops.
@@ -92,12 +93,12 @@ def trajectory(
     ((2, 2, 3), 'ok')
     """
     pair = checked_phase(phase)
-    system, settings = checked_demand(scene, equations, regularization, tolerance, None, rest_condition)
+    system, settings = prepare_run(scene, equations, regularization, tolerance, None, rest_condition)
     asked = None if times is None else _check_times(scene, times)
     bodies = len(scene.bodies)
     x, v = np.zeros((bodies, 2)), np.zeros((bodies, 2))
     if initial is not None:
-        x, v = checked_state(initial, bodies, system.radius, scene.isolator.travel)
+        x, v = check_state(initial, bodies, system.radius, scene.isolator.travel)
         settings = settings._replace(unit=settings.unit + _initial_acceleration_bound(system, x, v))
     law = describe_law(scene, regularization)
     if not loads_are_finite(system):
@@ -194,7 +195,7 @@ def _default_instants(scene: Scene, record: StepRecord) -> Array:
 
 def _check_times(scene: Scene, times: ArrayLike) -> Array:
     rule = f"must be rising instants (T,) from 0 to the duration, {scene.duration} s"
-    instants = checked_array("times", times, rule)
+    instants = check_array("times", times, rule)
     inside = instants.ndim == 1 and np.all((instants >= 0.0) & (instants <= scene.duration))
     if not inside or np.any(np.diff(instants) <= 0.0):
         raise ValueError(f"times: {rule}")

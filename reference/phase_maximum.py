@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from reference.defaults import DEFAULT_TOLERANCE
 from reference.measures.local_maxima import GRID, local_maxima
 from reference.measures.local_search import (
     LocalSearch,
@@ -24,14 +25,14 @@ from reference.problem import Scene, checked_phases
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene
-from reference.problem.symmetry import distinct, half_turns
-from reference.support.arguments import checked_choice
+from reference.problem.symmetry import allowed_half_turns, distinct_pairs
+from reference.support.arguments import check_choice
 from reference.surface import amplification
 
 QUANTITIES = ("amplification", "displacement")
 GRID_TOLERANCE = 1e-4  # relative error of mu there
 MAX_ROUNDS = 60
-MAX_SHORTFALL = 0.01  # of the maximum: searches that end lower need not follow their jumps
+MAX_SHORTFALL = 0.01  # share of the maximum: searches that end lower need not follow their jumps
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class PhaseMaximum:
     phases : tuple of float, rad
         (alpha_1, alpha_2) in [0, 2 pi). Symmetries of the scene may give other pairs with the same value.
     kind : {"smooth", "kink", "jump"}
-        What the surface has there: a level tangent, an edge, or a jump beside which the value is approached.
+        Shape of the surface there: a level tangent, an edge, or a jump, next to which the value is approached.
     side : tuple of float
         Of a jump: the direction in the plane of phases from it towards the pairs with large values. Otherwise NaN.
     runner_up : float
@@ -83,7 +84,7 @@ def worst_phases(
     quantity: str = "amplification",
     equations: str = "exact",
     regularization: float | None = None,
-    tolerance: float = 1e-6,
+    tolerance: float = DEFAULT_TOLERANCE,
     cutoff: float | None = None,
     starts: ArrayLike | None = None,
 ) -> PhaseMaximum:
@@ -127,7 +128,7 @@ def worst_phases(
     >>> round(worst.value, 3), worst.kind
     (3.06, 'kink')
     """
-    checked_choice("quantity", quantity, QUANTITIES)
+    check_choice("quantity", quantity, QUANTITIES)
     if body not in range(1, len(scene.bodies) + 1):
         raise ValueError(f"body = {body!r}: must be an integer from 1 to {len(scene.bodies)}, the number of bodies")
     if scene.recorded:
@@ -135,7 +136,7 @@ def worst_phases(
     law = {"equations": equations, "regularization": regularization, "cutoff": cutoff}
     surface = Surface(scene, amplification, {**law, "tolerance": tolerance}, body - 1, quantity)
     if starts is None:
-        phases, taken = distinct(scene, GRID)
+        phases, taken = distinct_pairs(scene, GRID)
         starts = local_maxima(surface.compute(phases, tolerance=max(tolerance, GRID_TOLERANCE)).value[taken], scene)
     points = surface.compute(checked_phases(starts))
     searches = [
@@ -144,7 +145,7 @@ def worst_phases(
     ]
     if not searches:
         raise ValueError(f"scene {scene.name}: no phase pair has an answer; amplification says why")
-    shifts: Array = np.pi * half_turns(scene).astype(float)
+    shifts: Array = np.pi * allowed_half_turns(scene).astype(float)
     for _ in range(MAX_ROUNDS):
         highest = max(search.value for search in searches)
         active = [search for search in searches if search.may_reach(highest)]

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.analytical.frictionless import frictionless_peaks
+from reference.defaults import DEFAULT_TOLERANCE
 from reference.problem import (
     GRAVITY,
     Amplification,
@@ -42,7 +43,7 @@ from reference.solver.system import (
     System,
     pack,
 )
-from reference.support.arguments import checked_choice, checked_number
+from reference.support.arguments import check_choice, check_number
 
 OUTCOMES = {
     SOLVED: Outcome.OK,
@@ -54,12 +55,14 @@ OUTCOMES = {
     STEP_LIMIT: Outcome.STEP_LIMIT,
     UNSOLVED: Outcome.SOLVER_FAILED,
 }
-STEPS_PER_PERIOD = 1000  # a run in trouble ends after so many steps per loading period, and BASE_STEPS more
-STEPS_PER_KNOT = 10  # of a record, besides
-STEPS_PER_VIBRATION, MAX_VIBRATION_STEPS = 30, 300_000  # of the chain's fastest, besides
-VIBRATIONS_PER_TIME_SCALE = 10.0  # of the chain during which forces hardly change: stiff links follow without swinging
+STEPS_PER_PERIOD = 1000  # a run in trouble ends after these steps per loading period, and BASE_STEPS more
+STEPS_PER_KNOT = 10  # further steps for each knot of a record
+# Further steps for each of the chain's fastest vibrations, and the most that these add
+STEPS_PER_VIBRATION, MAX_VIBRATION_STEPS = 30, 300_000
+# Vibrations of the chain during which forces hardly change: stiff links follow without swinging
+VIBRATIONS_PER_TIME_SCALE = 10.0
 BASE_STEPS = 20_000
-MAX_STEPS = 3_000_000  # half a minute for two bodies
+MAX_STEPS = 3_000_000  # hard limit of steps per run; about 30 s for two bodies
 PARTS_PER_THREAD = 8  # pieces of the surface per thread, so that none waits long for another
 
 
@@ -69,13 +72,13 @@ def amplification(
     phases: ArrayLike,
     equations: str = "exact",
     regularization: float | None = None,
-    tolerance: float = 1e-6,
+    tolerance: float = DEFAULT_TOLERANCE,
     cutoff: float | None = None,
     rest_condition: str = "consistent",
     full: bool = False,
 ) -> Amplification:
     """
-    Amplification factors mu_i of (5.1) by the paper's equations, from rest, with error estimates.
+    Return the amplification factors mu_i of (5.1) by the paper's equations, from rest, with error estimates.
 
     By default mu is the literal supremum of (5.1). ``cutoff=1e-3`` gives mu as integrated.
 
@@ -89,7 +92,7 @@ def amplification(
     regularization : float, optional, m/s
         v_reg: dry friction is linear below this speed. None takes the set-valued law. A lubricated scene needs none.
     tolerance : float
-        Relative error asked of every mu.
+        Relative error asked of every mu; 1e-06 (`DEFAULT_TOLERANCE`) if not given.
     cutoff : float, optional, m/s
         v_c: mu as integrated, the resolved peak, in which only rest and sliding faster than v_c count. 1e-3 is what
         steps of about 1 ms resolve. None: the literal supremum with its one-sided limits, which no integration reaches.
@@ -133,7 +136,7 @@ def amplification(
     pairs, shape = flat_phases(phases)
     flat = not full and rest_condition == "consistent" and planar(scene).allowed  # (4.6) as printed knows directions
     moving, axes = (in_plane(scene), 1) if flat else (scene, 2)
-    system, demand = checked_demand(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
+    system, demand = prepare_run(moving, equations, regularization, tolerance, cutoff, rest_condition, axes)
     basis: dict[str, Any] = {
         "scene_name": scene.name,
         "model": f"{equations} equations",
@@ -157,7 +160,7 @@ def amplification(
         places = np.arange(count)[part][shaken]
         moving_pairs = pairs[places]
         peaks = (
-            superposed(scene, system, moving_pairs, demand)
+            superpose_harmonics(scene, system, moving_pairs, demand)
             if summed
             else peaks_with_error(system, moving_pairs, demand, whole=full)
         )
@@ -178,30 +181,30 @@ def amplification(
     else:
         solve(slice(0, 1))  # compiled once, before the threads need it
         with ThreadPoolExecutor(threads) as pool:
-            cost = sum(pool.map(solve, parts(count, PARTS_PER_THREAD * threads)))
+            cost = sum(pool.map(solve, split_points(count, PARTS_PER_THREAD * threads)))
     share = displacement / scene.radius
     return Amplification(mu, error, status, instant, cost, share, pairs, displacement, **basis).reshaped(shape)
 
 
-def superposed(scene: Scene, system: System, phases: Array, demand: RunSettings) -> RunPeaks:
-    """The peaks of a linear scene, from one motion per harmonic; runs only where it may reach its end (4.1)."""
+def superpose_harmonics(scene: Scene, system: System, phases: Array, demand: RunSettings) -> RunPeaks:
+    """Return the peaks of a linear scene from one motion per harmonic; run only where it may reach its end (4.1)."""
     value, error, reach, ends = frictionless_peaks(scene, phases)
     met = (error <= demand.tolerance * value).all(axis=1)
     code, no_run = np.where(met, SOLVED, NOT_MET), np.zeros((3, len(phases)))
     peaks = RunPeaks(value, error, code, no_run[0], no_run[1], reach, no_run[2])
-    if ends.any():  # whether it does, and when, is for the run to say
+    if ends.any():  # only a run tells whether it does, and when
         for whole, ran in zip(peaks, peaks_with_error(system, phases[ends], demand)):
             whole[ends] = ran
     return peaks
 
 
-def parts(count: int, pieces: int) -> Iterator[slice]:
-    """`count` points cut into at most `pieces` runs of neighbors."""
+def split_points(count: int, pieces: int) -> Iterator[slice]:
+    """Iterate over at most `pieces` slices of `count` neighboring points."""
     size = max(1, -(-count // pieces))
     return (slice(first, min(first + size, count)) for first in range(0, count, size))
 
 
-def checked_demand(
+def prepare_run(
     scene: Scene,
     equations: str,
     regularization: float | None,
@@ -210,14 +213,14 @@ def checked_demand(
     rest_condition: str,
     axes: int = 2,
 ) -> tuple[System, RunSettings]:
-    """The scene in compiled form and what is asked of its runs, as of `amplification`. Raises ValueError, one line."""
-    checked_choice("equations", equations, ("exact", "small"))
-    checked_choice("rest_condition", rest_condition, ("consistent", "printed"))
-    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
+    """Return the compiled scene and the settings of its runs from arguments of `amplification`. Raises ValueError."""
+    check_choice("equations", equations, ("exact", "small"))
+    check_choice("rest_condition", rest_condition, ("consistent", "printed"))
+    tolerance = check_number("tolerance", tolerance, TOLERANCE)
     if regularization is not None:
-        regularization = checked_number("regularization", regularization, REGULARIZATION)
+        regularization = check_number("regularization", regularization, REGULARIZATION)
     if cutoff is not None:
-        cutoff = checked_number("cutoff", cutoff, CUTOFF)
+        cutoff = check_number("cutoff", cutoff, CUTOFF)
     if cutoff is not None and regularization is not None:
         raise ValueError(f"cutoff = {cutoff!r}: belongs to the set-valued law; give no regularization with it")
     system = pack(scene, equations == "small", regularization, rest_condition == "printed", axes)
@@ -237,7 +240,7 @@ def checked_demand(
 
 
 def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
-    """Time in which forces change, s: the shortest of periods, decay and the loading's way across the cap."""
+    """Return the time in which forces change, s: the shortest of periods, decay and the way across the cap."""
     frequencies = [2.0 * np.pi / loading_period(scene), float(np.sqrt((GRAVITY + acceleration) / scene.radius))]
     if not scene.recorded:
         frequencies += (-exponents(scene).real).tolist()
@@ -250,7 +253,7 @@ def time_scale(scene: Scene, acceleration: float, fastest: float) -> float:
 
 
 def loads_are_finite(system: System) -> bool:
-    """Whether squares of accelerations, of which (5.1) is made, stay within double precision."""
+    """Return True if squares of accelerations, of which (5.1) is made, stay within double precision."""
     largest = max(
         np.abs(part).max(initial=0.0)
         for part in (

@@ -1,1 +1,1 @@
-"""What the results say: differences between models, their causes, and further tests beside the surfaces."""
+"""What answers the question of a user: one folder for each analysis beside the surfaces, shown in index.html."""

@@ -53,7 +53,7 @@ class CommandParser(OneLineParser):
         )
 
     def add_computing(self) -> None:
-        """Where is computed, and whether what is stored is computed anew."""
+        """Add the options that say where to compute, and whether to compute anew what is stored."""
         self.add_argument("--jobs", metavar="N", help=f"worker processes of this machine (default {cores()})")
         self.add_argument("--scheduler", metavar="ADDRESS", help="compute on the Dask cluster with this scheduler")
         self.add_argument(
@@ -63,20 +63,20 @@ class CommandParser(OneLineParser):
         )
 
 
-def jobs(options: argparse.Namespace) -> int:
+def number_of_jobs(options: argparse.Namespace) -> int:
     """Number of worker processes that `--jobs` asks for. Raises SceneError."""
     if options.scheduler is not None and options.jobs is not None:
         rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
         raise SceneError("command line", "--jobs", options.jobs, rule)
-    return cores() if options.jobs is None else whole_number("--jobs", options.jobs, 1, 1024)
+    return cores() if options.jobs is None else read_whole_number("--jobs", options.jobs, 1, 1024)
 
 
-def whole_number(option: str, text: str, least: int, most: int) -> int:
+def read_whole_number(option: str, text: str, least: int, most: int) -> int:
     """The value of an option that takes a whole number. Raises SceneError."""
     return _within(option, text, int, least, most, f"must be a whole number from {least} to {most}")
 
 
-def number(option: str, text: str, least: float, most: float, unit: str) -> float:
+def read_number(option: str, text: str, least: float, most: float, unit: str) -> float:
     """The value of an option that takes a number. Raises SceneError."""
     return _within(option, text, float, least, most, f"must be a number from {least:g} to {most:g}, {unit}")
 
@@ -92,7 +92,7 @@ def _within(option: str, text: str, kind: type[Value], least: Value, most: Value
 
 
 @contextmanager
-def writing(folder: Path, option: str = "--out") -> Iterator[None]:
+def report_write_errors(folder: Path, option: str = "--out") -> Iterator[None]:
     """End the command with code 3 and one line where the block cannot write into the folder that `option` names."""
     try:
         yield
@@ -108,7 +108,7 @@ def write_and_show(folder: Path, write: Callable[[], list[Path]], show: Callable
     Files that cannot be written end the command with code 3 after all is shown. What cannot be shown is one line.
     """
     try:
-        with writing(folder):
+        with report_write_errors(folder):
             return write()
     finally:
         attempt("results", show)
@@ -118,7 +118,7 @@ def command(main: Callable[Concatenate[Sequence[str], Rest], int]) -> Callable[.
     """Give a command its exit codes 2, 3, 4 and 128 + signal, and its words where a program gives none."""
 
     @wraps(main)
-    def ended(argv: Sequence[str] | None = None, *args: Rest.args, **kwargs: Rest.kwargs) -> int:
+    def run_to_exit_code(argv: Sequence[str] | None = None, *args: Rest.args, **kwargs: Rest.kwargs) -> int:
         try:
             return main(sys.argv[1:] if argv is None else list(argv), *args, **kwargs)
         except (SceneError, UsageError) as error:
@@ -128,13 +128,14 @@ def command(main: Callable[Concatenate[Sequence[str], Rest], int]) -> Callable[.
             print(error, file=sys.stderr)
             return error.code
 
-    return ended
+    return run_to_exit_code
 
 
 def invocation(command: str) -> list[str]:
-    """The words that start a command: those of the console script where it was started by that."""
+    """Return the words that start a command; the study has `python -m` unless the console script started it."""
     script = ["phase-resonance", command]
-    return script if sys.argv[0] == " ".join(script) else ["python", "-m", f"comparison.{command}"]
+    by_script = command != "run" or sys.argv[0] == " ".join(script)
+    return script if by_script else ["python", "-m", f"comparison.{command}"]
 
 
 def command_line(words: Sequence[str], command: str = "run") -> str:
@@ -142,7 +143,7 @@ def command_line(words: Sequence[str], command: str = "run") -> str:
     return shlex.join([*invocation(command), *words])
 
 
-def changed(
+def edit_command_line(
     words: Sequence[str], added: Sequence[str] = (), flags: Collection[str] = (), options: Collection[str] = ()
 ) -> list[str]:
     """
@@ -152,7 +153,7 @@ def changed(
 
     Examples
     --------
-    >>> changed(["--grid", "4", "--fresh", "--", "-a.toml"], ["--plan"], flags=["--fresh"], options=["--grid"])
+    >>> edit_command_line(["--grid", "4", "--", "-a.toml"], ["--plan"], options=["--grid"])
     ['--plan', '--', '-a.toml']
     """
     end = words.index("--") if "--" in words else len(words)
@@ -167,8 +168,8 @@ def changed(
 
 
 def resume_hint(cache: Cache, words: Sequence[str], command: str = "run", batches: int | None = None) -> str:
-    """How much is kept where, and the command for the rest; batches: number of those of a study."""
-    rest = changed(words, flags=["--fresh"])
+    """Return how much is kept where, and the command for the rest; batches: number of those of a study."""
+    rest = edit_command_line(words, flags=["--fresh"])
     tasks = cache.kept[RESULT]
     if batches is None:
         kept = f"{tasks} results are"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import changed, command_line
+from comparison.cli.arguments import command_line, edit_command_line
 from comparison.cli.options import Options
 from comparison.cli.terminal import new_table
 from comparison.report.results import Results
@@ -19,7 +19,7 @@ from comparison.surfaces.statements import word_unchecked
 from comparison.wording import percent, signed
 from reference.problem import builtin_scenes, example_scenes
 
-FIRST_SENTENCES = 8  # of the terminal after a level
+FIRST_SENTENCES = 8  # sentences that the terminal shows after a level
 FILMED = ("translational", "spatial")  # models that multibody.animate knows, by their keys
 LABELS = {
     "refused": "No answer",
@@ -60,7 +60,7 @@ def print_closing(console: Console, results: Results, options: Options, words: S
         console.print(f"{LABELS[alert.kind]}: {alert.line}", style=color, soft_wrap=True)
     for headline in (headline for scene in results.scenes for headline in scene.headlines):
         console.print(headline.sentence, soft_wrap=True)
-    if results.of("measured") is not None:
+    if results.clauses:
         console.print(f"{results.measurements}.", soft_wrap=True)
     console.print(f"Report: {report / 'index.html'}", soft_wrap=True)  # a path is copied whole
     if results.run.level < results.run.levels:
@@ -70,7 +70,7 @@ def print_closing(console: Console, results: Results, options: Options, words: S
 
 
 def print_level(console: Console, results: Results, before: Results | None, level: StudyLevel, report: Path) -> None:
-    """What there is after a level that is not the last: the place of its report, and its first new sentences."""
+    """Print what there is after a level that is not the last: the place of its report, and its first new sentences."""
     console.print(f"{level.title.capitalize()}: {report / 'index.html'}", soft_wrap=True)
     known = set(_sentences(before)) if before else set()
     sentences = [sentence for sentence in _sentences(results) if sentence not in known]
@@ -85,7 +85,7 @@ def _sentences(results: Results) -> list[str]:
 
 
 def next_commands(results: Results, words: Sequence[str]) -> list[str]:
-    """What to type next: a film of the largest difference, and what a finer grid would cost."""
+    """Return what to type next: a film of the largest difference, and what a finer grid would cost."""
     lines = []
     filmed = [
         (headline, source)
@@ -98,7 +98,7 @@ def next_commands(results: Results, words: Sequence[str]) -> list[str]:
         largest, source = max(filmed, key=lambda pair: abs(pair[0].maximum))
         lines.append(f"Next: a film of the largest difference: {_film(largest, source)}")
     if results.phased and not any(word.startswith("--budget") for word in words):
-        finer = command_line(changed(words, ["--grid", str(2 * results.grid), "--plan"], options=["--grid"]))
+        finer = command_line(edit_command_line(words, ["--grid", str(2 * results.grid), "--plan"], options=["--grid"]))
         lines.append(f"Next: what a finer grid costs: {finer}")
     return lines
 
@@ -110,7 +110,9 @@ def _film(headline: Headline, source: str) -> str:
 
 
 def _source(scene: SceneResult, words: Sequence[str]) -> str:
-    """How the scene is named on a command line, "" for one of a family and one whose loading the command changed."""
+    """
+    Return how the scene is named on a command line, "" for one of a family and one whose loading the command changed.
+    """
     if any(word.startswith("--amplitude") for word in words):
         return ""
     if scene.name in (*builtin_scenes(), *example_scenes()):

@@ -16,7 +16,7 @@ from typing import Any
 
 from rich.console import Console
 
-from comparison.cli.arguments import EndedEarlyError, changed, command_line, jobs, resume_hint
+from comparison.cli.arguments import EndedEarlyError, command_line, edit_command_line, number_of_jobs, resume_hint
 from comparison.runner.cache import Cache, StoreError, refuse_foreign_store, store_beside
 from comparison.runner.dask import cluster
 from comparison.runner.environment import provenance
@@ -29,18 +29,21 @@ from comparison.runner.task_results import TaskResults
 
 
 def run_facts(command: str, options: argparse.Namespace, words: Sequence[str], begin: float) -> dict[str, Any]:
-    """What is known of a run that ends now: command line, beginning, duration, workers, provenance; for a JSON file."""
+    """
+    Return what is known of a run that ends now: command line, beginning, duration, workers, provenance; for a JSON
+    file.
+    """
     seconds = time.monotonic() - begin
     return {
         "command": command_line(words, command),
         "began": (datetime.now(UTC) - timedelta(seconds=seconds)).isoformat(timespec="seconds"),
         "seconds": round(seconds, 1),
-        "jobs": jobs(options),
+        "jobs": number_of_jobs(options),
         "provenance": provenance(),
     }
 
 
-def computed(
+def compute_tasks(
     command: str,
     options: argparse.Namespace,
     words: Sequence[str],
@@ -56,7 +59,7 @@ def computed(
 
     first: tasks that are computed before the others; `after_first` is called between, unless no others are missing.
     """
-    width = jobs(options)
+    width = number_of_jobs(options)
     out = destination(options.out)
     refuse_foreign_store(out)
     cache = Cache(store_beside(out))
@@ -107,6 +110,6 @@ def workers(
         raise EndedEarlyError(128 + getattr(stop, "number", signal.SIGINT), f"interrupted: {hint(words)}") from None
     except ExecutorLostError as error:
         where = "" if scheduler is None else f"--scheduler {scheduler}: "
-        raise EndedEarlyError(4, f"{where}{error}: {hint(changed(words, options=['--scheduler']))}") from None
+        raise EndedEarlyError(4, f"{where}{error}: {hint(edit_command_line(words, options=['--scheduler']))}") from None
     except StoreError as error:
         raise EndedEarlyError(3, f"{error}; {hint(words)}") from None

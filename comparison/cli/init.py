@@ -11,12 +11,12 @@ from functools import partial
 from importlib.resources import files
 from pathlib import Path
 
-from comparison.cli.arguments import command, writing
+from comparison.cli.arguments import command, report_write_errors
 from comparison.cli.requirement import requirement
 from comparison.runner.output import destination, make_parents, refuse_unwritable
 from reference.problem import SceneError
 from reference.support.command import OneLineParser
-from reference.support.files import NEW, staging
+from reference.support.files import NEW, staging_directory
 
 PLACE = "DIRECTORY"
 TEMPLATE = {  # file of the study: file of the template
@@ -37,7 +37,7 @@ def main(argv: Sequence[str]) -> int:
     parser = OneLineParser("phase-resonance init", "A directory with a study to start from.")
     parser.add_argument("directory", metavar=PLACE, type=Path, help="a new one, or one that holds nothing but .git")
     place = _free(parser.parse_args(argv).directory)
-    with writing(place, PLACE):
+    with report_write_errors(place, PLACE):
         write_directory(place, study_files(place.resolve().name))
     print(f"{place}: a study to start from; README.md in it says how: change building.toml, then python study.py")
     if " @ file:" in requirement():
@@ -62,7 +62,7 @@ def write_directory(place: Path, contents: Mapping[str, bytes]) -> None:
     inside = place.is_dir()  # it stays the same directory: it may be the one in which the command was typed
     made = make_parents(place.parent)
     try:
-        with staging(place / NEW if inside else place) as staging_folder:
+        with staging_directory(place / NEW if inside else place) as staging_folder:
             new = staging_folder / NEW
             for name, content in contents.items():
                 (new / name).parent.mkdir(parents=True, exist_ok=True)

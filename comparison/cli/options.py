@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from comparison.cli.arguments import CommandParser, jobs, number, whole_number
+from comparison.cli.arguments import CommandParser, number_of_jobs, read_number, read_whole_number
 from comparison.cli.user_models import add_models, user_models
-from comparison.registry import EARLIER
+from comparison.registry import EVERYTHING, FEATURES, SELECTABLE
 from comparison.runner.cache import refuse_foreign_store
 from comparison.runner.output import destination, refuse_foreign_report
-from comparison.study.analyses import ANALYSES, EVERYTHING, ON_REQUEST, Selection, known_analyses
 from comparison.study.models import Model
+from comparison.study.selection import Selection, refuse_unknown, select
 from comparison.study.study import refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance
@@ -23,7 +23,7 @@ DEFAULT_GRID = 48  # phases per axis of the equations; the engine's models have 
 
 @dataclass(frozen=True)
 class Options:
-    """What the command line asks for, valid."""
+    """Valid options of the command line."""
 
     families: tuple[Family, ...]
     grid: int
@@ -46,20 +46,20 @@ class Options:
         return tuple(scene for family in self.families for scene in family.scenes)
 
 
-def parsed(argv: Sequence[str]) -> Options:
+def parse_options(argv: Sequence[str]) -> Options:
     """Options of `python -m comparison.run`, all checked. Raises SceneError, UsageError."""
     words = _parser().parse_args(argv)
     names: list[str] = words.scenes or builtin_scenes()
-    amplitude = None if words.amplitude is None else number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
+    amplitude = None if words.amplitude is None else read_number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
     families = tuple(load_family(name, amplitude) for name in names)
     only, skip, also = (_analyses(f"--{name}", getattr(words, name)) for name in ("only", "skip", "also"))
     if only is not None and skip is not None:
         raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
     options = Options(
         families=families,
-        grid=DEFAULT_GRID if words.grid is None else whole_number("--grid", words.grid, 2, 512),
+        grid=DEFAULT_GRID if words.grid is None else read_whole_number("--grid", words.grid, 2, 512),
         out=destination(words.out),
-        jobs=jobs(words),
+        jobs=number_of_jobs(words),
         tolerance=_optional("--tolerance", words.tolerance, TIGHTEST, 0.1, "relative error of mu") or DEFAULT_TOLERANCE,
         budget=_optional("--budget", words.budget, 1.0, 1e7, "s of the whole run"),
         check=words.check,
@@ -68,7 +68,7 @@ def parsed(argv: Sequence[str]) -> Options:
         full=words.full,
         max_work=_optional("--max-work", words.max_work, 1.0, 1e12, "steps of Exudyn for a phase pair"),
         scheduler=words.scheduler,
-        selection=Selection.of((scene for family in families for scene in family.scenes), only, skip, also),
+        selection=select(SELECTABLE, (scene for family in families for scene in family.scenes), only, skip, also),
         models=user_models(words.model, words.model_limit, words.scheduler),
     )
     if options.check:
@@ -80,9 +80,9 @@ def parsed(argv: Sequence[str]) -> Options:
         raise SceneError("command line", "--budget", words.budget, "needs a timer that this system does not have")
     if not options.plan:
         try:
-            for feature in EARLIER:
-                assert feature.load is not None
-                feature.load(options.out)
+            for field in (field for feature in FEATURES for field in feature.stored):
+                assert field.load is not None
+                field.load(options.out)
         except (OSError, ValueError) as error:
             rule = f"the report cannot show {error}"
             raise SceneError("command line", "--out", str(options.out), rule) from None
@@ -99,7 +99,7 @@ def _refuse_limits_of_no_engine(scenes: Sequence[Scene], engines: Sequence[str])
                 near = get_close_matches(name, [*engines, *Acceptance.model_fields], n=1, cutoff=0.5)
                 hint = f"did you mean {near[0]}?" if near else f"--model {name}=module:function enters it"
                 rule = f"this study has no engine of this name; {hint}"
-                raise SceneError(scene.name, f"acceptance.{name}", limits.stated(), rule)
+                raise SceneError(scene.name, f"acceptance.{name}", limits.limits_by_key(), rule)
 
 
 def _parser() -> CommandParser:
@@ -136,10 +136,10 @@ def _parser() -> CommandParser:
         "before any step",
     )
     add_models(parser)
-    names = ", ".join(ANALYSES)
+    names, on_request = ", ".join(EVERYTHING.names), ", ".join(each.name for each in SELECTABLE if each.on_request)
     parser.add_argument("--only", metavar="LIST", help=f"make these analyses only, separated by commas: {names}")
     parser.add_argument("--skip", metavar="LIST", help="make all analyses but these")
-    parser.add_argument("--also", metavar="LIST", help=f"make these analyses besides: {', '.join(ON_REQUEST)}")
+    parser.add_argument("--also", metavar="LIST", help=f"make these analyses besides: {on_request}")
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument(
         "--plan", action="store_true", help="print what would be computed and roughly how long it takes; run nothing"
@@ -151,11 +151,13 @@ def _analyses(option: str, text: str | None) -> list[str] | None:
     """The analyses that an option lists, separated by commas."""
     if text is None:
         return None
+    names = [name.strip() for name in text.split(",")]
     try:
-        return known_analyses([name.strip() for name in text.split(",")])
+        refuse_unknown(names, SELECTABLE)
+        return names
     except ValueError as error:
         raise SceneError("command line", option, text, str(error)) from None
 
 
 def _optional(option: str, text: str | None, least: float, most: float, unit: str) -> float | None:
-    return None if text is None else number(option, text, least, most, unit)
+    return None if text is None else read_number(option, text, least, most, unit)

@@ -10,13 +10,14 @@ from typing import Any
 
 import xarray as xr
 
-from comparison.cli.arguments import command_line, writing
+from comparison.cli.arguments import command_line, report_write_errors
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
-from comparison.registry import EARLIER, chosen_analyses, first_tasks, report_of
+from comparison.registry import FEATURES, first_tasks, report_of, select_analyses
 from comparison.report.building import note_lost
+from comparison.report.feature import ResultField
 from comparison.report.results import Results
-from comparison.report.section import Feature, Report
+from comparison.report.section import Report
 from comparison.runner.attempts import attempt
 from comparison.runner.environment import provenance
 from comparison.runner.output import on_stderr, replace_report
@@ -26,33 +27,33 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.levels import StudyLevel
 from comparison.study.study import Study
 from comparison.surfaces.alerts import Alert
-from comparison.surfaces.surfaces import batch_results, labeled_surfaces, surface_tasks
-from comparison.surfaces.unanswered import compared_study
+from comparison.surfaces.surfaces import batch_results, label_surfaces, surface_tasks
+from comparison.surfaces.unanswered import study_of_results
 
 PATIENCE = 3.0  # s: a level that is done sooner after the report before has none of its own, unless it is the last
 
 
 @dataclass(frozen=True)
-class Complete:
+class CompleteLevel:
     """A level of which everything is computed: its study knows which models have no value, its surfaces are labeled."""
 
     level: StudyLevel
     study: Study
-    tasks: Sequence[Task]  # of the surfaces
+    tasks: Sequence[Task]  # those of the surfaces
     surfaces: xr.Dataset
 
 
-def computed_level(level: StudyLevel, runner: Runner) -> Complete:
+def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
     """Compute what a level still lacks: its surfaces with the analyses beside them, then what the surfaces choose."""
-    analyses = chosen_analyses(level.study)
+    analyses = select_analyses(level.study)
     tasks = surface_tasks(level.study)
     runner.run([*tasks, *first_tasks(level.study, analyses)], compiling_task)
     batches = [task.argument for task in tasks]
-    surfaces = labeled_surfaces(level.study, batches, batch_results(tasks, runner.results))
-    study = compared_study(level.study, surfaces)
+    surfaces = label_surfaces(level.study, batches, batch_results(tasks, runner.results))
+    study = study_of_results(level.study, surfaces)
     later = [analysis for analysis in analyses if analysis.needs_surfaces]
     runner.run([task for each in later for task in each.tasks(study.selecting(each.key), surfaces)])
-    return Complete(level, study, tasks, surfaces)
+    return CompleteLevel(level, study, tasks, surfaces)
 
 
 class Reports:
@@ -72,48 +73,44 @@ class Reports:
         self.level: StudyLevel | None = None
         self.seconds = 0.0
 
-    def is_due(self, complete: Complete, runner: Runner) -> bool:
-        """Whether a level gets a report although others follow: not where an earlier run has computed all of it."""
+    def is_due(self, complete: CompleteLevel, runner: Runner) -> bool:
+        """
+        Return whether a level gets a report although others follow: not where an earlier run has computed all of it.
+        """
         new = any(task.key not in runner.results.stored for task in complete.tasks)
         return new and time.monotonic() - self._last >= PATIENCE
 
-    def write(self, complete: Complete, runner: Runner, stopped: bool = False) -> Results:
-        """Write the report of a level; that of the last one, unless the run was ended, with drawings."""
-        from comparison.report.writing import drawing_tasks, write_report  # plotting: not needed to refuse or to plan
+    def write(self, complete: CompleteLevel, runner: Runner) -> Results:
+        """Write the report of a level."""
+        from comparison.report.writing import write_report  # plotting: not needed to refuse or to plan
 
         begin = time.monotonic()
-        final = complete.level.last and not stopped
         report = self._report(complete, runner)
         results = report.results
-        if final:
-            drawings = attempt("drawings", partial(drawing_tasks, report)) or []
-            runner.run(drawings)
-            files = {task.key: runner.results[task].value for task in drawings}
-            report = replace(report, drawings={key: value for key, value in files.items() if value})
-        with writing(self._options.out), replace_report(self.place) as staged:
+        with report_write_errors(self._options.out), replace_report(self.place) as staged:
             write_report(staged.folder, report)
         self.place = self._options.out if staged.place == self._options.out.resolve() else staged.place
         self.results, self.level, self._last = results, complete.level, time.monotonic()
         self.seconds = max(self.seconds, self._last - begin)
         return results
 
-    def write_stopped(self, complete: Complete | None, runner: Runner) -> None:
+    def write_stopped(self, complete: CompleteLevel | None, runner: Runner) -> None:
         """Write the report of the last complete level of a run that was ended, with the analyses that are finished."""
         if complete is None:
             return
         later = complete.study.selection.later
         whole = replace(complete.study, selection=complete.study.selection.without(()))
         unfinished = []
-        for analysis in chosen_analyses(whole):
+        for analysis in select_analyses(whole):
             if analysis.key in later:
                 tasks = analysis.tasks(whole.selecting(analysis.key), complete.surfaces)
                 if not tasks or runner.results.missing(tasks):
                     unfinished.append(analysis.key)
         if self.level is not complete.level or set(unfinished) != set(later):
             study = replace(complete.study, selection=whole.selection.without(unfinished))
-            self.write(replace(complete, study=study), runner, stopped=True)
+            self.write(replace(complete, study=study), runner)
 
-    def _report(self, complete: Complete, runner: Runner) -> Report:
+    def _report(self, complete: CompleteLevel, runner: Runner) -> Report:
         study, surfaces, took = complete.study, complete.surfaces, Clock.now().since(self._began)
         of_surfaces = {task.stage for task in complete.tasks}
         run: dict[str, Any] = {
@@ -135,18 +132,18 @@ class Reports:
         }
         lost: list[str] = []
         found: dict[str, Any] = {}
-        for analysis in chosen_analyses(study):
+        for analysis in select_analyses(study):
             collect = partial(analysis.collect, study.selecting(analysis.key), surfaces, runner.results)
             found[analysis.key] = attempt(f"section {analysis.key}", collect, partial(note_lost, lost))
-        kept = [feature for feature in EARLIER if feature.selection not in study.absent]
-        found |= {feature.key: _loaded(feature, self._options.out) for feature in kept}
+        fields = [field for feature in FEATURES if feature.key not in study.absent for field in feature.stored]
+        found |= {field.name: _load(field, self._options.out) for field in fields}
         families = [family for family in self._options.families if len(family.scenes) > 1]
         faults = _faults(complete.tasks, runner.results)
         return report_of(study, surfaces, found, faults, run, families=families, lost=lost)
 
 
 def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
-    """What solvers reported, once for each scene, model and message."""
+    """Return what solvers reported, once for each scene, model and message."""
     texts = {
         (task.argument.scene.name, f"{task.stage}: {result.error_message}")
         for task, result in zip(tasks, batch_results(tasks, results))
@@ -155,11 +152,11 @@ def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
     return [Alert(level="amber", kind="fault", scene=scene, text=text, help="") for scene, text in sorted(texts)]
 
 
-def _loaded(feature: Feature, out: Path) -> Any:
-    """What another command left beside the report; None for a file that has come since and cannot be read."""
-    assert feature.load is not None
+def _load(field: ResultField[Any], out: Path) -> Any:
+    """Return what another command left beside the report; None for a file that has come since and cannot be read."""
+    assert field.load is not None
     try:
-        return feature.load(out)
+        return field.load(out)
     except (OSError, ValueError) as error:
         on_stderr(str(error))
         return None

@@ -20,7 +20,7 @@ REMOTE = ("https", "http", "ssh", "git")
 
 def requirement() -> str:
     """A line of requirements.txt: the address that pip recorded, a commit that others reach, a folder or a version."""
-    about = _recorded()
+    about = _pip_record()
     url = str(about.get("url", ""))
     if "vcs_info" in about:
         address = f"{about['vcs_info']['vcs']}+{_without_password(url)}@{about['vcs_info']['commit_id']}"
@@ -34,8 +34,8 @@ def requirement() -> str:
     return f"{NAME} @ {address}"
 
 
-def _recorded() -> dict[str, Any]:
-    """What pip has recorded of the place from which it installed the package (PEP 610); empty for an index."""
+def _pip_record() -> dict[str, Any]:
+    """Return what pip has recorded of the place from which it installed the package (PEP 610); empty for an index."""
     try:
         about: dict[str, Any] = json.loads(distribution(NAME).read_text("direct_url.json") or "{}")
     except PackageNotFoundError:
@@ -44,7 +44,7 @@ def _recorded() -> dict[str, Any]:
 
 
 def _commit_elsewhere(folder: Path) -> str:
-    """Where others find the commit of a checkout; empty if nobody does."""
+    """Return where others find the commit of a checkout; empty if nobody does."""
     try:
         commit = git(folder, "rev-parse", "HEAD")
         if not git(folder, "branch", "--remotes", "--contains", commit):

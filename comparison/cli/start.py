@@ -1,8 +1,9 @@
 """
 How every command starts: Ctrl-C ends it without a traceback, also while modules load.
 
-`python -m comparison.NAME` and the console script `phase-resonance NAME` start the same functions. The script does not
-look for modules in the working directory, where a file `reference.py` of the user would be taken for this project.
+The console script `phase-resonance NAME` starts every command, and `python -m comparison.run` the study. The script
+does not look for modules in the working directory, where a file `reference.py` of the user would be taken for this
+project.
 This module imports nothing of the project, so that loading it takes no time.
 """
 
@@ -25,24 +26,36 @@ SCRIPT = "phase-resonance"
 # of a command that only reads what is stored
 COLLECTIONS = 50_000, 20, 100
 
-COMMANDS = {  # module whose `main` is the command, and what it does
-    "run": ("comparison.run", "compare the equations with Exudyn and write the report"),
-    "claims": (
-        "comparison.analyses.claims.command",
-        "the paper's statements about its figures in both readings of (5.1)",
-    ),
-    "assumptions": ("comparison.analyses.assumptions.command", "how far the paper's assumptions hold"),
-    "benchmarks": (
-        "comparison.analyses.benchmarks.command",
-        "numbers published elsewhere, by the equations and by the engine",
-    ),
-    "validation": ("comparison.analyses.validation.command", "measured motions, by the equations and by the engine"),
-    "extremes": ("comparison.analyses.extremes.command", "every model at the extremes of every quantity"),
-    "tradeoff": ("comparison.analyses.tradeoff.command", "error against compute time"),
-    "ensemble": ("comparison.analyses.ensemble.command", "demands under a suite of motions at many intensities"),
-    "init": ("comparison.cli.init", "a directory with a study to start from"),
-    "animate": ("multibody.animate", "a film of the motion"),
+PACKAGE = Path(__file__).parents[1]  # comparison
+
+
+class Command(NamedTuple):
+    """A command: the module whose `main` it is, and what it does."""
+
+    module: str
+    purpose: str
+
+
+COMMANDS = {  # those that belong to no feature
+    "run": Command("comparison.run", "compare the equations with Exudyn and write the report"),
+    "init": Command("comparison.cli.init", "a directory with a study to start from"),
+    "animate": Command("multibody.animate", "a film of the motion"),
 }
+
+
+def commands() -> dict[str, Command]:
+    """Return all commands by name: those of no feature, then each `command.py` in the folder of a feature."""
+    found = dict(COMMANDS)
+    for file in sorted(PACKAGE.glob("*/*/command.py"), key=lambda file: file.parent.name):
+        folder = ".".join(file.parent.relative_to(PACKAGE.parent).parts)
+        found[file.parent.name] = Command(f"{folder}.command", _purpose(folder))
+    return found
+
+
+def _purpose(package: str) -> str:
+    """Return the first sentence of a package, as the help lists it."""
+    text = import_module(package).__doc__ or ""
+    return f"{text[:1].lower()}{text[1:].strip().rstrip('.')}"
 
 
 class Clock(NamedTuple):
@@ -110,18 +123,19 @@ def _refuse_threads() -> None:
 
 def main() -> NoReturn:
     """Run the console script: its first word is the command, the others are for the command."""
-    name = sys.argv[1] if len(sys.argv) > 1 else "--help"
-    if name in ("-h", "--help"):
+    name = sys.argv[1] if len(sys.argv) > 1 else "help"
+    known = commands()
+    if name in ("-h", "--help", "help"):
         print(f"usage: {SCRIPT} COMMAND [options]; {SCRIPT} COMMAND --help lists the options; {SCRIPT} --version\n")
-        print("\n".join(f"  {command:12s} {purpose}" for command, (_, purpose) in COMMANDS.items()))
+        print("\n".join(f"  {name:12s} {command.purpose}" for name, command in known.items()))
         raise SystemExit(0)
     if name == "--version":
         print(f"{SCRIPT} {import_module('reference').__version__}")
         raise SystemExit(0)
-    if name not in COMMANDS:
-        nearest = get_close_matches(name, COMMANDS, n=1)
-        rule = f"did you mean {nearest[0]}?" if nearest else f"must be one of {', '.join(COMMANDS)}"
+    if name not in known:
+        nearest = get_close_matches(name, known, n=1)
+        rule = f"did you mean {nearest[0]}?" if nearest else f"must be one of {', '.join(known)}"
         print(f"command line: COMMAND = {name!r}: {rule}", file=sys.stderr)
         raise SystemExit(2)
     sys.argv = [f"{SCRIPT} {name}", *sys.argv[2:]]
-    start(COMMANDS[name][0])
+    start(known[name].module)

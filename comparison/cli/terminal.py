@@ -7,12 +7,12 @@ from rich.console import Console
 from rich.table import Table
 
 from comparison.cli.options import Options
-from comparison.registry import chosen_analyses, first_tasks, levels
+from comparison.registry import first_tasks, levels, seconds_by_stage, select_analyses
 from comparison.runner.cache import Cache, store_beside
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import refusal_of
-from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_analysis, seconds_of_model
+from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_model
 from comparison.study.models import models_of, why_not_spatial
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
@@ -20,13 +20,13 @@ from comparison.surfaces.surfaces import surface_tasks
 from reference.problem import Scene
 from reference.problem.plausibility import implausible_values
 
-NAMES = 4  # of a list on the terminal
+NAMES = 4  # names of a list that the terminal shows
 
 
 def print_plan(console: Console, study: Study, options: Options) -> None:
-    """What would be computed, and roughly how long it would take."""
-    for reason, of in _refused(study).items():
-        console.print(f"{_listed(of)}: {reason}.", soft_wrap=True)
+    """Print what would be computed, and roughly how long it would take."""
+    for reason, of in _refusals(study).items():
+        console.print(f"{_list_names(of)}: {reason}.", soft_wrap=True)
     table = new_table("file", "scenes", "model", "phase pairs", "computed", "tolerance")
     for family in options.families:
         for model in study.hierarchy:
@@ -37,7 +37,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
                 counts = f"{points:,}", f"{computed:,}", f"{model.tolerance(study.tolerance):.0e}"
                 table.add_row(family.name, str(len(scenes)), model.title, *counts)
     console.print(table)
-    analyses = chosen_analyses(study)
+    analyses = select_analyses(study)
     counted = {
         each.stage: "chosen by the surfaces" if each.needs_surfaces else len(each.tasks(study.selecting(each.key)))
         for each in analyses
@@ -57,14 +57,14 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     results = TaskResults(Cache(store_beside(options.out)), options.fresh)
     print_stored(console, results, surface_tasks(study), first_tasks(study, analyses))
     seconds = sum(seconds_of_model(study, model) for model in study.hierarchy)
-    seconds += sum(seconds_of_analysis(study, each.key, each.stage) for each in analyses)
+    seconds += sum(seconds_by_stage(study).values())
     wall = STARTING + seconds / options.jobs + WRITING
     first = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
     console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{first}; nothing was computed.")
     console.print(f"The report would go to {options.out}.", soft_wrap=True)
 
 
-def _listed(names: Sequence[str]) -> str:
+def _list_names(names: Sequence[str]) -> str:
     """The first names, and how many others."""
     shown = ", ".join(names[:NAMES])
     return shown if len(names) <= NAMES else f"{shown} and {len(names) - NAMES} more"
@@ -94,7 +94,7 @@ def print_models_left_out(console: Console, study: Study) -> None:
             console.print(f"{scene.name}: {reason}.", soft_wrap=True)
 
 
-def _refused(study: Study) -> dict[str, list[str]]:
+def _refusals(study: Study) -> dict[str, list[str]]:
     """Why surfaces would have no value, with the scenes and models."""
     refused: dict[str, list[str]] = {}
     for scene in study.scenes:
@@ -105,13 +105,13 @@ def _refused(study: Study) -> dict[str, list[str]]:
 
 
 def _print_reductions(console: Console, study: Study) -> None:
-    """What the scenes do not require."""
+    """Print what the scenes do not require."""
     if study.full:
         console.print("Every phase pair and every model is computed in full (--full).")
     elif rows := reductions(study):
         console.print("Left out, because the scene does not require it (--full computes it):")
         for row in rows:
-            console.print(f"  {row.what} ({row.models}; {_listed(row.scenes)}): {row.why}", soft_wrap=True)
+            console.print(f"  {row.what} ({row.models}; {_list_names(row.scenes)}): {row.why}", soft_wrap=True)
     else:
         console.print("Nothing is left out: the scenes require all of it.")
 

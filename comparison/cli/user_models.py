@@ -14,7 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from comparison.cli.arguments import CommandParser, number
+from comparison.cli.arguments import CommandParser, read_number
 from comparison.runner.environment import engine_fingerprint
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, Workers
 from comparison.study.models import MODEL_HIERARCHY, Model
@@ -53,7 +53,7 @@ def add_models(parser: CommandParser) -> None:
 
 def user_models(specs: Sequence[str], limit: str | None = None, scheduler: str | None = None) -> tuple[Model, ...]:
     """The models that `--model` enters, none with a cluster, whose workers cannot import them. Raises SceneError."""
-    seconds = TIME_LIMIT if limit is None else number(LIMIT_OPTION, limit, 1.0, 1e6, "s of processor time")
+    seconds = TIME_LIMIT if limit is None else read_number(LIMIT_OPTION, limit, 1.0, 1e6, "s of processor time")
     if specs and scheduler is not None:
         raise _refusal(specs[0], "is a function of this machine, --scheduler computes on others: give one of the two")
     parts = [_parts(spec) for spec in specs]
@@ -66,7 +66,7 @@ def user_models(specs: Sequence[str], limit: str | None = None, scheduler: str |
     if specs and (folder := os.getcwd()) not in sys.path and "" not in sys.path:
         sys.path.append(folder)  # behind all else: a file of the user hides no module of the project
     return tuple(
-        user_model(name, _looked_at(spec, function), like, seconds)
+        user_model(name, _inspect_function(spec, function), like, seconds)
         for spec, (name, function, like) in zip(specs, parts)
     )
 
@@ -99,8 +99,8 @@ def _parts(spec: str) -> tuple[str, str, str]:
     return name, function, like
 
 
-def _looked_at(spec: str, path: str) -> dict[str, Any]:
-    """What is known of a function. Raises SceneError where it cannot be called."""
+def _inspect_function(spec: str, path: str) -> dict[str, Any]:
+    """Return what is known of a function. Raises SceneError where it cannot be called."""
     workers = Workers(1)
     try:
         fault, about = workers.start(partial(look_at, path), IMPORTING).result()

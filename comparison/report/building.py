@@ -6,19 +6,19 @@ from typing import Any, get_args
 
 import xarray as xr
 
+from comparison.report.feature import Feature, Findings
 from comparison.report.results import ModelDescription, Results, Run
 from comparison.report.scene_result import ModelOutcome, RecordValue
-from comparison.report.section import Feature, Findings, Report
+from comparison.report.section import Report
 from comparison.runner.attempts import attempt
 from comparison.runner.output import on_stderr
-from comparison.study.analyses import ANALYSES
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
-from comparison.surfaces.acceptance import checked_limits, unchecked_pairs
+from comparison.surfaces.acceptance import check_limits, pairs_without_limit
 from comparison.surfaces.alerts import Alert, alerts
 from comparison.surfaces.body_comparison import BodyComparison, body_comparisons
 from comparison.surfaces.budget import budget
-from comparison.surfaces.completion import completions, with_completed
+from comparison.surfaces.completion import CompletedSurfaces, completions, with_completed
 from comparison.surfaces.distribution import distributions, grid_maxima
 from comparison.surfaces.headline import headline
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share, outcome_counts, values_of
@@ -35,45 +35,45 @@ def build_report(
     run: Mapping[str, Any],
     features: Sequence[Feature],
     kind: type[Results],
-    families: Sequence[Family] = (),
-    lost: Sequence[str] = (),
+    families: Sequence[Family],
+    lost: Sequence[str],
 ) -> Report:
     """
-    Return everything that a report is made from; a feature whose own part raises is left out, with a line in `lost`.
+    Return everything that a report is made from; a field whose own computation raises is empty, with a line in `lost`.
 
     found: of the features, by key. kind: with a field for each of them.
     """
     lines = [*lost]
 
-    def part_of(key: str, act: Callable[[], Any]) -> Any:
-        return attempt(f"section {key}", act, lambda line: note_lost(lines, line))
+    def compute(name: str, *words: Any, function: Callable[..., Any]) -> Any:
+        return attempt(f"section {name}", partial(function, *words), partial(note_lost, lines))
 
     comparisons, lacking = body_comparisons(study, surfaces), unanswered(study, surfaces)
     completed = [
-        each for scene in study.scenes for each in completions(study, surfaces, scene, found.get("completion"))
+        each for scene in study.scenes for each in completions(study, surfaces, scene, found.get(CompletedSurfaces.key))
     ]
     surfaces = with_completed(surfaces, completed)
-    limits = checked_limits(comparisons, lacking)
+    limits = check_limits(comparisons, lacking)
     parts: dict[str, Sequence[Any]] = {
         "differences": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.pairs],
         "effects": [comparison.rows[pair.key] for comparison in comparisons for pair in comparison.effect_pairs],
         "budget": budget(comparisons), "completions": completed, "limits": limits,
     }  # fmt: skip
-    findings = Findings(study, surfaces, {**found, "families": families or None})
-    fields = {name: each for feature in features for name, each in feature.scene_fields.items()}
+    findings = Findings(study, surfaces, found, families)
+    fields = [field for feature in features for field in feature.scene_fields]
     (scene_kind,) = get_args(kind.model_fields["scenes"].annotation)
     scenes = []
     for scene in study.scenes:
         of_scene = {name: [row for row in every if row.scene == scene.name] for name, every in parts.items()}
-        more = {name: part_of(name, partial(each.of, findings, scene)) or [] for name, each in fields.items()}
+        more = {field.name: compute(field.name, findings, scene, function=field.compute) or [] for field in fields}
         bodies = [comparison for comparison in comparisons if comparison.scene is scene]
         scenes.append(scene_kind(**_scene(study, surfaces, scene, bodies), **of_scene, **more))
     summaries: dict[str, Any] = {
-        feature.key: part_of(feature.key, partial(feature.summary, findings, scenes))
-        if feature.summary
-        else findings.found.get(feature.key)
+        field.name: compute(field.name, findings, scenes, function=field.compute)
+        if field.compute
+        else findings.found.get(field.name)
         for feature in features
-        if feature.result is not None
+        for field in feature.fields
     }
     results = kind(
         run=Run.model_validate(run),
@@ -87,8 +87,7 @@ def build_report(
         faults=[f"{fault.scene}, {fault.text}" for fault in faults],
         **summaries,
     )
-    sections = [feature.section for feature in features if feature.section]
-    return Report(study, surfaces, completed, results, findings.found, sections, lost=lines)
+    return Report(study, surfaces, completed, results, found, features, lines)
 
 
 def note_lost(lines: list[str], line: str) -> None:
@@ -99,7 +98,7 @@ def note_lost(lines: list[str], line: str) -> None:
 
 
 def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequence[BodyComparison]) -> dict[str, Any]:
-    """What the surfaces of a scene say."""
+    """Return what the surfaces of a scene say."""
     waterfalls = [waterfall(comparison) for comparison in comparisons]
     return {
         "name": scene.name,
@@ -108,12 +107,12 @@ def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequen
         "bodies": len(scene.bodies),
         "duration": scene.duration,
         "recorded": scene.recorded,
-        "analyses": [name for name in ANALYSES if study.selection.has(name, scene.name)],
+        "analyses": [name for name in study.selection.names if study.selection.has(name, scene.name)],
         "acceptance": scene.acceptance,
         "models": {model.key: _model(study, surfaces, scene, model) for model in models_of(scene, study.hierarchy)},
         "headlines": [headline(*each) for each in zip(comparisons, waterfalls)],
         "waterfalls": waterfalls,
-        "unchecked": unchecked_pairs(study, scene),
+        "unchecked": pairs_without_limit(study, scene),
         "distributions": [] if scene.recorded else distributions(study, surfaces, scene),
         "grid_maxima": grid_maxima(study, surfaces, scene),
         "values": _values(study, surfaces, scene) if scene.recorded else [],

@@ -59,13 +59,7 @@ def explained(sentence: str, seen: set[str] | None = None) -> Markup:
         seen.add(word)
         return symbols(word) if known else term(word)
 
-    text = unbroken(sentence)
-    return _by_parts(WORDS.finditer(text), text, first, symbols)
-
-
-def unbroken(text: str) -> str:
-    """Return the text in which no line ends between a number and its sign of percent."""
-    return text.replace(" %", "\u00a0%")
+    return _by_parts(WORDS.finditer(sentence), sentence, first, symbols)
 
 
 def _by_parts(

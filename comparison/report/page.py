@@ -5,19 +5,17 @@ import hashlib
 from collections.abc import Callable, Mapping
 from functools import cache, partial
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
 import jinja2
 from markupsafe import Markup
 
-from comparison.analyses.motions.page_data import packed, packed_motions
 from comparison.report.building import note_lost
-from comparison.report.glossary import explained, term, unbroken
-from comparison.report.page_data import page_data
+from comparison.report.glossary import explained, term
+from comparison.report.page_data import pack, page_data
 from comparison.report.results import VALIDATED_BRIEFLY, Results
 from comparison.report.section import Report, Section
-from comparison.report.surface_sections import applied_models
+from comparison.report.surface_sections import models_in_use
 from comparison.runner.attempts import attempt
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.statements import CELLS, word_verdict
@@ -29,40 +27,49 @@ DRAWN = 0.01  # share of mu: shorter bars are left out
 SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions.js", "page.js")
 
 
-def pages(figures: Path, report: Report) -> dict[str, str]:
+def pages(report: Report) -> dict[str, str]:
     """
     Return index.html, which answers the question, and verification.html, which verifies the tool, each whole by itself.
 
     A part of a page that raises is one line at its top and, where it is a section, in its place.
     """
-    lost, nothing = [*report.lost], packed(b"null")
+    lost, nothing = [*report.lost], pack(b"null")
 
     def part(what: str, act: Callable[[], Any]) -> Any:
         return attempt(what, act, partial(note_lost, lost))
 
+    packed = {
+        each.key: part(each.key, partial(_pack_numbers, each.packed_data, report))
+        for each in report.features
+        if each.packed_data
+    }
     answers = {
-        "verdict": part("verdict", partial(verdict, report.results)) or "",
+        "verdict": part("verdict", partial(word_answer, report.results)) or "",
         "lead_lines": part("sentences of sections", partial(lead_lines, report)) or [],
         "alerts": part("alerts", partial(render_alerts, report)) or "",
         "summary": part("summary", partial(render_summary, report)) or "",
-        "data": part("surfaces", lambda: packed(page_data(report).encode())) or nothing,
-        "motions": part("motions", partial(packed_motions, report)) or "",
+        "data": part("surfaces", lambda: pack(page_data(report).encode())) or nothing,
+        "packed": {key: numbers or "" for key, numbers in packed.items()},
     }
-    verification = {"data": nothing, "motions": ""}
+    verification = {"data": nothing, "packed": {}}
     return {
-        "index.html": _page("report.html.j2", figures, report, False, answers, lost),
-        "verification.html": _page("verification.html.j2", figures, report, True, verification, [*report.lost]),
+        "index.html": _page("report.html.j2", report, False, answers, lost),
+        "verification.html": _page("verification.html.j2", report, True, verification, [*report.lost]),
     }
 
 
-def verdict(results: Results) -> str:
+def _pack_numbers(numbers: Callable[[Report], bytes], report: Report) -> str:
+    return pack(numbers(report))
+
+
+def word_answer(results: Results) -> str:
     """Return the sentence that answers the question of the study."""
-    return word_verdict([line for scene in results.scenes for line in scene.headlines], measured_sentence(results))
+    return word_verdict([line for scene in results.scenes for line in scene.headlines], word_measurements(results))
 
 
 def render_alerts(report: Report) -> Markup:
     """Return what to know before trusting a number."""
-    has_engine = any(model.side == "engine" for model in applied_models(report.study))
+    has_engine = any(model.side == "engine" for model in models_in_use(report.study))
     template = _environment().get_template("sections/alerts.html.j2")
     return Markup(template.render(alerts=_alert_groups(report.results), has_engine=has_engine))
 
@@ -74,9 +81,7 @@ def render_summary(report: Report) -> Markup:
     drawn = [(bars, line) for bars, line in waterfalls if is_drawn(bars)]
     context = {
         "results": results,
-        "second_title": "Exudyn"
-        if any(model.side == "engine" for model in applied_models(study))
-        else "the last model",
+        "second_title": "Exudyn" if any(model.side == "engine" for model in models_in_use(study)) else "the last model",
         "cells": CELLS,
         "drawn": drawn,
         "hidden_bodies": len(waterfalls) - len(drawn),
@@ -91,15 +96,14 @@ def render_summary(report: Report) -> Markup:
 
 
 def is_drawn(bars: Waterfall) -> bool:
-    """Whether a bar, of the means or at the largest difference, is as long as a reader can see."""
+    """Return whether a bar, of the means or at the largest difference, is as long as a reader can see."""
     every = (*bars.bars, bars.total, *bars.largest.bars, bars.largest.total)
     return any(abs(bar.size) >= DRAWN for bar in every)
 
 
-def measured_sentence(results: Results) -> str:
+def word_measurements(results: Results) -> str:
     """Return what measurements say, without the full stop."""
-    measured = "" if results.of("measured") is None else f"; {results.measurements}"
-    return f"{VALIDATED_BRIEFLY}{measured}"
+    return "; ".join([VALIDATED_BRIEFLY, *results.clauses])
 
 
 def lead_lines(report: Report) -> list[tuple[str, str]]:
@@ -112,7 +116,6 @@ def lead_lines(report: Report) -> list[tuple[str, str]]:
 
 def _page(
     template: str,
-    figures: Path,
     report: Report,
     verifies: bool,
     context: Mapping[str, Any],
@@ -140,10 +143,9 @@ def _page(
     parts = []
     for section in shown:
         say = partial(note_lost, lost)
-        verdict_line = attempt(f"verdict of section {section.name}", partial(word_section, section, results), say)
-        render = partial(_render, section, common, report, figures)
-        body = attempt(f"section {section.name}", render, say)
-        parts.append((section, lost_line(lost[-1]) if body is None else body, verdict_line or ""))
+        verdict = attempt(f"verdict of section {section.name}", partial(word_section, section, results), say)
+        body = attempt(f"section {section.name}", partial(_render, section, common, report), say)
+        parts.append((section, lost_line(lost[-1]) if body is None else body, verdict or ""))
     return load(template).render(
         {**common, **context},
         policy=content_policy(script, style),
@@ -160,10 +162,9 @@ def word_section(section: Section, results: Results) -> str:
     return section.verdict(results) if section.verdict else ""
 
 
-def _render(section: Section, common: Mapping[str, Any], report: Report, figures: Path) -> Markup:
+def _render(section: Section, common: Mapping[str, Any], report: Report) -> Markup:
     """Return what stands below the heading of a section."""
-    context = {**common, **section.context(report, figures)}
-    return Markup(_environment().get_template(section.template).render(context))
+    return Markup(_environment().get_template(section.template).render({**common, **section.context(report)}))
 
 
 def lost_line(line: str) -> Markup:
@@ -185,10 +186,14 @@ def content_policy(script: str, style: str) -> str:
 @cache
 def _environment() -> jinja2.Environment:
     loader = jinja2.ChoiceLoader(
-        [jinja2.PackageLoader("comparison.report", "templates"), jinja2.PackageLoader("comparison", "analyses")]
+        [
+            jinja2.PackageLoader("comparison.report", "templates"),
+            jinja2.PackageLoader("comparison", "analyses"),
+            jinja2.PackageLoader("comparison", "evidence"),
+        ]
     )
     environment = jinja2.Environment(loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True)
-    filters = (percent, signed, scientific, degrees, significant, symbols, explained, unbroken)
+    filters = (percent, signed, scientific, degrees, significant, symbols, explained)
     environment.filters.update({function.__name__: function for function in filters})
     environment.globals["term"] = term  # in macros, too
     return environment

@@ -1,16 +1,16 @@
 """What the page's script draws: surfaces, where their difference is as large as its uncertainty, motions."""
 
+import base64
+import gzip
 import json
 from typing import Any
 
 import contourpy
 import numpy as np
 
-from comparison.analyses.motions.page_data import contact_geometry, places, spectrum_axis, starts_of
-from comparison.analyses.worst_phases.analysis import nearest_search
 from comparison.report.section import Report
 from comparison.result_types import Array
-from comparison.study.models import Model, Pair, models_of
+from comparison.study.models import Model, Pair, label_of, models_of
 from comparison.surfaces.completion import Completion
 from comparison.surfaces.model_difference import difference_of
 from comparison.surfaces.surfaces import values_of
@@ -19,22 +19,22 @@ from reference.problem import Scene
 Rows = list[list[float | None]]
 
 DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
+LEVEL = 6  # level of compression: the next one takes half as long again for 2 % less
 
 
 def page_data(report: Report) -> str:
     """
     JSON of all that is drawn; NaN is null.
 
-    grid: phases per axis of the study. titles: by model. scenes, each: name, title, bodies, duration (s), recorded,
-    flat (whether it is a flat slider); pairs, each: key, title, sentence, first, second (models), supplied (whether the
-    second is an engine of the user), contours (per body: polylines [[alpha1, alpha2], ...], rad, on which |D| = u_D),
-    uncertainty (per body: u_D relative to the first model on the phases of both, or null where both are surfaces);
-    models (by key: see `_model`); contact (`contact_geometry`); places (row, column, phases or null under a record,
-    why, and motions: see `motion_data`); spectra (`spectrum_axis`). A surface is a list of rows, one per alpha1, of
-    values, one per alpha2.
+    grid: phases per axis of the study. titles: by model. scenes, each: name, title, labels (by model, with the reading
+    of mu), bodies, duration (s), recorded, flat (whether it is a flat slider); pairs, each: key, title, sentence,
+    first, second (models), supplied (whether the second is an engine of the user), contours (per body: polylines
+    [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
+    phases of both, or null where both are surfaces); models (by key: see `_model`); and what the `page_data` of every
+    feature adds. A surface is a list of rows, one per alpha1, of values, one per alpha2.
     """
     study = report.study
-    starts = starts_of(report.found.get("motions") or [])
+    hooks = [feature.page_data for feature in report.features if feature.page_data]
     data = {
         "grid": study.grid,
         "titles": {model.key: model.title for model in study.hierarchy},
@@ -42,15 +42,14 @@ def page_data(report: Report) -> str:
             {
                 "name": scene.name,
                 "title": scene.title,
+                "labels": {model.key: label_of(model, scene) for model in models_of(scene, study.hierarchy)},
                 "bodies": len(scene.bodies),
                 "duration": scene.duration,
                 "recorded": scene.recorded,
                 "flat": scene.flat,
                 "pairs": [_pair(report, scene, pair) for pair in study.pairs(scene)],
                 "models": {model.key: _model(report, scene, model) for model in models_of(scene, study.hierarchy)},
-                "contact": contact_geometry(scene),
-                "places": list(places(report, scene, starts)),
-                "spectra": spectrum_axis(report, scene),
+                **{name: part for hook in hooks for name, part in hook(report, scene).items()},
             }
             for scene in study.scenes
         ],
@@ -58,8 +57,13 @@ def page_data(report: Report) -> str:
     return json.dumps(data, allow_nan=False, separators=(",", ":"))
 
 
+def pack(content: bytes) -> str:
+    """Compress and write in letters; the browser undoes both."""
+    return base64.b64encode(gzip.compress(content, LEVEL, mtime=0)).decode()
+
+
 def crossings(size: Array, uncertainty: Array, phase: Array) -> list[list[list[float]]]:
-    """Where |size| = uncertainty on the closed square, both (alpha1, alpha2): polylines of phases, rad."""
+    """Return where |size| = uncertainty on the closed square, both (alpha1, alpha2): polylines of phases, rad."""
     over = np.pad(np.abs(size) - uncertainty, ((0, 1), (0, 1)), mode="wrap")
     axis = np.append(phase, 2.0 * np.pi)
     lines = contourpy.contour_generator(axis, axis, np.ma.masked_invalid(over.T)).lines(0.0)
@@ -82,7 +86,7 @@ def _pair(report: Report, scene: Scene, pair: Pair) -> dict[str, Any]:
 
 
 def _surface(report: Report, scene: Scene, model: Model) -> bool:
-    """Whether the values of a model are drawn as a surface as they are: what may need completing is not."""
+    """Return whether the values of a model are drawn as a surface as they are: what may need completing is not."""
     incomplete = any((each.scene, each.model) == (scene.name, model.key) for each in report.completions)
     return model.side != "user" and not incomplete
 
@@ -95,15 +99,13 @@ def _model(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
     mu: per body. error: per body, null for a surface. completed: per body, null or through (a model), certificate
     (how far it is off, in words), reason (why it is not drawn), difference (whether that may be drawn), mu (null where
     refused).
-    worst: per body, null or alpha1, alpha2 (rad), the largest mu over all phases, and the model that was searched: this
-    one or one near it.
     """
     bodies = range(1, len(scene.bodies) + 1)
     surface = not scene.recorded and _surface(report, scene, model)
     place = scene.name, model.key
     completed = {each.body: each for each in report.completions if (each.scene, each.model) == place}
 
-    def listed(name: str, digits: int) -> list[Rows]:
+    def list_rows(name: str, digits: int) -> list[Rows]:
         values = values_of(report.surfaces, name, scene.name, model)
         return [_rows(values[body - 1], digits) for body in bodies]
 
@@ -111,22 +113,13 @@ def _model(report: Report, scene: Scene, model: Model) -> dict[str, Any]:
         "phases": len(report.study.axis(model, scene)),
         "computed": len(report.study.solved(scene, model)),
         "surface": surface,
-        "mu": listed("mu", DIGITS),
-        "error": None if surface else listed("error", ERROR_DIGITS),
-        "worst": [_worst(report, scene, model, body) for body in bodies],
-        "completed": [_completed(completed.get(body)) for body in bodies],
+        "mu": list_rows("mu", DIGITS),
+        "error": None if surface else list_rows("error", ERROR_DIGITS),
+        "completed": [_completion_data(completed.get(body)) for body in bodies],
     }
 
 
-def _worst(report: Report, scene: Scene, model: Model, body: int) -> list[float | str] | None:
-    keys = [each.key for each in models_of(scene, report.study.hierarchy)]
-    worst = nearest_search(report.found.get("worst_phases") or (), keys, scene.name, model.key, body)
-    if worst is None:
-        return None
-    return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{DIGITS}g}"), worst.model]
-
-
-def _completed(completion: Completion | None) -> dict[str, Any] | None:
+def _completion_data(completion: Completion | None) -> dict[str, Any] | None:
     if completion is None:
         return None
     return {

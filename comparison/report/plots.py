@@ -24,7 +24,7 @@ DEMANDS = (
 
 
 def plain(values: Sequence[float]) -> list[float | None]:
-    """What JSON can hold: NaN is null."""
+    """Return what JSON can hold: NaN is null."""
     return [finite_or_none(value) for value in values]
 
 

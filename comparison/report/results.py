@@ -5,8 +5,9 @@ The page, summary.md, JUnit and summary.json are made from one `Results` object.
 summary.json: its JSON schema is generated from them and written beside it. Relative sizes are fractions, not percent.
 """
 
+from collections.abc import Sequence
 from functools import cache
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -17,13 +18,12 @@ from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.statements import word_gate
 from comparison.surfaces.unanswered import Unanswered
-from comparison.verdicts import count_verdicts, word_counts
 
 SCHEMA: Literal["phase-resonance/summary"] = "phase-resonance/summary"
 VERSION: Literal[6] = 6  # grows when a key changes its meaning or goes
 
 
-# what measured motions say of the models, for every report: `word_validated` of comparison.analyses.validation words it
+# what measured motions say of the models, for every report: `word_validated` of comparison.evidence.validation words it
 # from the record, which the gate repeats; the report itself knows no analysis
 VALIDATED = (
     "Validated is one quantity: the half range of a frame shaken against dry friction, with friction of the load,"
@@ -34,8 +34,9 @@ VALIDATED = (
 
 # the same by `word_validated_briefly`, for the first screen
 VALIDATED_BRIEFLY = (
-    "measured was the half range of a frame shaken against dry friction: met at 2 of 2 predicted loads with friction "
-    "of the load, at 1 of 3 with one friction ratio; no building has been compared"
+    "measurements of a shaken frame test dry friction alone: both codes predict its half range within the "
+    "uncertainties at 2 of 2 loads where friction depends on the load, at 1 of 3 with a constant coefficient; no "
+    "building has been compared"
 )
 
 
@@ -48,7 +49,7 @@ class WorkPart(Part):
 
 
 class Run(Part):
-    """How the report was made."""
+    """Facts of the run that made the report."""
 
     command: Text = Field(description="the command line")
     began: str = Field(description="date and time, UTC")
@@ -100,10 +101,7 @@ class Results(Part):
     unanswered: list[Unanswered] = Field(description="models without a value at some or all phase pairs of a scene")
     alerts: list[Alert] = Field(description="what a reader must know before trusting a number, the most serious first")
     faults: list[Text] = Field(description="error messages of the solvers")
-
-    def of(self, key: str) -> Any:
-        """What a feature found; None where it found nothing."""
-        return getattr(self, key)
+    features: ClassVar[Sequence[Any]] = ()  # the registry enters them
 
     @property
     def broken(self) -> list[Alert]:
@@ -112,7 +110,7 @@ class Results(Part):
 
     @property
     def gate(self) -> str:
-        """Whether the acceptance limits hold, and what has none."""
+        """Return whether the acceptance limits hold, and what has none."""
         return word_gate(len(self.limits), len(self.broken), self.unchecked)
 
     @property
@@ -121,14 +119,15 @@ class Results(Part):
         return {scene.name: scene.unchecked for scene in self.scenes}
 
     @property
+    def clauses(self) -> list[str]:
+        """Return what the features add to the statement on measurements."""
+        said = [feature.clause(self) for feature in self.features if feature.clause]
+        return [clause for clause in said if clause]
+
+    @property
     def measurements(self) -> str:
-        """What measurements say of the models, in a clause."""
-        measured = self.of("measured")
-        if measured is None:
-            return "this study has no measured peaks"
-        counts = count_verdicts(computed.verdict for peak in measured for computed in peak.computed)
-        count = "1 measured peak stands" if len(measured) == 1 else f"{len(measured)} measured peaks stand"
-        return f"{count} beside the models ({word_counts(counts)})"
+        """Return what measurements say of the models, in a clause."""
+        return "; ".join(self.clauses) or "this study has no measured peaks"
 
     @property
     def engine_lines(self) -> list[str]:

@@ -1,6 +1,6 @@
 """The results of one scene; the registry adds the fields of its features."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
@@ -16,7 +16,7 @@ from reference.problem.acceptance import Acceptance
 
 
 class ModelOutcome(Part):
-    """What one model did in one scene."""
+    """Outcome of one model in one scene."""
 
     phases_per_axis: int = Field(description="values of alpha1, and of alpha2")
     points: int = Field(description="phase pairs that the model was asked for")
@@ -67,7 +67,3 @@ class SceneResult(Part):
     limits: list[Limit]
     """every acceptance limit that the scene states, and those that an engine of the user has by default"""
     unchecked: list[str] = Field(description="pairs of models that are compared without any limit on their difference")
-
-    def of(self, key: str) -> Any:
-        """What a feature found of the scene."""
-        return getattr(self, key)

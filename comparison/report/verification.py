@@ -48,7 +48,7 @@ reference: reference/test_heated_friction.py
 reference: reference/test_printed_matrices.py
   the matrices (3.9)-(3.13) written from the print, errata corrected | 1e-4, peaks read every 2 ms |
     test_the_mended_matrices_are_the_exact_equations
-reference: comparison/analyses/test_benchmarks.py
+reference: comparison/evidence/test_benchmarks.py
   numbers published elsewhere: code_aster, ANSYS, Chopra, Den Hartog, Newmark | the error of both |
     test_the_equations_meet_every_published_number
 engine: multibody/test_contact.py
@@ -69,7 +69,7 @@ engine: multibody/test_energy.py
 engine: multibody/test_like_for_like.py
   halved steps until two runs agree, at every point of every surface | the error each value states |
     test_no_finer_run_contradicts_an_answer
-engine: comparison/analyses/test_benchmarks.py
+engine: comparison/evidence/test_benchmarks.py
   numbers published elsewhere, where friction sticks against the equations with its friction | the error of both |
     test_the_engine_meets_all_published_numbers
 """

@@ -22,18 +22,19 @@ class Analysis(Protocol[Result]):
     """
 
     key: ClassVar[str]  # its name for a selection, and its field of the findings
-    stage: ClassVar[str]  # the stage of its tasks, on the terminal and in the table of costs
+    stage: ClassVar[str]  # the stage of its tasks, on the terminal
+    seconds: ClassVar[float] = 1.0  # rough s of processor time for one scene
     needs_surfaces: ClassVar[bool] = False  # whether the surfaces choose its tasks
-    level: ClassVar[int] = LAST  # of the study, the first whose report has it
+    level: ClassVar[int] = LAST  # the first level of the study whose report has it
 
     @abstractmethod
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
-        """What has to be computed. An analysis that does not need the surfaces ignores them."""
+        """Return what has to be computed. An analysis that does not need the surfaces ignores them."""
 
     @abstractmethod
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Result | None:
         """
-        What the results of `tasks(study, surfaces)` say.
+        Return what the results of `tasks(study, surfaces)` say.
 
         A task that returned nothing leaves a gap that says why. None: the analysis does not apply to the study.
         """

@@ -79,7 +79,7 @@ class Cache:
             digest, content = file[len(MAGIC) : len(MAGIC) + DIGEST], file[len(MAGIC) + DIGEST :]
             if not file.startswith(MAGIC) or _checksum(key, content) != digest:
                 return None  # damaged, or of another question
-            value = _unpacked(content, declared)
+            value = _unpack(content, declared)
         except Exception:  # whatever is wrong with a file, the result is computed again
             return None
         self.kept[key.kind] += 1
@@ -88,7 +88,7 @@ class Cache:
         return value
 
     def holds(self, key: Key) -> bool:
-        """Whether there is a file for it, whatever its state."""
+        """Return whether there is a file for it, whatever its state."""
         return (self.folder / key.name).exists()
 
     def put(self, key: Key, value: Any) -> None:
@@ -98,7 +98,7 @@ class Cache:
         place = self.folder / key.name
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
-            content = _packed(json.loads(key.about), value)
+            content = _pack(json.loads(key.about), value)
             write_atomically(place, MAGIC + _checksum(key, content) + content)
         except OSError as error:
             raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {error.strerror}") from None
@@ -127,7 +127,7 @@ class Cache:
 
 
 def store_beside(out: Path) -> Path:
-    """Where the results of a report are kept."""
+    """Return where the results of a report are kept."""
     return out.with_name(f"{out.name}.tiles")
 
 
@@ -151,7 +151,7 @@ def refuse_foreign_store(out: Path) -> None:
 
 
 def faulty(result: Any) -> bool:
-    """Whether a result, or a part of it, names a fault."""
+    """Return whether a result, or a part of it, names a fault."""
     if isinstance(result, tuple | list):
         return any(map(faulty, result))
     return bool(getattr(result, "error_message", ""))
@@ -173,12 +173,12 @@ def _drop(group: Path) -> None:
 
 
 def _is_group(entry: os.DirEntry[str]) -> bool:
-    """Whether an entry of a store looks like a directory of results. What is removed is proved file by file."""
+    """Return whether an entry of a store looks like a directory of results. What is removed is proved file by file."""
     return entry.is_dir(follow_symlinks=False) and GROUP.fullmatch(entry.name) is not None
 
 
 def _is_result(entry: os.DirEntry[str]) -> bool:
-    """Whether a file is a result, or what a killed run left of one: by its first bytes."""
+    """Return whether a file is a result, or what a killed run left of one: by its first bytes."""
     if not entry.is_file(follow_symlinks=False):
         return False
     with suppress(OSError), open(entry.path, "rb") as stream:
@@ -200,7 +200,7 @@ def _size(group: Path) -> int:
     return total
 
 
-def _packed(about: Any, value: Any) -> bytes:
+def _pack(about: Any, value: Any) -> bytes:
     """A line of JSON, and the arrays that it refers to; about: what the value depends on. Raises TypeError."""
     arrays = BytesIO()
     count = 0
@@ -226,7 +226,7 @@ def _packed(about: Any, value: Any) -> bytes:
     return text.encode() + b"\n" + arrays.getvalue()
 
 
-def _unpacked(content: bytes, declared: Any) -> Any:
+def _unpack(content: bytes, declared: Any) -> Any:
     """The value of type `declared` that `_packed` has written. Raises an exception for anything else."""
     text, _, rest = content.partition(b"\n")
     arrays, stream = [], BytesIO(rest)

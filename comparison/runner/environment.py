@@ -31,7 +31,7 @@ def environment_fingerprint(model: str) -> dict[str, str]:
 
 
 def task_environment_fingerprint(module: str) -> dict[str, str]:
-    """The same for what the module computes beside the surfaces: it asks both sides and may draw."""
+    """Return the fingerprint of what is computed beside the surfaces: it asks both sides and may draw."""
     return _environment((*PACKAGES, *DRAWING), (*ANSWERING, module.rpartition(".")[0] or module))
 
 
@@ -46,13 +46,15 @@ def _environment(packages: Iterable[str], sources: Iterable[str]) -> dict[str, s
 
 
 def engine_fingerprint(module: str) -> dict[str, str]:
-    """What the numbers of a user's engine depend on: hashes of source behind its module, versions of packages."""
+    """
+    Return what the numbers of a user's engine depend on: hashes of source behind its module, versions of packages.
+    """
     package = module.split(".")[0]
     spec = find_spec(package)
     names = {package if spec is not None and spec.origin is not None else module}  # a folder alone has no source
     file = find_spec(module)
     if file is not None and file.origin is not None and file.origin.endswith(".py"):
-        names |= _imported_packages(Path(file.origin).read_text(encoding="utf-8"))
+        names |= _packages_in_use(Path(file.origin).read_text(encoding="utf-8"))
     installed = packages_distributions()
     versions = {part: version(part) for name in names for part in installed.get(name.split(".")[0], ())}
     local = {name for name in names if name in OURS or name.split(".")[0] not in installed}
@@ -62,7 +64,7 @@ def engine_fingerprint(module: str) -> dict[str, str]:
     }
 
 
-def _imported_packages(source: str) -> set[str]:
+def _packages_in_use(source: str) -> set[str]:
     """The packages that a module imports anywhere in its text, without those of Python."""
     names = set()
     for node in ast.walk(ast.parse(source)):
@@ -124,7 +126,7 @@ def _commit() -> str:
 
 
 def git(folder: Path, *arguments: str) -> str:
-    """What git says about a folder. Raises OSError or CalledProcessError."""
+    """Return what git says about a folder. Raises OSError or CalledProcessError."""
     done = subprocess.run(["git", "-C", str(folder), *arguments], capture_output=True, text=True, check=True)
     return done.stdout.strip()
 

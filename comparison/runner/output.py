@@ -26,12 +26,12 @@ from reference.problem import SceneError
 from reference.support.files import (
     NEW,
     TEMPORARY,
+    abandoned_staging,
     clear_staging,
-    dead_staging,
-    locked,
-    names_after,
+    hold_lock,
+    numbered_names,
     read_file,
-    staging,
+    staging_directory,
     write_atomically,
     write_new,
 )
@@ -79,12 +79,12 @@ def destination(path: Path, option: str = "--out") -> Path:
             raise refusal("cannot be written: Not a directory")
     except UnicodeError:
         raise refusal("is not text in UTF-8: give a path that is") from None
-    except RuntimeError:  # of older versions of Python
+    except RuntimeError:  # raised by older versions of Python
         raise refusal("is a symbolic link that leads back to itself: give another directory") from None
     except OSError as error:
         raise refusal(f"cannot be used: {error.strerror}: give another directory") from None
-    # a path that means what it says stays as it was typed, for the messages
-    return path if Path(os.path.abspath(path)) == place and ".." not in path.parts else place
+    # a path that means what it says stays as it was typed, for the messages; "." has no name to put a store beside
+    return path if path.name and Path(os.path.abspath(path)) == place and ".." not in path.parts else place
 
 
 def refuse_foreign_report(out: Path) -> None:
@@ -128,7 +128,7 @@ def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
 
 
 @dataclass
-class Report:
+class StagedReport:
     """A report that is being written into `folder`, and where it goes."""
 
     folder: Path
@@ -136,7 +136,7 @@ class Report:
 
 
 @contextmanager
-def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterator[Report]:
+def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterator[StagedReport]:
     """
     A new folder to write a report into; if the block ends without exception its files go to `out`, each whole.
 
@@ -147,11 +147,12 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
     place = out.resolve()
     made = make_parents(place.parent)
     try:
-        with staging(place) as staging_folder:
-            report = Report(staging_folder / NEW, place)
+        with staging_directory(place) as staging_folder:
+            report = StagedReport(staging_folder / NEW, place)
             yield report
-            with locked(place.parent), ThreadPoolExecutor(1) as mover:  # what interrupts this thread interrupts no move
-                report.place = mover.submit(_put, report.folder, place, say).result()
+            # a thread of its own: what interrupts this one interrupts no move
+            with hold_lock(place.parent), ThreadPoolExecutor(1) as mover:
+                report.place = mover.submit(_install_report, report.folder, place, say).result()
     except BaseException:
         with suppress(OSError):
             for parent in made:
@@ -161,7 +162,7 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
 
 def clear_dead(out: Path) -> None:
     """Remove the unfinished reports that killed runs left beside `out`."""
-    for staging_folder in dead_staging(out.resolve()):
+    for staging_folder in abandoned_staging(out.resolve()):
         clear_staging(staging_folder)
 
 
@@ -171,12 +172,12 @@ def publish(
     """Write files of a command into a folder; one that is not the study's stays, and `say` is told. Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
-    with locked(folder.resolve().parent):
+    with hold_lock(folder.resolve().parent):
         for name, content in files.items():
             file, digest, manifest = folder / name, _hash(content), read_manifest(folder)
             ours = _is_own(file, manifest.get(name))
             if ours or not os.path.lexists(file):  # noted before: whatever ends the writing, the file remains ours
-                _note(folder, manifest | {name: _either(manifest.get(name), Own(command, (digest,)))}, say)
+                _note(folder, manifest | {name: _old_or_new(manifest.get(name), Own(command, (digest,)))}, say)
             if ours:
                 write_atomically(file, content)
             else:
@@ -188,7 +189,7 @@ def publish(
     return written
 
 
-def _either(old: Own | None, new: Own) -> Own:
+def _old_or_new(old: Own | None, new: Own) -> Own:
     """A file that is as it was, or as it will be."""
     return Own(new.command, (*(old.hashes[-1:] if old else ()), *new.hashes))
 
@@ -206,7 +207,7 @@ def netcdf(values: xr.Dataset) -> bytes:
     return bytes(values.to_netcdf(engine="h5netcdf"))
 
 
-def made_by(*writers: Callable[[Path], object]) -> dict[str, bytes]:
+def files_written_by(*writers: Callable[[Path], object]) -> dict[str, bytes]:
     """The files that the writers leave in the folder they are given."""
     with tempfile.TemporaryDirectory() as name:
         for write in writers:
@@ -215,17 +216,17 @@ def made_by(*writers: Callable[[Path], object]) -> dict[str, bytes]:
 
 
 def foreign(folder: Path) -> list[str]:
-    """What is in a folder and is not the study's own, as paths below it, sorted. Raises OSError."""
+    """Return what is in a folder and is not the study's own, as paths below it, sorted. Raises OSError."""
     manifest = read_manifest(folder)
     if not manifest:
         return sorted(os.listdir(folder))
     folders = {str(parent) for name in manifest for parent in Path(name).parents}
     foreign_files = []
-    for path, is_folder in _inside(folder):
+    for path, is_folder in _walk_folder(folder):
         name = path.relative_to(folder).as_posix()
         if name != MANIFEST and not (name in folders if is_folder else _is_own(path, manifest.get(name))):
             foreign_files.append(name)
-    # of a folder that is not ours the files in it say more
+    # the files in a folder that is not ours say more than its name
     return sorted(name for name in foreign_files if not any(other.startswith(f"{name}/") for other in foreign_files))
 
 
@@ -249,15 +250,15 @@ def manifest_json(manifest: Mapping[str, Own]) -> bytes:
     return json.dumps({"schema": SCHEMA, "files": files}, indent=1).encode()
 
 
-def _put(new: Path, place: Path, say: Callable[[str], None]) -> Path:
+def _install_report(new: Path, place: Path, say: Callable[[str], None]) -> Path:
     """Move the files of a new report to their place, or beside it; the place."""
     mine = {
         path.relative_to(new).as_posix(): Own(REPORT, (_hash(path.read_bytes()),))
-        for path, is_folder in _inside(new)
+        for path, is_folder in _walk_folder(new)
         if not is_folder
     }
     why = _in_the_way(place)
-    there = next(name for name in names_after(place) if not os.path.lexists(name)) if why else place
+    there = next(name for name in numbered_names(place) if not os.path.lexists(name)) if why else place
     there.mkdir(exist_ok=True)
     old = read_manifest(there)
     kept = {name: own for name, own in old.items() if own.command != REPORT and name not in mine}
@@ -267,7 +268,7 @@ def _put(new: Path, place: Path, say: Callable[[str], None]) -> Path:
         with suppress(OSError):
             (there / name).parent.rmdir()
     # before the files: whatever ends the moving, all of them are the study's own
-    replaced = {name: _either(old.get(name), own) for name, own in mine.items()}
+    replaced = {name: _old_or_new(old.get(name), own) for name, own in mine.items()}
     (new / MANIFEST).write_bytes(manifest_json(kept | replaced))
     for name in (MANIFEST, *mine):
         (there / name).parent.mkdir(parents=True, exist_ok=True)
@@ -278,7 +279,7 @@ def _put(new: Path, place: Path, say: Callable[[str], None]) -> Path:
 
 
 def _in_the_way(place: Path) -> str:
-    """What keeps a report from its place, in words; empty if nothing does."""
+    """Return what keeps a report from its place, in words; empty if nothing does."""
     if not os.path.lexists(place):
         return ""
     if place.is_symlink() or not place.is_dir():
@@ -290,13 +291,17 @@ def _in_the_way(place: Path) -> str:
     return f"{found[0]!r} there is not a file of this study" if found else ""
 
 
-def _inside(folder: Path) -> Iterator[tuple[Path, bool]]:
-    """All that is below a folder, and whether it is a folder itself, these before what they hold. Raises OSError."""
+def _walk_folder(folder: Path) -> Iterator[tuple[Path, bool]]:
+    """
+    Return all that is below a folder, and whether it is a folder itself, these before what they hold.
+
+    Raises OSError.
+    """
     for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
         is_folder = entry.is_dir(follow_symlinks=False)
         yield Path(entry.path), is_folder
         if is_folder:
-            yield from _inside(Path(entry.path))
+            yield from _walk_folder(Path(entry.path))
 
 
 def _is_own(file: Path, entry: Own | None) -> bool:

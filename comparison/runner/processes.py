@@ -172,7 +172,11 @@ class _Process:
         theirs.close()
 
     def run(self, call: Call, seconds: float | None) -> tuple[Any, BaseException | None]:
-        """What the call returned and what it raised. Raises WorkerDiedError or TimeLimitError; the process has ended"""
+        """
+        Return what the call returned and what it raised.
+
+        Raises WorkerDiedError or TimeLimitError; then the process has ended.
+        """
         wait = None if seconds is None else min(STALLED * seconds, SLOWEST * seconds + SPARE, LONGEST_WAIT)
         try:
             self._pipe.send((call, seconds))
@@ -204,7 +208,11 @@ class _Process:
 
 
 def _serve(pipe: Connection, collections: tuple[int, int, int], safe_path: str | None) -> None:
-    """What a process does until its parent closes the pipe or ends; safe_path: for the processes that a task starts."""
+    """
+    Call what messages name until the parent of this process closes the pipe or ends.
+
+    safe_path: for the processes that a task starts.
+    """
     _set_safe_path(safe_path)
     gc.set_threshold(*collections)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to the whole group; the parent alone decides
@@ -212,11 +220,11 @@ def _serve(pipe: Connection, collections: tuple[int, int, int], safe_path: str |
     numba.set_num_threads(1)
     with suppress(EOFError):
         while True:
-            pipe.send_bytes(_answered(pipe.recv_bytes()))
+            pipe.send_bytes(_call_function(pipe.recv_bytes()))
 
 
-def _answered(message: bytes) -> bytes:
-    """What the call in a message returned and what it raised."""
+def _call_function(message: bytes) -> bytes:
+    """Return what the call in a message returned and what it raised."""
     value: Any = None
     error: BaseException | None = None
     try:

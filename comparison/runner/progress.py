@@ -28,7 +28,7 @@ def wide_console() -> Console:
 
 class Display:
     """
-    How far a command is, shown by `show` whenever work is done.
+    Progress of a command, shown by `show` whenever work is done.
 
     The time left is what is left of the work, times what the work so far took, with a tenth of all work as if it had
     taken its rough cost. The first piece of work does not count: it starts the workers.
@@ -56,7 +56,7 @@ class Display:
 
     @property
     def text(self) -> str:
-        """What is done last, and the time left."""
+        """Return what is done last, and the time left."""
         return f"{self._what}, about {self.left:.0f} s left"
 
     @property

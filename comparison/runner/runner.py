@@ -17,7 +17,7 @@ import numpy as np
 import reference
 from comparison.runner.processes import ExecutorLostError, Pool, TimeLimitError, WorkerDiedError, executing
 from comparison.runner.progress import Display
-from comparison.runner.task import GIVEN_UP, GIVEN_UP_AFTER, Task, TaskResult, execute, unfinished
+from comparison.runner.task import GIVEN_UP, GIVEN_UP_AFTER, Task, TaskResult, execute, result_without_value
 from comparison.runner.task_results import TaskResults
 from reference.problem import Outcome, Scene, load_scene
 
@@ -117,26 +117,26 @@ class Runner:
                 return
             self._queue.remove(work)
             if work.task.batch and self.hung[work.task.group] >= GIVEN_UP_AFTER:
-                self._keep(work, unfinished(Outcome.TIME_LIMIT, GIVEN_UP))
+                self._keep(work, result_without_value(Outcome.TIME_LIMIT, GIVEN_UP))
             else:
-                self._at_work[_started(work.task, executor)] = work
+                self._at_work[_start_task(work.task, executor)] = work
 
     def _take(self, work: _Work, future: Future[TaskResult]) -> None:
         error = _error(future)
         if error is None:
             self._keep(work, future.result())
         elif isinstance(error, WorkerDiedError):
-            self._died(work, error)
+            self._answer_for_death(work, error)
         elif isinstance(error, TimeLimitError):
-            self._keep(work, unfinished(Outcome.TIME_LIMIT, str(error)))
+            self._keep(work, result_without_value(Outcome.TIME_LIMIT, str(error)))
         elif isinstance(error, ExecutorLostError):
             raise error
         elif isinstance(error, LOST):
             raise ExecutorLostError(f"the executor is broken: {error}")
         else:
-            self._keep(work, unfinished(Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}"))
+            self._keep(work, result_without_value(Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}"))
 
-    def _died(self, work: _Work, error: WorkerDiedError) -> None:
+    def _answer_for_death(self, work: _Work, error: WorkerDiedError) -> None:
         work.deaths += error.times
         halves = work.task.halves()
         if work.deaths < 2 and (work.parent is None or not halves):
@@ -146,7 +146,9 @@ class Runner:
             self._queue.extendleft(reversed(work.halves))
         else:
             ending = "" if error.exit_code is None else f" (exit code {error.exit_code})"
-            self._keep(work, unfinished(Outcome.WORKER_DIED, f"the worker process died {work.deaths} times{ending}"))
+            self._keep(
+                work, result_without_value(Outcome.WORKER_DIED, f"the worker process died {work.deaths} times{ending}")
+            )
 
     def _keep(self, work: _Work, result: TaskResult) -> None:
         """Store a result; that of a half when the other is there, too."""
@@ -167,7 +169,7 @@ class Runner:
         self.display.advance(task.stage, count, self._weights.get(id(task), 0.0))
 
 
-def _started(task: Task, executor: Executor) -> Future[TaskResult]:
+def _start_task(task: Task, executor: Executor) -> Future[TaskResult]:
     start: Callable[..., Future[TaskResult]] | None = getattr(executor, "start", None)
     try:
         if start is None:  # such as threads: they keep no limit of time
@@ -178,7 +180,7 @@ def _started(task: Task, executor: Executor) -> Future[TaskResult]:
 
 
 def _error(future: Future[TaskResult]) -> BaseException | None:
-    """What the task raised, None if nothing."""
+    """Return what the task raised, None if nothing."""
     try:
         return future.exception()
     except CancelledError as cancelled:

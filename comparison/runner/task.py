@@ -41,7 +41,9 @@ class Task:
 
     @cached_property
     def key(self) -> Key:
-        """What it is found by: the function, all that its argument holds, versions and the source that computes it."""
+        """
+        Return what it is found by: the function, all that its argument holds, versions and the source that computes it.
+        """
         function = named(self.function)
         about = {
             "function": function,
@@ -61,7 +63,7 @@ class Task:
 
     @property
     def points(self) -> int:
-        """What it counts for on the terminal."""
+        """Return what it counts for on the terminal."""
         return self.batch.points if self.batch else 1
 
     def halves(self) -> list[Task]:
@@ -84,7 +86,7 @@ class Task:
 class TaskResult:
     """What a task returned, or why it returned nothing."""
 
-    value: Any  # of a batch also where a part of its points is lost; otherwise None unless `outcome` is OK
+    value: Any  # for a batch also where a part of its points is lost; otherwise None unless `outcome` is OK
     cost: float  # s of processor time
     outcome: Outcome = Outcome.OK
     error_message: str = ""
@@ -102,7 +104,7 @@ def execute(task: Task) -> TaskResult:
     return TaskResult(value, time.process_time() - clock)
 
 
-def unfinished(outcome: Outcome, error_message: str) -> TaskResult:
+def result_without_value(outcome: Outcome, error_message: str) -> TaskResult:
     """The result of a task that raised, took too long or whose worker died; the message is one line."""
     return TaskResult(None, 0.0, outcome, error_message)
 
@@ -114,7 +116,7 @@ def named(function: Callable[..., Any]) -> str:
 
 def fingerprint(value: Any) -> Any:
     """
-    All that a value holds, as plain JSON: what distinguishes one task from another.
+    Return all that a value holds, as plain JSON: what distinguishes one task from another.
 
     Numbers, texts, scenes, arrays (by hash), models (also by their source), functions (by name), what states its
     `identity`, and lists, mappings and dataclasses of these. Raises TypeError for anything else.

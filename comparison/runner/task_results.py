@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import Any, get_type_hints
 
 from comparison.runner.cache import Cache, Key
-from comparison.runner.task import GIVEN_UP, Task, TaskResult, unfinished
+from comparison.runner.task import GIVEN_UP, Task, TaskResult, result_without_value
 from reference.problem import Outcome
 
 
 @dataclass
-class Part:
-    """What one stage cost: its tasks, how many of them an earlier run had stored, s of processor time of all."""
+class StageCost:
+    """Cost of one stage: its tasks, how many of them an earlier run had stored, s of processor time of all."""
 
     tasks: int = 0
     stored: int = 0
@@ -37,7 +37,7 @@ class TaskResults:
     def __init__(self, cache: Cache | None = None, fresh: bool = False) -> None:
         self.cache, self._fresh = cache, fresh
         self._results: dict[Key, TaskResult] = {}
-        self.parts: dict[str, Part] = defaultdict(Part)
+        self.parts: dict[str, StageCost] = defaultdict(StageCost)
         self.stored: set[Key] = set()
 
     def __getitem__(self, task: Task) -> TaskResult:
@@ -47,7 +47,9 @@ class TaskResults:
         return task.key in self._results
 
     def value(self, task: Task, on_failure: Callable[[Any, TaskResult], Any]) -> Any:
-        """What a task returned; of one without a value what `on_failure` makes of its argument and its result."""
+        """
+        Return what a task returned; of one without a value what `on_failure` makes of its argument and its result.
+        """
         result = self[task]
         failed = result.value is None and result.outcome != Outcome.OK
         return on_failure(task.argument, result) if failed else result.value
@@ -57,7 +59,7 @@ class TaskResults:
         return [task for task in tasks if not (task.key in self._results or self._read(task))]
 
     def holds(self, task: Task) -> bool:
-        """Whether the cache has a file for the task, whatever its state."""
+        """Return whether the cache has a file for the task, whatever its state."""
         return self.cache is not None and not self._fresh and self.cache.holds(task.key)
 
     def put(self, task: Task, result: TaskResult) -> None:
@@ -89,7 +91,7 @@ class TaskResults:
         if isinstance(stored, Overrun):
             if task.timeout is None or task.timeout > stored.timeout:
                 return False
-            self._remember(task, unfinished(Outcome.TIME_LIMIT, stored.ending))
+            self._remember(task, result_without_value(Outcome.TIME_LIMIT, stored.ending))
         elif stored is not None and (task.batch is None or task.batch.accepts(stored[0])):
             self._remember(task, TaskResult(*stored))
         else:

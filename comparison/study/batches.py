@@ -15,7 +15,7 @@ from comparison.wording import exception_line
 from reference.problem import Outcome, Scene
 
 LARGEST_MU = 1e12  # far above mu of any building, and so small that no sum of squares of mu or of a ratio overflows
-USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET  # of our own models: mu counts with the larger error that is stated
+USABLE_WITH_ERROR = Outcome.TOLERANCE_NOT_MET  # our own models: mu counts with the larger error that is stated
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,9 @@ class Batch:
     settings: Mapping[str, object]
     first: int
     phases: Array
-    level: int = 0  # of the nested grids, the first that has these phases
+    level: int = 0  # the first of the nested grids that has these phases
     timeout: float | None = None  # most processor time of the call, s
-    group: str = ""  # of the workers that it may use; of an engine of the user, whose error may be unknown
+    group: str = ""  # group of workers that it may use; of an engine of the user, whose error may be unknown
 
     @property
     def points(self) -> int:
@@ -39,11 +39,11 @@ class Batch:
 
     @property
     def question(self) -> dict[str, object]:
-        """What all batches of a surface have in common: not the name or title of the scene."""
+        """Return what all batches of a surface have in common: not the name or title of the scene."""
         return {"scene": self.scene.digest(), "model": self.amplification, "settings": self.settings}
 
     def identity(self) -> dict[str, object]:
-        """All that its numbers depend on besides the code."""
+        """Return all that its numbers depend on besides the code."""
         return {**self.question, "phases": self.phases}
 
     def halves(self) -> list[Batch]:
@@ -73,11 +73,11 @@ class Batch:
         return BatchResult(nothing, nothing.copy(), status, none, 0.0, error_message, none.copy())
 
     def accepts(self, result: BatchResult) -> bool:
-        """Whether a result fits the phase pairs and bodies, with numbers wherever it is ok."""
+        """Return whether a result fits the phase pairs and bodies, with numbers wherever it is ok."""
         return self.fits(result) and not self.ok_without_numbers(result.mu, result.error, result.status)
 
     def fits(self, result: BatchResult) -> bool:
-        """Whether a result has the shape of the phase pairs and bodies."""
+        """Return whether a result has the shape of the phase pairs and bodies."""
         points, plane = (self.points,), (self.points, len(self.scene.bodies))
         shapes = result.mu.shape, result.error.shape, result.instant.shape, result.displacement.shape
         return shapes == (plane, plane, points, points) and len(result.status) == self.points
@@ -90,7 +90,7 @@ class Batch:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """What a batch gave, as `reference.problem.Amplification`; error_message: what the solver reported, or ""."""
+    """Result of a batch, as `reference.problem.Amplification`; error_message: what the solver reported, or ""."""
 
     mu: Array
     error: Array
@@ -101,7 +101,7 @@ class BatchResult:
     displacement: Array
 
 
-def imported(path: str) -> Any:
+def import_function(path: str) -> Any:
     """The object "package.module:name"."""
     module, name = path.split(":")
     return getattr(import_module(module), name)
@@ -131,13 +131,13 @@ def refusal_of(scene: Scene, model: Model, tolerance: float, full: bool = False)
     if model.refusal is None or not model.applies(scene):
         return ""
     asked = {"full": True} if full else {}
-    return str(imported(model.refusal)(scene, **model.settings, tolerance=tolerance, **asked))
+    return str(import_function(model.refusal)(scene, **model.settings, tolerance=tolerance, **asked))
 
 
 def execute_batch(batch: Batch) -> BatchResult:
     """Ask the batch's model, inside a worker process. What raises or has a wrong shape becomes points without result"""
     try:
-        found = imported(batch.amplification)(batch.scene, batch.phases, **batch.settings)
+        found = import_function(batch.amplification)(batch.scene, batch.phases, **batch.settings)
         parts = (found.mu, found.error, found.instant, found.displacement)
         mu, error, instant, displacement = (np.array(part, dtype=float) for part in parts)
         status = [str(outcome) for outcome in found.status]

@@ -24,7 +24,7 @@ class StudyLevel:
 
     @property
     def last(self) -> bool:
-        """Whether it is the whole study."""
+        """Return whether it is the whole study."""
         return self.number == self.of
 
     @property
@@ -49,7 +49,7 @@ def levels_of(study: Study, first: Mapping[str, int]) -> list[StudyLevel]:
 
 
 def _work(study: Study) -> tuple[object, ...]:
-    """What is computed."""
+    """Return what is computed."""
     return study.grid, tuple(study.strides.items()), study.selection
 
 

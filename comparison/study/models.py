@@ -10,27 +10,26 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any, Literal
 
-from reference.problem import Scene, mirror_symmetric, no_friction
-from reference.problem.readings import AS_INTEGRATED, LITERAL_SUPREMUM
+from reference.problem import Scene, mirror_symmetric
+from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, DEFAULT_V_REG, LITERAL_SUPREMUM
 
-DEFAULT_V_REG = 1e-3  # m/s: below it friction grows linearly with the slip velocity, on both sides alike
-DEFAULT_V_C = 1e-3  # m/s: slip speed above which an integration with steps of about 1 ms sees the motion
+V_REG_TEXT, V_C_TEXT = (f"{1e3 * speed:g} mm/s" for speed in (DEFAULT_V_REG, DEFAULT_V_C))
 REFERENCE_TOLERANCE = 1e-6  # asked at least of the equations, which are cheap: their error blurs no difference
 SOFTENED = "softened-"  # begins the key of a model whose bars are softened
 
 
 def dry(scene: Scene) -> bool:
-    """Whether there is dry friction, which may be regularized."""
-    return not scene.lubricated and not no_friction(scene)
+    """Return whether there is dry friction, which may be regularized."""
+    return scene.has_dry_friction
 
 
 def any_scene(scene: Scene) -> bool:
-    """Whether a model applies that applies to every scene."""
+    """Return whether a model applies that applies to every scene."""
     return True
 
 
 def smooth(scene: Scene) -> bool:
-    """Whether no friction is dry, so that both readings of (5.1) are the same."""
+    """Return whether no friction is dry, so that both readings of (5.1) are the same."""
     return not dry(scene)
 
 
@@ -40,7 +39,9 @@ def never(scene: Scene) -> bool:
 
 
 def _spatial_data(scene: Scene) -> dict[str, object]:
-    """What a scene says, by key, of where its supports are and how high and large its bodies; None if not stated."""
+    """
+    Return what a scene says, by key, of where its supports are and how high and large its bodies; None if not stated.
+    """
     isolator = scene.isolator
     data: dict[str, object] = {
         "isolator.supports": isolator.supports,
@@ -53,7 +54,7 @@ def _spatial_data(scene: Scene) -> dict[str, object]:
 
 
 def has_spatial_data(scene: Scene) -> bool:
-    """Whether the scene states all that the spatial model needs."""
+    """Return whether the scene states all that the spatial model needs."""
     return None not in _spatial_data(scene).values()
 
 
@@ -68,12 +69,12 @@ def why_not_spatial(scene: Scene) -> str:
 
 
 def with_unloaded_bars(scene: Scene) -> bool:
-    """Whether bars are stated without load in a scene that the spatial model cannot take."""
+    """Return whether bars are stated without load in a scene that the spatial model cannot take."""
     return scene.has_unloaded_bars and not has_spatial_data(scene)
 
 
 def with_unloaded_bars_in_space(scene: Scene) -> bool:
-    """Whether bars are stated without load in a scene that the spatial model can take."""
+    """Return whether bars are stated without load in a scene that the spatial model can take."""
     return scene.has_unloaded_bars and has_spatial_data(scene)
 
 
@@ -89,7 +90,8 @@ class Model:
     "user" for a user-supplied engine (user_models.py), which has no place in the steps from model to model and no
     trajectory. `like`: key of the reference's model that such an engine is compared with. `timeout`: most processor
     time of one call, s. `reading`: of (5.1), where friction is dry. `in_chain`: whether the scene's chain of models has
-    it, in which each adds one effect to the one before and all read (5.1) as integrated.
+    it, in which each adds one effect to the one before and all read (5.1) as integrated. `seconds`: rough processor
+    time of a phase pair of the scene that costs.py is for.
     """
 
     key: str
@@ -110,10 +112,11 @@ class Model:
     timeout: float | None = None
     reading: str = AS_INTEGRATED
     in_chain: Callable[[Scene], bool] = field(default=any_scene)
+    seconds: float = 1.0
 
     @property
     def is_spatial(self) -> bool:
-        """Whether bodies turn in it."""
+        """Return whether bodies turn in it."""
         return self.settings.get("model") == "spatial"
 
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
@@ -141,6 +144,12 @@ class Pair:
     second: Model
     base: Model
     effect: str = ""
+
+
+def label_of(model: Model, scene: Scene) -> str:
+    """Return the title of a model with the reading of (5.1) that its mu has; without it where both are the same."""
+    title = model.title.removesuffix(f", {model.reading}")
+    return title if smooth(scene) else f"{title}, {model.reading}"
 
 
 def with_max_work(hierarchy: Sequence[Model], max_work: float) -> tuple[Model, ...]:
@@ -244,7 +253,7 @@ def _effect_pair(effect: str, where: str, first: Model, second: Model, base: Mod
 
 
 _PEAK = "largest value the computed motion reaches"
-_RESOLVED_PEAK = "largest value at rest or sliding faster than v_c = 1 mm/s"
+_RESOLVED_PEAK = f"largest value at rest or sliding faster than v_c = {V_C_TEXT}"
 
 
 def _next(before: Model, departs: Mapping[str, str], **changes: Any) -> Model:
@@ -274,6 +283,7 @@ SMALL = Model(
     symmetric=any_scene,
     reading=LITERAL_SUPREMUM,
     in_chain=smooth,
+    seconds=0.0005,
 )
 EXACT = _next(
     SMALL,
@@ -293,8 +303,8 @@ SMALL_RESOLVED = _next(
     {"mu_i": _RESOLVED_PEAK},
     key="small-resolved",
     title="small equations, as integrated",
-    adds="The same motion, read at rest and while sliding faster than v_c = 1 mm/s: what an integration of the printed "
-    "equations with steps of about 1 ms sees, as the paper's own.",
+    adds=f"The same motion, read at rest and while sliding faster than v_c = {V_C_TEXT}: what an integration of the "
+    "printed equations with steps of about 1 ms sees, as the paper's own.",
     settings={**SMALL.settings, "cutoff": DEFAULT_V_C},
     applies=dry,
     reading=AS_INTEGRATED,
@@ -311,17 +321,18 @@ RESOLVED = _next(
     reading=AS_INTEGRATED,
     in_chain=any_scene,
 )
-_LINEAR = {"friction": "the same Coulomb law, times |v| / v_reg below v_reg = 1 mm/s", "mu_i": _PEAK}
+_LINEAR = {"friction": f"the same Coulomb law, times |v| / v_reg below v_reg = {V_REG_TEXT}", "mu_i": _PEAK}
 SMALL_REGULARIZED = _next(
     SMALL_RESOLVED,
     _LINEAR,
     key="small-regularised",
     title="small equations, v_reg",
     effect="regularized friction",
-    adds="The printed equations with friction that is linear below v_reg = 1 mm/s, as most codes have it: what "
+    adds=f"The printed equations with friction that is linear below v_reg = {V_REG_TEXT}, as most codes have it: what "
     "geometry adds under that law is seen from here.",
     settings={"equations": "small", "regularization": DEFAULT_V_REG},
     in_chain=never,
+    seconds=0.001,
 )
 REGULARIZED = _next(
     RESOLVED,
@@ -329,16 +340,18 @@ REGULARIZED = _next(
     key="regularised",
     title="exact equations, v_reg",
     effect="regularized friction",
-    adds="Friction linear below v_reg = 1 mm/s, as an engine has it: no true rest, no jump at a stop.",
+    adds=f"Friction linear below v_reg = {V_REG_TEXT}, as an engine has it: no true rest, no jump at a stop.",
     settings={"equations": "exact", "regularization": DEFAULT_V_REG},
     applies=dry,
+    seconds=0.001,
 )
 TRANSLATIONAL = _next(
     REGULARIZED,
     {
         "equations": "Newton-Euler of the bodies, assembled by Exudyn",
         "geometry": "exact spheres: support of radius r in a depression of radius R; a plane for a flat slider",
-        "friction": "the same Coulomb law, times |v| / v_reg below v_reg = 1 mm/s, or mu = f_c |v| if lubricated",
+        "friction": f"the same Coulomb law, times |v| / v_reg below v_reg = {V_REG_TEXT}, "
+        "or mu = f_c |v| if lubricated",
         "normal contact": "elastic: spring and damper, so the platform sinks by N/k_c",
         "unknowns": "translations of every body, the platform's vertical one free",
     },
@@ -354,6 +367,7 @@ TRANSLATIONAL = _next(
     batch=2,
     applies=any_scene,
     most=16,
+    seconds=0.06,
 )
 SPATIAL = _next(
     TRANSLATIONAL,
@@ -372,6 +386,7 @@ SPATIAL = _next(
     applies=has_spatial_data,
     most=16,
     symmetric=mirror_symmetric,
+    seconds=0.22,
 )
 
 MODEL_HIERARCHY: tuple[Model, ...] = (
@@ -385,7 +400,7 @@ BESIDE_THE_CHAIN = (
 )
 
 
-def _softened(model: Model, applies: Callable[[Scene], bool]) -> Model:
+def _soften(model: Model, applies: Callable[[Scene], bool]) -> Model:
     """The step after an engine model that softens its bars."""
     return _next(
         model,
@@ -399,8 +414,8 @@ def _softened(model: Model, applies: Callable[[Scene], bool]) -> Model:
     )
 
 
-SOFTENED_TRANSLATIONAL = _softened(TRANSLATIONAL, with_unloaded_bars)
-SOFTENED_SPATIAL = _softened(SPATIAL, with_unloaded_bars_in_space)
+SOFTENED_TRANSLATIONAL = _soften(TRANSLATIONAL, with_unloaded_bars)
+SOFTENED_SPATIAL = _soften(SPATIAL, with_unloaded_bars_in_space)
 
 
 def with_softened_bars(hierarchy: Sequence[Model], scenes: Sequence[Scene]) -> tuple[Model, ...]:

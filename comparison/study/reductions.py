@@ -27,7 +27,7 @@ LEFT_OUT = (
 
 
 class Row(NamedTuple):
-    """What is left out, of which models, why, and in which scenes."""
+    """One thing that is left out: what, of which models, why, and in which scenes."""
 
     what: str
     models: str

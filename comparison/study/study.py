@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from itertools import accumulate
 from operator import mul
@@ -11,11 +11,11 @@ from operator import mul
 import numpy as np
 from numpy.typing import NDArray
 
-from comparison.study.analyses import ANALYSES, EVERYTHING, Selection
 from comparison.study.batches import Batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, chain_of, pairs_of
+from comparison.study.selection import Selection
 from reference.problem import Scene, SceneError, phase_grid
-from reference.problem.symmetry import sources
+from reference.problem.symmetry import indices_of_solved_pairs
 
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
@@ -46,7 +46,7 @@ def nested_grids(grid: int) -> tuple[int, ...]:
 
 def levels(grid: int) -> NDArray[np.intp]:
     """
-    Which of `nested_grids` is the first with each phase of an axis.
+    Return which of `nested_grids` is the first with each phase of an axis.
 
     >>> levels(8).tolist()
     [0, 2, 1, 2, 0, 2, 1, 2]
@@ -74,7 +74,7 @@ class Study:
     tolerance: float
     hierarchy: Sequence[Model] = MODEL_HIERARCHY
     full: bool = False
-    selection: Selection = EVERYTHING
+    selection: Selection = field(default_factory=Selection)
 
     @cached_property
     def strides(self) -> dict[str, int]:
@@ -100,7 +100,7 @@ class Study:
         """The analyses that are made of no scene, with the reason."""
         return {
             analysis: self.selection.why_absent(analysis)
-            for analysis in ANALYSES
+            for analysis in self.selection.names
             if not self.selecting(analysis).scenes
         }
 
@@ -122,7 +122,9 @@ class Study:
         return self.grid if scene is not None and scene.recorded else self.strides[model.key]
 
     def axis(self, model: Model, scene: Scene | None = None) -> NDArray[np.intp]:
-        """Which of the `grid` phases of either axis a model computes, in a scene with phases if none is given."""
+        """
+        Return which of the `grid` phases of either axis a model computes, in a scene with phases if none is given.
+        """
         return np.arange(0, self.grid, self.stride(model, scene))
 
     def points(self, model: Model, scene: Scene | None = None) -> int:
@@ -141,12 +143,12 @@ class Study:
             return places
         even = self.grid % self.strides[model.key] == 0  # else the last phase and the first are closer than the others
         return (
-            places[sources(scene, len(self.axis(model)))]
+            places[indices_of_solved_pairs(scene, len(self.axis(model)))]
             if model.symmetric(scene) and even and not self.full
             else places
         )
 
-    def solved_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
+    def places_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
         """The places that the model is asked for, by the nested grid of its phases that is the first with them."""
         solved, stride = np.unique(self.sources(scene, model)), self.stride(model, scene)
         level = levels(len(self.axis(model, scene)))
@@ -155,7 +157,7 @@ class Study:
 
     def solved(self, scene: Scene, model: Model) -> NDArray[np.intp]:
         """The places that the model is asked for, from coarse to fine."""
-        return np.concatenate(self.solved_by_level(scene, model))
+        return np.concatenate(self.places_by_level(scene, model))
 
     def batches(self) -> list[Batch]:
         """The whole work, model by model, from coarse to fine; the cut does not depend on the number of workers."""
@@ -172,7 +174,7 @@ class Study:
         settings = model.arguments(self.tolerance, self.full)
         group = model.key if model.side == "user" else ""  # engines of the user share no worker with anything else
         batches, first = [], 0
-        for level, places in enumerate(self.solved_by_level(scene, model)):
+        for level, places in enumerate(self.places_by_level(scene, model)):
             for start in range(0, len(places), model.batch):
                 part = phases[places[start : start + model.batch]]
                 about = first + start, part, level

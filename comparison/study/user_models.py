@@ -24,7 +24,7 @@ import numpy as np
 from comparison.result_types import Array
 from comparison.study.batches import LARGEST_MU, drop_unusable
 from comparison.study.models import MODEL_HIERARCHY, Model
-from comparison.wording import shortened
+from comparison.wording import shorten_text
 from reference.problem import Amplification, Outcome, Scene
 
 CALLED_THROUGH = "comparison.study.user_models:amplification"
@@ -34,24 +34,26 @@ MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call 
 TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
 ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it
 OURS, INSTALLED = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
-UNKNOWN_ERROR = np.nan  # of an engine that states none
+UNKNOWN_ERROR = np.nan  # time limit, s, of an engine that states none
 LONGEST_STATUS = 60  # letters of a status of its own words that a message repeats
 
 
 @dataclass(frozen=True)
 class EngineAnswer(Amplification):
-    """What a user-supplied engine answers. error_message: statuses in its own words; "" without any."""
+    """Answer of a user-supplied engine. error_message: statuses in its own words; "" without any."""
 
     error_message: str = ""
 
 
 def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **settings: Any) -> EngineAnswer:
-    """What a supplied function answers, in the form of `multibody.amplification`, asked with the settings it names."""
+    """
+    Return what a supplied function answers, in the form of `multibody.amplification`, asked with the settings it names.
+    """
     with quiet():
         function = user_function(engine["function"])
         begin = _processor_time()
         try:
-            answer = function(scene, np.array(phases), **_named_by(function, settings))
+            answer = function(scene, np.array(phases), **_names_by(function, settings))
         except SystemExit as ended:
             raise RuntimeError(f"the engine asked the process to end: exit code {ended.code}") from None
         except Exception as error:
@@ -81,7 +83,7 @@ def note_line(error: BaseException, file: Path | None) -> None:
 def _file_of(function: Callable[..., Any]) -> Path | None:
     try:
         return Path(inspect.getfile(inspect.unwrap(function)))
-    except TypeError:  # of a compiled function, or an object that can be called
+    except TypeError:  # a compiled function, or an object that can be called
         return None
 
 
@@ -97,7 +99,7 @@ def user_function(path: str | Callable[..., Any]) -> Callable[..., Any]:
     if not callable(function):
         raise TypeError(f"{name} is {type(function).__name__}, not a function")
     with suppress(ValueError):  # some compiled functions have no signature
-        inspect.signature(function).bind(None, None, **_named_by(function, dict.fromkeys(ALWAYS_GIVEN)))
+        inspect.signature(function).bind(None, None, **_names_by(function, dict.fromkeys(ALWAYS_GIVEN)))
     return function  # type: ignore[no-any-return]
 
 
@@ -121,17 +123,19 @@ def user_model(name: str, engine: Mapping[str, Any], like: str = LIKE, limit: fl
 
 
 def engine_of(settings: Mapping[str, Any]) -> Mapping[str, str]:
-    """What is known of the engine that settings are for: its function, what that takes, versions; empty for none."""
+    """
+    Return what is known of the engine that settings are for: its function, what that takes, versions; empty for none.
+    """
     engine: Mapping[str, str] = settings.get("engine", {})
     return engine
 
 
 def names_of(function: Callable[..., Any]) -> str:
-    """Which of ALWAYS_GIVEN a function takes, separated by spaces."""
-    return " ".join(_named_by(function, dict.fromkeys(ALWAYS_GIVEN)))
+    """Return which of ALWAYS_GIVEN a function takes, separated by spaces."""
+    return " ".join(_names_by(function, dict.fromkeys(ALWAYS_GIVEN)))
 
 
-def _named_by(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict[str, Any]:
+def _names_by(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict[str, Any]:
     """The settings that a function names among its arguments, or all of them if it takes any."""
     try:
         parameters = inspect.signature(function).parameters.values()
@@ -193,7 +197,7 @@ def _outcomes(stated: Sequence[Any] | None, points: int) -> tuple[list[str], str
         raise ValueError(f"the engine's status has {len(texts)} entries, asked: {points}")
     known = {outcome.value: outcome.value for outcome in Outcome}
     own_words = dict.fromkeys(text for text in texts if text not in known and not text.startswith(Outcome.OK))
-    messages = [f"the engine's status is {shortened(text, LONGEST_STATUS)!r}" for text in own_words]
+    messages = [f"the engine's status is {shorten_text(text, LONGEST_STATUS)!r}" for text in own_words]
     otherwise = (Outcome.OK if text.startswith(Outcome.OK) else Outcome.SOLVER_FAILED for text in texts)
     return [known.get(text, other.value) for text, other in zip(texts, otherwise)], "; ".join(messages)
 

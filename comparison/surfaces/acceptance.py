@@ -22,7 +22,7 @@ NAN = float("nan")
 
 @result
 class Breach:
-    """Where an acceptance limit is broken."""
+    """One place where an acceptance limit is broken."""
 
     body: Annotated[int, "number of the body; 0 where the limit is of the scene"]
     found: Annotated[Number, "value that exceeds the limit; null without one"]
@@ -42,7 +42,7 @@ class Limit:
     default: Annotated[bool, "whether it holds for an engine of the user of which the scene states no limit"] = False
 
     @property
-    def broken_texts(self) -> list[str]:
+    def breach_texts(self) -> list[str]:
         """One text for each breach, without the scene."""
         return [word_breach(self, breach) for breach in self.breaches]
 
@@ -50,19 +50,19 @@ class Limit:
     @property
     def broken(self) -> list[str]:
         """One line for each breach."""
-        return [f"{self.scene}: {text}" for text in self.broken_texts]
+        return [f"{self.scene}: {text}" for text in self.breach_texts]
 
 
-def checked_limits(comparisons: Sequence[BodyComparison], lacking: Sequence[Unanswered]) -> list[Limit]:
+def check_limits(comparisons: Sequence[BodyComparison], lacking: Sequence[Unanswered]) -> list[Limit]:
     """Return every limit of the scenes of a study, compared with what was found, in the order of scenes and keys."""
     limits: list[Limit] = []
     for scene, bodies in groupby(comparisons, lambda comparison: comparison.scene):
         gaps = [gap for gap in lacking if gap.scene == scene.name]
-        limits += _checked(list(bodies), gaps)
+        limits += _check_limit(list(bodies), gaps)
     return limits
 
 
-def unchecked_pairs(study: Study, scene: Scene) -> list[str]:
+def pairs_without_limit(study: Study, scene: Scene) -> list[str]:
     """Return the keys of the pairs of models that are compared on a scene without any limit on their difference."""
     stated = [(pair, measure) for _, pair, measure, _ in scene.acceptance.differences()]
     limited = {_same(study, scene, pair) for pair, _ in stated} | set(_engines_without_limits(study, scene))
@@ -76,7 +76,7 @@ def _engines_without_limits(study: Study, scene: Scene) -> list[str]:
     return [model.key for model in models if model.side == "user" and model.key not in stated]
 
 
-def _checked(bodies: Sequence[BodyComparison], gaps: Sequence[Unanswered]) -> Iterator[Limit]:
+def _check_limit(bodies: Sequence[BodyComparison], gaps: Sequence[Unanswered]) -> Iterator[Limit]:
     """Every limit of a scene."""
     study, scene = bodies[0].study, bodies[0].scene
     stated, rows = scene.acceptance, [row for body in bodies for row in body.rows.values()]

@@ -13,8 +13,8 @@ from comparison.surfaces.acceptance import Limit
 from comparison.surfaces.surfaces import largest_cap_share, largest_travel_share
 from comparison.surfaces.unanswered import Unanswered
 
-NEARLY_ALL = 0.9  # of the travel, that a reader must know of
-WIDE = 0.5  # of rho: a displacement of the platform from the middle that a reader must know of
+NEARLY_ALL = 0.9  # share of the travel from which on a reader is told
+WIDE = 0.5  # share of rho from which on a displacement from the middle is told
 
 STATED_BROKEN = "read the cause of the difference, then correct the scene or the limit in its [acceptance] table"
 DEFAULT_BROKEN = (
@@ -24,7 +24,7 @@ DEFAULT_BROKEN = (
 
 
 class Alert(Part):
-    """What a reader must know before trusting a number."""
+    """One thing that a reader must know before trusting a number."""
 
     level: Literal["red", "amber"]
     """red: a model refused or a limit is broken; amber: a number is missing or to be read with care"""
@@ -37,7 +37,7 @@ class Alert(Part):
 
     @property
     def line(self) -> str:
-        """All that in one line."""
+        """Return the alert in one line."""
         return f"{self.scene}: {self.text}{f'. {self.help[0].upper()}{self.help[1:]}' if self.help else ''}"
 
 
@@ -49,7 +49,7 @@ def alerts(
     faults: Sequence[Alert],
 ) -> list[Alert]:
     """Every alert of a run: red, where a model has no value or a limit is broken, before amber; faults: of solvers."""
-    listed = [*_gaps(unanswered), *_broken(limits), *faults, *_far_motions(study, surfaces)]
+    listed = [*_gaps(unanswered), *_limit_alerts(limits), *faults, *_far_motions(study, surfaces)]
     return sorted(listed, key=lambda alert: alert.level != "red")
 
 
@@ -74,7 +74,7 @@ def _gaps(unanswered: Sequence[Unanswered]) -> list[Alert]:
     return rows
 
 
-def _broken(limits: Sequence[Limit]) -> list[Alert]:
+def _limit_alerts(limits: Sequence[Limit]) -> list[Alert]:
     return [
         Alert(
             level="red",
@@ -84,7 +84,7 @@ def _broken(limits: Sequence[Limit]) -> list[Alert]:
             help=DEFAULT_BROKEN if limit.default else STATED_BROKEN,
         )
         for limit in limits
-        for text in limit.broken_texts
+        for text in limit.breach_texts
     ]
 
 

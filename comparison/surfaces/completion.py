@@ -23,13 +23,13 @@ from comparison.result_types import Array, Number, Text, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task, TaskResult
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import RESOLVED, drop_worthless, usable_mu
 from reference.measures.distribution import fractile
 from reference.problem import Scene, phase_axis, phase_grid
-from reference.problem.symmetry import sources
+from reference.problem.symmetry import indices_of_solved_pairs
 
 Indices = NDArray[np.intp]
 
@@ -37,7 +37,9 @@ MIN_SPATIAL_PER_AXIS = 9  # phases per axis: fewer of the spatial model are draw
 MIN_VALUES = 16  # phase pairs that an interpolation is made from
 CONFIDENCE = 0.95
 HELD_OUT = 59  # phase pairs of a model and scene: 1 - 0.05^(1/59) = 5 %
-MAX_SHARE = 0.1  # of the phase pairs may be off by more than the stated error; fewer held-out values state nothing
+# Largest share of the phase pairs that may be off by more than the stated error. With fewer held-out values nothing is
+# stated.
+MAX_SHARE = 0.1
 POINTS = 8  # phase pairs of one task
 CERTIFICATE = {  # what is stored of a completed surface
     "error": "largest relative error of `completed` at phase pairs that were computed and not used",
@@ -95,7 +97,7 @@ class Completion:
 
     @property
     def certificate(self) -> str:
-        """How far the surface is off, in words."""
+        """Return how far the surface is off, in words."""
         return (
             f"off by at most {100.0 * self.error:.2g} % at {self.held_out} held-out phase pairs, where the model's own "
             f"error is up to {100.0 * self.model_error:.2g} %; with {100.0 * self.confidence:g} % confidence at most "
@@ -113,42 +115,43 @@ class CompletedSurfaces(Analysis[dict[tuple[str, str], HeldOut]]):
     """Held-out phase pairs of every model that is completed."""
 
     key, stage, level = "completion", "held-out phases", 2
+    seconds = 3.5
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """A few phase pairs each."""
-        return [task for _, _, tasks in self._listed(study) for task in tasks]
+        return [task for _, _, tasks in self._list_tasks(study) for task in tasks]
 
     def collect(
         self, study: Study, surfaces: xr.Dataset | None, results: TaskResults
     ) -> dict[tuple[str, str], HeldOut] | None:
-        """By name of the scene and key of the model, in the order of `held_out_places`; None where there are none."""
+        """By name of the scene and key of the model, in the order of `choose_held_out`; None where there are none."""
         found = {}
-        for scene, model, tasks in self._listed(study):
+        for scene, model, tasks in self._list_tasks(study):
             if not all(task in results for task in tasks):
-                continue  # of a level of the study that holds out no phase pairs
+                continue  # a level of the study that holds out no phase pairs
             parts = [results.value(task, _without_value) for task in tasks]
             mu, error = (np.concatenate([getattr(part, name) for part in parts]) for name in ("mu", "error"))
             found[scene.name, model.key] = HeldOut(mu, error)
         return found or None
 
-    def _listed(self, study: Study) -> Iterator[tuple[Scene, Model, list[Task]]]:
+    def _list_tasks(self, study: Study) -> Iterator[tuple[Scene, Model, list[Task]]]:
         """Scene, model and its tasks."""
         for scene in study.phased:
             for model in study.compared(scene) if study.selection.has("surfaces", scene.name) else ():
                 # with supports that stop one by one no surface may be interpolated
                 lacks = study.stride(model) > 1 and not model.is_spatial and study.points(model) >= MIN_VALUES
                 if lacks and _finer(study, scene, model):
-                    phases = phase_grid(study.grid)[held_out_places(study, scene, model)]
+                    phases = phase_grid(study.grid)[choose_held_out(study, scene, model)]
                     about = scene, model, model.arguments(study.tolerance, study.full)
                     parts = [phases[first : first + POINTS] for first in range(0, len(phases), POINTS)]
                     arguments = [(*about, part) for part in parts]
-                    yield scene, model, [Task(held_out_values, each, self.stage, about=scene) for each in arguments]
+                    yield scene, model, [Task(compute_held_out, each, self.stage, about=scene) for each in arguments]
 
 
-def held_out_values(task: Arguments) -> HeldOut:
+def compute_held_out(task: Arguments) -> HeldOut:
     """mu of one model at the phase pairs of one task. Runs inside a worker process."""
     scene, model, settings, phases = task
-    answer = imported(model.amplification)(scene, phases, **settings)
+    answer = import_function(model.amplification)(scene, phases, **settings)
     return HeldOut(np.asarray(answer.mu, float), np.asarray(answer.error, float))
 
 
@@ -157,14 +160,14 @@ def _without_value(task: Arguments, failed: TaskResult) -> HeldOut:
     return HeldOut(nothing, nothing)
 
 
-def held_out_places(study: Study, scene: Scene, model: Model) -> Indices:
+def choose_held_out(study: Study, scene: Scene, model: Model) -> Indices:
     """
     Phase pairs that the model does not compute, chosen at random, as places on the whole grid, alpha2 running fastest.
 
     The same in every run. No two of them are mirror images of each other, and none of a computed phase pair.
     """
     mirrored = model.symmetric(scene) and study.grid % study.stride(model) == 0 and not study.full
-    same = sources(scene, study.grid) if mirrored else np.arange(study.grid**2)
+    same = indices_of_solved_pairs(scene, study.grid) if mirrored else np.arange(study.grid**2)
     candidates = np.setdiff1d(same, same[study.places(model)])
     seed = hashlib.sha256(f"{scene.digest()} {model.key}".encode()).digest()
     chosen: Indices = np.random.default_rng(list(seed)).permutation(candidates)[:HELD_OUT]
@@ -233,7 +236,7 @@ def _completion(
 
     about = scene.name, model.key, finer.key if finer else "", body
 
-    def refused(reason: str, computed: int) -> Completion:
+    def refuse(reason: str, computed: int) -> Completion:
         nothing, nan = np.full((study.grid, study.grid), np.nan), float("nan")
         return Completion(*about, computed, 0, nan, nan, 1.0, CONFIDENCE, asked, nan, reason, nothing)
 
@@ -243,27 +246,27 @@ def _completion(
 
     values = mu(model, model)
     if finer is None:
-        return refused("no model before it has all phases", int(np.isfinite(values).sum()))
+        return refuse("no model before it has all phases", int(np.isfinite(values).sum()))
     fine = mu(finer, finer)
     gap = values - mu(finer, model)
     computed = int(np.isfinite(gap).sum())
     if model.is_spatial:
         if count < MIN_SPATIAL_PER_AXIS:
-            return refused(f"{count} × {count} phases are too few for a surface", computed)
-        return refused("its supports stop one by one: between the computed phases it is not smooth", computed)
+            return refuse(f"{count} × {count} phases are too few for a surface", computed)
+        return refuse("its supports stop one by one: between the computed phases it is not smooth", computed)
     if computed < MIN_VALUES:
-        return refused(f"{computed} values are too few for a surface", computed)
+        return refuse(f"{computed} values are too few for a surface", computed)
     if unused is None:
-        return refused("no phase pairs were held out to check an interpolation", computed)
-    surface = fine + interpolated(gap, phase_axis(study.grid)[study.axis(model)], phase_axis(study.grid))
+        return refuse("no phase pairs were held out to check an interpolation", computed)
+    surface = fine + interpolate(gap, phase_axis(study.grid)[study.axis(model)], phase_axis(study.grid))
     truth_error = unused.error[:, body - 1]
     truth = drop_worthless(unused.mu[:, body - 1], truth_error)
-    missed = np.abs(surface.ravel()[held_out_places(study, scene, model)] - truth) / truth
+    missed = np.abs(surface.ravel()[choose_held_out(study, scene, model)] - truth) / truth
     checked = np.isfinite(missed)
     held_out = int(checked.sum())
     share = largest_share(held_out)
     if share > MAX_SHARE:
-        return refused(f"{held_out} held-out phase pairs with a value are too few", computed)
+        return refuse(f"{held_out} held-out phase pairs with a value are too few", computed)
     error, model_error = float(missed[checked].max()), float((truth_error / truth)[checked].max())
     base = mu(first, first)
     distance = np.abs(surface - base) / base
@@ -280,7 +283,7 @@ def _completion(
     )
 
 
-def interpolated(values: Array, phase: Array, every: Array) -> Array:
+def interpolate(values: Array, phase: Array, every: Array) -> Array:
     """Values (K, K) at phases (K,), NaN where not known, by thin plates at the phases `every` (L,), rad."""
     known = np.isfinite(values.ravel())
     made: Array = RBFInterpolator(_torus(phase)[known], values.ravel()[known])(_torus(every))

@@ -8,7 +8,7 @@ import numpy as np
 from comparison.result_types import Number, Phases, Text, result
 from comparison.study.study import nested_grids
 from comparison.surfaces.model_difference import RESOLVED, ModelDifference
-from comparison.surfaces.sampling import known_mean, sampling_error
+from comparison.surfaces.sampling import mean_of_known, sampling_error
 from reference.measures.distribution import fractile
 
 AGREEMENT = 2.0  # largest |D| in units of u_D of two models that agree: beyond it one of their errors is false
@@ -16,7 +16,7 @@ AGREEMENT = 2.0  # largest |D| in units of u_D of two models that agree: beyond 
 
 @result
 class DifferenceStatistics:
-    """How large the difference of two models is in one body, over the phase pairs where both have a value."""
+    """Sizes of the difference of two models in one body, over the phase pairs where both have a value."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -54,8 +54,10 @@ class Difference(DifferenceStatistics):
     sampling_error: Annotated[Number, "error of the mean that the grid of phases leaves; null where it does not tell"]
     spread: Annotated[Number, "standard deviation of the signed size over the same phase pairs"]
     low: Annotated[Number, "smallest signed size"]
+    low_error: Annotated[Number, "error estimate of it"]
     low_phases: Annotated[Phases, "(alpha1, alpha2) of it, rad"]
     high: Annotated[Number, "largest signed size"]
+    high_error: Annotated[Number, "error estimate of it"]
     high_phases: Annotated[Phases, "(alpha1, alpha2) of it, rad"]
     phases_per_axis: Annotated[int, "of the grid of phase pairs that both models were asked for; 1 under a record"]
     independent: Annotated[int, "phase pairs where both have a value that no symmetry of the scene relates"]
@@ -79,12 +81,14 @@ class Difference(DifferenceStatistics):
 
     @property
     def agrees(self) -> bool | None:
-        """Whether the models agree within their errors wherever both have a value; None where an error is unknown."""
+        """
+        Return whether the models agree within their errors wherever both have a value; None where an error is unknown.
+        """
         return None if math.isnan(self.ratio) else self.ratio <= AGREEMENT
 
     @property
     def mean_is_resolved(self) -> bool:
-        """Whether the mean exceeds its sampling error, and five times the numerical one."""
+        """Return whether the mean exceeds its sampling error, and five times the numerical one."""
         return abs(self.mean) > self.sampling_error and abs(self.mean) > RESOLVED * self.numerical_error
 
 
@@ -119,13 +123,15 @@ def difference_row(scene: str, difference: ModelDifference, independent: int, no
         pair=pair.key,
         effect=pair.effect,
         reading=" to ".join(readings),
-        mean=known_mean(size),
+        mean=mean_of_known(size),
         numerical_error=float(difference.uncertainty[known].mean()) if known.any() else nan,
         sampling_error=0.0 if difference.recorded else sampling_error(size, independent),
         spread=float(size[known].std()) if known.any() else nan,
         low=difference.at(size, ends[0]),
+        low_error=difference.at(difference.uncertainty, ends[0]),
         low_phases=difference.phases_at(ends[0]),
         high=difference.at(size, ends[1]),
+        high_error=difference.at(difference.uncertainty, ends[1]),
         high_phases=difference.phases_at(ends[1]),
         phases_per_axis=grid,
         independent=independent,
@@ -140,4 +146,4 @@ def difference_row(scene: str, difference: ModelDifference, independent: int, no
 
 def _grid_mean(sizes: np.ndarray) -> GridMean:
     known = np.abs(sizes[np.isfinite(sizes)])
-    return GridMean(len(sizes), known_mean(sizes), float(known.max()) if known.size else float("nan"))
+    return GridMean(len(sizes), mean_of_known(sizes), float(known.max()) if known.size else float("nan"))

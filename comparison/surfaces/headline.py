@@ -14,7 +14,7 @@ from comparison.surfaces.surfaces import outcome_counts
 from comparison.surfaces.waterfall import NAN, Waterfall
 
 NAMED = 0.2  # share of the total: an effect above it is named as a cause; share of an effect: an interaction is stated
-BOTH_READINGS = "in both readings"  # of (5.1), which are the same where no friction is dry
+BOTH_READINGS = "in both readings"  # both readings of (5.1) are the same where no friction is dry
 # the same effect in another order: key of the pair in the chain; of the pair beside it, and what is different there
 ELSEWHERE = {
     "geometry": ("geometry-regularized", "under regularized friction"),
@@ -25,7 +25,7 @@ SUPREMA = {"geometry": "geometry-supremum"}  # the effect of the chain, and the 
 
 @result
 class Effect:
-    """What one step of the chain of models adds to mu of a body in the mean, and what it adds in another order."""
+    """Share of mu of a body that one step of the chain adds in the mean, and what it adds in another order."""
 
     effect: Annotated[str, "name of the effect"]
     model: Annotated[str, "key of the model that has it, the one before in the chain has not"]
@@ -40,7 +40,7 @@ class Effect:
 
     @property
     def depends_on_order(self) -> bool:
-        """Whether the interaction exceeds a fifth of the effect."""
+        """Return whether the interaction exceeds a fifth of the effect."""
         return abs(self.interaction) > NAMED * abs(self.mean)
 
 
@@ -68,8 +68,10 @@ class Headline:
     resolved: Annotated[bool, "whether the mean exceeds its sampling error, and five times the numerical one"]
     spread: Annotated[Number, "standard deviation of the signed difference over the same phase pairs"]
     low: Annotated[Number, "smallest signed difference"]
+    low_error: Annotated[Number, "error estimate of it"]
     low_phases: Annotated[Phases, "(alpha1, alpha2) of it, rad"]
     high: Annotated[Number, "largest signed difference"]
+    high_error: Annotated[Number, "error estimate of it"]
     high_phases: Annotated[Phases, "(alpha1, alpha2) of it, rad"]
     phases_per_axis: Annotated[int, "of the grid of phase pairs that both models were asked for; 1 under a record"]
     points: Annotated[int, "phase pairs of this grid where both models have a value"]
@@ -129,8 +131,10 @@ def headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
         resolved=total.mean_is_resolved,
         spread=total.spread,
         low=total.low,
+        low_error=total.low_error,
         low_phases=total.low_phases,
         high=total.high,
+        high_error=total.high_error,
         high_phases=total.high_phases,
         phases_per_axis=total.phases_per_axis,
         points=total.asked - total.unanswered,

@@ -31,12 +31,12 @@ def sampling_error(sizes: Array, independent: int) -> float:
         return float("nan")
     coarser = nested_grids(grid)[-2] if len(nested_grids(grid)) > 1 else 1
     factor = grid // coarser
-    shifted = [known_mean(sizes[row::factor, column::factor]) for row in range(factor) for column in range(factor)]
-    scatter = float(np.sqrt(np.nanmean((np.array(shifted) - known_mean(sizes)) ** 2)))
+    shifted = [mean_of_known(sizes[row::factor, column::factor]) for row in range(factor) for column in range(factor)]
+    scatter = float(np.sqrt(np.nanmean((np.array(shifted) - mean_of_known(sizes)) ** 2)))
     return SAFETY * max(scatter, float(np.nanstd(sizes)) / grid)
 
 
-def known_mean(sizes: NDArray[np.float64]) -> float:
+def mean_of_known(sizes: NDArray[np.float64]) -> float:
     """Return the mean of the values that are known, NaN without any."""
     known = sizes[np.isfinite(sizes)]
     return float(known.mean()) if known.size else float("nan")

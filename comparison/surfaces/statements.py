@@ -57,8 +57,11 @@ def word_total(numbers: Headline) -> str:
 
 def word_range(numbers: Headline) -> str:
     """Return the smallest and the largest signed difference with their phases."""
-    ends = (numbers.low, numbers.low_phases), (numbers.high, numbers.high_phases)
-    (low, high) = (f"{signed(size)} at ({', '.join(map(degrees, phases))})" for size, phases in ends)
+    ends = (
+        (numbers.low, numbers.low_error, numbers.low_phases),
+        (numbers.high, numbers.high_error, numbers.high_phases),
+    )
+    (low, high) = (f"{difference(size, error)} at ({', '.join(map(degrees, phases))})" for size, error, phases in ends)
     return low if numbers.low == numbers.high else f"from {low} to {high}"
 
 
@@ -196,40 +199,61 @@ def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
     """
     Return the answer of the whole study in at most three sentences.
 
-    How far the paper's surfaces can be trusted, in which reading; how closely the codes agree where they solve the
-    same, and what the other reading is worth; what was measured.
+    How far the paper's equations lie from the last model, in which reading; how closely the codes agree where they
+    solve the same, and what the other reading is worth; what was measured.
     """
     known = [each for each in headlines if math.isfinite(each.mean) and each.first != each.second]
     if not known:
-        return f"No two models have a value in common. {measured}."
-    largest = max(known, key=lambda each: abs(each.mean))
-    extreme = max(known, key=lambda each: max(abs(each.low), abs(each.high)))
-    end, phases = max(((extreme.low, extreme.low_phases), (extreme.high, extreme.high_phases)), key=lambda x: abs(x[0]))
-    at = ", ".join(map(degrees, phases))
-    single = extreme.phases_per_axis > 1
-    parts = [
-        f"Read {largest.reading}, the paper's equations can be trusted to {percent(abs(largest.mean))}"
-        f"{f' in the mean and {percent(abs(end))} at single phase pairs' if single else ''}: so far at most is "
-        f"{largest.second_name} from them ({largest.scene}, {largest.name}: {difference(largest.mean, largest.error)}"
-        f"{f'; {extreme.scene}, {extreme.name}: {signed(end)} at ({at})' if single else ''})."
-    ]
-    second = []
+        return f"No two models have a value in common. {_capitalize(measured)}."
+    parts = [_word_largest(known), _word_codes(known), f"{_capitalize(measured)}."]
+    return " ".join(part for part in parts if part)
+
+
+def _word_largest(known: Sequence[Headline]) -> str:
+    """Return the largest mean difference of all bodies, the next one, and the ends over the phases."""
+    largest, *others = sorted(known, key=lambda each: -abs(each.mean))
+    phased = largest.phases_per_axis > 1
+    size = difference(abs(largest.mean), largest.error).removeprefix("+")
+    over = " in the mean over the initial phases" if phased else " under the record"
+    than = "lower" if largest.mean < 0.0 else "higher"
+    rest = f"; every other body: at most {percent(abs(others[0].mean))}" if others else ""
+    ends = [*((each.low, each.low_error) for each in known), *((each.high, each.high_error) for each in known)]
+    low, high = min(ends), max(ends)
+    single = f", and by {difference(*low)} to {difference(*high)} at single phase pairs" if phased else ""
+    names = {each.second_name for each in known}
+    models = largest.second_name if len(names) == 1 else " or ".join(sorted(names))
+    return (
+        f"The largest accelerations that {largest.first_name} give, read {largest.reading}, differ from those of "
+        f"{models} by at most {size}{over} ({largest.scene}, {largest.name}: {largest.second_name} is "
+        f"{than}{rest}){single}."
+    )
+
+
+def _word_codes(known: Sequence[Headline]) -> str:
+    """Return how far the codes lie apart given the same, and by how much the literal supremum is higher."""
+    parts = []
     alike = [each for each in known if math.isfinite(each.like_for_like)]
     if alike:
         worst = max(each.like_for_like for each in alike)
-        beyond = [f"{each.scene}, {each.name}" for each in alike if each.like_for_like_met is not True]
-        errors = f"beyond the errors for {', '.join(beyond)}" if beyond else "within their errors"
-        second.append(f"where both codes solve the same they agree to {percent(worst)}, {errors}")
+        errors = [
+            f"{words} for {', '.join(places)}"
+            for met, words in ((False, "not within the errors that both state"), (None, "with an unknown error"))
+            if (places := [f"{each.scene}, {each.name}" for each in alike if each.like_for_like_met is met])
+        ]
+        verdict = ", ".join(errors) or "within the errors that both state"
+        parts.append(f"given the same equations and friction law the two codes agree to {percent(worst)}, {verdict}")
     higher = [each for each in known if math.isfinite(each.supremum_mean)]
     if higher:
-        most = max(higher, key=lambda each: each.supremum_mean)
-        up_to = "" if most.phases_per_axis == 1 else f" in the mean and up to {percent(most.supremum_maximum)}"
-        height = f"{percent(most.supremum_mean)} higher{up_to}"
-        second.append(f"the literal supremum is {height} ({most.scene}, {most.name})")
-    if second:
-        parts.append(f"{_capitalize('; '.join(second))}.")
-    parts.append(f"{_capitalize(measured)}.")
-    return " ".join(parts)
+        mean = max(higher, key=lambda each: each.supremum_mean)
+        most = max(higher, key=lambda each: each.supremum_maximum)
+        size = f"up to {percent(mean.supremum_mean)} higher ({mean.scene}, {mean.name})"
+        if mean.phases_per_axis > 1:
+            size = f"up to {percent(mean.supremum_mean)} higher in the mean ({mean.scene}, {mean.name}) and up to "
+            size += f"{percent(most.supremum_maximum)} at single phase pairs ({most.scene}, {most.name})"
+        parts.append(
+            f"their literal supremum is {size}" if not alike else f"the literal supremum of the equations is {size}"
+        )
+    return f"{_capitalize('; '.join(parts))}." if parts else ""
 
 
 def _capitalize(text: str) -> str:
@@ -254,7 +278,8 @@ def word_causes_cell(numbers: Headline) -> str:
     """Return the causes of the first screen's table."""
     if not numbers.resolved:
         return "the mean is not beyond its error"
-    return word_causes(numbers).removeprefix("Cause").removeprefix("s").removeprefix(": ").removesuffix(".")
+    words = word_causes(numbers).removeprefix("Cause").removeprefix("s").removeprefix(": ").removesuffix(".")
+    return words.replace(" of it", "")
 
 
 def word_agreement_cell(numbers: Headline) -> str:
@@ -268,9 +293,9 @@ def word_agreement_cell(numbers: Headline) -> str:
 def word_supremum_cell(numbers: Headline) -> str:
     """Return by how much the literal supremum is higher, in the first screen's table."""
     if math.isnan(numbers.supremum_mean):
-        return "the same" if numbers.reading == "in both readings" else "not compared"
+        return "no difference" if numbers.reading == "in both readings" else "not compared"
     if numbers.supremum_maximum < SAME:
-        return "the same"
+        return "no difference"
     if numbers.phases_per_axis == 1:
         return signed(numbers.supremum_mean)
     return f"{signed(numbers.supremum_mean)}, up to {signed(numbers.supremum_maximum)}"

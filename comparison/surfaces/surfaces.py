@@ -49,14 +49,14 @@ def surface_tasks(study: Study) -> list[Task]:
 
 
 def batch_results(tasks: Sequence[Task], results: TaskResults) -> list[BatchResult]:
-    """What the models answered to the batches; NaN with the reason where a task ended without a result."""
+    """Return what the models answered to the batches; NaN with the reason where a task ended without a result."""
     return [
         results.value(task, lambda batch, failed: batch.without_result(failed.outcome, failed.error_message))
         for task in tasks
     ]
 
 
-def labeled_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult]) -> xr.Dataset:
+def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[BatchResult]) -> xr.Dataset:
     """
     The answers on dimensions scene, model, body, alpha1, alpha2 (rad).
 
@@ -145,7 +145,7 @@ def values_of(surfaces: xr.Dataset, name: str, scene: str, *models: Model) -> ND
 
 
 def outcome_counts(surfaces: xr.Dataset, scene: str, model: Model) -> dict[str, int]:
-    """How many of the phase pairs asked of the model ended in each outcome, most frequent first."""
+    """Return how many of the phase pairs asked of the model ended in each outcome, most frequent first."""
     return dict(Counter(values_of(surfaces, "status", scene, model).ravel().tolist()).most_common())
 
 

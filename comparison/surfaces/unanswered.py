@@ -55,7 +55,7 @@ class Unanswered:
 
     @property
     def description(self) -> str:
-        """The same without the scene."""
+        """Return the same without the scene."""
         rest = "" if self.used else ". Comparisons leave this model out"
         return f"{self.title}: {self.where}{f': {self.why}' if self.why else ''}{rest}"
 
@@ -82,7 +82,7 @@ class ComparedStudy(Study):
         return self.without_results.get(scene.name, ())
 
 
-def compared_study(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
+def study_of_results(study: Study, surfaces: xr.Dataset) -> ComparedStudy:
     """The study whose comparisons leave out models without any usable value, unless fewer than two would be left."""
     without_results = {}
     for scene in study.scenes:
@@ -103,7 +103,7 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
     for scene in study.scenes:
         left_out = study.left_out(scene)
         for model in models_of(scene, study.hierarchy):
-            answered, usable = _answered(surfaces, scene, model), _usable(surfaces, scene, model)
+            answered, usable = _has_answer(surfaces, scene, model), _usable(surfaces, scene, model)
             lacking, unusable = int((~answered).sum()), int((answered & ~usable).sum())
             if lacking or unusable:
                 asked = study.points(model, scene)
@@ -116,7 +116,7 @@ def unanswered(study: Study, surfaces: xr.Dataset) -> list[Unanswered]:
 
 
 def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
-    """What an outcome of a model on a scene means, and what helps."""
+    """Return what an outcome of a model on a scene means, and what helps."""
     if model.side == "user" and outcome in (Outcome.SOLVER_FAILED, Outcome.TIME_LIMIT, Outcome.WORKER_DIED):
         return "see what the solvers reported"
     refused = ""
@@ -125,7 +125,7 @@ def advice(study: Study, scene: Scene, model: Model, outcome: str) -> str:
     return refused or ADVICE[Outcome(outcome)]
 
 
-def _answered(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
+def _has_answer(surfaces: xr.Dataset, scene: Scene, model: Model) -> NDArray[np.bool_]:
     """At which phase pairs asked of a model every body has a value."""
     return np.asarray(np.isfinite(values_of(surfaces, "mu", scene.name, model)[: len(scene.bodies)]).all(axis=0))
 

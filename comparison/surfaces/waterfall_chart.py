@@ -8,7 +8,7 @@ from math import isfinite
 from comparison.surfaces.waterfall import WaterfallBar
 from comparison.wording import difference
 
-MARGIN = 0.03  # of the scale, beyond the longest bar
+MARGIN = 0.03  # share of the scale beyond the longest bar
 MAX_TICKS = 5
 
 

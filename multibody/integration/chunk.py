@@ -11,12 +11,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.support.build_cache import cached_on_disk
+from reference.support.build_cache import cache_on_disk
 
 Array = NDArray[np.float64]
 
 
-@cached_on_disk(__file__, nogil=True)
+@cache_on_disk(__file__, nogil=True)
 def absolute_acceleration_sizes(accelerations: Array, bodies: NDArray[np.int_], plate: Array) -> Array:
     """Sizes (T, N) of the accelerations of the coordinates `bodies` (N, 3) with that of the plate (T, 3)."""
     steps, count = len(accelerations), len(bodies)
@@ -30,7 +30,7 @@ def absolute_acceleration_sizes(accelerations: Array, bodies: NDArray[np.int_], 
     return size
 
 
-@cached_on_disk(__file__, nogil=True)
+@cache_on_disk(__file__, nogil=True)
 def slowest_loaded_slip(contact: Array, row: int) -> float:
     """Smallest slip speed of the contacts that carry load in a row; inf where none does."""
     slip = math.inf
@@ -40,7 +40,7 @@ def slowest_loaded_slip(contact: Array, row: int) -> float:
     return slip
 
 
-@cached_on_disk(__file__, nogil=True)
+@cache_on_disk(__file__, nogil=True)
 def slip_changes(
     accelerations: Array, platform: NDArray[np.int_], contact: Array, per_change: float, corner: float
 ) -> Array:
@@ -59,7 +59,7 @@ def slip_changes(
     return step_ratio
 
 
-@cached_on_disk(__file__, nogil=True)
+@cache_on_disk(__file__, nogil=True)
 def find_first_ends(coordinates: Array, height: int, rim: float, contact: Array) -> tuple[int, int]:
     """Find the first rows at which the coordinate `height` reaches `rim` and at which no contact is closed; else T."""
     steps = len(coordinates)
@@ -76,7 +76,7 @@ def find_first_ends(coordinates: Array, height: int, rim: float, contact: Array)
     return beyond, lost
 
 
-@cached_on_disk(__file__, nogil=True)
+@cache_on_disk(__file__, nogil=True)
 def distances(coordinates: Array, axes: NDArray[np.int_]) -> Array:
     """Length (T,) of the vector of two coordinates, those of `axes`."""
     length = np.empty(len(coordinates))
@@ -86,7 +86,7 @@ def distances(coordinates: Array, axes: NDArray[np.int_]) -> Array:
     return length
 
 
-@cached_on_disk(__file__, nogil=True)
+@cache_on_disk(__file__, nogil=True)
 def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: NDArray[np.int_]) -> float:
     """Largest length of that vector, also between the instants (T,), as `reference.measures.largest_displacement`."""
     largest = before_square = before = 0.0
@@ -101,7 +101,7 @@ def largest_distance(time: Array, coordinates: Array, velocities: Array, axes: N
     return math.sqrt(largest)
 
 
-@cached_on_disk(__file__, nogil=True)
+@cache_on_disk(__file__, nogil=True)
 def find_last_near(size: Array, sizes: Array, distance: Array, far: float) -> int:
     """Find the last row at which `size` (T, N) reaches `sizes` (N,) anywhere, or `distance` (T,) `far`; else -1."""
     for row in range(len(size) - 1, -1, -1):
@@ -113,7 +113,7 @@ def find_last_near(size: Array, sizes: Array, distance: Array, far: float) -> in
     return -1
 
 
-@cached_on_disk(__file__, nogil=True)
+@cache_on_disk(__file__, nogil=True)
 def any_larger(size: Array, first: int, least: Array) -> bool:
     """Return whether an entry of `size` (T, N) is larger than its column's of `least` (N,), from row `first` on."""
     for row in range(first, len(size)):

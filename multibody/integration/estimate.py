@@ -28,8 +28,8 @@ from reference.problem import Outcome, Scene
 Array = NDArray[np.float64]
 
 # Safety factors on the error that two levels show, and on that of three or more. Roache's are 3 and 1.25. Two levels
-# count at the lowest rate that occurs here and not at the formal one, on which 1.5 is as safe
-# (docs/records/multibody.md).
+# count at the lowest rate that occurs here and not at the formal one. How often stated errors hold with 1.5 is recorded
+# in docs/records/multibody.md.
 SAFETY_TWO_LEVELS, SAFETY_THREE_LEVELS = 1.5, 1.25
 
 # Safety factor on what a softer contact shows of rounding at the same step: its own compliance may act against that

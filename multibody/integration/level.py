@@ -23,7 +23,7 @@ from multibody.models.system import EngineModel
 from reference.problem import GRAVITY, Scene
 from reference.problem.ranges import TOLERANCE
 from reference.problem.scene import takes_scene
-from reference.support.arguments import checked_number
+from reference.support.arguments import check_number
 
 MAX_LEVELS = 8
 
@@ -228,7 +228,7 @@ def levels(
     >>> len(multibody.levels(reference.load_scene("fig3-I")))
     8
     """
-    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE)
     with silence_engine():
         return plan_levels(scene, assemble(scene, model, regularization), tolerance)
 

@@ -17,7 +17,7 @@ from multibody.models.assembly import assemble, choose_model
 from reference.problem import Scene, SceneError
 from reference.problem.ranges import TOLERANCE
 from reference.problem.scene import takes_scene
-from reference.support.arguments import checked_number
+from reference.support.arguments import check_number
 
 # Work of two levels, and of the compliance of the second, over a first level in its largest steps. The factor of two is
 # for smaller steps at stops, which take as many again.
@@ -60,8 +60,8 @@ def refusal(
     >>> multibody.refusal(reference.load_scene("fig3-I"))
     ''
     """
-    tolerance = checked_number("tolerance", tolerance, TOLERANCE)
-    max_work = checked_number("max_work", max_work, WORK)
+    tolerance = check_number("tolerance", tolerance, TOLERANCE)
+    max_work = check_number("max_work", max_work, WORK)
     if softened:
         try:
             scene = scene.softened()

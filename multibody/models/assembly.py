@@ -12,7 +12,7 @@ from multibody.models.system import EngineModel
 from multibody.models.translational import assemble_translational
 from reference.problem import Scene, untilted
 from reference.problem.ranges import REGULARIZATION
-from reference.support.arguments import checked_choice, checked_number
+from reference.support.arguments import check_choice, check_number
 
 BUILDERS: dict[str, Callable[..., EngineModel]] = {"translational": assemble_translational, "spatial": assemble_spatial}
 
@@ -32,11 +32,11 @@ def assemble(
     **options: int,
 ) -> EngineModel:
     """Assemble the engine's system of `scene`. Raises ValueError for an unknown model or loading, or a wrong v_reg."""
-    checked_choice("loading", loading, LOADINGS)
-    checked_choice("model", model, sorted(BUILDERS))
+    check_choice("loading", loading, LOADINGS)
+    check_choice("model", model, sorted(BUILDERS))
     if regularization is not None:
-        regularization = checked_number("regularization", regularization, REGULARIZATION)
-    elif not scene.lubricated and scene.friction_coefficient > 0.0:
+        regularization = check_number("regularization", regularization, REGULARIZATION)
+    elif scene.has_dry_friction:
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
     if loading != "inertial" and scene.dry_friction.heat is not None:
         raise ValueError(f"loading: {loading!r}: friction that heat lowers needs the inertial loading")

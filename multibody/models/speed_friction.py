@@ -21,8 +21,8 @@ from multibody.models.loading import Ground
 from multibody.models.state import EngineState
 from multibody.models.surface_heat import SurfaceHeat
 from multibody.models.units import Units
-from reference.problem import GRAVITY, DryFriction, Scene
-from reference.problem.friction import LEAST_LOAD, Heat
+from reference.problem import GRAVITY, Scene
+from reference.problem.friction import Heat
 
 Array = NDArray[np.float64]
 
@@ -36,8 +36,7 @@ class SpeedFriction:
     def __init__(
         self, mbs: Any, scene: Scene, units: Units, threshold: float, contacts: list[Any], ground: Ground
     ) -> None:
-        law = scene.dry_friction
-        self.law = DryFriction(law.slow, law.fast, law.rate * units.velocity, law.exponent, law.heat)
+        law = self.law = scene.dry_friction.in_unit_of_speed(units.velocity)
         self._heat: SurfaceHeat | None = None
         if law.heat is not None:
             self._heat = SurfaceHeat(law.heat, len(contacts), scene.duration, units.time, units.length)
@@ -70,9 +69,9 @@ class SpeedFriction:
 
     def feedback(self, slip: Array) -> Array:
         """Rate at which a change of the coefficients acts back on slip speeds (T, K), the largest of the contacts."""
-        law = self.law
-        steepness = abs(law.fast - law.slow) * law.rate * np.exp(-law.rate * slip)
-        rate: Array = (self._mass_ratio * steepness * np.minimum(slip / self._threshold, 1.0)).max(axis=1)
+        rate: Array = (self._mass_ratio * self.law.steepness(slip) * np.minimum(slip / self._threshold, 1.0)).max(
+            axis=1
+        )
         return rate
 
     def _before_step(self, mbs: Any, end: float) -> bool:
@@ -118,15 +117,11 @@ class SpeedFriction:
 
     def _coefficients_without_heat(self, span: float) -> list[float]:
         """Coefficients of the contacts after `span`, without heat."""
-        law, coefficients = self.law, []
-        loads = zip(self._load, self._load_rate, strict=True)
-        for slip, rate, (load, load_rate) in zip(self._slip, self._rate, loads, strict=True):
-            speed = max(slip + span * rate, 0.0)
-            coefficient = law.slow - (law.fast - law.slow) * math.expm1(-law.rate * speed)
-            if law.exponent != 0.0:
-                coefficient *= max(load + span * load_rate, LEAST_LOAD) ** law.exponent
-            coefficients.append(coefficient)
-        return coefficients
+        contacts = zip(self._slip, self._rate, self._load, self._load_rate, strict=True)
+        return [
+            self.law.coefficient_at(max(slip + span * rate, 0.0), load + span * load_rate)
+            for slip, rate, load, load_rate in contacts
+        ]
 
     def _friction_power(self, cold: list[float], span: float) -> Array:
         """Power of friction of each contact after `span`, W, from the coefficients then without heat."""

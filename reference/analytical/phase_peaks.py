@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from reference.support.build_cache import cached_on_disk
+from reference.support.build_cache import cache_on_disk
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -80,7 +80,7 @@ def _phase_factors(phases: Array) -> Array:
     return np.stack([np.cos(phases), -np.sin(phases)], axis=-1).reshape(-1, 4)
 
 
-@cached_on_disk(__file__)
+@cache_on_disk(__file__)
 def _bounds(terms: Array, rest: Array, turn: Array, body: int, least: Array, most: Array) -> None:
     """Set |v|^2 in the middle of each interval, and an upper bound on it over the interval, (T,) each."""
     least[:] = 0.0
@@ -102,7 +102,7 @@ def _coefficient(terms: Array, turn: Array, order: int, body: int, axis: int, n:
     return total
 
 
-@cached_on_disk(__file__, nogil=True)
+@cache_on_disk(__file__, nogil=True)
 def _maximize_over_time(terms: Array, rest: Array, turns: Array, peaks: Array, errors: Array) -> None:
     orders, bodies, axes, _, intervals = terms.shape
     least, most = np.empty(intervals), np.empty(intervals)

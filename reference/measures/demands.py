@@ -272,7 +272,7 @@ class DemandReader:
             return UNKNOWN
         scene, stick = self.motion.scene, self.motion.stick
         if not stick or stick[-1][1] < (1.0 - END_TOLERANCE) * scene.duration:
-            dry = scene.friction_coefficient > 0.0 and not scene.lubricated
+            dry = scene.has_dry_friction
             return Estimate(math.nan, math.nan, MOVING_AT_END if dry else NEVER_RESTS)
         if stick[-1][0] > self.samples.time[-1]:
             return Estimate(math.nan, math.nan, NOT_SAMPLED)

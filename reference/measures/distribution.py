@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.measures.demands import Estimate
-from reference.support.arguments import checked_array
+from reference.support.arguments import check_array
 
 FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)
 # Sampling error over the largest difference to a grid of twice the spacing. Measured with the paper's scenes, 8 to 64
@@ -87,7 +87,7 @@ def phase_distribution(mu: ArrayLike, error: ArrayLike) -> PhaseDistribution:
     (2.0, True)
     """
     rule = "must be one grid (n1, n2)"
-    values, errors = (checked_array(name, part, rule, finite=False) for name, part in (("mu", mu), ("error", error)))
+    values, errors = (check_array(name, part, rule, finite=False) for name, part in (("mu", mu), ("error", error)))
     known = np.isfinite(values)
     if values.ndim != 2 or values.shape != errors.shape or not known.any():
         raise ValueError(f"mu {values.shape}, error {errors.shape}: must be one grid (n1, n2) with a finite value")

@@ -7,7 +7,7 @@ import numpy as np
 from reference.problem.phases import phase_grid
 from reference.problem.result import Array
 from reference.problem.scene import Scene
-from reference.problem.symmetry import sources
+from reference.problem.symmetry import indices_of_solved_pairs
 
 GRID = 48  # phases per axis of the grid on which local maxima are found
 MAX_STARTS = 12  # number of local maxima from which a search begins: those that may rise highest
@@ -30,7 +30,7 @@ def local_maxima(surface: Array, scene: Scene) -> Array:
     around = [np.roll(height, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
     lowest = np.min([np.where(np.isfinite(each), each, height) for each in around], axis=0)
     places = np.flatnonzero(np.isfinite(height) & (height >= np.max(around, axis=0)))
-    places = places[sources(scene, points)[places] == places]
+    places = places[indices_of_solved_pairs(scene, points)[places] == places]
     high, low = height.ravel()[places], lowest.ravel()[places]
     may_reach = high + 0.5 * (high - low)
     return phase_grid(points)[places[np.argsort(-may_reach, kind="stable")][:MAX_STARTS]]

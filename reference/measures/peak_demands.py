@@ -182,3 +182,21 @@ def _estimate_table(estimates: Estimate | tuple[Estimate, ...] | None) -> Array 
     if isinstance(estimates, Estimate):
         return np.array([estimates.value, estimates.error])
     return np.array([[estimate.value, estimate.error] for estimate in estimates]).reshape(-1, 2)
+
+
+def list_demands(demands: Demands) -> Iterator[tuple[str, int, Estimate]]:
+    """
+    Yield field of `Demands`, body and number of every demand of a motion.
+
+    The body is 0 for the isolator; of a drift it is the upper one.
+    """
+    for field in fields(demands):
+        estimates = getattr(demands, field.name)
+        if isinstance(estimates, Estimate):
+            listed = [(0, estimates)]
+        elif isinstance(estimates, tuple):
+            listed = list(enumerate(estimates, start=2 if field.name == "drift" else 1))
+        else:
+            continue  # the status, or a demand that the model does not have
+        for body, estimate in listed:
+            yield field.name, body, estimate

@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from reference.measures.demands import ANSWERED
 from reference.problem.result import Array, Trajectory, takes_motion
-from reference.support.arguments import Range, checked_array, checked_number
-from reference.support.build_cache import cached_on_disk
+from reference.support.arguments import Range, check_array, check_number
+from reference.support.build_cache import cache_on_disk
 
 PERIODS = np.geomspace(0.02, 5.0, 49)  # s, default periods
 DAMPING_RANGE = Range(0.0, 1.0, "of critical")
@@ -91,7 +91,7 @@ def floor_spectra(trajectory: Trajectory, periods: ArrayLike | None = None, damp
     >>> spectra.acceleration.shape, bool((spectra.error < 1e-2 * spectra.acceleration).all())
     ((2, 2, 2), True)
     """
-    damping = checked_number("damping", damping, DAMPING_RANGE)
+    damping = check_number("damping", damping, DAMPING_RANGE)
     period = PERIODS if periods is None else _check_periods(periods)
     if trajectory.status not in ANSWERED or len(trajectory.time) < 2:
         nothing = np.full((trajectory.position.shape[1], 2, len(period)), np.nan)
@@ -165,7 +165,7 @@ def factor_for_spectrum(
     0.5
     """
     rule = "must be positive numbers (P,), as many periods as accelerations of the target"
-    period, wanted = checked_array("periods", periods, rule), checked_array("target", target, rule)
+    period, wanted = check_array("periods", periods, rule), check_array("target", target, rule)
     if period.ndim != 1 or period.shape != wanted.shape or not len(period) or not min(period.min(), wanted.min()) > 0.0:
         raise ValueError(f"periods {period.shape}, target {wanted.shape}: {rule}")
     return float(np.exp(np.mean(np.log(wanted) - np.log(response_spectrum(time, acceleration, period, damping)))))
@@ -205,10 +205,10 @@ def response_spectrum(
     >>> reference.response_spectrum(time, 2.0 * np.sin(6.0 * time), [0.01]).round(2)
     array([2.])
     """
-    damping = checked_number("damping", damping, DAMPING_RANGE)
+    damping = check_number("damping", damping, DAMPING_RANGE)
     period = _check_periods(periods)
     rule = "must be rising instants (K,), s, and as many accelerations (K,) or (K, 2), m/s^2"
-    instants, ground = checked_array("time", time, rule), checked_array("acceleration", acceleration, rule)
+    instants, ground = check_array("time", time, rule), check_array("acceleration", acceleration, rule)
     ground = ground[:, None] if ground.ndim == 1 else ground
     shaped = instants.ndim == 1 and ground.ndim == 2 and len(ground) == len(instants) > 1 and ground.shape[1] in (1, 2)
     if not (shaped and (np.diff(instants) > 0.0).all()):
@@ -223,13 +223,13 @@ def response_spectrum(
 
 def _check_periods(periods: ArrayLike) -> Array:
     rule = "must be positive numbers (P,), s"
-    period = checked_array("periods", periods, rule)
+    period = check_array("periods", periods, rule)
     if period.ndim != 1 or not len(period) or not (period > 0.0).all():
         raise ValueError(f"periods: {rule}")
     return period
 
 
-@cached_on_disk(__file__, nogil=True)
+@cache_on_disk(__file__, nogil=True)
 def _largest_accelerations(time: Array, floor: Array, period: Array, damping: float, series: Array) -> Array:
     """
     Return the largest pseudo-acceleration (C, P), m/s^2, of oscillators on floors (T, C), m/s^2.

@@ -8,38 +8,29 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from reference.problem.tables import STUDY, Positive, Table, about
+from reference.problem.keys import STUDY, Positive, Table, key
 from reference.support.scene_error import MisfitError
 
-ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # of an engine of the user
+ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # name of an engine of the user
 
 
 class Limits(Table):
     """Limits of the relative difference of two models over the phases, for every body."""
 
-    median: Annotated[
-        Positive | None, about("limit of the median relative difference of mu_i over the phases", "", STUDY)
-    ] = None
-    maximum: Annotated[
-        Positive | None, about("limit of the largest relative difference of mu_i over the phases", "", STUDY)
-    ] = None
-    ratio: Annotated[
-        Positive | None,
-        about(
-            "limit of the largest difference in units of u_D = sqrt(u_A^2 + u_B^2) of the two error estimates",
-            "",
-            STUDY,
-        ),
-    ] = None
+    median: Positive | None = key("limit of the median relative difference of mu_i over the phases", models=STUDY)
+    maximum: Positive | None = key("limit of the largest relative difference of mu_i over the phases", models=STUDY)
+    ratio: Positive | None = key(
+        "limit of the largest difference in units of u_D = sqrt(u_A^2 + u_B^2) of the two error estimates", models=STUDY
+    )
 
-    def stated(self) -> dict[str, float]:
-        """The limits that are present, by key."""
+    def limits_by_key(self) -> dict[str, float]:
+        """Return the limits that are present, by key."""
         limits = {"median": self.median, "maximum": self.maximum, "ratio": self.ratio}
         return {key: limit for key, limit in limits.items() if limit is not None}
 
 
-def _only_a_table(value: Any) -> Any:
-    """A key that is not known may be the name of an engine, whose limits are a table."""
+def _check_table(value: Any) -> Any:
+    """Refuse a key that is neither known nor, with a table, the name of an engine."""
     if isinstance(value, dict | Limits):
         return value
     raise PydanticCustomError("extra_forbidden", "unknown key")
@@ -53,48 +44,37 @@ class Acceptance(Limits):
     """
 
     model_config = ConfigDict(extra="allow")
-    __pydantic_extra__: dict[str, Annotated[Limits, BeforeValidator(_only_a_table)]] = Field(init=False)
+    __pydantic_extra__: dict[str, Annotated[Limits, BeforeValidator(_check_table)]] = Field(init=False)
 
-    total: Annotated[
-        Limits | None,
-        about("table of limits: the paper's printed equations against the most complete model", "", STUDY),
-    ] = None
-    translational: Annotated[
-        Limits | None,
-        about("table of limits: the paper's printed equations against the engine without rotations", "", STUDY),
-    ] = None
-    like_for_like: Annotated[
-        Limits | None,
-        about("table of limits: the exact equations against that engine under the same friction law", "", STUDY),
-    ] = None
-    closure: Annotated[
-        Positive | None,
-        about("limit of the size of (sum of the models' steps - total) relative to mu_i, for every body", "", STUDY),
-    ] = None
-    failed: Annotated[
-        Annotated[int, Field(ge=0)] | None,
-        about(
-            "points without an answer that are allowed, of all models with the user's; 0 where another limit is given",
-            "",
-            STUDY,
-        ),
-    ] = None
+    total: Limits | None = key(
+        "table of limits: the paper's printed equations against the most complete model", models=STUDY
+    )
+    translational: Limits | None = key(
+        "table of limits: the paper's printed equations against the engine without rotations", models=STUDY
+    )
+    like_for_like: Limits | None = key(
+        "table of limits: the exact equations against that engine under the same friction law", models=STUDY
+    )
+    closure: Positive | None = key(
+        "limit of the size of (sum of the models' steps - total) relative to mu_i, for every body", models=STUDY
+    )
+    failed: Annotated[int, Field(ge=0)] | None = key(
+        "points without an answer that are allowed, of all models with the user's; 0 where another limit is given",
+        models=STUDY,
+    )
 
-    confirm: Annotated[
-        bool | None,
-        about(
-            "true: --check computes the study again at a tenth of the tolerance, where the limits hold, too", "", STUDY
-        ),
-    ] = None
+    confirm: bool | None = key(
+        "true: --check computes the study again at a tenth of the tolerance, where the limits hold, too", models=STUDY
+    )
 
     @model_validator(mode="after")
-    def _once(self) -> Acceptance:
-        if twice := sorted(self.stated().keys() & (self.like_for_like or Limits()).stated().keys()):
+    def _check_names(self) -> Acceptance:
+        if twice := sorted(self.limits_by_key().keys() & (self.like_for_like or Limits()).limits_by_key().keys()):
             raise ValueError(f"give {twice[0]} here or in like_for_like, which mean the same, not in both")
         for name, limits in self.of_engines.items():
             if not ENGINE_NAME.fullmatch(name):
                 rule = "must be total, translational, like_for_like or the name of an engine: letters, digits and -"
-                raise MisfitError(f"acceptance.{name}", limits.stated(), rule)
+                raise MisfitError(f"acceptance.{name}", limits.limits_by_key(), rule)
         return self
 
     @property
@@ -103,7 +83,7 @@ class Acceptance(Limits):
         return self.__pydantic_extra__
 
     def differences(self) -> list[tuple[str, str, str, float]]:
-        """Key as written, pair of models, measure and limit of every difference that is limited."""
+        """Return key as written, pair of models, measure and limit of every difference that is limited."""
         tables = (
             ("", "like-for-like", self),
             ("like_for_like.", "like-for-like", self.like_for_like),
@@ -115,7 +95,7 @@ class Acceptance(Limits):
             (f"{start}{key}", pair, key, limit)
             for start, pair, limits in tables
             if limits is not None
-            for key, limit in limits.stated().items()
+            for key, limit in limits.limits_by_key().items()
         ]
 
     @property

@@ -1,4 +1,4 @@
-"""Which analyses a study makes of a scene beside its amplification factors: names that the study knows."""
+"""Names of the analyses that a study makes of a scene in addition to its amplification factors."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from reference.problem.tables import REPORT, Table, about
+from reference.problem.keys import REPORT, Table, key
 
 Names = Annotated[list[str], Field(min_length=1)]
 
@@ -14,15 +14,13 @@ Names = Annotated[list[str], Field(min_length=1)]
 class Analyses(Table):
     """The analyses of the scene in a report: `only` these, or all but those to `skip`; and `also` those on request."""
 
-    only: Annotated[Names | None, about("analyses that the report makes of the scene; all without it", "", REPORT)] = (
-        None
-    )
-    skip: Annotated[Names | None, about("analyses that the report does not make of the scene", "", REPORT)] = None
+    only: Names | None = key("analyses that the report makes of the scene; all without it", models=REPORT)
+    skip: Names | None = key("analyses that the report does not make of the scene", models=REPORT)
 
-    also: Annotated[Names | None, about("analyses besides, of those on request", "", REPORT)] = None
+    also: Names | None = key("analyses besides, of those on request", models=REPORT)
 
     @model_validator(mode="after")
-    def _one_of_them(self) -> Analyses:
+    def _check_selection(self) -> Analyses:
         if self.only is not None and self.skip is not None:
             raise ValueError("give only or skip, not both")
         return self

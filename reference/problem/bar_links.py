@@ -25,9 +25,9 @@ class BarLink:
     """
     All bars of one link together, half-way up.
 
-    shear: N/m, beside the weight that sinks where bars shorten. bending: N m, about either horizontal axis. tension:
-    N/m. torsion: N m. pendulum: m, length of the upright rod on which the body above sinks as much as the bars shorten;
-    0 where they do not. load: N, the weight above.
+    shear: N/m, without the effect of a weight that sinks as bars shorten. bending: N m, about either horizontal axis.
+    tension: N/m. torsion: N m. pendulum: m, length of the upright rod on which the body above sinks as much as the
+    bars shorten; 0 where they do not. load: N, the weight above.
     """
 
     shear: float
@@ -39,7 +39,7 @@ class BarLink:
 
 
 def bar_links(bodies: Sequence[Body], loads: Sequence[float], radius: float | None) -> list[BarLink | None]:
-    """The links between bodies under loads, N, from below; None for a rigid one; radius: m, in place of a `spread`."""
+    """Return the links between bodies under loads, N, from below; None if rigid; radius: m, for a missing `spread`."""
     links: list[BarLink | None] = []
     for body, load in zip(bodies[1:], loads):
         bars = body.bars
@@ -68,7 +68,7 @@ def stands_upright(
     links: Sequence[BarLink | None], heights: Sequence[float], loads: Sequence[float], shear: Array
 ) -> bool:
     """
-    Whether the links hold the bodies upright against their weight, on a platform that does not move.
+    Return True if the links hold the bodies upright against their weight, on a platform that does not move.
 
     heights: m, of the centers of mass of all bodies. loads: N, weight that each link carries. shear: (N - 1, 2), N/m.
 
@@ -99,5 +99,5 @@ def stands_upright(
 
 
 def _upright_bending(link: BarLink) -> float:
-    """Bending stiffness of a link that does not let its body sink otherwise than by shear."""
+    """Return the bending stiffness of a link that does not let its body sink otherwise than by shear."""
     return link.bending + 0.25 * link.load * link.pendulum

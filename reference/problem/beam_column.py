@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-DEPTH = 20  # of the continued fraction: exact in double precision up to buckling
+DEPTH = 20  # terms of the continued fraction: exact in double precision up to buckling
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class LoadFactors:
 
 def load_factors(q: float) -> LoadFactors:
     """
-    Factors of a bar under load, q = P l^2 / (4 E J) from 0 to (pi / 2)^2, at which it buckles sideways.
+    Return the factors of a bar under load, q = P l^2 / (4 E J) from 0 to (pi / 2)^2, at which it buckles sideways.
 
     >>> load_factors(0.0)
     LoadFactors(sway=1.0, sway_slope=-0.4, bending=1.0)
@@ -38,5 +38,5 @@ def load_factors(q: float) -> LoadFactors:
 
 
 def buckling_load(bending_stiffness: float, length: float) -> float:
-    """Load, N, at which a bar between clamped ends that may move sideways buckles: pi^2 E J / l^2, of N m^2 and m."""
+    """Return the load, N, at which a bar between clamped ends that may sway buckles, pi^2 E J / l^2."""
     return math.pi**2 * bending_stiffness / length / length

@@ -17,7 +17,7 @@ WITHOUT_EFFECT = ("title", "name", "acceptance", "analyses", "measured")  # tabl
 
 
 def value_at(data: Any, key: str) -> Any:
-    """What tables hold under a dotted key; None if nothing."""
+    """Return the value of tables under a dotted key; None without one."""
     place = data
     for part in key.split("."):
         if isinstance(place, dict):
@@ -30,18 +30,18 @@ def value_at(data: Any, key: str) -> Any:
 
 
 def short_key(key: str) -> str:
-    """A dotted key as it stands in names: its last part, or all of it with the number of a body."""
+    """Return a dotted key as names show it: its last part, or all of it with the number of a body."""
     parts = key.split(".")
     return key if any(part.isdecimal() for part in parts) else parts[-1]
 
 
 def text_of_table(table: Mapping[str, Any]) -> str:
-    """The files of one record, or the numbers of a table with their keys, as one text."""
+    """Return the files of one record, or the numbers of a table with their keys, as one text."""
     return "+".join(Path(part).stem if isinstance(part, str) else f"{key}={part:.12g}" for key, part in table.items())
 
 
 def change_of(key: str, before: Any, value: Any) -> str:
-    """What a changed value adds to the name of its scene; "" where it changes no result."""
+    """Return the part of a scene's name that a changed value adds; "" where it changes no result."""
     if key.split(".")[0] in WITHOUT_EFFECT:
         return ""
     short, number = short_key(key), as_float(value)
@@ -59,15 +59,15 @@ def change_of(key: str, before: Any, value: Any) -> str:
     return f"{short} changed"
 
 
-def changed_name(name: str, changes: Sequence[str]) -> str:
+def name_with_changes(name: str, changes: Sequence[str]) -> str:
     """
-    The name of a scene with other values, as the scenes of a family are named: the later value of a key counts.
+    Return the name of a scene with other values, as the scenes of a family are named: the later value of a key counts.
 
     Examples
     --------
-    >>> changed_name("fig3-I[friction=0.2, duration=3]", ["friction=0.12"])
+    >>> name_with_changes("fig3-I[friction=0.2, duration=3]", ["friction=0.12"])
     'fig3-I[duration=3, friction=0.12]'
-    >>> changed_name("fig3-I", ["bodies changed"])
+    >>> name_with_changes("fig3-I", ["bodies changed"])
     'fig3-I[bodies changed]'
     """
     shown = [change for change in changes if change]
@@ -88,44 +88,54 @@ def _key_of(change: str) -> str:
 
 def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapping[str, Sequence[str]]) -> None:
     """Set one value by its dotted key in tables with these valid keys; None leaves it out. Raises SceneError."""
-    table, _, last_part = key.rpartition(".")
-    record = data["excitation"].get("record") if isinstance(data.get("excitation"), dict) else None
-    if table == "excitation.record" and isinstance(record, dict):
-        own: Sequence[str] = SUITE if "suite" in record else AXES
-        if last_part not in own:
-            raise unknown_key(scene, key, value, own)
-        key, value = table, {name: part for name, part in {**record, last_part: value}.items() if part is not None}
+    key, value = _put_in_record(scene, data, key, value)
     parts = key.split(".")
     place: Any = data
-    for depth, part in enumerate(parts):
-        last = depth == len(parts) - 1
-        if isinstance(place, list):
-            if not (part.isascii() and part.isdecimal() and len(part) < 9 and int(part) < len(place)):
-                rule = f"{'.'.join(parts[:depth])} has the indices 0 to {len(place) - 1}"
-                raise SceneError(scene, key, value, rule)
-            index: Any = int(part)
-        else:
-            table = ".".join(name for name in parts[:depth] if not name.isdecimal())
-            valid = keys_of(table, keys)
-            if not valid:
-                raise SceneError(scene, key, value, f"{table} has no keys to set one by one: give {table} as a whole")
-            if part in valid and not isinstance(place, dict):
-                rule = f"{table} is {brief(place)} and no table: give {table} = {{{' = ..., '.join(valid)} = ...}}"
-                raise SceneError(scene, key, value, rule)
-            known = part in valid or f"{table}.*" in keys
-            if isinstance(place, dict) and known and not last and keys_of(f"{table}.{part}", keys):
-                place.setdefault(part, {})  # an optional table that is not there yet
-            if not (isinstance(place, dict) and known and (last or part in place)):
-                raise unknown_key(scene, ".".join(parts[: depth + 1]), value, valid)
-            index = part
-        if not last:
-            place = place[index]
-        elif key == "excitation.record":
-            place["record"] = value
-            place.pop("samples", None)  # those of the record before
-        elif value is not None:
-            place[index] = value
-        elif isinstance(place, dict):
-            place.pop(index, None)
-        else:
-            raise SceneError(scene, key, value, "must be a number")
+    for depth in range(len(parts) - 1):
+        place = place[_index_of(scene, place, parts, depth, value, keys)]
+    index = _index_of(scene, place, parts, len(parts) - 1, value, keys)
+    if key == "excitation.record":
+        place["record"] = value
+        place.pop("samples", None)  # the samples of the record before
+    elif value is not None:
+        place[index] = value
+    elif isinstance(place, dict):
+        place.pop(index, None)
+    else:
+        raise SceneError(scene, key, value, "must be a number")
+
+
+def _put_in_record(scene: str, data: dict[str, Any], key: str, value: Any) -> tuple[str, Any]:
+    """Return the key and value of a whole record in place of one of its keys; any other key as it is."""
+    table, _, last = key.rpartition(".")
+    record = data["excitation"].get("record") if isinstance(data.get("excitation"), dict) else None
+    if table != "excitation.record" or not isinstance(record, dict):
+        return key, value
+    own: Sequence[str] = SUITE if "suite" in record else AXES
+    if last not in own:
+        raise unknown_key(scene, key, value, own)
+    return table, {name: part for name, part in {**record, last: value}.items() if part is not None}
+
+
+def _index_of(
+    scene: str, place: Any, parts: Sequence[str], depth: int, value: Any, keys: Mapping[str, Sequence[str]]
+) -> Any:
+    """Return the index of one part of a dotted key in its list or table; make an optional table. Raises SceneError."""
+    key, part, last = ".".join(parts), parts[depth], depth == len(parts) - 1
+    if isinstance(place, list):
+        if part.isascii() and part.isdecimal() and len(part) < 9 and int(part) < len(place):
+            return int(part)
+        raise SceneError(scene, key, value, f"{'.'.join(parts[:depth])} has the indices 0 to {len(place) - 1}")
+    table = ".".join(name for name in parts[:depth] if not name.isdecimal())
+    valid = keys_of(table, keys)
+    if not valid:
+        raise SceneError(scene, key, value, f"{table} has no keys to set one by one: give {table} as a whole")
+    if part in valid and not isinstance(place, dict):
+        rule = f"{table} is {brief(place)} and no table: give {table} = {{{' = ..., '.join(valid)} = ...}}"
+        raise SceneError(scene, key, value, rule)
+    if isinstance(place, dict) and (part in valid or f"{table}.*" in keys):
+        if not last and keys_of(f"{table}.{part}", keys):
+            place.setdefault(part, {})  # an optional table that is not there yet
+        if last or part in place:
+            return part
+    raise unknown_key(scene, ".".join(parts[: depth + 1]), value, valid)

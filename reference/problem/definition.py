@@ -16,18 +16,18 @@ from numpy.typing import ArrayLike, NDArray
 from reference.problem.excitation import exponents, ground_acceleration, loading_period
 from reference.problem.phases import checked_phases
 from reference.problem.scene import Scene, takes_scene
-from reference.support.build_cache import cached_on_disk
+from reference.support.build_cache import cache_on_disk
 
 Array = NDArray[np.float64]
 
-SAMPLES_PER_PERIOD = 32  # of the faster harmonic; |u|^2 has twice its frequency, so 16 samples per wave
-CLOSE = 1.0 - 1e-9  # of the largest square of the samples: those that rounding may have made smaller
+SAMPLES_PER_PERIOD = 32  # samples of the faster harmonic; |u|^2 has twice its frequency, so 16 samples per wave
+CLOSE = 1.0 - 1e-9  # share of the largest square of the samples: rounding may have made these smaller
 
 
 @takes_scene
 def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
     """
-    Largest ground acceleration over the duration, the denominator of (5.1).
+    Return the largest ground acceleration over the duration, the denominator of (5.1).
 
     Parameters
     ----------
@@ -62,7 +62,8 @@ def ground_peak(scene: Scene, phases: ArrayLike) -> Array:
 
 
 def _record_peak(scene: Scene) -> float:
-    """The norm of a vector that changes linearly is convex: it is largest at a knot, or where the motion ends."""
+    """Return the largest acceleration of a record, m/s^2."""
+    # The norm of a vector that changes linearly is convex: it is largest at a knot, or where the motion ends.
     time = scene.record[:, 0]
     instants = np.append(time[time < scene.duration], scene.duration)
     with np.errstate(over="ignore"):
@@ -71,7 +72,7 @@ def _record_peak(scene: Scene) -> float:
 
 @njit(nogil=True)
 def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> tuple[float, float, float]:
-    """|u|^2 and its first two derivatives at time t."""
+    """Return |u|^2 and its first two derivatives at time t."""
     value = slope = curvature = 0.0
     for k in range(3):
         u = du = ddu = 0.0
@@ -89,8 +90,8 @@ def _square_and_slopes(t: float, phase: Array, amplitudes: Array, s: Array) -> t
 
 
 @njit(nogil=True)
-def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: Array) -> float:
-    """Maximum of |u|^2 on [left, right], which holds one sample higher than both ends: Newton, bisection as a guard."""
+def _refine_maximum(left: float, right: float, phase: Array, amplitudes: Array, s: Array) -> float:
+    """Return the maximum of |u|^2 on [left, right], which has a higher sample inside: Newton, guarded by bisection."""
     t = 0.5 * (left + right)
     close = 1e-9 * (right - left)
     best = 0.0
@@ -108,15 +109,15 @@ def _refined(left: float, right: float, phase: Array, amplitudes: Array, s: Arra
     return best
 
 
-@cached_on_disk(__file__, nogil=True)
+@cache_on_disk(__file__, nogil=True)
 def _ground_peaks(phases: Array, amplitudes: Array, weights: Array, s: Array, duration: float, step: float) -> Array:
-    """(M,) for the phases (M, 2); weights (2,), m/s^2: sizes of the harmonics; s (2, 2): of their exponents' parts."""
+    """Return peaks (M,) for phases (M, 2); weights (2,), m/s^2: sizes of the harmonics; s (2, 2): their exponents."""
     count = math.ceil(duration / step) + 1
     peaks = np.empty(phases.shape[0])
     grown = np.empty((count, 2, 2))  # real and imaginary part of exp(s t) at the samples
-    bound = np.empty(count)  # of |u|^2 from there on
-    turn = np.empty((2, 2))  # likewise of exp(i phase)
-    known = 0  # samples of these that some phase has needed
+    bound = np.empty(count)  # bound of |u|^2 from each sample on
+    turn = np.empty((2, 2))  # real and imaginary part of exp(i phase)
+    known = 0  # number of samples that some phase has needed
     square = np.empty(count)  # |u|^2 of one phase, rounded otherwise than `_square_and_slopes` does
     for m in range(phases.shape[0]):
         phase = phases[m]
@@ -156,6 +157,6 @@ def _ground_peaks(phases: Array, amplitudes: Array, weights: Array, s: Array, du
             if rises and falls and 1.04 * square[n] > highest:
                 right = min((n + 1) * step, duration)
                 left = max(right - (2.0 if n < end - 1 else 1.0) * step, 0.0)
-                best = max(best, _refined(left, right, phase, amplitudes, s))
+                best = max(best, _refine_maximum(left, right, phase, amplitudes, s))
         peaks[m] = math.sqrt(best)
     return peaks

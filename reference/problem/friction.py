@@ -1,14 +1,25 @@
-"""Dry friction whose coefficient depends on slip speed, load and heat, as in friction-pendulum practice."""
+"""
+The law of friction: its keys in a scene file, and its coefficient over slip speed, load and heat.
+
+This is the one place of the law. `reference/solver/contact/friction.py` has its compiled form, and
+`multibody/models/speed_friction.py` gives its coefficients to the engine.
+"""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from pydantic import Discriminator, Tag, model_validator
 
-LEAST_LOAD = 1e-6  # of the weight: friction depends no further on a normal force that is smaller
+from reference.problem.keys import REQUIRED, NonNegative, Positive, Table, key
+from reference.problem.validation import FRICTIONS
+from reference.support.arguments import Range
+
+LEAST_LOAD = 1e-6  # share of the weight: friction depends no further on a smaller normal force
 
 
 @dataclass(frozen=True)
@@ -34,13 +45,13 @@ class Heat:
 
     @classmethod
     def of(cls, radius: float, conductivity: float, diffusivity: float, initial: float, supports: int) -> Heat:
-        """Under so many equal sliders with round contacts of this radius, m; in W/(m K), m^2/s and degrees C."""
+        """Return the heat of equal sliders with round contacts of this radius, m; in W/(m K), m^2/s and degrees C."""
         area = supports * math.pi * radius**2
         return cls(initial, math.sqrt(diffusivity / math.pi) / (conductivity * area), 0.5 * math.sqrt(math.pi) * radius)
 
     @staticmethod
     def factor(temperature: ArrayLike) -> NDArray[np.float64]:
-        """Coefficient at a temperature, degrees C, over that stated."""
+        """Return the coefficient at a temperature, degrees C, over that stated."""
         return 0.79 * (0.7 ** (0.02 * np.asarray(temperature)) + 0.4)
 
 
@@ -79,18 +90,23 @@ class DryFriction:
 
     @property
     def varies(self) -> bool:
-        """Whether the coefficient depends on the speed."""
+        """True if the coefficient depends on the speed."""
         return self.rate > 0.0 and self.slow != self.fast
 
     @property
     def constant(self) -> bool:
-        """Whether the coefficient depends on neither speed nor load nor heat."""
+        """True if the coefficient depends on neither speed nor load nor heat."""
         return not self.varies and self.exponent == 0.0 and self.heat is None
 
     @property
     def by_load(self) -> bool:
-        """Whether the coefficient depends on the normal force, directly or by the heat of friction under it."""
+        """True if the coefficient depends on the normal force, directly or by the heat of friction under it."""
         return self.exponent != 0.0 or self.heat is not None
+
+    @property
+    def kind(self) -> str:
+        """Name of the law in texts: "Coulomb" friction, or "dry" where the coefficient depends on anything."""
+        return "Coulomb" if self.constant else "dry"
 
     @property
     def largest(self) -> float:
@@ -99,7 +115,7 @@ class DryFriction:
 
     def at(self, speed: ArrayLike, load: ArrayLike = 1.0) -> NDArray[np.float64]:
         """
-        The coefficient at slip speeds.
+        Return the coefficient at slip speeds.
 
         Parameters
         ----------
@@ -117,3 +133,101 @@ class DryFriction:
             -self.rate * np.asarray(speed, dtype=float)
         )
         return coefficient if self.exponent == 0.0 else coefficient * np.maximum(load, LEAST_LOAD) ** self.exponent
+
+    def coefficient_at(self, speed: float, load: float) -> float:
+        """Return the coefficient at one slip speed and load, as `at` does, for loops over single contacts."""
+        coefficient = self.slow - (self.fast - self.slow) * math.expm1(-self.rate * speed)
+        return coefficient if self.exponent == 0.0 else coefficient * max(load, LEAST_LOAD) ** self.exponent
+
+    def steepness(self, speed: ArrayLike) -> NDArray[np.float64]:
+        """Return the size of the derivative of the coefficient by the slip speed, under the weight."""
+        steepness: NDArray[np.float64] = (
+            abs(self.fast - self.slow) * self.rate * np.exp(-self.rate * np.asarray(speed, dtype=float))
+        )
+        return steepness
+
+    def in_unit_of_speed(self, unit: float) -> DryFriction:
+        """Return the law for slip speeds in another unit, given in m/s."""
+        return replace(self, rate=self.rate * unit)
+
+
+class Heating(Table):
+    """
+    Heating of the sliding surface, which lowers dry friction.
+
+    The coefficient is that at 20 degrees C times 0.79 (0.7^(0.02 T) + 0.40), T in degrees C.
+    """
+
+    contact_radius: Positive = key(
+        "radius of the slider's round contact, of each of the supports where these are given",
+        Range(1e-3, 10.0, "m"),
+        default=REQUIRED,
+    )
+    conductivity: Positive = key(
+        "thermal conductivity of the plate that the slider runs on", Range(0.01, 1e4, "W/(m K)"), default=REQUIRED
+    )
+    diffusivity: Positive = key("thermal diffusivity of that plate", Range(1e-8, 1e-2, "m^2/s"), default=REQUIRED)
+    initial_temperature: float = key("temperature before the motion", Range(-50.0, 300.0, "degrees C"), default=20.0)
+
+
+class VelocityFriction(Table):
+    """
+    Dry friction that depends on the slip speed, the normal force, its own heat, or several of them.
+
+    The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n, times the temperature factor of `heating`.
+    """
+
+    # Without friction at rest nothing ever stops, which is no dry friction.
+    slow: Positive = key("coefficient at rest", Range(1e-9, 1e3), default=REQUIRED)
+    fast: NonNegative | None = key(
+        "coefficient at high speed, above or below slow; without it and rate, slow at every speed", Range(0.0, 1e3)
+    )
+    rate: Positive | None = key("rate of the change from slow to fast", Range(1e-6, 1e10, "s/m"))
+    load_exponent: float | None = key(
+        "exponent n: the coefficient grows like N^n with the normal force N, and not without it", Range(-0.5, 1.0)
+    )
+    reference_load: Positive | None = key(
+        "normal force of the whole isolator under which the coefficients are those stated; the weight without it",
+        Range(1e-11, 1e16, "N"),
+    )
+
+    heating: Heating | None = key("the table below; without it the surface stays cold")
+
+    @model_validator(mode="after")
+    def _check_pairs(self) -> VelocityFriction:
+        if (self.fast is None) != (self.rate is None):
+            raise ValueError("give fast and rate together, or neither")
+        if self.fast is None and self.load_exponent is None and self.heating is None:
+            raise ValueError("give fast and rate, load_exponent or heating, or one number in place of the table")
+        if self.reference_load is not None and self.load_exponent is None:
+            raise ValueError("reference_load belongs to a load_exponent: state that, too, or remove this key")
+        return self
+
+
+def kind_of_friction(friction: Any) -> str:
+    """Return the form that a friction is meant to have."""
+    return FRICTIONS[int(isinstance(friction, dict | VelocityFriction))]
+
+
+Friction = Annotated[
+    Annotated[NonNegative, Tag(FRICTIONS[0])] | Annotated[VelocityFriction, Tag(FRICTIONS[1])],
+    Discriminator(kind_of_friction),
+]
+
+
+def law_of_friction(stated: float | VelocityFriction | None, weight: float, sliders: int) -> DryFriction:
+    """
+    Return the law of dry friction that a scene states under a weight, N; without friction where it states none.
+
+    A `reference_load` refers the coefficients to another load. The heat of `heating` spreads over all sliders.
+    """
+    if not isinstance(stated, VelocityFriction):
+        return DryFriction(stated or 0.0, stated or 0.0, 0.0)
+    exponent, heating = stated.load_exponent or 0.0, stated.heating
+    share = (weight / stated.reference_load) ** exponent if stated.reference_load else 1.0
+    heat = None
+    if heating is not None:
+        track = heating.contact_radius, heating.conductivity, heating.diffusivity, heating.initial_temperature
+        heat = Heat.of(*track, sliders)
+    fast = stated.slow if stated.fast is None else stated.fast
+    return DryFriction(share * stated.slow, share * fast, stated.rate or 0.0, exponent, heat)

@@ -1,4 +1,4 @@
-"""Measured peaks of a scene: what an experiment found, set beside what the models compute."""
+"""Measured peaks of a scene, which a report compares with those of the models."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field, model_validator
 
-from reference.problem.tables import REPORT, NonNegative, Table, Text, about, within
+from reference.problem.keys import REPORT, REQUIRED, NonNegative, Table, Text, key
+from reference.support.arguments import Range
 
 OF_BODIES = {"mu": 1, "acceleration": 1, "drift": 2, "torsion": 1}  # number of the first body that has the quantity
 OF_ISOLATOR = (
@@ -26,7 +27,7 @@ OF_ISOLATOR = (
 QUANTITIES = (*OF_BODIES, *OF_ISOLATOR)
 
 
-def _known(quantity: str) -> str:
+def _check_quantity(quantity: str) -> str:
     if quantity not in QUANTITIES:
         nearest = get_close_matches(quantity, QUANTITIES, n=1, cutoff=0.5)
         raise ValueError(f"did you mean {nearest[0]}?" if nearest else f"must be one of {', '.join(QUANTITIES)}")
@@ -36,39 +37,30 @@ def _known(quantity: str) -> str:
 class Measured(Table):
     """One measured peak."""
 
-    quantity: Annotated[
-        str,
-        AfterValidator(_known),
-        about(f"what was measured: {', '.join(QUANTITIES)}", "", REPORT),
-    ]
-    body: Annotated[
-        Annotated[int, within("measured.body")] | None,
-        about(
-            f"number of the body, 1 is the platform: of {', '.join(OF_BODIES)} alone; a drift is of the body above",
-            "",
-            REPORT,
-        ),
-    ] = None
-    value: Annotated[float, within("measured.value"), about("measured peak", "SI", REPORT)]
-    uncertainty: Annotated[
-        NonNegative,
-        within("measured.uncertainty"),
-        about("absolute uncertainty of the value, as wide as the errors of the models are: about 95 %", "SI", REPORT),
-    ]
-    phases: Annotated[
-        Annotated[
-            list[Annotated[float, within("measured.phases")]],
-            Field(min_length=2, max_length=2),
-        ]
-        | None,
-        about(
-            "phases of the two harmonics in the test; required with two frequencies, none with a record", "rad", REPORT
-        ),
-    ] = None
-    source: Annotated[Text | None, about("where the value is from", "", REPORT)] = None
+    quantity: Annotated[str, AfterValidator(_check_quantity)] = key(
+        f"what was measured: {', '.join(QUANTITIES)}", models=REPORT, default=REQUIRED
+    )
+    body: int | None = key(
+        f"number of the body, 1 is the platform: of {', '.join(OF_BODIES)} alone; a drift is of the body above",
+        Range(1, 10_000),
+        models=REPORT,
+    )
+    value: float = key("measured peak", Range(-1e30, 1e30, "SI"), models=REPORT, default=REQUIRED)
+    uncertainty: NonNegative = key(
+        "absolute uncertainty of the value, as wide as the errors of the models are: about 95 %",
+        Range(0.0, 1e30, "SI"),
+        models=REPORT,
+        default=REQUIRED,
+    )
+    phases: Annotated[list[float], Field(min_length=2, max_length=2)] | None = key(
+        "phases of the two harmonics in the test; required with two frequencies, none with a record",
+        Range(-1e6, 1e6, "rad"),
+        models=REPORT,
+    )
+    source: Text | None = key("where the value is from", models=REPORT)
 
     @model_validator(mode="after")
-    def _of_a_body_or_not(self) -> Measured:
+    def _check_body(self) -> Measured:
         first = OF_BODIES.get(self.quantity)
         if first is None and self.body is not None:
             raise ValueError(f"{self.quantity} is of the isolator: remove body")

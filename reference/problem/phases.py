@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from reference.problem.ranges import PHASE
-from reference.support.arguments import Range, checked_array, checked_whole_number
+from reference.support.arguments import Range, check_array, check_whole_number
 
 Array = NDArray[np.float64]
 POINTS = Range(1, 10_000)  # phases per axis
@@ -40,7 +40,7 @@ def checked_phases(phases: ArrayLike) -> Array:
     >>> checked_phases([(0.5, 1.0)]).tolist()
     [[0.5, 1.0]]
     """
-    array = checked_array("phases", phases, f"must be (M, 2), {PHASE.rule}")
+    array = check_array("phases", phases, f"must be (M, 2), {PHASE.rule}")
     if array.ndim != 2 or array.shape[1] != 2:
         raise ValueError(f"phases: shape {array.shape}: must be (M, 2), rad")
     if array.size and (np.abs(array) > PHASE.highest).any():
@@ -51,7 +51,7 @@ def checked_phases(phases: ArrayLike) -> Array:
 
 def checked_phase(phase: ArrayLike) -> Array:
     """
-    One phase pair as an array.
+    Return one phase pair as an array.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def checked_phase(phase: ArrayLike) -> Array:
     >>> checked_phase((0.5, 1.0)).tolist()
     [0.5, 1.0]
     """
-    pair = checked_array("phases", phase, f"must be (2,), {PHASE.rule}")
+    pair = check_array("phases", phase, f"must be (2,), {PHASE.rule}")
     if pair.size != 2:
         raise ValueError(f"phases: shape {pair.shape}: must be (2,), rad")
     return checked_phases(pair.reshape(1, 2))[0]
@@ -79,7 +79,7 @@ def checked_phase(phase: ArrayLike) -> Array:
 
 def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
     """
-    Phase pairs of any shape as a list of pairs.
+    Return phase pairs of any shape as a list of pairs.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
     ((2, 2), (1, 2))
     """
     rule = f"must be (..., 2), {PHASE.rule}"
-    array = checked_array("phases", phases, rule)
+    array = check_array("phases", phases, rule)
     if array.shape[-1:] != (2,):
         raise ValueError(f"phases: shape {array.shape}: must be (..., 2), rad")
     return checked_phases(array.reshape(-1, 2)), array.shape[:-1]
@@ -112,7 +112,7 @@ def flat_phases(phases: ArrayLike) -> tuple[Array, tuple[int, ...]]:
 
 def grid_axes(phases: Array) -> tuple[Array, Array] | None:
     """
-    The two axes (A,) and (B,), rad, of a grid of phases (A, B, 2) or (A B, 2).
+    Return the two axes (A,) and (B,), rad, of a grid of phases (A, B, 2) or (A B, 2).
 
     None if the pairs are no grid of at least 2 x 2 whose alpha_2 runs fastest.
 
@@ -134,7 +134,7 @@ def grid_axes(phases: Array) -> tuple[Array, Array] | None:
 
 def phase_axis(points: int) -> Array:
     """
-    Equally spaced phases on [0, 2 pi), the same to the last bit on every axis that has them.
+    Return equally spaced phases on [0, 2 pi), the same to the last bit on every axis that has them.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def phase_axis(points: int) -> Array:
     >>> bool((phase_axis(48)[::6] == phase_axis(8)).all())
     True
     """
-    steps = np.arange(checked_whole_number("points", points, POINTS))
+    steps = np.arange(check_whole_number("points", points, POINTS))
     shared = np.gcd(steps, points)
     axis: Array = 2.0 * np.pi * (steps // shared) / (points // shared)
     return axis
@@ -166,7 +166,7 @@ def phase_axis(points: int) -> Array:
 
 def phase_grid(points: int) -> Array:
     """
-    All pairs of equally spaced phases on [0, 2 pi).
+    Return all pairs of equally spaced phases on [0, 2 pi).
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ def phase_grid(points: int) -> Array:
 
 
 def phase_coordinates(phases: Array) -> tuple[tuple[str, ...], dict[str, Any]]:
-    """Dimensions and the coordinates alpha1 and alpha2 of phase pairs (..., 2), rad, in a data set of xarray."""
+    """Return dimensions and the coordinates alpha1 and alpha2 of phase pairs (..., 2), rad, in a data set of xarray."""
     shape, angle = phases.shape[:-1], {"units": "rad"}
     grid = grid_axes(phases) if len(shape) == 2 else None
     if grid is not None:

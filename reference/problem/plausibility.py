@@ -1,4 +1,4 @@
-"""What in a scene is valid but hardly meant."""
+"""Values of a scene that are valid but hardly meant."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MASS_RATIO = 1e6
 
 
 def implausible_values(scene: Scene) -> list[str]:
-    """One line for every kind of value that is hardly meant."""
+    """Return one line for every kind of value that is hardly meant."""
     lines, links = [], scene.masses[1:, None]
     if scene.damping.any():
         ratio = float((scene.damping / (2.0 * np.sqrt(scene.stiffness * links))).max())

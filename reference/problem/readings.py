@@ -11,13 +11,17 @@ AS_INTEGRATED = "as integrated"
 """The resolved peak at v_c, 1 mm/s by default of the comparison, or what a run with regularized friction reaches."""
 LITERAL_SUPREMUM = "literal supremum"
 """The limit of vanishing slip speed under the set-valued law, which no integration reaches."""
+DEFAULT_V_REG = 1e-3
+"""Slip speed v_reg, m/s, below which dry friction grows linearly with the slip velocity, on both sides alike."""
+DEFAULT_V_C = 1e-3
+"""Slip speed v_c, m/s, above which an integration with steps of about 1 ms sees the motion."""
 FINER = 0.1
 """Second v_reg over the first where the effect of regularization is estimated: nine tenths of one in proportion."""
 
 
 def reading_of(scene: Scene, regularization: float | None, cutoff: float | None = None) -> str:
-    """Which reading of (5.1) a factor has; "" without dry friction, where both readings agree."""
-    if scene.lubricated or scene.friction_coefficient == 0.0:
+    """Return the reading of (5.1) that a factor has; "" without dry friction, where both readings agree."""
+    if not scene.has_dry_friction:
         return ""
     return LITERAL_SUPREMUM if regularization is None and cutoff is None else AS_INTEGRATED
 
@@ -29,7 +33,7 @@ def describe_law(
     effect: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> str:
     """
-    Law of friction of a result, and what its error leaves out.
+    Describe the law of friction of a result, and what its error leaves out.
 
     Parameters
     ----------
@@ -54,9 +58,8 @@ def describe_law(
     if scene.lubricated:
         return "viscous friction (3.14)"
     if regularization is None:
-        kind = "Coulomb" if scene.dry_friction.constant else "dry"
         peak = LITERAL_SUPREMUM if cutoff is None else f"{AS_INTEGRATED}, v_c = {cutoff:g} m/s"
-        return f"set-valued {kind} friction; {peak}"
+        return f"set-valued {scene.dry_friction.kind} friction; {peak}"
     law = f"regularized below v_reg = {regularization:g} m/s: the error leaves out what this changes against set-valued"
     if effect is None or not all(np.isfinite(part).any() for part in effect):
         return f"{law} friction"

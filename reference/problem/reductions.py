@@ -102,7 +102,7 @@ def own_axes(scene: Scene) -> Reduction:
 @takes_scene
 def untilted(scene: Scene) -> Reduction:
     """
-    Nothing turns the body of the spatial model: assumption (vi) holds, and it moves like the translational one.
+    Find whether nothing turns the body of the spatial model: then (vi) holds, and it moves like the translational one.
 
     Parameters
     ----------
@@ -345,7 +345,7 @@ def linear(scene: Scene) -> Reduction:
 
     Notes
     -----
-    A lubricated contact is not linear: R mu w = R f_c v is, but (4.3) keeps the term f_c u (p . v) / rho beside it.
+    A lubricated contact is not linear: R mu w = R f_c v is, but (4.3) also keeps the term f_c u (p . v) / rho.
 
     Examples
     --------
@@ -369,7 +369,7 @@ def linear(scene: Scene) -> Reduction:
 
 
 def fastest(scene: Scene) -> float:
-    """An upper bound of every angular frequency and rate of decay in the small equations, rad/s."""
+    """Return an upper bound of every angular frequency and rate of decay in the small equations, rad/s."""
     below = np.vstack([np.full((1, 2), scene.total_mass * GRAVITY / scene.radius), scene.stiffness])
     above = np.vstack([scene.stiffness, np.zeros((1, 2))])
     natural = math.sqrt(float((2.0 * (below + above) / scene.masses[:, None]).max()))  # Gershgorin

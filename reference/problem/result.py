@@ -1,4 +1,4 @@
-"""What both sides return."""
+"""Results of both sides."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from reference.problem.phases import grid_axes, phase_coordinates
 from reference.problem.scene import Scene
-from reference.support.arguments import brief, checked_choice, takes
+from reference.support.arguments import brief, check_choice, takes
 from reference.support.drawing import draw_motion, draw_surface, verbatim
-from reference.support.html_table import digits, html_table
+from reference.support.html_table import html_table, text_of_number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,11 +28,11 @@ DRAWN = {
 }
 
 
-def _counts(status: NDArray[np.str_]) -> list[str]:
+def _count_statuses(status: NDArray[np.str_]) -> list[str]:
     return [f"{count} {name}" for name, count in zip(*np.unique(status, return_counts=True))]
 
 
-def _list(facts: Sequence[str]) -> str:
+def _join_facts(facts: Sequence[str]) -> str:
     shown = facts if len(facts) <= 8 else [*facts[:6], "...", facts[-1]]
     return ", ".join(shown)
 
@@ -112,7 +112,7 @@ class Amplification:
                 for body, (mu, error) in enumerate(rows, start=1)
                 if np.isfinite(mu).any()
             ]
-        facts = _list([*factors, *_counts(self.status)])
+        facts = _join_facts([*factors, *_count_statuses(self.status)])
         reading = "" if self.reading in self.law else f"; {self.reading}"
         basis = f"{reading}; {self.law}" if self.law else reading
         return f"<Amplification of {points} phase pair{'s'[: points != 1]}: {facts}{basis}>"
@@ -123,12 +123,12 @@ class Amplification:
         for body, (mu, error) in enumerate(zip(*(each.reshape(-1, bodies).T for each in (self.mu, self.error))), 1):
             values = np.quantile(mu[np.isfinite(mu)], (0.0, 0.5, 1.0)) if np.isfinite(mu).any() else 3 * [np.nan]
             known = error[np.isfinite(error)].max(initial=-np.inf)
-            rows.append((body, *(digits(value, 5) for value in values), digits(known, 1)))
+            rows.append((body, *(text_of_number(value, 5) for value in values), text_of_number(known, 1)))
         return html_table(repr(self), ("body", "smallest μ", "median μ", "largest μ", "largest error"), rows)
 
     def reshaped(self, shape: tuple[int, ...]) -> Amplification:
         """
-        The same points in another shape.
+        Return the points in another shape.
 
         Parameters
         ----------
@@ -147,7 +147,7 @@ class Amplification:
 
     def to_xarray(self) -> xr.Dataset:
         """
-        The result with coordinates and units.
+        Return the result with coordinates and units.
 
         Returns
         -------
@@ -284,12 +284,13 @@ class Trajectory:
         span = f"{len(self.time)} instants to {self.time[-1]:g} s" if len(self.time) else "no samples"
         moved = np.linalg.norm(self.position[:, 0, :2], axis=-1).max(initial=0.0)
         facts = [span, f"{len(self.stick)} rests", f"platform at most {1e3 * moved:.4g} mm off", self.status]
-        return f"<Trajectory of {self.scene.name}: {_list(facts)}{'; ' * bool(self.law)}{self.law}>"
+        return f"<Trajectory of {self.scene.name}: {_join_facts(facts)}{'; ' * bool(self.law)}{self.law}>"
 
     def _repr_html_(self) -> str:
         moved = np.linalg.norm(self.position[:, :, :2], axis=-1).max(axis=0, initial=0.0)
         rows = [
-            (body, digits(1e3 * far, 4), digits(peak, 5)) for body, (far, peak) in enumerate(zip(moved, self.peak), 1)
+            (body, text_of_number(1e3 * far, 4), text_of_number(peak, 5))
+            for body, (far, peak) in enumerate(zip(moved, self.peak), 1)
         ]
         heads = "body", "largest displacement from the ground, mm", "largest absolute acceleration, m/s²"
         return html_table(repr(self), heads, rows)
@@ -318,7 +319,7 @@ class Trajectory:
 
     def to_xarray(self) -> xr.Dataset:
         """
-        The motion with coordinates and units.
+        Return the motion with coordinates and units.
 
         Returns
         -------
@@ -385,14 +386,14 @@ class Trajectory:
         >>> import reference
         >>> axes = reference.trajectory(reference.load_scene("fig4-dry"), (2.0, 0.7)).plot()
         """
-        label = DRAWN[checked_choice("quantity", quantity, list(DRAWN))]
+        label = DRAWN[check_choice("quantity", quantity, list(DRAWN))]
         return draw_motion(self.time, getattr(self, quantity), self.stick, label, self.scene.title, axes)
 
 
 @dataclass(frozen=True)
 class Accuracy:
     """
-    What the errors of a motion are estimated from: the same motion, computed less accurately.
+    Basis of the errors of a motion: the same motion, computed less accurately.
 
     Attributes
     ----------
@@ -413,7 +414,7 @@ class Accuracy:
 
     def error_of(self, value: float, others: Sequence[float], scale: float | None = None) -> float:
         """
-        Estimated absolute error of a number that is read from the motion.
+        Return the estimated absolute error of a number that is read from the motion.
 
         Parameters
         ----------
@@ -453,4 +454,4 @@ class State:
 
 
 takes_motion = takes(Trajectory, "must be a Trajectory, as reference.trajectory and multibody.trajectory return")
-"""Of functions whose first argument is a motion."""
+"""Decorator of functions whose first argument is a motion."""

@@ -17,41 +17,24 @@ from reference.problem.acceptance import Acceptance, Limits
 from reference.problem.analyses import Analyses
 from reference.problem.bar_links import BarLink, bar_links, stands_upright
 from reference.problem.beam_column import buckling_load
-from reference.problem.changed_values import change_of, changed_name, put_value, value_at
-from reference.problem.friction import DryFriction, Heat
+from reference.problem.changed_values import change_of, name_with_changes, put_value, value_at
+from reference.problem.friction import DryFriction, Heating, VelocityFriction, law_of_friction
+from reference.problem.keys import NONE, REQUIRED, Positive, Table, Text, exactly_one, key, range_of
 from reference.problem.measured import Measured
-from reference.problem.ranges import MAX_CYCLES, SCENE
+from reference.problem.ranges import MAX_CYCLES
 from reference.problem.supports import on_one_line, ring_places, static_shares
-from reference.problem.tables import (
-    ALL,
-    LINKS,
-    NONE,
-    Bars,
-    Body,
-    Excitation,
-    Heating,
-    Isolator,
-    Positive,
-    Record,
-    Table,
-    Text,
-    VelocityFriction,
-    about,
-    exactly_one,
-    kind_of_excitation,
-    within,
-)
-from reference.problem.validation import EXCITATIONS, FRICTIONS, first_error
+from reference.problem.tables import LINKS, Bars, Body, Excitation, Isolator, Record, kind_of_excitation
+from reference.problem.validation import EXCITATIONS, FRICTIONS, first_scene_error
 from reference.records.loading import with_samples
-from reference.support.arguments import as_float, takes
+from reference.support.arguments import Range, as_float, takes
 from reference.support.constants import GRAVITY
 from reference.support.html_table import html_table
 from reference.support.scene_error import MisfitError, SceneError
 
 MAX_BODIES = 10_000
-MIN_STATIC_SHARE = 1e-9  # of the weight, on a support: one with less carries nothing
-MAX_SUPPORT_DEFLECTION = 0.1  # of the radius: what supports may give way by under the weight
-DERIVED_ROUNDING = 1e-12  # relative, of a value that follows from others
+MIN_STATIC_SHARE = 1e-9  # least share of the weight on a support: one with less carries nothing
+MAX_SUPPORT_DEFLECTION = 0.1  # share of the radius by which supports may give way under the weight
+DERIVED_ROUNDING = 1e-12  # relative rounding of a value that follows from others
 
 
 class Scene(Table):
@@ -89,12 +72,12 @@ class Scene(Table):
     1.0
     """
 
-    title: Annotated[Text, about("title of the scene in the report and in figures", "", NONE)]
-    duration: Annotated[
-        Positive,
-        within("duration"),
-        about("time from the start of the motion to its end; with a record, left out, that of the record", "s", ALL),
-    ]
+    title: Text = key("title of the scene in the report and in figures", models=NONE, default=REQUIRED)
+    duration: Positive = key(
+        "time from the start of the motion to its end; with a record, left out, that of the record",
+        Range(1e-6, 1e9, "s"),
+        default=REQUIRED,
+    )
     isolator: Isolator
     bodies: Annotated[list[Body], Field(min_length=1, max_length=MAX_BODIES)]
     excitation: Annotated[
@@ -108,8 +91,8 @@ class Scene(Table):
 
     @model_validator(mode="before")
     @classmethod
-    def _with_samples(cls, data: Any) -> Any:
-        """The samples of a record that is named or given as arrays; `load_scene` has read those of its file."""
+    def _read_record(cls, data: Any) -> Any:
+        """Read the samples of a record that is named or given as arrays; `load_scene` has read those of its file."""
         table = data.get("excitation") if isinstance(data, dict) else None
         if not isinstance(table, dict) or "record" not in table or "samples" in table:
             return data
@@ -119,11 +102,11 @@ class Scene(Table):
             raise MisfitError(error.key, error.value, error.rule) from None
 
     @model_validator(mode="after")
-    def _links(self) -> Scene:
+    def _check_links(self) -> Scene:
         platform, *others = self.bodies
-        for key in (*LINKS, "damping"):
-            if (value := getattr(platform, key)) is not None:
-                raise MisfitError(f"bodies.0.{key}", value, "the platform has no link below: remove this key")
+        for name in (*LINKS, "damping"):
+            if (value := getattr(platform, name)) is not None:
+                raise MisfitError(f"bodies.0.{name}", value, "the platform has no link below: remove this key")
         for number, body in enumerate(others, start=1):
             try:
                 exactly_one(body, *LINKS)
@@ -139,7 +122,7 @@ class Scene(Table):
         return self
 
     def _check_bars(self) -> None:
-        """Bars that the weight makes softer must not buckle under it."""
+        """Check that bars softened by the weight do not buckle under it."""
         for number, (body, load) in enumerate(zip(self.bodies[1:], self.loads_above), start=1):
             if body.bars is None or body.bars.load_effect is None:
                 continue
@@ -152,24 +135,25 @@ class Scene(Table):
                 raise MisfitError(f"bodies.{number}.bars: weight on each bar in N", each, rule)
 
     def _check_derived(self) -> None:
-        """What follows from several values must be within its range as well."""
+        """Check that values which follow from several others are within their ranges."""
         derived = {
-            "isolator: radius in m": (self.radius, SCENE["isolator.radius"]),
-            "bodies: total mass in kg": (self.total_mass, SCENE["bodies.mass"]),
+            "isolator: radius in m": (self.radius, range_of(Isolator, "radius")),
+            "bodies: total mass in kg": (self.total_mass, range_of(Body, "mass")),
         }
         with np.errstate(over="ignore", divide="ignore"):
             periods = 2.0 * np.pi * np.sqrt(self.masses[1:, None] / self.stiffness)
         if self.dry_friction.exponent != 0.0:
-            derived["isolator.friction: under the weight"] = self.dry_friction.slow, SCENE["isolator.friction.slow"]
+            derived["isolator.friction: under the weight"] = self.dry_friction.slow, range_of(VelocityFriction, "slow")
+        allowed = {name: range_of(Body, name) for name in ("stiffness", "period", "damping")}
         for (i, axis), k in np.ndenumerate(self.stiffness):
-            derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), SCENE["bodies.stiffness"]
-            derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), SCENE["bodies.period"]
+            derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), allowed["stiffness"]
+            derived[f"bodies.{i + 1}: period along {'xy'[axis]} in s"] = float(periods[i, axis]), allowed["period"]
             ratio = float(self.damping[i, axis] / (2.0 * np.sqrt(k * self.masses[i + 1])))
-            derived[f"bodies.{i + 1}: damping ratio along {'xy'[axis]}"] = ratio, SCENE["bodies.damping"]
-        for key, (value, allowed) in derived.items():
-            lowest, highest = allowed.lowest * (1.0 - DERIVED_ROUNDING), allowed.highest * (1.0 + DERIVED_ROUNDING)
-            if not (lowest <= value <= highest or value in allowed):
-                raise MisfitError(key, value, allowed.rule)
+            derived[f"bodies.{i + 1}: damping ratio along {'xy'[axis]}"] = ratio, allowed["damping"]
+        for name, (value, span) in derived.items():
+            lowest, highest = span.lowest * (1.0 - DERIVED_ROUNDING), span.highest * (1.0 + DERIVED_ROUNDING)
+            if not (lowest <= value <= highest or value in span):
+                raise MisfitError(name, value, span.rule)
         shortest = 2.0 * math.pi * math.sqrt(self.radius / GRAVITY)
         if isinstance(self.excitation, Excitation):
             shortest = min(shortest, *self.excitation.periods)
@@ -196,7 +180,7 @@ class Scene(Table):
                 raise MisfitError("isolator.support_stiffness", bearings, rule)
 
     def _check_supports(self) -> None:
-        """The supports must span an area, and each must carry a part of the weight at rest."""
+        """Check that the supports span an area, and that each carries a part of the weight at rest."""
         supports, ring, places = self.isolator.supports, self.isolator.ring, self.support_places
         if isinstance(supports, list) and ring is not None:
             raise MisfitError("isolator.ring", ring, "supports at stated positions are on no ring: remove this key")
@@ -213,7 +197,7 @@ class Scene(Table):
             raise MisfitError("bodies: center of mass of all [x, y] in m", self.center_of_mass.tolist(), rule)
 
     def _check_measured(self) -> None:
-        """A measured peak belongs to a body, and to phases where the scene has them."""
+        """Check that a measured peak belongs to a body, and to phases where the scene has them."""
         phased = isinstance(self.excitation, Excitation)
         for number, peak in enumerate(self.measured or ()):
             if peak.body is not None and peak.body > len(self.bodies):
@@ -226,7 +210,7 @@ class Scene(Table):
                 raise MisfitError(f"measured.{number}.phases", peak.phases, rule)
 
     def _check_upright(self) -> None:
-        """Bars that give way must hold the bodies upright."""
+        """Check that bars which give way hold the bodies upright."""
         giving = [n for n, body in enumerate(self.bodies) if body.bars is not None and body.bars.axial_stiffness]
         heights = [body.height for body in self.bodies if body.height is not None]
         if not giving or len(heights) < len(self.bodies):
@@ -254,7 +238,7 @@ class Scene(Table):
 
     def with_values(self, values: Mapping[str, Any]) -> Scene:
         """
-        The same scene with other values, validated like a scene file.
+        Return the scene with other values, validated like a scene file.
 
         Parameters
         ----------
@@ -283,18 +267,18 @@ class Scene(Table):
         """
         data = self.model_dump(exclude_none=True)
         changes = []
-        for key, value in values.items():
-            before = value_at(data, str(key))
+        for name, value in values.items():
+            before = value_at(data, str(name))
             # a key inside a table that is given, too, must not change the caller's table
             own = deepcopy(value) if isinstance(value, dict | list) else value
-            put_value(self.name, data, str(key), own, KEYS)
-            changes.append(change_of(str(key), before, own))
+            put_value(self.name, data, str(name), own, KEYS)
+            changes.append(change_of(str(name), before, own))
         if "name" not in values:
-            data["name"] = changed_name(self.name, changes)
+            data["name"] = name_with_changes(self.name, changes)
         try:
             return Scene.model_validate(data)
         except ValidationError as error:
-            raise first_error(self.name, error, KEYS) from None
+            raise first_scene_error(self.name, error, KEYS) from None
 
     @property
     def radius(self) -> float:
@@ -307,7 +291,7 @@ class Scene(Table):
 
     @property
     def flat(self) -> bool:
-        """Whether the platform slides on a plane: a bearing without restoring force, rho = inf."""
+        """True if the platform slides on a plane: a bearing without restoring force, rho = inf."""
         return math.isinf(self.radius)
 
     @property
@@ -402,22 +386,17 @@ class Scene(Table):
     @property
     def dry_friction(self) -> DryFriction:
         """The law of dry friction mu(|v|, N); without friction in a lubricated scene, which has none."""
-        friction = self.isolator.friction
-        if not isinstance(friction, VelocityFriction):
-            return DryFriction(friction or 0.0, friction or 0.0, 0.0)
-        fast, rate, exponent = friction.fast, friction.rate or 0.0, friction.load_exponent or 0.0
-        share = (self.total_mass * GRAVITY / friction.reference_load) ** exponent if friction.reference_load else 1.0
-        heat, sliders = None, 1 if self.support_places is None else len(self.support_places)
-        if friction.heating is not None:
-            stated = friction.heating
-            track = stated.contact_radius, stated.conductivity, stated.diffusivity, stated.initial_temperature
-            heat = Heat.of(*track, sliders)
-        fast = friction.slow if fast is None else fast
-        return DryFriction(share * friction.slow, share * fast, rate, exponent, heat)
+        sliders = 1 if self.support_places is None else len(self.support_places)
+        return law_of_friction(self.isolator.friction, self.total_mass * GRAVITY, sliders)
+
+    @property
+    def has_dry_friction(self) -> bool:
+        """True if friction is dry and not zero: only then a law can be regularized and a motion comes to rest."""
+        return not self.lubricated and self.friction_coefficient != 0.0
 
     @property
     def recorded(self) -> bool:
-        """Whether a recorded motion takes the place of the two frequencies: then there are no phases."""
+        """True if a recorded motion takes the place of the two frequencies: then there are no phases."""
         return isinstance(self.excitation, Record)
 
     @cached_property
@@ -457,7 +436,7 @@ class Scene(Table):
 
     def with_amplitude(self, amplitude: float) -> Scene:
         """
-        The same scene with its loading scaled.
+        Return the scene with its loading scaled.
 
         Parameters
         ----------
@@ -474,13 +453,15 @@ class Scene(Table):
             For an amplitude outside its range, or a loading that is zero throughout.
         """
         values = self.loading_values(amplitude)
-        return self.with_values({**values, "name": changed_name(self.name, [f"amplitude={as_float(amplitude):.12g}"])})
+        return self.with_values(
+            {**values, "name": name_with_changes(self.name, [f"amplitude={as_float(amplitude):.12g}"])}
+        )
 
     def loading_values(self, amplitude: float) -> dict[str, Any]:
-        """The values that scale the loading to an amplitude, m/s^2. Raises SceneError as `with_amplitude`."""
+        """Return the values that scale the loading to an amplitude, m/s^2. Raises SceneError as `with_amplitude`."""
         largest, stated = self.largest_acceleration, amplitude
         amplitude = as_float(stated)
-        if not 0.0 < amplitude <= SCENE["excitation.amplitudes"].highest:
+        if not 0.0 < amplitude <= range_of(Excitation, "amplitudes").highest:
             raise SceneError(self.name, "amplitude", stated, "must be finite and greater than 0 m/s^2")
         if largest == 0.0:
             key = "record" if self.recorded else "amplitudes"
@@ -491,12 +472,12 @@ class Scene(Table):
 
     @property
     def has_unloaded_bars(self) -> bool:
-        """Whether a link is given by bars whose softening by the weight is left out."""
+        """True if a link is given by bars whose softening by the weight is left out."""
         return any(body.bars is not None and body.bars.load_effect is None for body in self.bodies)
 
     def softened(self) -> Scene:
         """
-        The same scene with every link of bars as soft as the weight that it carries makes it.
+        Return the scene with every link of bars softened by the weight that it carries.
 
         `stiffness` and `period` state a link under load: such links stay.
 
@@ -518,10 +499,10 @@ class Scene(Table):
         """
         unloaded = [n for n, body in enumerate(self.bodies) if body.bars is not None and body.bars.load_effect is None]
         values = {f"bodies.{number}.bars.load_effect": "softening" for number in unloaded}
-        return self.with_values({**values, "name": changed_name(self.name, ["softened"] * bool(unloaded))})
+        return self.with_values({**values, "name": name_with_changes(self.name, ["softened"] * bool(unloaded))})
 
     def digest(self) -> str:
-        """Hash of everything that enters a result, for stores of results and for provenance."""
+        """Return the hash of everything that enters a result, for stores of results and for provenance."""
         return self._digest
 
     @cached_property
@@ -535,11 +516,11 @@ class Scene(Table):
 
 
 takes_scene = takes(Scene, 'must be a Scene, as reference.load_scene("fig3-I") returns')
-"""Of functions whose first argument is a scene."""
+"""Decorator of functions whose first argument is a scene."""
 
 
 def _link_stiffness(body: Body, load: float) -> list[float]:
-    """Stiffness in x and y, N/m, of the link below a body that carries `load`, N, by whichever key states it."""
+    """Return the stiffness in x and y, N/m, of the link below a body that carries `load`, N."""
     if body.stiffness is not None:
         return body.stiffness
     if body.bars is not None:

@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from reference.problem.scene import KEYS, Scene
-from reference.problem.validation import first_error
+from reference.problem.validation import first_scene_error
 from reference.records.loading import EXAMPLES, with_samples
 from reference.support.arguments import takes
 from reference.support.files import read_file
@@ -22,13 +22,13 @@ RANGE, VALUES = {"range", "steps"}, {"values"}  # keys of an inline table whose 
 LARGEST = 2**22  # bytes of a scene file
 MAX_NESTING = 10  # tables and lists within one another in a scene file
 KEY = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
-# a key of so many parts is nested too deep; the parser's work grows as the square of their number
+# A key of that many parts is nested too deep, and the parser's work grows as the square of their number.
 LONG_KEY = re.compile(rf"(?<![\w-]){KEY}(?:[ \t]*+\.[ \t]*+{KEY}){{{2 * MAX_NESTING}}}", re.ASCII)
 
 
 def builtin_scenes() -> list[str]:
     """
-    Names of the paper's own cases, in the order of its figures.
+    Return names of the paper's own cases, in the order of its figures.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def builtin_scenes() -> list[str]:
 
 def example_scenes() -> list[str]:
     """
-    Names of the scenes with a recorded motion that are shipped as examples.
+    Return names of the scenes with a recorded motion that are shipped as examples.
 
     Returns
     -------
@@ -87,16 +87,16 @@ def load_scene(source: str | Path, amplitude: float | None = None) -> Scene:
     >>> load_scene("fig3-I").friction_coefficient
     0.1
     """
-    return scaled_scene(parse_scene(scene_text(source), str(source)), amplitude)
+    return scale_loading(parse_scene(scene_text(source), str(source)), amplitude)
 
 
-def scaled_scene(scene: Scene, amplitude: float | None) -> Scene:
-    """The scene of a file with its loading scaled, if so asked, under the name of the file."""
+def scale_loading(scene: Scene, amplitude: float | None) -> Scene:
+    """Return the scene of a file under the name of the file, with its loading scaled to an amplitude, m/s^2."""
     return scene if amplitude is None else scene.with_values({**scene.loading_values(amplitude), "name": scene.name})
 
 
 def scene_text(source: str | Path) -> bytes:
-    """What is written in a built-in scene or a file. Raises SceneError if there is none."""
+    """Read the text of a built-in scene or a file. Raises SceneError if there is none."""
     label = str(source)
     if label in example_scenes():
         return (EXAMPLES / f"{label}.toml").read_bytes()
@@ -113,14 +113,14 @@ def scene_text(source: str | Path) -> bytes:
 @takes(bytes, "must be the text of a scene file as bytes, TOML in UTF-8")
 def parse_scene(text: bytes, label: str) -> Scene:
     '''
-    The scene in a text.
+    Return the scene in a text.
 
     Parameters
     ----------
     text : bytes
         TOML in UTF-8.
     label : str
-        Name or path of the scene in errors; records are looked for beside it.
+        Name or path of the scene in errors; records are looked for in its folder.
 
     Returns
     -------
@@ -150,17 +150,17 @@ def parse_scene(text: bytes, label: str) -> Scene:
         raise SceneError(label, "combine", data["combine"], remedy)
     for path, table in running_values((), data):
         raise SceneError(label, ".".join(map(str, path)), table, rule.format("give one value"))
-    return validated_scene(data, label, Path(label).stem)
+    return make_scene(data, label, Path(label).stem)
 
 
 def scene_tables(text: bytes, label: str) -> dict[str, Any]:
-    """The tables of a scene file, not validated. Raises SceneError if they cannot be read."""
+    """Return the tables of a scene file, not validated. Raises SceneError if they cannot be read."""
     try:
         decoded = text.decode("utf-8-sig")
         data: dict[str, Any] | None = None if LONG_KEY.search(decoded) else tomllib.loads(decoded)
     except (ValueError, RecursionError) as error:
         raise SceneError(label, "file", str(error), "must be valid TOML in UTF-8") from None
-    if data is None or _deeper(data, MAX_NESTING):
+    if data is None or _is_deeper(data, MAX_NESTING):
         raise SceneError(label, "file", label, f"must have at most {MAX_NESTING} tables and lists within one another")
     if data and data.keys().isdisjoint((*KEYS[""], "combine")):  # whatever it is, none of it is shown
         raise SceneError(label, "file", label, f"is no scene: must have keys as {', '.join(KEYS[''])}")
@@ -169,16 +169,16 @@ def scene_tables(text: bytes, label: str) -> dict[str, Any]:
     return data
 
 
-def validated_scene(data: dict[str, Any], label: str, name: str) -> Scene:
-    """The scene of these tables under this name, its record read; `label` names it in errors. Raises SceneError."""
+def make_scene(data: dict[str, Any], label: str, name: str) -> Scene:
+    """Make the scene of tables, with its record read; `label` names it in errors. Raises SceneError."""
     try:
         return Scene.model_validate({**with_samples(data, label), "name": name})
     except ValidationError as error:
-        raise first_error(label, error, KEYS) from None
+        raise first_scene_error(label, error, KEYS) from None
 
 
 def running_values(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:
-    """Where in the tables something runs, and the inline table that says how."""
+    """Iterate over the places in the tables at which a value runs, with the inline table that says how."""
     if isinstance(value, dict) and path and value.keys() & (RANGE | VALUES):
         yield path, value
     elif isinstance(value, dict | list):
@@ -186,7 +186,7 @@ def running_values(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tu
             yield from running_values((*path, key), part)
 
 
-def _deeper(data: Any, levels: int) -> bool:
-    """Whether tables and lists are nested in more than so many levels."""
+def _is_deeper(data: Any, levels: int) -> bool:
+    """Return True if tables and lists are nested in more than `levels` levels."""
     inner = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
-    return any(levels == 0 or _deeper(part, levels - 1) for part in inner if isinstance(part, dict | list))
+    return any(levels == 0 or _is_deeper(part, levels - 1) for part in inner if isinstance(part, dict | list))

@@ -1,4 +1,4 @@
-"""Where the supports of the platform stand, and what they carry at rest."""
+"""Places of the supports of the platform, and their loads at rest."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-MIN_EXTENT_RATIO = 1e-6  # of the places across a line over those along it
+MIN_EXTENT_RATIO = 1e-6  # least extent of the places across a line over that along it
 
 
 def ring_places(count: int, radius: float) -> Array:
-    """Places (count, 2) on a ring, at angles 2 pi (k + 1/2) / count."""
+    """Return places (count, 2) on a ring, at angles 2 pi (k + 1/2) / count."""
     angles = 2.0 * np.pi * (np.arange(count) + 0.5) / count
     return radius * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
 def static_shares(places: Array, center: Array) -> Array:
     """
-    Shares (K,) of a weight on elastic supports that are equally stiff: N_k = c0 + c1 x_k + c2 y_k, in balance with it.
+    Return the shares (K,) of a weight on equally stiff supports: N_k = c0 + c1 x_k + c2 y_k, in balance with it.
 
     places: (K, 2), m, not on one line. center: (2,), m, where the weight acts. Negative where a support would pull.
 
@@ -33,6 +33,6 @@ def static_shares(places: Array, center: Array) -> Array:
 
 
 def on_one_line(places: Array) -> bool:
-    """Whether places (K, 2) span no area, as far as double precision tells."""
+    """Return True if places (K, 2) span no area in double precision."""
     extents = np.linalg.svd(places - places.mean(axis=0), compute_uv=False)
     return bool(extents[1] <= MIN_EXTENT_RATIO * extents[0])

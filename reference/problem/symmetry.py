@@ -19,30 +19,32 @@ from reference.problem.scene import Scene
 Array = NDArray[np.float64]
 
 
-def half_turns(scene: Scene) -> NDArray[np.intp]:
-    """By how many half turns both phases may be shifted without any change of mu, (K, 2); the first is no shift."""
+def allowed_half_turns(scene: Scene) -> NDArray[np.intp]:
+    """Return the half turns that shift both phases without a change of mu, (K, 2); the first is no shift."""
     turns = np.array([[0, 0], [1, 1], [0, 1], [1, 0]], dtype=np.intp)
     return turns if own_axes(scene) else turns[: 2 if half_turn(scene) else 1]
 
 
-def sources(scene: Scene, grid: int) -> NDArray[np.intp]:
-    """For every phase pair 2 pi k / grid the index of the pair solved for it, (grid^2,), alpha2 running fastest."""
+def indices_of_solved_pairs(scene: Scene, grid: int) -> NDArray[np.intp]:
+    """Return the index of the pair solved for every pair 2 pi k / grid, (grid^2,), alpha2 running fastest."""
     steps = np.stack(np.divmod(np.arange(grid**2), grid), axis=-1)
-    shifts = half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
+    shifts = allowed_half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
     images = (steps[:, None] + shifts) % grid
     images[..., unused_harmonics(scene)] = 0
     first: NDArray[np.intp] = (grid * images[..., 0] + images[..., 1]).min(axis=1)
     return first
 
 
-def distinct(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
-    """The fewest phase pairs (P, 2), rad, for a surface on 2 pi k / grid, and which of them stands at each point."""
-    solved, taken = np.unique(sources(scene, grid), return_inverse=True)
+def distinct_pairs(scene: Scene, grid: int) -> tuple[Array, NDArray[np.intp]]:
+    """Return the fewest phase pairs (P, 2), rad, for a surface on 2 pi k / grid, and the index of one at each point."""
+    solved, taken = np.unique(indices_of_solved_pairs(scene, grid), return_inverse=True)
     return phase_grid(grid)[solved], taken.reshape(grid, grid)
 
 
-def surface(scene: Scene, grid: int, solve: Callable[[Scene, Array], Amplification]) -> tuple[Array, Array, list[str]]:
-    """mu and error (grid, grid, N) on phases 2 pi k / grid from the fewest pairs, and every status met."""
-    phases, taken = distinct(scene, grid)
+def complete_surface(
+    scene: Scene, grid: int, solve: Callable[[Scene, Array], Amplification]
+) -> tuple[Array, Array, list[str]]:
+    """Return mu and error (grid, grid, N) on phases 2 pi k / grid from the fewest pairs, and every status met."""
+    phases, taken = distinct_pairs(scene, grid)
     answer = solve(scene, phases)
     return answer.mu[taken], answer.error[taken], sorted(set(map(str, answer.status)))

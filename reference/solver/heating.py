@@ -14,13 +14,12 @@ from pathlib import Path
 import numpy as np
 from numba import njit
 
-from reference.problem import DryFriction
 from reference.problem.friction import Heat
 from reference.solver.collocation import DEFECT_POLYNOMIAL, MONOMIALS, NODES, STAGES, A
 from reference.solver.compiled import OPTIONS
 from reference.solver.samples import SampledMotion, sample_motion
-from reference.solver.system import REST, Array, StepRecord, System
-from reference.support.build_cache import cached_on_disk
+from reference.solver.system import REST, Array, StepRecord, System, law_of
+from reference.support.build_cache import cache_on_disk
 
 NEWTON_STEPS = 8  # iterations to the instant between two nodes at which covering begins or ends
 # Ends of the pieces behind a kink of the power, as shares of the step: T is not smooth there, like the root of time
@@ -101,8 +100,7 @@ def _cold_friction_power(system: System, motion: SampledMotion) -> Array:
     if not system.small:
         speed2 += (x * v).sum(axis=1) ** 2 / (system.radius**2 - (x**2).sum(axis=1))
     speed, weight = np.sqrt(speed2), system.mass_ratio * system.gravity
-    law = DryFriction(system.friction, system.friction + system.rise, system.rate, system.exponent)
-    power = law.at(speed, motion.reaction / weight) * motion.reaction * speed
+    power = law_of(system).at(speed, motion.reaction / weight) * motion.reaction * speed
     return power * np.minimum(speed / system.v_reg, 1.0) if system.v_reg > 0.0 else power
 
 
@@ -127,7 +125,7 @@ def far_conduction_integral(theta: float, power: Array) -> float:
     return total
 
 
-@cached_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
+@cache_on_disk(Path(__file__).parent, error_model="numpy", nogil=True)
 def fill_temperature_factors(start: Array, length: Array, power: Array, initial: float, k_t: Array) -> None:
     """
     Fill k_T at the nodes of pieces (K, S). `power` is that at k_T = 1, times the rise of the temperature.

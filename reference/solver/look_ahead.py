@@ -14,7 +14,13 @@ from math import cos, inf, sin, sqrt
 
 from reference.solver.chain import set_chain_acceleration
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import coefficient, squared_sliding_speed
+from reference.solver.contact.friction import (
+    coefficient,
+    kinetic_coefficient,
+    squared_sliding_speed,
+    static_limit,
+    viscous_factor,
+)
 from reference.solver.contact.load import scale_by_load
 from reference.solver.contact.platform import acceleration, load_in_state, rest_excess, slip_factor
 from reference.solver.ground import next_ground, set_turns, set_waves
@@ -147,7 +153,7 @@ def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h
     speed2 = squared_sliding_speed(system, load.px, load.py, vx, vy)
     if system.law == SET_VALUED and speed2 == 0.0:
         excess, reaction = rest_excess(system, load)
-        limit = scale_by_load(system, load.k_t, reaction, system.friction * reaction)
+        limit = static_limit(system, load.k_t, reaction)
         if excess <= 0.0:
             largest = sqrt(ground.x * ground.x + ground.y * ground.y)
             nearly = excess > (MAX_HELD_DRIVE - 1.0) * limit * limit
@@ -167,14 +173,14 @@ def push_platform(system: System, work: Workspace, load: Load, ground: Ground, h
         work.v[0, 0] = work.v[0, 1] = 0.0
         return sqrt(ground.x * ground.x + ground.y * ground.y), far
     if system.law == LUBRICATED:
-        share = 1.0 / (1.0 + h * reaction * system.friction)
+        share = 1.0 / (1.0 + h * reaction * viscous_factor(system))
     else:
         ratio = sqrt(squared_sliding_speed(system, load.px, load.py, free_x / free, free_y / free))
         limit = held * coefficient(system, sqrt(speed2)) / ratio
         share = max(0.0, 1.0 - h * limit / free)
         if share * free * ratio < system.v_reg:
             share = 1.0 / (1.0 + h * limit * ratio / system.v_reg)
-        limit = max(limit, held * system.friction / ratio)  # friction may rise on the way to the stop
+        limit = max(limit, held * kinetic_coefficient(system) / ratio)  # friction may rise on the way to the stop
         slow = share * free < MAX_SLOW_STEPS * h * limit
         if slow and speed2 > system.v_reg * system.v_reg:
             work.v[0, 0], work.v[0, 1] = share * free_x, share * free_y

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from reference.problem import GRAVITY, Scene, exponents
+from reference.problem import GRAVITY, DryFriction, Scene, exponents
 from reference.solver.collocation import STAGES
 from reference.solver.rows import Number
 
@@ -32,7 +32,7 @@ class System(NamedTuple):
     small: bool  # equations (4.3) instead of (3.9)
     law: int  # SET_VALUED, REGULARIZED or LUBRICATED
     rest_condition: int  # CONSISTENT or PRINTED
-    friction: float  # coefficient mu, that at rest where it depends on the velocity; f_c in s/m of a lubricated contact
+    friction: float  # mu at vanishing speed, or f_c in s/m of a lubricated contact: read by contact/friction.py alone
     rise: float  # increase of mu from rest to high speed
     rate: float  # s/m, rate of that increase with the speed; 0 where mu is constant
     exponent: Any  # float, exponent n of N / W in mu (contact/load.py); None where mu has neither that nor heating
@@ -118,13 +118,13 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
     damping_rate = float(2.0 * (damping_below + damping_above).max())
     # Without friction the lubricated law with f_c = 0 is the same, and has no corner.
     dry = scene.dry_friction
-    smooth = scene.lubricated or scene.friction_coefficient == 0.0
+    smooth = not scene.has_dry_friction
     heat = None if smooth else dry.heat
     return System(
         small=small,
         law=LUBRICATED if smooth else (SET_VALUED if v_reg is None else REGULARIZED),
         rest_condition=PRINTED if printed_rest else CONSISTENT,
-        friction=dry.slow if dry.varies else scene.friction_coefficient,
+        friction=scene.friction_coefficient if scene.lubricated else dry.slow,
         rise=dry.fast - dry.slow if dry.varies else 0.0,
         rate=dry.rate if dry.varies else 0.0,
         exponent=None if smooth or (dry.exponent == 0.0 and dry.heat is None) else dry.exponent,
@@ -148,6 +148,11 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         fastest=float(np.sqrt(2.0 * (below + above).max())) + damping_rate,  # Gershgorin's bounds of the eigenvalues
         damping_rate=damping_rate,
     )
+
+
+def law_of(system: System) -> DryFriction:
+    """Return the law of dry friction of a system, cold."""
+    return DryFriction(system.friction, system.friction + system.rise, system.rate, system.exponent)
 
 
 def _link_coefficients(masses: Array, links: Array) -> tuple[Array, Array]:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Rest = ParamSpec("Rest")
 Result = TypeVar("Result")
-MISSING = object()  # an argument that is not there
+MISSING = object()  # stands for an argument that is not given
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,11 @@ class Range:
     highest: float
     unit: str = ""
     or_infinite: bool = False
+
+    @property
+    def text(self) -> str:
+        """The range as it stands in a table."""
+        return f"{self.lowest:g} to {self.highest:g}{', or inf' if self.or_infinite else ''}"
 
     @property
     def rule(self) -> str:
@@ -50,53 +55,50 @@ def takes(kind: type | UnionType, rule: str) -> Callable[[Callable[Rest, Result]
         name = next(iter(signature(function).parameters))
 
         @wraps(function)
-        def checked(*args: Rest.args, **kwargs: Rest.kwargs) -> Result:
+        def check_and_call(*args: Rest.args, **kwargs: Rest.kwargs) -> Result:
             first = args[0] if args else kwargs.get(name, MISSING)
             if first is not MISSING and not isinstance(first, kind):
                 raise TypeError(f"{name} = {brief(first)}: {rule}")
             return function(*args, **kwargs)
 
-        return checked
+        return check_and_call
 
     return with_check
 
 
 def as_float(value: Any) -> float:
-    """A number as a float: inf for one beyond double precision, NaN for what is no number."""
+    """Return a number as a float: inf for one beyond double precision, NaN for what is no number."""
     try:
         return float(value) if isinstance(value, Real) and not isinstance(value, bool) else math.nan
     except OverflowError:
         return math.inf
 
 
-def checked_number(name: str, value: Any, allowed: Range) -> float:
-    """`value` as a float. Raises ValueError, one line, if it is not a number within the range."""
+def check_number(name: str, value: Any, allowed: Range) -> float:
+    """Return `value` as a float. Raises ValueError, one line, if it is not a number within the range."""
     number = as_float(value)
     if number not in allowed:
         raise ValueError(f"{name} = {brief(value)}: {allowed.rule}")
     return number
 
 
-def checked_whole_number(name: str, value: Any, allowed: Range) -> int:
-    """`value` as an int. Raises ValueError, one line, if it is not a whole number within the range."""
+def check_whole_number(name: str, value: Any, allowed: Range) -> int:
+    """Return `value` as an int. Raises ValueError, one line, if it is not a whole number within the range."""
     if not isinstance(value, Integral) or isinstance(value, bool) or as_float(value) not in allowed:
         rule = f"must be a whole number from {allowed.lowest:g} to {allowed.highest:g}"
         raise ValueError(f"{name} = {brief(value)}: {rule}")
     return int(value)
 
 
-def checked_choice(name: str, value: Any, allowed: Sequence[str]) -> str:
-    """`value` if it is one of the texts `allowed`. Raises ValueError, one line."""
+def check_choice(name: str, value: Any, allowed: Sequence[str]) -> str:
+    """Return `value` if it is one of the texts `allowed`. Raises ValueError, one line."""
     if not (isinstance(value, str) and value in allowed):
         raise ValueError(f"{name} = {brief(value)}: must be one of {', '.join(allowed)}")
     return value
 
 
-def checked_array(name: str, values: Any, rule: str, *, finite: bool = True) -> Array:
-    """
-    `values` as a contiguous array of numbers, finite ones if so asked. Raises ValueError, one line that ends with
-    `rule`.
-    """
+def check_array(name: str, values: Any, rule: str, *, finite: bool = True) -> Array:
+    """Return `values` as a contiguous array of numbers, or raise ValueError, one line that ends with `rule`."""
     if _is_masked(values):
         raise ValueError(f"{name}: has masked entries: {rule}")
     try:
@@ -114,14 +116,14 @@ def checked_array(name: str, values: Any, rule: str, *, finite: bool = True) -> 
 
 
 def _is_masked(values: Any) -> bool:
-    """Whether an array, or one within lists, has masked entries."""
+    """Return True if an array, or one within lists, has masked entries."""
     if isinstance(values, list | tuple):
         return any(map(_is_masked, values))
     return bool(np.ma.is_masked(values))
 
 
 def brief(value: Any, longest: int = 80) -> str:
-    """`repr` of a value in one line of at most `longest` letters."""
+    """Return the `repr` of a value in one line of at most `longest` letters."""
     try:
         text = repr(value[: 2 * longest] if isinstance(value, str) else value)
     except (ValueError, RecursionError):  # an integer of more digits than Python prints, tables thousands deep

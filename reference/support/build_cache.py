@@ -29,8 +29,8 @@ njit: Any = numba.njit
 config: Any = numba.config
 
 
-class _Uncollected(Compiler):  # type: ignore[misc]
-    """Numba's compiler while Python does not search for garbage: nearly all that it makes is in use to its end."""
+class _CompilerWithoutCollection(Compiler):  # type: ignore[misc]
+    """Compiler of numba without garbage collection: nearly all that it makes is in use to its end."""
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a Python function."""
@@ -44,8 +44,8 @@ class _Uncollected(Compiler):  # type: ignore[misc]
 
 
 def build_folder(sources: Path) -> Path | None:
-    """Where builds of a file or folder are kept: below NUMBA_CACHE_DIR or in the user's cache; None if in neither."""
-    # not numba's own setting: a file in the working directory may have made it, and builds are run
+    """Return the folder for builds of `sources`, below NUMBA_CACHE_DIR or in the user's cache; None without both."""
+    # Numba's own setting is not read: a file in the working directory may have made it, and builds are run.
     named = os.environ.get("NUMBA_CACHE_DIR")
     parent = Path(named) if named else user_cache()
     if parent is None:
@@ -56,8 +56,8 @@ def build_folder(sources: Path) -> Path | None:
     return parent / f"numba-{digest.hexdigest()[:12]}"
 
 
-class _Announced(_Uncollected):
-    """The same for what takes long: the user's own process says so; the command line shows the task of its worker."""
+class _AnnouncingCompiler(_CompilerWithoutCollection):
+    """Compiler that announces a long compilation in the user's own process; the command line shows those of workers."""
 
     def compile_extra(self, func: Any) -> Any:
         """Compile a Python function."""
@@ -66,13 +66,13 @@ class _Announced(_Uncollected):
         return super().compile_extra(func)
 
 
-def cached_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
+def cache_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> Callable[[Callable[..., Any]], Any]:
     """
     Decorate a function that numba compiles and keeps on disk.
 
     sources: all that it calls, usually `__file__`; slow: whether a line on standard error says that it is compiled.
     """
-    pipeline = _Announced if slow else _Uncollected
+    pipeline = _AnnouncingCompiler if slow else _CompilerWithoutCollection
     folder = build_folder(Path(sources))
 
     def decorate(function: Callable[..., Any]) -> Any:
@@ -89,7 +89,7 @@ def cached_on_disk(sources: str | Path, slow: bool = False, **options: Any) -> C
 
 @cache
 def user_cache() -> Path | None:
-    """The user's cache of this project, made if needed, else a private temporary directory; None without either."""
+    """Return the user's cache of this project, else a private temporary directory; None without both."""
     return _writable(platformdirs.user_cache_path(NAME, appauthor=False)) or _private_temporary()
 
 
@@ -104,7 +104,7 @@ def _writable(folder: Path) -> Path | None:
 
 
 def _private_temporary() -> Path | None:
-    """Everybody may write beside it: what another user put there in advance is not loaded."""
+    """Return a temporary directory of the user alone: nothing that another user put there in advance is loaded."""
     user = os.getuid() if hasattr(os, "getuid") else None
     folder = Path(tempfile.gettempdir()) / (NAME if user is None else f"{NAME}-{user}")
     try:

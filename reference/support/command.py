@@ -1,7 +1,7 @@
 """
 How every command ends: its exit code, one line for whatever went wrong, and never a traceback on the terminal.
 
-Beside what a command defines for itself: 2 for wrong input; 3 for an unexpected error, whose traceback goes to a file,
+Codes that are common to all commands: 2 for wrong input; 3 for an unexpected error, whose traceback goes to a file,
 and for a file or an output that cannot be written; 128 + number for a signal, 130 for Ctrl-C; 141 if whoever read the
 output has closed it, as `head` does.
 """
@@ -69,8 +69,8 @@ def run_command(main: Callable[[], int]) -> NoReturn:
         output.reconfigure(errors="backslashreplace")
     sys.stdout = cast(TextIO, _Output(output))
     try:
-        with stoppable():
-            code = _code(main)
+        with stop_on_signals():
+            code = _exit_code_of(main)
     finally:
         sys.stdout = output
         _flush_at_last(output)
@@ -78,8 +78,8 @@ def run_command(main: Callable[[], int]) -> NoReturn:
 
 
 @contextmanager
-def stoppable() -> Iterator[None]:
-    """The first signal that ends a process, unless ignored, raises StoppedError in the block; others change nothing."""
+def stop_on_signals() -> Iterator[None]:
+    """Raise StoppedError in the block at the first signal that ends a process, unless it is ignored."""
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread may handle signals
         return
@@ -122,8 +122,8 @@ class _Output:
         return getattr(self._stream, name)
 
 
-def _code(main: Callable[[], int]) -> int:
-    """The exit code of `main`, whatever it does."""
+def _exit_code_of(main: Callable[[], int]) -> int:
+    """Return the exit code of `main`, whatever it does."""
     try:
         for word in sys.argv[1:]:
             if any("\ud800" <= letter <= "\udfff" for letter in word):
@@ -131,7 +131,7 @@ def _code(main: Callable[[], int]) -> int:
                 return 2
         try:
             code = main()
-        except SystemExit as end:  # of argparse
+        except SystemExit as end:  # argparse raises it
             code = end.code if isinstance(end.code, int) else 0 if end.code is None else UNEXPECTED
         sys.stdout.flush()
         return code
@@ -146,12 +146,12 @@ def _code(main: Callable[[], int]) -> int:
         return CLOSED if error.closed else UNEXPECTED
     except Exception as error:
         what = " ".join(f"{type(error).__name__}: {error}".split())
-        _say(f"unexpected error: {what[:500]}; {_details()}")
+        _say(f"unexpected error: {what[:500]}; {_write_details()}")
         return UNEXPECTED
 
 
-def _details() -> str:
-    """Where the traceback of the error at hand was written."""
+def _write_details() -> str:
+    """Write the traceback of the error at hand to a file; return where it is."""
     text = f"{sys.argv}\n{sys.version}\n{traceback.format_exc()}"
     try:
         handle, name = tempfile.mkstemp(prefix="phase-resonance-", suffix=".log")

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     Array = NDArray[np.float64]
 
 COLORS = "cividis"  # read alike with and without color vision deficiency, and in print
-MAX_TIME_POINTS = 20_000  # of a drawn line
+MAX_TIME_POINTS = 20_000  # points of a drawn line
 
 
 def verbatim(text: str) -> str:
     r"""
-    A text of a scene for matplotlib, which would read dollar signs as the marks of a formula.
+    Escape a text of a scene for matplotlib, which would read dollar signs as the marks of a formula.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def draw_surface(grid: tuple[Array, Array], height: Array, label: str, title: st
         image = axes.pcolormesh(*grid, height.T, cmap=COLORS, shading="nearest")
         axes.figure.colorbar(image, ax=axes, label=label)
         axes.set_aspect("equal")
-    pad = 10.0 if axes.name == "3d" else 4.0  # points: beside a surface tick labels are wide
+    pad = 10.0 if axes.name == "3d" else 4.0  # points: tick labels of a surface are wide
     axes.set_xlabel(r"$\alpha_1$, rad", labelpad=pad)
     axes.set_ylabel(r"$\alpha_2$, rad", labelpad=pad)
     for axis, phases in zip((axes.xaxis, axes.yaxis), grid):
@@ -70,10 +70,10 @@ def _mark_quarter_turns(axis: Axis, span: float) -> None:
 
     if 0.9 * np.pi <= span <= 8.0 * np.pi:
         axis.set_major_locator(MultipleLocator(0.5 * np.pi))
-        axis.set_major_formatter(FuncFormatter(lambda phase, _: in_half_turns(phase)))
+        axis.set_major_formatter(FuncFormatter(lambda phase, _: write_half_turns(phase)))
 
 
-def in_half_turns(phase: float) -> str:
+def write_half_turns(phase: float) -> str:
     """
     Write a multiple of pi / 2.
 
@@ -88,7 +88,7 @@ def in_half_turns(phase: float) -> str:
 def draw_motion(
     time: Array, values: Array, rests: Sequence[tuple[float, float]], label: str, title: str, axes: Axes | None
 ) -> Axes:
-    """Values (T, N, 3) of every body along x and y over `time` (T,), s, with the intervals of rest shaded."""
+    """Draw values (T, N, 3) of every body along x and y over `time` (T,), s, with the intervals of rest shaded."""
     axes = _new_axes(None) if axes is None else axes
     every = slice(None, None, -(-len(time) // MAX_TIME_POINTS) or 1)
     for body in range(values.shape[1]):

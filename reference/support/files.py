@@ -2,10 +2,10 @@
 Files and directories that appear whole or not at all, and never in the place of what somebody else wrote; and how a
 file that somebody else may have written is read.
 
-A file is written under a temporary name beside its place and renamed. A directory is written in a staging directory
-beside its place; the staging directory carries a mark that names the place, and a lock that ends with the process,
-however that ends. A marked directory without a lock belongs to nobody who lives. Without locks (Windows) none is taken
-for dead.
+A file is written under a temporary name in the folder of its place and renamed. A directory is written in a staging
+directory in that folder. The staging directory carries a mark that names the place, and a lock that ends with the
+process, however that ends. A marked directory without a lock belongs to no living process. Without locks (Windows) none
+is taken for dead.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ try:
 except ImportError:
     fcntl = None  # type: ignore[assignment]
 
-TEMPORARY = ".phase-resonance-"  # how the names of temporary files and staging directories begin; no proof of anything
+TEMPORARY = ".phase-resonance-"  # begins names of temporary files and staging directories, and proves nothing
 MARK = "staging.json"  # file in a staging directory that says what it is and for which place
 CHUNK = 2**20  # bytes read at once
-NEW = "new"  # in a staging directory: what is being written
+NEW = "new"  # directory in a staging directory, for the files that are being written
 
 
 def read_file(file: str | Path, largest: int) -> bytes:
-    """The content of a regular file of at most `largest` bytes. Raises OSError; ValueError if it is no path."""
+    """Return the content of a regular file of at most `largest` bytes. Raises OSError; ValueError if it is no path."""
     flags = (getattr(os, name, 0) for name in ("O_NONBLOCK", "O_NOCTTY", "O_CLOEXEC", "O_BINARY"))
     handle = os.open(file, os.O_RDONLY | sum(flags))
     try:
@@ -56,7 +56,7 @@ def read_file(file: str | Path, largest: int) -> bytes:
 
 def write_atomically(file: Path, content: bytes) -> None:
     """Write a file of our own, whole or not at all, in place of the one that is there. Raises OSError."""
-    part = _part(file, content)
+    part = _write_part(file, content)
     try:
         os.replace(part, file)
     except BaseException:
@@ -66,9 +66,9 @@ def write_atomically(file: Path, content: bytes) -> None:
 
 def write_new(file: Path, content: bytes) -> Path:
     """Write a file under the name given, or the next free one (`run-2.gif`); the file written. Raises OSError."""
-    part = _part(file, content)
+    part = _write_part(file, content)
     try:
-        for place in names_after(file):
+        for place in numbered_names(file):
             with suppress(FileExistsError):
                 _move_to_free(part, place)
                 return place
@@ -77,8 +77,8 @@ def write_new(file: Path, content: bytes) -> Path:
         _discard(part)
 
 
-def names_after(place: Path) -> Iterator[Path]:
-    """`place` itself, then the same name numbered from 2, before its suffix."""
+def numbered_names(place: Path) -> Iterator[Path]:
+    """Iterate over `place` itself, then the same name numbered from 2, before its suffix."""
     yield place
     number = 2
     while True:
@@ -87,7 +87,7 @@ def names_after(place: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def locked(folder: Path, wait: bool = True) -> Iterator[bool]:
+def hold_lock(folder: Path, wait: bool = True) -> Iterator[bool]:
     """Hold the lock of a directory for the block; yields whether it is held, which may fail without `wait` or locks."""
     handle = -1
     try:
@@ -106,10 +106,10 @@ def locked(folder: Path, wait: bool = True) -> Iterator[bool]:
 
 
 @contextmanager
-def staging(place: Path) -> Iterator[Path]:
-    """A locked directory beside `place` for the block, with an empty directory NEW in it."""
+def staging_directory(place: Path) -> Iterator[Path]:
+    """Make a locked directory next to `place` for the block, with an empty directory NEW in it."""
     folder = Path(tempfile.mkdtemp(dir=place.parent, prefix=TEMPORARY))
-    with locked(folder, wait=False):
+    with hold_lock(folder, wait=False):
         try:
             write_atomically(folder / MARK, _mark(folder, place))
             (folder / NEW).mkdir()
@@ -118,12 +118,12 @@ def staging(place: Path) -> Iterator[Path]:
             clear_staging(folder)
 
 
-def dead_staging(place: Path) -> Iterator[Path]:
-    """The staging directories of `place` that belong to no living process, each locked while it is looked at."""
+def abandoned_staging(place: Path) -> Iterator[Path]:
+    """Iterate over the staging directories of `place` that belong to no living process, each locked meanwhile."""
     with suppress(OSError):
         for folder in sorted(place.parent.iterdir()):
             if folder.name.startswith(TEMPORARY) and not folder.is_symlink() and _is_marked(folder, place):
-                with locked(folder, wait=False) as held:
+                with hold_lock(folder, wait=False) as held:
                     if held:
                         yield folder
 
@@ -147,8 +147,8 @@ def _is_marked(folder: Path, place: Path) -> bool:
         return False
 
 
-def _part(file: Path, content: bytes) -> Path:
-    """A temporary file with the content, beside `file`. Raises OSError."""
+def _write_part(file: Path, content: bytes) -> Path:
+    """Write a temporary file with the content next to `file` and return it. Raises OSError."""
     part = file.with_name(f"{TEMPORARY}{os.getpid()}-{secrets.token_hex(6)}")
     handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
     try:

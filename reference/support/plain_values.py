@@ -10,7 +10,7 @@ import numpy as np
 
 def plain(value: Any) -> Any:
     """
-    Lists and numbers of Python in place of arrays, tuples and numbers of numpy, at any depth of lists.
+    Return lists and numbers of Python in place of arrays, tuples and numbers of numpy, at any depth of lists.
 
     >>> plain((np.float64(0.5), np.arange(2)))
     [0.5, [0, 1]]
@@ -22,7 +22,7 @@ def plain(value: Any) -> Any:
 
 def hashable(value: Any) -> Hashable:
     """
-    Tuples and frozen sets in place of lists and tables, at any depth: equal for equal values.
+    Return tuples and frozen sets in place of lists and tables, at any depth: equal for equal values.
 
     >>> hash(hashable({"a": [1.0]})) == hash(hashable({"a": [1]}))
     True

@@ -8,7 +8,7 @@ from typing import Any
 
 from reference.support.arguments import brief
 
-MAX_LETTERS = 300  # letters of a path or a key in an error
+MAX_LETTERS = 300  # longest path or key that an error shows
 SYNONYMS = {"bearings": "supports", "isolators": "supports"}
 
 
@@ -37,7 +37,7 @@ class SceneError(ValueError):
 
 
 class MisfitError(ValueError):
-    """Values that are wrong together, found after each was valid alone; `first_error` makes a SceneError of it."""
+    """Values that are wrong together, found after each was valid alone; `first_scene_error` words it."""
 
     def __init__(self, key: str, value: Any, rule: str) -> None:
         self.key, self.value, self.rule = key, value, rule
@@ -45,7 +45,7 @@ class MisfitError(ValueError):
 
 
 def one_line(text: str) -> str:
-    """The text, cut to MAX_LETTERS letters, or its Python literal if it would break the line."""
+    """Return the text, cut to MAX_LETTERS letters, or its Python literal if it would break the line."""
     if len(text) > MAX_LETTERS:
         text = f"{text[: MAX_LETTERS - 3]}..."
     return text if text.isprintable() else repr(text)
@@ -57,12 +57,12 @@ def printable(text: str) -> str:
 
 
 def keys_of(table: str, keys: Mapping[str, Sequence[str]]) -> Sequence[str]:
-    """The keys of a table: under its name, or under "*" where its name is free; none of what is no table."""
+    """Return the keys of a table: under its name, or under "*" where its name is free; none of what is no table."""
     return keys.get(table) or keys.get(f"{table.rpartition('.')[0]}.*", ())
 
 
 def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneError:
-    """The error for the dotted `key` where the keys `valid` belong: it names the nearest of them."""
+    """Return the error for the dotted `key` where the keys `valid` belong: it names the nearest of them."""
     if (meant := SYNONYMS.get(key.rpartition(".")[2])) in valid:
         return SceneError(file, key, value, f"unknown key; did you mean {meant}?")
     nearest = get_close_matches(key.rpartition(".")[2][:MAX_LETTERS], valid, n=2, cutoff=0.5)

@@ -13,13 +13,13 @@ import pytest
 
 from comparison.runner.task import execute
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import execute_batch, imported
+from comparison.study.batches import execute_batch, import_function
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
 from comparison.study.study import Study
-from comparison.surfaces.completion import CompletedSurfaces, completions, held_out_places
-from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.completion import CompletedSurfaces, choose_held_out, completions
+from comparison.surfaces.surfaces import label_surfaces
 from reference.problem import load_scene, phase_grid
-from reference.problem.symmetry import sources
+from reference.problem.symmetry import indices_of_solved_pairs
 
 GRID, COMPUTED, FURTHER = 64, 8, 200
 ASKED = 5e-4  # of the engine, and of the completed surface
@@ -36,21 +36,21 @@ def test_completed_surfaces_keep_their_certificate_at_further_phases(name: str) 
     analysis, results = CompletedSurfaces(), TaskResults()
     begin = time.process_time()
     batches = study.batches()
-    surfaces = labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+    surfaces = label_surfaces(study, batches, [execute_batch(batch) for batch in batches])
     for task in analysis.tasks(study):
         results.put(task, execute(task))
     listed = completions(study, surfaces, scene, analysis.collect(study, surfaces, results))
     seconds = time.process_time() - begin
-    held_out = held_out_places(study, scene, model)
+    held_out = choose_held_out(study, scene, model)
     runs = len(study.solved(scene, model)) + len(held_out)
     assert runs <= MAX_RUNS
     print(f"\n{name}: {seconds:.1f} s of processor time")
 
-    different = np.unique(sources(scene, GRID))
-    seen = sources(scene, GRID)[study.places(model)]
+    different = np.unique(indices_of_solved_pairs(scene, GRID))
+    seen = indices_of_solved_pairs(scene, GRID)[study.places(model)]
     rest = np.setdiff1d(different, np.concatenate([seen, held_out]))
     places = np.random.default_rng(5).choice(rest, FURTHER, replace=False)
-    engine: Callable[..., object] = imported(model.amplification)
+    engine: Callable[..., object] = import_function(model.amplification)
     truth = engine(scene, phase_grid(GRID)[places], **model.settings, tolerance=ASKED)
     for surface in listed:
         mu = truth.mu[:, surface.body - 1]

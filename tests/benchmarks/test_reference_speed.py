@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 import reference
-from comparison.analyses.tradeoff.outside import factors, motion
+from comparison.evidence.tradeoff.outside import factors, motion
 from reference.solver.error_estimate import MAX_STEP_TOLERANCE, peaks_at, peaks_with_error
-from reference.surface import checked_demand
+from reference.surface import prepare_run
 
 V_REG = 1e-3  # m/s
 # most a point may cost, in accurate runs to the end of the motion; seen: 1.08, 1.29, 1.59, 1.19
@@ -80,7 +80,7 @@ def test_a_point_whose_runs_stop_early_costs_less(law):
 def test_a_point_with_its_error_costs_about_one_accurate_run_to_the_end_of_the_motion(name, most):
     """Its finer run, at the same tolerance inside a step."""
     scene, phases = reference.load_scene(name), reference.phase_grid(16) + 0.1
-    system, demand = checked_demand(scene, "exact", None, 1e-6, None, "consistent")
+    system, demand = prepare_run(scene, "exact", None, 1e-6, None, "consistent")
 
     def seconds(solve) -> float:
         begin = time.process_time()

@@ -9,7 +9,7 @@ for (const name of ["clearRect", "fillText", "moveTo", "lineTo", "arc", "fillRec
     return real.apply(this, given);
   };
 }
-const figure = value => Number(value).toPrecision(6);
+const figure = value => Number(value).toPrecision(5);
 const mean = list => figure(list.reduce((sum, value) => sum + value, 0) / list.length);
 // where the parts of a drawing are: how many, means of x, y and their product, which tells a mirrored one
 const spread = points => `${points.length}: ${mean(points.map(([x]) => x))} ${mean(points.map(([, y]) => y))} ${mean(points.map(([x, y]) => x * y))}`;

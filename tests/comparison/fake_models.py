@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analyses.motions.analysis import StoredMotion, chosen_places, shown_models
+from comparison.analyses.motions.analysis import StoredMotion, choose_places, models_to_show
 from comparison.study.models import MODEL_HIERARCHY, Model, never
 from comparison.study.study import Study
 from reference.measures import Demands, Estimate, FloorSpectra
@@ -131,8 +131,8 @@ def known_motions(study: Study, surfaces: xr.Dataset, *rest: object) -> list[Sto
     found = []
     for scene in study.scenes:
         circle = np.stack([np.cos(time), np.sin(time)], axis=1)[:, None, :].repeat(len(scene.bodies), axis=1)
-        for place in chosen_places(study, surfaces, scene):
-            for number, model in enumerate(shown_models(study, scene)):
+        for place in choose_places(study, surfaces, scene):
+            for number, model in enumerate(models_to_show(study, scene)):
                 at, spatial = 0.01 * (1 + number) * circle, model.key == "spatial"
                 force = np.full((len(time), 4), 0.25 * scene.total_mass * GRAVITY)
                 found.append(StoredMotion(

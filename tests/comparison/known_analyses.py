@@ -9,9 +9,9 @@ import xarray as xr
 from known_conditioning import known_curves
 
 import comparison.registry
-from comparison.analyses.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict
-from comparison.analyses.claims.table import ClaimTable, table_of
-from comparison.analyses.trends import trend
+from comparison.evidence.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict
+from comparison.evidence.claims.table import ClaimTable, table_of
+from comparison.evidence.trends import trend
 from comparison.runner.analysis import Analysis
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task
@@ -73,12 +73,12 @@ def known_others() -> dict[str, Any]:
 def with_engine_off_by(monkeypatch: pytest.MonkeyPatch, factor: float, error: float = 1e-6) -> None:
     """Every model answers with mu = 2, the engine's models with `factor` times that."""
 
-    def imported(path: str):  # type: ignore[no-untyped-def]
+    def import_function(path: str):  # type: ignore[no-untyped-def]
         if path.endswith(":refusal"):
             return lambda scene, **settings: ""
         return answering(factor if "multibody" in path else 1.0, error)
 
-    monkeypatch.setattr("comparison.study.batches.imported", imported)
+    monkeypatch.setattr("comparison.study.batches.import_function", import_function)
 
 
 def answering(factor: float, error: float):  # type: ignore[no-untyped-def]

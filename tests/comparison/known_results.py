@@ -17,18 +17,18 @@ from comparison.analyses.assumptions.validity import (
     ranges,
 )
 from comparison.analyses.assumptions.variations import TURNED_LINK, Variation
-from comparison.analyses.benchmarks import table as benchmarks
 from comparison.analyses.ensemble import result as ensemble
-from comparison.analyses.extremes import matrix as extremes
-from comparison.analyses.extremes.matrix import Entry, Extreme, Matrix
-from comparison.analyses.extremes.rows import Column, Row, scene
 from comparison.analyses.measured.analysis import ComputedPeak, MeasuredPeak
-from comparison.analyses.tradeoff import command as tradeoff
-from comparison.analyses.tradeoff import growth
-from comparison.analyses.tradeoff.trade import Answered, MeasuredTrade, Trade, with_pareto_fronts
-from comparison.analyses.tradeoff.trade import Entry as Setting
-from comparison.analyses.validation import table as validation
 from comparison.analyses.worst_phases.analysis import Worst
+from comparison.evidence.benchmarks import table as benchmarks
+from comparison.evidence.extremes import matrix as extremes
+from comparison.evidence.extremes.matrix import Entry, Extreme, Matrix
+from comparison.evidence.extremes.rows import Column, Row, scene
+from comparison.evidence.tradeoff import command as tradeoff
+from comparison.evidence.tradeoff import growth
+from comparison.evidence.tradeoff.trade import Answered, MeasuredTrade, Trade, with_pareto_fronts
+from comparison.evidence.tradeoff.trade import Entry as Setting
+from comparison.evidence.validation import table as validation
 from comparison.runner.output import publish
 from reference.problem import load_scene
 from reference.problem.readings import AS_INTEGRATED
@@ -165,5 +165,5 @@ def leave_beside(place: Path, files: Mapping[str, bytes], *scenes: str) -> None:
     for name in scenes:
         trade = MeasuredTrade(known_trade(name), xr.Dataset({"mu": ("point", [1.0])}))
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(tradeoff, "measured_trades", lambda *rest, trade=trade: [trade])
+            patch.setattr(tradeoff, "measure_trades", lambda *rest, trade=trade: [trade])
             assert tradeoff.main([name, "--out", str(place)]) == 0

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import multibody
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from reference.problem import Amplification, Scene, ground_peak
 
 NEWTON = 1e-5  # tolerance of the coarse engine's iteration
@@ -30,7 +30,9 @@ def misread(
         body["stiffness"] = (stiffness * link).tolist()
     data["bodies"][-1]["mass"] *= mass
     data["isolator"]["friction"] *= friction
-    answer: Amplification = imported(program)(Scene.model_validate(data), phases, tolerance=tolerance, **settings)
+    answer: Amplification = import_function(program)(
+        Scene.model_validate(data), phases, tolerance=tolerance, **settings
+    )
     return answer
 
 

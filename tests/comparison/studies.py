@@ -7,7 +7,7 @@ from comparison.study.batches import execute_batch
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import body_comparisons
 from comparison.surfaces.differences import Difference
-from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.surfaces import label_surfaces
 from reference.problem import load_scene
 
 GRID = 8
@@ -17,7 +17,7 @@ KEYS = ("resolved", "regularised", "translational", "spatial")  # of the chain, 
 def solved(study: Study) -> xr.Dataset:
     """The surfaces of a study."""
     batches = study.batches()
-    return labeled_surfaces(study, batches, [execute_batch(batch) for batch in batches])
+    return label_surfaces(study, batches, [execute_batch(batch) for batch in batches])
 
 
 def difference_rows(study: Study, surfaces: xr.Dataset) -> list[Difference]:

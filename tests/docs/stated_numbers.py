@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import evidence_table
 
-from comparison.analyses.sides import EQUATIONS
-from comparison.analyses.validation.frame import Setup
-from comparison.analyses.validation.table import recorded
+from comparison.evidence.sides import EQUATIONS
+from comparison.evidence.validation.frame import Setup
+from comparison.evidence.validation.table import recorded
 from comparison.verdicts import NOT_MET
 
 

@@ -18,9 +18,9 @@ from pages import PAGES, ROOT
 from PIL import Image
 from stated_numbers import STATED, Stated, numbers_of
 
-from comparison.analyses.benchmarks.table import page as benchmarks_page
-from comparison.analyses.validation import statements
-from comparison.analyses.validation.table import recorded
+from comparison.evidence.benchmarks.table import page as benchmarks_page
+from comparison.evidence.validation import statements
+from comparison.evidence.validation.table import recorded
 from comparison.report.results import VALIDATED, VALIDATED_BRIEFLY
 from comparison.report.verification import CHECKS
 from reference.problem import Scene

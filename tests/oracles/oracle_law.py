@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from reference.problem import GRAVITY, Scene
-from reference.problem.tables import VelocityFriction
+from reference.problem.friction import VelocityFriction
 
 
 class RefusalError(Exception):

@@ -10,7 +10,7 @@ from chains import chain
 import reference
 from reference.problem import Scene, phase_grid
 from reference.solver.error_estimate import _estimate_error, peaks_at
-from reference.surface import checked_demand
+from reference.surface import prepare_run
 
 FIG3 = reference.load_scene("fig3-I")
 
@@ -107,7 +107,7 @@ def test_an_error_lacks_nothing(scene: Scene, phase: tuple[float, float], law: d
 
 def test_a_run_of_fig3_takes_few_steps():
     """159 over 20 s at 1e-5 inside a step: none is made in vain before a stop, and few on the way into it."""
-    system, demand = checked_demand(FIG3, "exact", None, 1e-6, None, "consistent")
+    system, demand = prepare_run(FIG3, "exact", None, 1e-6, None, "consistent")
     assert peaks_at(system, phase_grid(8) + 0.1, demand, 1e-5).steps.mean() <= 170.0
 
 

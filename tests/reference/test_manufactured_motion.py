@@ -7,7 +7,7 @@ from turning_platform import turning
 import reference
 from reference.solver.error_estimate import peaks_from
 from reference.solver.system import allocate_record
-from reference.surface import checked_demand
+from reference.surface import prepare_run
 
 INSTANTS = np.linspace(0.0, 3.0, 100)
 CHAINS = pytest.mark.parametrize("links", [((1.0,), (), None), ((2.0, 1.0, 0.5), (80.0, 40.0), 0.05)])
@@ -32,7 +32,7 @@ def test_collocation_is_of_order_eight_inside_its_steps(links):
             motion.scene, motion.phase, tolerance=tolerance, times=INSTANTS, initial=motion.initial
         )
         errors.append(motion.error(run.time, run.position))
-        system, demand = checked_demand(motion.scene, "exact", None, tolerance, None, "consistent")
+        system, demand = prepare_run(motion.scene, "exact", None, tolerance, None, "consistent")
         start = motion.initial.position, motion.initial.velocity
         steps.append(peaks_from(*start, system, np.array([motion.phase]), demand, rest).steps[0])
     end = motion.error(run.time[-1:], run.position[-1:])

@@ -10,7 +10,7 @@ import reference
 from reference.problem import Scene, load_scene
 from reference.solver import error_estimate
 from reference.solver.error_estimate import RunPeaks, peaks_at, peaks_with_error
-from reference.surface import checked_demand
+from reference.surface import prepare_run
 
 TOLERANCE = 1e-5
 STEP_TOLERANCE = 3e-4  # inside a step of the coarser run for it
@@ -42,9 +42,7 @@ def early_and_whole(seed: int) -> tuple[RunPeaks, RunPeaks]:
     law: dict[str, Any] = LAWS[random.integers(len(LAWS))] if dry else {}
     asked = {"regularization": None, "cutoff": None, **law}
     equations = str(random.choice(["exact", "small"]))
-    system, demand = checked_demand(
-        scene, equations=equations, tolerance=TOLERANCE, rest_condition="consistent", **asked
-    )
+    system, demand = prepare_run(scene, equations=equations, tolerance=TOLERANCE, rest_condition="consistent", **asked)
     early, whole = (peaks_with_error(system, np.array([phase]), demand, whole=full) for full in (False, True))
     return early, whole
 
@@ -89,7 +87,7 @@ def test_a_peak_at_a_stop_is_not_lost_where_a_small_drive_turns() -> None:
     isolator = {"radius": 0.2299923881149861, "friction": 0.2750712655399802}
     tables = {"isolator": isolator, "bodies": [{"mass": 1.0}, upper], "excitation": load}
     scene = Scene.model_validate({"title": "shaken vertically, too", "duration": 12.0, **tables})
-    system, demand = checked_demand(scene, "exact", None, TOLERANCE, None, "consistent")
+    system, demand = prepare_run(scene, "exact", None, TOLERANCE, None, "consistent")
     phases = np.array([(4.811469561084016, 4.148635980663768)])
     early, whole = (peaks_at(system, phases, asked, STEP_TOLERANCE) for asked in (demand._replace(early=True), demand))
     np.testing.assert_allclose(early.value, whole.value, rtol=1e-12)

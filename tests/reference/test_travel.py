@@ -7,7 +7,7 @@ from oracle_law import Law
 from scipy.integrate import quad, solve_ivp
 
 import reference
-from comparison.analyses.scaling.analysis import scaled
+from comparison.evidence.scaling.analysis import scale_scene
 from reference.problem import GRAVITY, Outcome, Scene, State, load_scene, phase_grid
 
 PHASE = (0.3, 1.1)
@@ -111,4 +111,4 @@ def test_a_start_beyond_the_travel_is_refused_and_a_scaled_loading_scales_it() -
     start = State(np.array([[0.08, 0.07]]), np.zeros((1, 2)))
     said = str(refusal(reference.trajectory, scene, PHASE, initial=start))
     assert said == "initial: the platform must start within isolator.travel = 0.1 m"
-    assert scaled(scene, 0.5).isolator.travel == 0.05
+    assert scale_scene(scene, 0.5).isolator.travel == 0.05

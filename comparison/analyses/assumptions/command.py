@@ -1,5 +1,5 @@
 """
-How far the paper's assumptions hold: `python -m comparison.assumptions [SCENE ...]`.
+How far the paper's assumptions hold: `phase-resonance assumptions [SCENE ...]`.
 
 Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
 """
@@ -20,8 +20,8 @@ from comparison.analyses.assumptions.statements import (
 from comparison.analyses.assumptions.trials import CLOSE_ENOUGH, DURATION
 from comparison.analyses.assumptions.validity import MORE_PHASES, MORE_SIZES, Assumptions, Validity
 from comparison.analyses.assumptions.variations import DIRECTED, MANY, Variation
-from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, jobs
-from comparison.cli.computing import computed
+from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, number_of_jobs
+from comparison.cli.computing import compute_tasks
 from comparison.cli.terminal import new_table
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
@@ -43,7 +43,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     parser.add_out(STORED_RESULTS)
     parser.add_computing()
     options = parser.parse_args(argv)
-    jobs(options)  # refused before anything else is looked at
+    number_of_jobs(options)  # refused before anything else is looked at
     names = options.scenes or builtin_scenes()
     scenes = [_spatial(name) for name in names]
     refuse_same_names((name, scene.name) for name, scene in zip(names, scenes))
@@ -53,7 +53,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     console.print(f"{about}: minutes for each scene.")
     assumptions = Assumptions(MANY, MORE_PHASES, MORE_SIZES, tuple((key,) for key in DIRECTED))
     study = Study(tuple(scenes), 1, CLOSE_ENOUGH)
-    results = computed("assumptions", options, argv, assumptions.tasks(study), {ENGINE}, console, executor)
+    results = compute_tasks("assumptions", options, argv, assumptions.tasks(study), {ENGINE}, console, executor)
     found = assumptions.collect(study, None, results)
     assert found is not None, "every scene has both models of the engine"
     for scene in scenes:

@@ -1,7 +1,6 @@
 """How far the assumptions of the paper carry: in the report."""
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 from comparison.analyses.assumptions.statements import (
@@ -14,10 +13,11 @@ from comparison.analyses.assumptions.statements import (
 from comparison.analyses.assumptions.trials import WITHIN
 from comparison.analyses.assumptions.validity import Assumptions, Validity, line_of
 from comparison.analyses.assumptions.variations import Axis
-from comparison.analyses.panels import panel
+from comparison.report.feature import Feature, ResultField
+from comparison.report.panels import panel
 from comparison.report.plots import Panel, plain
 from comparison.report.results import Results
-from comparison.report.section import Feature, Report, Section
+from comparison.report.section import Report, Section
 from reference.problem import Scene
 
 AXES: dict[Axis, str] = {
@@ -51,12 +51,14 @@ def assumption_panels(found: Validity, scene: Scene) -> list[Panel]:
     return panels
 
 
-def section_context(report: Report, figures: Path) -> Mapping[str, Any]:
+FOUND = ResultField(Assumptions.key, Validity, "how far the paper's assumptions hold; null without a spatial model")
+
+
+def section_context(report: Report) -> Mapping[str, Any]:
     """Return what the template reads, for every scene whose assumptions were tried."""
-    found: Validity | None = report.results.of("assumptions")
+    found = FOUND.of(report.results)
     shown = []
-    for scene in report.study.scenes if found else ():
-        assert found is not None
+    for scene in report.study.scenes:
         if any(cell.scene == scene.name for cell in found.cells):
             tried = [describe_direction(scene, each) for each in found.directions if each.scene == scene.name]
             shown.append(
@@ -72,15 +74,13 @@ def section_context(report: Report, figures: Path) -> Mapping[str, Any]:
 
 
 def assumption_verdict(results: Results) -> str:
-    """Return the line beside the title of the section; "" where no assumption was tried."""
-    found: Validity | None = results.of("assumptions")
-    return describe_verdict(found) if found else ""
+    """Return the line beside the title of the section."""
+    return describe_verdict(FOUND.of(results))
 
 
 FEATURE = Feature(
-    "assumptions",
-    Validity,
-    "how far the paper's assumptions hold; null without a spatial model",
+    Assumptions.key,
+    (FOUND,),
     analysis=Assumptions(),
     section=Section(
         "How far the paper's assumptions hold",

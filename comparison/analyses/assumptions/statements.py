@@ -17,7 +17,7 @@ NO_EFFECT = "no effect by symmetry"
 Base = Literal["the translational model", "the stated spatial model"]
 TRANSLATIONAL: Base = "the translational model"
 STATED: Base = "the stated spatial model"
-SHARE = WITHIN[0]  # of mu_i: a larger change shows an assumption false
+SHARE = WITHIN[0]  # change of mu_i: a larger change shows an assumption false
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ WORDS: dict[Axis, tuple[str, str, str, str, str]] = {
             "with bodies and links turned by up to {holds:.2g} rad {sense}", "no longer by {fails:.2g} rad",
             "the largest tried"),
 }  # fmt: skip
-# of a line of variations: where nothing holds; where only its zero holds; what holds; what does not; where all holds
+# ends of a line of variations: where nothing holds; where only zero holds; what holds; what does not; where all holds
 
 
 def describe_range(validity: ValidityRange) -> str:
@@ -184,7 +184,7 @@ def assumption_lines(found: Validity, scene: Scene) -> list[str]:
     return lines + describe_uneven(found, scene) + describe_shortening(loaded)
 
 
-def stated_changes(found: Validity, scene: str) -> list[Change]:
+def changes_with_errors(found: Validity, scene: str) -> list[Change]:
     """Return the change of mu of every body by turning, in the scene as stated; none if it was not tried."""
     stated = next((cell for cell in found.cells if (cell.scene, cell.variation) == (scene, Variation())), None)
     return [largest_change(found, stated, body + 1) for body in range(len(stated.change[0]))] if stated else []
@@ -194,7 +194,7 @@ def describe_verdict(found: Validity) -> str:
     """Return one line: whether mu bears assumption (vi), that no body turns, in every scene as stated."""
     parts = []
     for scene in dict.fromkeys(cell.scene for cell in found.cells):
-        changes = stated_changes(found, scene)
+        changes = changes_with_errors(found, scene)
         if not changes:
             continue
         worst = max(changes, key=lambda change: np.nan_to_num(abs(change.size) + change.error, nan=np.inf))

@@ -21,12 +21,12 @@ from comparison.analyses.assumptions.variations import (
 )
 from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.task import TaskResult
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import Model
 from reference.problem import Scene, SceneError, untilted
 
 DURATION = 6.0  # s: the loading is strongest in its first seconds
-WITHIN = (0.01, 0.05)  # of mu_i
+WITHIN = (0.01, 0.05)  # limits on the change of mu_i
 CLOSE_ENOUGH = 0.2 * WITHIN[0]  # relative error of mu_i that says whether it stays within: no smaller one is asked for
 DIRECTION_PHASES = ((2.0, 0.7),)  # rad: directions are told apart at one phase pair
 DIRECTION_V_REG = 1e-2  # m/s: ten times that of the study, at a third of its cost; which direction is worst is the same
@@ -100,7 +100,7 @@ def amplification_of(
     varied = scene if variation is None else variation.of(scene)
     whole = {"full": True} if untilted(varied) else {}  # a check of assumption (vi) must not make use of it
     asked = {**model.settings, **{key: value for key, value in settings.items() if key in model.settings}}
-    found = imported(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
+    found = import_function(model.amplification)(varied, phases, **asked, tolerance=tolerance, **whole)
     return Trial(variation, found.mu, found.error, tuple(map(str, found.status)), "", float(found.cost))
 
 

@@ -28,8 +28,8 @@ from comparison.analyses.assumptions.variations import (
     Variation,
     blind_by_symmetry,
 )
-from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Number, Phases, Text, result
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import models_of
 from comparison.study.study import Study
@@ -37,7 +37,7 @@ from reference.problem import Scene
 from reference.problem.readings import AS_INTEGRATED
 
 PHASES = ((0.0, 0.0), (2.0, 0.7))  # rad; the first is where turning tells most in fig3-I, the second in fig3-II
-MORE_PHASES = (*PHASES, (0.3, 1.1))  # of the command
+MORE_PHASES = (*PHASES, (0.3, 1.1))  # phase pairs of the command
 SIZES, MORE_SIZES = 2, 8  # along the worst direction of one assumption: of a study, of the command
 
 
@@ -64,7 +64,7 @@ class AssumptionCell:
         return float(np.max([row[body - 1] for row in self.uncertainty]))
 
     def holds(self, body: int, share: float) -> bool:
-        """Whether mu_i stays within `share` at every phase pair, uncertainty included."""
+        """Return whether mu_i stays within `share` at every phase pair, uncertainty included."""
         return self.largest(body) + self.error_estimate(body) <= share
 
 

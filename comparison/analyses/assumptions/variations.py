@@ -10,7 +10,7 @@ import numpy as np
 from comparison.result_types import result
 from reference.problem import Scene, half_turn, mirror_symmetric, own_axes, planar
 
-ROUNDING = 1e-9  # of the radius of the ring, or of a right angle: what is that close is in the plane
+ROUNDING = 1e-9  # share of the radius of the ring, or of a right angle: what is that close is in the plane
 TURNED_LINK = "links equally stiff along x and y below square boxes: turned, they are the same"
 ONE_PLANE = "loading and bodies are their own mirror images about the plane of the motion: nothing turns out of it"
 
@@ -32,7 +32,9 @@ class Variation:
 
     @property
     def is_uneven(self) -> bool:
-        """Whether supports leave the circle, centers of mass the axis, or bodies and links their common directions."""
+        """
+        Return whether supports leave the circle, centers of mass the axis, or bodies and links their common directions.
+        """
         return self.oval != 0.0 or self.offset != 0.0 or self.yaw != 0.0
 
     def of(self, scene: Scene) -> Scene:
@@ -66,13 +68,13 @@ MANY = (
     *(Variation(ring, 2.0) for ring in (1.0, 2.0, 4.0, 8.0)),  # on the narrowest ring the scenes would topple
     Variation(supports=3),
 )
-UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # of scenes whose bars give way
+UNDER_LOAD = (Variation(bars="softening"), Variation(bars="shortening"))  # variations of scenes whose bars give way
 
 Axis = Literal["ring", "height", "oval", "offset", "yaw"]
 DIRECTED: tuple[Axis, ...] = ("oval", "offset", "yaw")  # tried in several directions first
 FIRST_SIZE = {
-    "oval": 0.5,  # of the radius of the ring
-    "offset": 0.1,  # of the radius of the ring, a twentieth of the width: what codes take for accidental
+    "oval": 0.5,  # share of the radius of the ring
+    "offset": 0.1,  # share of the radius of the ring, a twentieth of the width: what codes take for accidental
     "yaw": 0.2,  # rad
 }
 SMALLEST_SIZE = {"oval": 0.5, "offset": 0.025, "yaw": 0.05}  # where none holds yet, no smaller one is tried
@@ -115,21 +117,21 @@ def blind_by_symmetry(scene: Scene, variation: Variation) -> str:
     """Return why symmetry leaves mu of the spatial model as that of the translational one; "" where it does not."""
     if variation.bars is not None or any(link is not None for link in scene.bar_links):
         return ""  # bars that bend tilt what stands on them, in a plane as well
-    if variation.yaw and replace(variation, yaw=0.0) == Variation() and turned_links_are_the_same(scene):
+    if variation.yaw and replace(variation, yaw=0.0) == Variation() and are_turned_links_the_same(scene):
         return TURNED_LINK
     if scene.isolator.support_stiffness is not None or scene.dry_friction.by_load:
         return ""  # unequal loads of the supports tilt the platform, or change the friction
     return "" if plane_of_symmetry(variation.of(scene)) is None else ONE_PLANE
 
 
-def turned_links_are_the_same(scene: Scene) -> bool:
-    """Whether links and boxes above the platform look the same at every angle about the vertical."""
+def are_turned_links_the_same(scene: Scene) -> bool:
+    """Return whether links and boxes above the platform look the same at every angle about the vertical."""
     links = itertools.chain(scene.stiffness, scene.damping)
     return all(x == y for x, y in links) and all(body.size is None or is_square(body.size) for body in scene.bodies[1:])
 
 
 def is_square(size: Any) -> bool:
-    """Whether a box is as long as it is wide."""
+    """Return whether a box is as long as it is wide."""
     return bool(size[0] == size[1])
 
 
@@ -160,5 +162,5 @@ def plane_of_symmetry(scene: Scene) -> float | None:
 
 
 def is_multiple(angle: float, unit: float) -> bool:
-    """Whether an angle is a whole number of units, to rounding."""
+    """Return whether an angle is a whole number of units, to rounding."""
     return abs(angle / unit - round(angle / unit)) <= ROUNDING

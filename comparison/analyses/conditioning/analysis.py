@@ -19,22 +19,22 @@ import numpy as np
 
 import multibody
 import reference
-from comparison.analyses.mapped import MappedAnalysis
-from comparison.analyses.shortened import shorten
 from comparison.result_types import Array, Number, Phases, Text, result
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
 from comparison.study.models import any_scene, dry, has_spatial_data
+from comparison.study.shorten import shorten
 from comparison.study.study import Study, nested_grids
 from comparison.surfaces.sampling import sampling_error
 from reference.problem import Outcome, Scene, phase_grid
-from reference.problem.readings import AS_INTEGRATED, LITERAL_SUPREMUM
-from reference.problem.symmetry import distinct
+from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C, LITERAL_SUPREMUM
+from reference.problem.symmetry import distinct_pairs
 
 MAX_GRID = 16  # phases per axis of the small equations
-SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # v_c, m/s
+SPEEDS = (1e-1, 3e-2, 1e-2, 3e-3, DEFAULT_V_C, 1e-4, 1e-5, 1e-6, 1e-8, 1e-9, 1e-10, 1e-12)  # v_c, m/s
 REGULARIZATIONS = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)  # v_reg, m/s
 FEW = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7)])  # rad, for the engine: no two related by a symmetry
-FEW_PERIODS = 3.0  # of the slower harmonic: the loading is strongest in them
+FEW_PERIODS = 3.0  # periods of the slower harmonic: the loading is strongest in them
 REFERENCE_TOLERANCE, ENGINE_TOLERANCE = 1e-6, 1e-3
 
 NOTHING = (*[np.nan] * 4, (np.nan, np.nan), np.nan, np.nan)  # statistics at a speed without an answer
@@ -128,7 +128,7 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
 
 def _answers(moving: Scene, question: Question, grid: int) -> _Answers:
     """Ask the model at every speed, and the equations for the literal supremum; NaN at pairs that lack any of it."""
-    phases, taken = distinct(moving, grid) if grid else (FEW, np.arange(len(FEW)))
+    phases, taken = distinct_pairs(moving, grid) if grid else (FEW, np.arange(len(FEW)))
     supremum = reference.amplification(moving, phases, **question.base)
     listed = [
         question.side.amplification(moving, phases, **question.settings, **{question.argument: speed})
@@ -154,7 +154,7 @@ def _curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answ
     relative_error = np.hypot(error, mu / supremum * supremum_error) / supremum
     rows = [_statistics(*each, answers, task[2]) for each in zip(mu, error, relative, relative_error)]
     pairs = int(np.isfinite(mu).any(axis=0).sum())
-    return _described(task, body, speeds, list(zip(*rows)), pairs, "" if pairs else answers.lost)
+    return _describe(task, body, speeds, list(zip(*rows)), pairs, "" if pairs else answers.lost)
 
 
 def _statistics(mu: Array, error: Array, relative: Array, relative_error: Array, answers: _Answers, grid: int) -> Any:
@@ -175,10 +175,10 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurv
     scene, number, _ = task
     speeds = QUESTIONS[number].speeds
     columns = list(zip(*[NOTHING] * len(speeds)))
-    return [_described(task, body, speeds, columns, 0, failed.reason) for body in range(1, len(scene.bodies) + 1)]
+    return [_describe(task, body, speeds, columns, 0, failed.reason) for body in range(1, len(scene.bodies) + 1)]
 
 
-def _described(
+def _describe(
     task: Arguments, body: int, speeds: tuple[float, ...], columns: Any, pairs: int, reason: str
 ) -> ConditioningCurve:
     scene, number, grid = task
@@ -210,6 +210,7 @@ class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
     """Every question of every scene with phases and dry friction."""
 
     key, stage = "conditioning", "conditioning"
+    seconds = 4.0
     function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
 
     def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:

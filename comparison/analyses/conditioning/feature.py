@@ -1,14 +1,14 @@
 """The conditioning of mu_i over the smallest resolved speed: in the report."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from comparison.analyses.conditioning.analysis import SPEEDS, Conditioning, ConditioningCurve
 from comparison.analyses.conditioning.statement import conditioning_line, speed_text
-from comparison.analyses.panels import panel
+from comparison.report.feature import Feature, ResultField
+from comparison.report.panels import panel
 from comparison.report.plots import Panel, plain
-from comparison.report.section import Feature, Report, Section
+from comparison.report.section import Report, Section
 from comparison.wording import scientific, signed, significant
 from reference.problem.readings import LITERAL_SUPREMUM
 
@@ -92,8 +92,15 @@ def _row(curve: ConditioningCurve, quantity: str, supremum: ConditioningCurve | 
     }
 
 
-def _context(report: Report, figures: Path) -> Mapping[str, Any]:
-    curves = report.results.of("conditioning") or ()
+FOUND = ResultField(
+    Conditioning.key,
+    list[ConditioningCurve],
+    "mu over the smallest resolved speed, and its literal supremum; null if not computed",
+)
+
+
+def _context(report: Report) -> Mapping[str, Any]:
+    curves = FOUND.of(report.results)
     return {
         "conditioning_panels": conditioning_panels(curves),
         "conditioning_tables": conditioning_tables(curves),
@@ -101,14 +108,13 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
 
 
 FEATURE = Feature(
-    "conditioning",
-    list[ConditioningCurve],
-    "mu over the smallest resolved speed, and its literal supremum; null if not computed",
+    Conditioning.key,
+    (FOUND,),
     analysis=Conditioning(),
     section=Section(
         "Conditioning of the literal supremum",
-        "python -m comparison.run makes it, of scenes with phases and dry friction",
+        "phase-resonance run makes it, of scenes with phases and dry friction",
         _context,
-        lead=lambda results: conditioning_line(results.of("conditioning") or ()),
+        lead=lambda results: conditioning_line(FOUND.of(results)),
     ),
 )

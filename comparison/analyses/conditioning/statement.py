@@ -4,12 +4,11 @@ import math
 from collections.abc import Sequence
 
 from comparison.analyses.conditioning.analysis import ConditioningCurve
-from comparison.study.models import DEFAULT_V_C
 from comparison.wording import difference
-from reference.problem.readings import AS_INTEGRATED
+from reference.problem.readings import AS_INTEGRATED, DEFAULT_V_C
 
 DEEP, DEEPEST = 1e-6, 1e-12  # m/s: below what any instrument, and below what any computation, sees of a slide
-ILL = 1e-3  # of mu below DEEP: more than the engine's tolerance
+ILL = 1e-3  # change of mu below DEEP: more than the engine's tolerance
 IN_WORDS = {"translational": "in translation", "spatial": "with bodies that turn"}
 
 
@@ -20,16 +19,17 @@ def conditioning_line(result: Sequence[ConditioningCurve] | None) -> str:
     Empty without a scene with phases and dry friction. Sizes are relative to the literal supremum and have its base in
     front; their errors contain that of sampling.
     """
-    found = [curve for curve in result or () if curve.grid and curve.speed == "v_c" and _asked(curve)]
+    found = [curve for curve in result or () if curve.grid and curve.speed == "v_c" and _question(curve)]
     if not found:
         return ""
     curve = max(found, key=lambda each: abs(_at(each, DEEP)[0]))
     size, error = _at(curve, DEEP)
     pairs = f"{curve.grid} × {curve.grid} phases"
-    integrated, deep, deepest = (_written(*_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
+    integrated, deep, deepest = (_write(*_at(curve, v)) for v in (DEFAULT_V_C, DEEP, DEEPEST))
     values = (
-        f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} as integrated ({1e3 * DEFAULT_V_C:g} mm/s), "
-        f"{deep} down to {speed_text(DEEP)} m/s, {deepest} down to {speed_text(DEEPEST)} m/s (mean of {pairs})"
+        f"relative to it, mu_{curve.body} of {curve.scene} is {integrated} where speeds "
+        f"above {speed_text(DEFAULT_V_C)} m/s count (as integrated), {deep} above {speed_text(DEEP)} m/s, "
+        f"{deepest} above {speed_text(DEEPEST)} m/s (mean of {pairs})"
     )
     if abs(size) >= ILL and abs(size) > error:
         return f"The literal supremum is ill-conditioned: {values}{_of_engine(curve, result or ())}."
@@ -43,12 +43,12 @@ def speed_text(speed: float) -> str:
     Write a speed without a leading zero in its exponent.
 
     >>> speed_text(1e-6), speed_text(0.0003)
-    ('1e-6', '0.0003')
+    ('1e-6', '3e-4')
     """
-    return f"{speed:g}".replace("e-0", "e-")
+    return f"{speed:.0e}".replace("e-0", "e-")
 
 
-def _asked(curve: ConditioningCurve) -> bool:
+def _question(curve: ConditioningCurve) -> bool:
     return curve.reading == AS_INTEGRATED and all(math.isfinite(_at(curve, v)[0]) for v in (DEFAULT_V_C, DEEP, DEEPEST))
 
 
@@ -68,12 +68,12 @@ def _of_engine(curve: ConditioningCurve, result: Sequence[ConditioningCurve]) ->
         and all(map(math.isfinite, each.mean[-2:]))
     ]
     pairs = max((each.pairs for each in engines), default=0)
-    changes = [f"{_written(*_last_change(each))} {IN_WORDS[each.model]}" for each in engines if each.pairs == pairs]
+    changes = [f"{_write(*_last_change(each))} {IN_WORDS[each.model]}" for each in engines if each.pairs == pairs]
     if not changes:
         return ""
     before, after = engines[0].v[-2:]
-    steps = f"from v_reg = {speed_text(before)} to {speed_text(after)} m/s"
-    return f"; {steps} Exudyn's mean of {pairs} phase pairs changes by {', by '.join(changes)}"
+    steps = f"as v_reg falls from {speed_text(before)} to {speed_text(after)} m/s"
+    return f"; {steps}, Exudyn's mean of {pairs} phase pairs still changes by {', by '.join(changes)}"
 
 
 def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
@@ -82,5 +82,5 @@ def _last_change(curve: ConditioningCurve) -> tuple[float, float]:
     return after / before - 1.0, sum(errors) / before
 
 
-def _written(size: float, error: float) -> str:
+def _write(size: float, error: float) -> str:
     return difference(size, error) if math.isfinite(error) else f"{difference(size, error)} (error unknown)"

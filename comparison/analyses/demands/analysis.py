@@ -12,10 +12,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Phases, UncertainNumber, result
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import SMALL_REGULARIZED, Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.distribution import CURVE, Fractile
@@ -26,7 +26,7 @@ from reference.measures.peak_demands import PER_BODY, QUANTITIES, demands_of_mot
 from reference.problem import Scene, phase_axis, phase_grid
 
 BATCH = {"reference": 32, "engine": 4}  # motions of one task: about two seconds
-PREFIX = "demand_"  # of a demand in surfaces.nc
+PREFIX = "demand_"  # name of a demand in surfaces.nc
 
 # scene, model, relative error asked, phases (M, 2), rad
 Arguments = tuple[Scene, Model, float, Array]
@@ -62,10 +62,10 @@ class DemandStatistics:
         return self.fractiles[FRACTILES.index(probability)].value
 
 
-def moved_demands(task: Arguments) -> Batch:
+def compute_demands(task: Arguments) -> Batch:
     """Demands of the motions of one task. Runs inside a worker process."""
     scene, model, tolerance, phases = task
-    trajectory, settings = imported(model.trajectory), dict(model.settings)
+    trajectory, settings = import_function(model.trajectory), dict(model.settings)
     demands = demands_of_motions(scene, phases, lambda phase: trajectory(scene, phase, tolerance=tolerance, **settings))
     return dict(demands), [str(status) for status in demands.status]
 
@@ -74,7 +74,8 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
     """Demands at every phase pair of every model's surface."""
 
     key, stage, level = "demands", "demands", 2
-    function = staticmethod(moved_demands)
+    seconds = 10.0
+    function = staticmethod(compute_demands)
     without_value = staticmethod(lambda task, failed: ({}, [failed.outcome.value] * len(task[3])))
 
     def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
@@ -149,7 +150,7 @@ def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset
     empty: dict[Any, Any] = dict.fromkeys(renamed.data_vars, np.nan)
     empty[f"{PREFIX}status"] = NOT_ASKED
     aligned = renamed.reindex(scene=surfaces["scene"], body=surfaces["body"], fill_value=empty)
-    return surfaces.assign(aligned.data_vars)
+    return surfaces.assign(aligned.data_vars).assign_coords(surfaces.coords)  # which have their units
 
 
 def demand_statistics(study: Study, demands: xr.Dataset | None, scene: Scene) -> list[DemandStatistics]:

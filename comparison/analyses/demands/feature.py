@@ -1,31 +1,23 @@
 """Demands over all phases: in the report."""
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
 
-from comparison.analyses.demands.analysis import DemandStatistics, DemandSurfaces, PhaseExtreme, demand_statistics
-from comparison.analyses.panels import distribution_panels
+from comparison.analyses.demands.analysis import DemandStatistics, DemandSurfaces, demand_statistics, with_demands
+from comparison.report.feature import Feature, SceneField
+from comparison.report.panels import distribution_panels
 from comparison.report.plots import DEMANDS, Panel
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
-from comparison.report.section import Feature, Report, SceneField, Section
-from comparison.result_types import UncertainNumber
-from comparison.wording import shortened
+from comparison.report.section import Report, Section
 from reference.measures.peak_demands import QUANTITIES, unit_of
 
-MILLI = 1e3
-COLUMNS = (  # of report.pdf: heading, demand, body (None: all of them, -1: the uppermost), factor
-    ("isolator, mm", "displacement", None, MILLI),
-    ("residual, mm", "residual", None, MILLI),
-    ("base shear, N", "base_shear", None, 1.0),
-    ("platform, m/s²", "acceleration", 1, 1.0),
-    ("top, m/s²", "acceleration", -1, 1.0),
-    ("drift, mm", "drift", None, MILLI),
-    ("contact force, N", "contact_force_min", None, 1.0),
+STATISTICS = SceneField(
+    "demand_statistics",
+    list[DemandStatistics],
+    "one per demand, body and model; empty unless demands of every phase pair were asked for",
+    lambda findings, scene: demand_statistics(findings.study, findings.found.get(DemandSurfaces.key), scene),
 )
-HEADINGS = ("scene", "model", *(column[0] for column in COLUMNS))
 
 
 def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
@@ -34,7 +26,7 @@ def demand_panels(scene: SceneResult, results: Results) -> list[Panel]:
     for quantity, body, title, unit, scale in DEMANDS if not scene.recorded else ():
         curves = [
             (row.model, [scale * value for value in row.curve])
-            for row in scene.of("demand_statistics")
+            for row in STATISTICS.of(scene)
             if (row.quantity, row.body) == (quantity, body)
         ]
         panels += distribution_panels(results, scene.name, title, unit, curves)
@@ -46,7 +38,7 @@ def demand_lines(results: Results) -> list[dict[str, Any]]:
     titles = {model.key: model.title for model in results.models}
     lines = []
     for scene in results.scenes:
-        for row in scene.of("demand_statistics"):
+        for row in STATISTICS.of(scene):
             meaning, _ = QUANTITIES[row.quantity]
             name = f"{meaning} of body {row.body}" if row.body else meaning
             name = f"{name}, {unit_of(row.quantity)}".removesuffix(", ")
@@ -54,7 +46,7 @@ def demand_lines(results: Results) -> list[dict[str, Any]]:
     return lines
 
 
-def _context(report: Report, figures: Path) -> Mapping[str, Any]:
+def _context(report: Report) -> Mapping[str, Any]:
     results = report.results
     return {
         "demand_panels": [panel for scene in results.scenes for panel in demand_panels(scene, results)],
@@ -62,62 +54,11 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
     }
 
 
-def demand_rows(results: Results) -> list[list[str]]:
-    """Cells under HEADINGS of the first and last model of every scene, over all phases or the stored motions."""
-    titles = {model.key: model.title for model in results.models}
-    with_demands = [scene for scene in results.scenes if scene.of("demand_statistics") or scene.of("demands")]
-    return [
-        [shortened(scene.name, 40), titles[key], *cells]
-        for scene in with_demands
-        for key, cells in _of_two_models(scene, titles)
-    ]
-
-
-def demands_note(results: Results) -> str:
-    """Which motions the rows are of."""
-    if any(scene.of("demand_statistics") for scene in results.scenes):
-        return "Largest values over all phases; of the contact force, the smallest."
-    return "Largest values over the stored motions of index.html; of the contact force, the smallest."
-
-
-def _of_two_models(scene: SceneResult, titles: dict[str, str]) -> Iterator[tuple[str, list[str]]]:
-    over_phases = scene.of("demand_statistics")
-    rows = over_phases or scene.of("demands")
-    keys = [key for key in titles if key in {row.model for row in rows}]
-    for key in dict.fromkeys((keys[0], keys[-1])):
-        own, cells = [row for row in rows if row.model == key], []
-        for _, name, place, factor in COLUMNS:
-            body = scene.bodies if place == -1 else place
-            if over_phases:
-                shown = [row for row in own if row.quantity == name and body in (None, row.body)]
-                numbers = [row.lowest if name.endswith("_min") else row.highest for row in shown]
-            else:
-                found = [getattr(motion, name) for motion in own]
-                listed = [[each] if isinstance(each, UncertainNumber) else each for each in found]
-                numbers = [number for each in listed for number in (each[body - 1 : body] if body else each)]
-            cells.append(_cell(name, numbers, factor))
-        yield key, cells
-
-
-def _cell(name: str, numbers: Sequence[PhaseExtreme | UncertainNumber], factor: float) -> str:
-    """The worst known value; of a residual with its error, which includes the creep of regularized friction."""
-    known = [number for number in numbers if math.isfinite(number.value)]
-    if not known:
-        return ""
-    worst = (min if name.endswith("_min") else max)(known, key=lambda number: number.value)
-    error = f" ± {factor * worst.error:.1g}" if name == "residual" and worst.error >= 0.0 else ""
-    return f"{factor * worst.value:.4g}{error}"
-
-
 FEATURE = Feature(
-    "demands",
+    DemandSurfaces.key,
+    scene_fields=(STATISTICS,),
     analysis=DemandSurfaces(),
-    scene_fields={
-        "demand_statistics": SceneField(
-            list[DemandStatistics],
-            "one per demand, body and model; empty unless demands of every phase pair were asked for",
-            lambda findings, scene: demand_statistics(findings.study, findings.found.get("demands"), scene),
-        )
-    },
+    on_request=True,
+    dataset=with_demands,
     section=Section("Demands over all phases", context=_context),
 )

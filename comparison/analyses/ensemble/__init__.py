@@ -1,1 +1,1 @@
-"""Demands under many ground motions."""
+"""Demands under a suite of motions at many intensities."""

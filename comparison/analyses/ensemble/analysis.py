@@ -11,17 +11,16 @@ import numpy as np
 import xarray as xr
 
 from comparison.analyses.ensemble import result
-from comparison.analyses.families.analysis import listed_demands
 from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL, Model, has_spatial_data, why_not_spatial
 from comparison.study.study import Study
 from reference.measures import Demands, Estimate, FloorSpectra, demands, effective_isolator, floor_spectra
 from reference.measures.distribution import fractile
-from reference.measures.peak_demands import unit_of
+from reference.measures.peak_demands import list_demands, unit_of
 from reference.problem import GRAVITY, Family, Scene, SceneError
 
 SCALE = "excitation.scale"
@@ -31,7 +30,7 @@ MEDIAN = FRACTILES.index(0.5)
 SMALLEST = ("contact_force_min", "support_force_min")  # demands of which the smallest value is the worst
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)  # steps of which fill an interval evenly
 REST = (0.0, 0.0)  # a record has no phases
-SECONDS_PER_KNOT = {"reference": 8e-5, "engine": 1e-3, "spatial": 7e-3}  # of processor time, for six bodies
+SECONDS_PER_KNOT = {"reference": 8e-5, "engine": 1e-3, "spatial": 7e-3}  # s of processor time, for six bodies
 LIMIT = 900.0  # s of processor time of one motion
 TOLERANCE = 1e-2  # asked of the engine's largest accelerations: motions differ by far more
 
@@ -44,10 +43,10 @@ class Member:
 
     structure: str  # file, and the values that run in it beside motion and scale
     motion: str
-    scale: float  # of the ensemble; a factor of the motion itself comes on top
+    scale: float  # scale of the ensemble; a factor of the motion itself comes on top
     scene: Scene
     place: int = 0  # among the members
-    factor: float = 1.0  # of the motion, to a target spectrum
+    factor: float = 1.0  # factor of the motion, to a target spectrum
 
 
 @dataclass(frozen=True)
@@ -62,7 +61,7 @@ class Point:
 
     def estimate(self, quantity: Quantity) -> Estimate:
         """A demand; NaN without an answer."""
-        known = () if self.demands is None else listed_demands(self.demands)
+        known = () if self.demands is None else list_demands(self.demands)
         return next((number for *key, number in known if tuple(key) == quantity), Estimate(math.nan, math.nan))
 
 
@@ -239,7 +238,7 @@ def answered(task: Arguments) -> Answer:
     """The demands of one motion by one model, and its floor spectra by the equations."""
     scene, model, tolerance = task
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
-    motion = imported(model.trajectory)(scene, REST, tolerance=tolerance, **settings)
+    motion = import_function(model.trajectory)(scene, REST, tolerance=tolerance, **settings)
     return demands(motion), floor_spectra(motion) if model == EXACT else None
 
 
@@ -254,12 +253,12 @@ def stripes(points: Sequence[Point]) -> Iterator[result.Stripe]:
                 fractiles = [result.Fractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)]
                 lost = [pair for pair in zip(numbers, at_scale) if not math.isfinite(pair[0].value)]
                 lacking = Counter(number.reason or point.status for number, point in lost)
-                about = name, *_named(quantity), own[0].model, unit_of(quantity[0]), scale
+                about = name, *_name_points(quantity), own[0].model, unit_of(quantity[0]), scale
                 answered = len(numbers) - lacking.total()
                 yield result.Stripe(*about, answered, mean, fractiles, largest, smallest, dict(lacking))
 
 
-def _named(quantity: Quantity) -> tuple[str, int | None]:
+def _name_points(quantity: Quantity) -> tuple[str, int | None]:
     return quantity[0], quantity[1] or None
 
 
@@ -305,12 +304,12 @@ def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[resu
                     numbers = [_statistic(point.estimate(quantity)) for point in points]
                     values, errors = [each.value for each in numbers], [each.error for each in numbers]
                     scales = [point.member.scale for point in points]
-                    yield result.Curve(name, *_named(quantity), points[0].model, motion, scales, values, errors)
+                    yield result.Curve(name, *_name_points(quantity), points[0].model, motion, scales, values, errors)
 
 
 def quantities(points: Sequence[Point]) -> list[Quantity]:
     """The demands that any point has, in the order of `Demands`, without the check of its energy."""
-    listed = (listed_demands(point.demands) for point in points if point.demands is not None)
+    listed = (list_demands(point.demands) for point in points if point.demands is not None)
     names = dict.fromkeys((name, body) for numbers in listed for name, body, _ in numbers)
     return [quantity for quantity in names if quantity[0] != "energy_balance"]
 
@@ -335,7 +334,7 @@ def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Poi
             apart, same = ([*_differences(quantity, first, own)] for first in (matching, same_law))
             closest = max(same, default=(math.nan, math.nan))
             largest, alike_apart, errors = map(finite_or_none, (max(apart, default=closest)[0], *closest))
-            yield result.Difference(name, *_named(quantity), largest, alike_apart, errors, len(apart))
+            yield result.Difference(name, *_name_points(quantity), largest, alike_apart, errors, len(apart))
 
 
 def _differences(quantity: Quantity, first: Sequence[Point], second: Sequence[Point]) -> Iterator[tuple[float, float]]:

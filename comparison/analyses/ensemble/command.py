@@ -1,5 +1,5 @@
 """
-Demands under a suite: `python -m comparison.ensemble SCENE [SCENE ...] --suite SUITE --scales LOW HIGH COUNT`.
+Demands under a suite: `phase-resonance ensemble SCENE [SCENE ...] --suite SUITE --scales LOW HIGH COUNT`.
 
 Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
 """
@@ -28,12 +28,20 @@ from comparison.analyses.ensemble.feature import (
     target_sentence,
 )
 from comparison.analyses.ensemble.result import PICTURE, STORED, EnsembleResult
-from comparison.analyses.ensemble.target import matched
-from comparison.cli.arguments import CommandParser, command, jobs, number, whole_number, write_and_show, writing
-from comparison.cli.computing import computed, run_facts
+from comparison.analyses.ensemble.target import match_spectrum
+from comparison.cli.arguments import (
+    CommandParser,
+    command,
+    number_of_jobs,
+    read_number,
+    read_whole_number,
+    report_write_errors,
+    write_and_show,
+)
+from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.terminal import new_table, print_implausible_values
 from comparison.runner.attempts import attempt
-from comparison.runner.output import destination, made_by, publish, refuse_foreign_files
+from comparison.runner.output import destination, files_written_by, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Display, wide_console
 from comparison.runner.task_results import TaskResults
@@ -60,12 +68,12 @@ NAMED = 12  # motions that are named one by one
 def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Compute the ensemble that the command line names, and write what it shows; the exit code."""
     options = _parser().parse_args(argv)
-    jobs(options)  # refused before anything else is looked at
-    subset = None if options.engine == "all" else whole_number("--engine", options.engine, 0, 1000)
-    members, model = members_of([asked_family(options, scene) for scene in options.scenes]), ENGINES[options.model]
+    number_of_jobs(options)  # refused before anything else is looked at
+    subset = None if options.engine == "all" else read_whole_number("--engine", options.engine, 0, 1000)
+    members, model = members_of([family_of_options(options, scene) for scene in options.scenes]), ENGINES[options.model]
     target = None
     if options.target is not None:
-        members, target = matched(members, options.target, options.periods)
+        members, target = match_spectrum(members, options.target, options.periods)
     elif options.periods is not None:
         raise SceneError("command line", "--periods", " ".join(options.periods), "needs --target")
     if subset != 0:
@@ -93,9 +101,9 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         written = write_and_show(
             out, partial(publish, out, files, COMMAND), partial(print_ensemble, console, result, cost)
         )
-        with writing(out):
-            drawn = attempt("picture", lambda: made_by(lambda folder: draw_ensemble(folder / PICTURE, result)))
-            written += publish(out, drawn or {}, COMMAND)
+        with report_write_errors(out):
+            draw = partial(files_written_by, lambda folder: draw_ensemble(folder / PICTURE, result))
+            written += publish(out, attempt("picture", draw) or {}, COMMAND)
         console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
 
     def show_equations(results: TaskResults, display: Display) -> None:
@@ -104,11 +112,11 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         console.print(f"Next: {count} by the {model.title}, about {display.left:.0f} s; then all tables again.")
 
     first = equations.tasks(), show_equations
-    show(ensemble, computed("ensemble", options, argv, tasks, MODELS, console, executor, *first))
+    show(ensemble, compute_tasks("ensemble", options, argv, tasks, MODELS, console, executor, *first))
     return 0
 
 
-def asked_family(options: argparse.Namespace, source: str) -> Family:
+def family_of_options(options: argparse.Namespace, source: str) -> Family:
     """The scene with every motion of `--suite` at every scale of `--scales`. Raises SceneError."""
     data = scene_tables(scene_text(source), source)
     loading: Any = data.get("excitation")
@@ -120,8 +128,8 @@ def asked_family(options: argparse.Namespace, source: str) -> Family:
         loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}}
         data.setdefault("combine", "product")
     if options.scales is not None:
-        low, high = (number("--scales", text, 1e-6, 1e6, "LOW and HIGH") for text in options.scales[:2])
-        count = whole_number("--scales", options.scales[2], 1, MAX_SCALES)
+        low, high = (read_number("--scales", text, 1e-6, 1e6, "LOW and HIGH") for text in options.scales[:2])
+        count = read_whole_number("--scales", options.scales[2], 1, MAX_SCALES)
         asked: Any = {"range": [low, high], "steps": count} if count > 1 else {"values": [low]}
         loading = {**loading, "scale": asked} if isinstance(loading, dict) else loading
     data["excitation"] = loading
@@ -129,7 +137,7 @@ def asked_family(options: argparse.Namespace, source: str) -> Family:
 
 
 def how_paired(suite: str | None) -> str:
-    """How the components of .AT2 files were found; "" for another suite."""
+    """Return how the components of .AT2 files were found; "" for another suite."""
     if suite is None or ":" in suite:
         return ""
     motions = suite_files(suite, Path())
@@ -191,7 +199,7 @@ def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> 
 
 
 def missing_sentences(rows: Sequence[dict[str, Any]], result: EnsembleResult, structure: str) -> list[str]:
-    """Which motions of a structure lack which demands at the largest scale, and why."""
+    """Return which motions of a structure lack which demands at the largest scale, and why."""
     lacking: dict[tuple[str, int], list[str]] = {}
     for row in rows:
         for reason in row["stripe"].reasons.items():

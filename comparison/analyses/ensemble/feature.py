@@ -18,9 +18,10 @@ from comparison.analyses.ensemble.result import (
     Structure,
     Target,
 )
-from comparison.analyses.panels import draw_panels, panel
+from comparison.report.feature import Feature, ResultField
+from comparison.report.panels import draw_panels, panel
 from comparison.report.plots import Panel
-from comparison.report.section import Feature, Section
+from comparison.report.section import Section
 from comparison.study.models import EXACT, SPATIAL
 from comparison.wording import percent
 from reference.measures.peak_demands import QUANTITIES, unit_of
@@ -30,8 +31,8 @@ SHOWN = ("displacement", "residual", "base_shear", "uplift", "support_force_max"
 OF_BODY = {"acceleration": "acceleration of body {}", "drift": "drift below body {}", "torsion": "rotation of body {}"}
 NAMED = 6  # motions of the engine that are named one by one
 PERIOD = {"title": "period, s", "log": True}  # an axis
-UNSEEN = 5e-5  # of a value: a smaller error is not seen in four digits
-WIDTH = 0.3  # of a strip, in steps from one structure to the next
+UNSEEN = 5e-5  # share of a value: a smaller error is not seen in four digits
+WIDTH = 0.3  # width of a strip, in steps from one structure to the next
 READ = {"m": ("mm", 1e3), "N": ("kN", 1e-3), "J": ("kJ", 1e-3), "rad": ("mrad", 1e3), "m/s^2": ("g", 1.0 / GRAVITY)}
 
 
@@ -52,7 +53,7 @@ def ensemble_panels(ensemble: EnsembleResult) -> list[Panel]:
     """Isolator, base shear and supports over the scale or as strips; profiles over the height; floor spectra."""
     shown = [quantity for quantity in SHOWN if any(curve.quantity == quantity for curve in ensemble.curves)]
     panels = [_panel(ensemble, quantity) for quantity in shown]
-    return [*panels, *_profiles(ensemble), *_spectra(ensemble), *_matched(ensemble)] if ensemble.curves else []
+    return [*panels, *_profiles(ensemble), *_spectra(ensemble), *_spectra_panels(ensemble)] if ensemble.curves else []
 
 
 def draw_ensemble(path: Path, ensemble: EnsembleResult) -> None:
@@ -74,7 +75,7 @@ def heading(ensemble: EnsembleResult, structure: Structure, scale: float) -> str
 
 
 def labels(ensemble: EnsembleResult) -> dict[str, str]:
-    """What tells the structures apart, by their names: of those of one file the values in which they differ."""
+    """Return what tells the structures apart, by their names: of those of one file the values in which they differ."""
     names = [each.name for each in ensemble.structures]
     files, values = zip(*(name.rstrip("]").partition("[")[::2] for name in names))
     parts = [re.split(r", |\+(?!\d)", text) for text in values]
@@ -114,7 +115,7 @@ def _values(curves: Sequence[Curve], factor: float, place: float | None, **look:
     series = []
     for number, curve in enumerate(curves):
         x = list(curve.scales) if place is None else [place + WIDTH * ((number + 0.5) / len(curves) - 0.5)]
-        line = {"x": x, "y": [_scaled(value, factor) for value in curve.values], "legend": number == 0} | look
+        line = {"x": x, "y": [_scale(value, factor) for value in curve.values], "legend": number == 0} | look
         for key, side in (("low", -1.0), ("high", 1.0)) if "line" in look else ():
             both = zip(curve.values, curve.errors)
             line[key] = [None if None in pair else factor * (pair[0] + side * pair[1]) for pair in both]  # type: ignore[operator]
@@ -132,7 +133,7 @@ def _median(
 ) -> dict[str, Any]:
     """Median of a structure with its band, from low, median and high at every x."""
     columns = zip(("low", "y", "high"), fractiles)
-    numbers = {key: [_scaled(each.value, factor) for each in column] for key, column in columns}
+    numbers = {key: [_scale(each.value, factor) for each in column] for key, column in columns}
     name = labels(ensemble)[ensemble.structures[place].name]
     return {"name": name, "color": place, "x": x, **numbers, "band": True, "marks": True, "width": 2.4, **look}
 
@@ -173,7 +174,7 @@ def _spectra(ensemble: EnsembleResult) -> list[Panel]:
 
 
 def target_sentence(target: Target) -> str:
-    """What the motions are scaled to."""
+    """Return what the motions are scaled to."""
     between = f"from {target.low:.3g} to {target.high:.3g} s, in the logarithm, at 5 % damping"
     return f"Scale 1 is that of the target spectrum: least squares over periods {between}."
 
@@ -203,7 +204,7 @@ def largest_differences(ensemble: EnsembleResult) -> list[tuple[str, float | Non
 
 
 def agreement_sentence(ensemble: EnsembleResult) -> str:
-    """How closely both codes agree under the same friction law."""
+    """Return how closely both codes agree under the same friction law."""
     engine = ensemble.engine
     ran = ", ".join(
         dict.fromkeys(f"{point.get('motion', point['scene'])} ({point['status']})" for point in engine.points[:NAMED])
@@ -221,7 +222,7 @@ def agreement_sentence(ensemble: EnsembleResult) -> str:
     return f"{title} {agreement} (worst: {name})."
 
 
-def _matched(ensemble: EnsembleResult) -> list[Panel]:
+def _spectra_panels(ensemble: EnsembleResult) -> list[Panel]:
     """Response spectra of the motions with their factors, at scale 1, and the target."""
     if (target := ensemble.target) is None:
         return []
@@ -245,7 +246,7 @@ def _from_zero(title: str, series: Sequence[dict[str, Any]]) -> dict[str, Any]:
     return {"title": title, "range": [0.0, 1.06 * max(values, default=0.0) or 1.0]}
 
 
-def _scaled(value: float | None, factor: float) -> float | None:
+def _scale(value: float | None, factor: float) -> float | None:
     return None if value is None else factor * value
 
 
@@ -278,21 +279,25 @@ def text_of(number: Statistic, factor: float) -> str:
     )
 
 
-FEATURE = Feature(
+FOUND = ResultField(
     "ensemble",
     EnsembleResult,
-    "demands under many motions at many scales; null unless python -m comparison.ensemble left it beside the report",
+    "demands under many motions at many scales; null unless phase-resonance ensemble left it beside the report",
     load=STORED.load,
+)
+FEATURE = Feature(
+    "ensemble",
+    (FOUND,),
     section=Section(
         "Demands under many motions",
-        "python -m comparison.ensemble SCENE makes it, beside the report; the next run of the study shows it",
-        lambda report, figures: {
-            "ensemble_panels": ensemble_panels(report.results.of("ensemble")),
+        "phase-resonance ensemble SCENE makes it, beside the report; the next run of the study shows it",
+        lambda report: {
+            "ensemble_panels": ensemble_panels(FOUND.of(report.results)),
             "demand_rows": demand_rows,
             "agreement_sentence": agreement_sentence,
             "heading": heading,
             "isolator_sentence": isolator_sentence,
-            "labels": labels(report.results.of("ensemble")),
+            "labels": labels(FOUND.of(report.results)),
             "target_sentence": target_sentence,
             "title_of": title_of,
         },

@@ -204,7 +204,8 @@ class EnsembleResult:
         require(self.motions >= 1, f"motions must be at least 1, not {self.motions}")
         bodies = {each.name: each.bodies for each in self.structures}
         require(len(bodies) == len(self.structures), "structures must have different names")
-        for each in (*self.stripes, *self.curves, *self.spectra, *self.engine.differences):
+        named: list[Demand | Spectrum] = [*self.stripes, *self.curves, *self.spectra, *self.engine.differences]
+        for each in named:
             name = each.structure[:40]
             require(each.structure in bodies, f"structure {name!r} is none of the structures")
             body, most = each.body, bodies[each.structure]
@@ -213,19 +214,19 @@ class EnsembleResult:
             require(stripe.scale in self.scales, f"scale {stripe.scale:g} of a stripe is none of the scales")
 
     def stripes_of(self, structure: str, quantity: str) -> list[Stripe]:
-        """Of one demand of the isolator over the scales, by the equations, or else by the engine."""
+        """Return the stripes of one demand of the isolator over the scales, by the equations, or else by the engine."""
         own = [each for each in self.stripes if (each.structure, each.quantity) == (structure, quantity)]
         return [each for each in own if each.model == EXACT.key] or own
 
     def profile(self, structure: str, quantity: str) -> list[Stripe]:
-        """Of one demand of every body at the largest scale, by the equations."""
+        """Return the profile of one demand of every body at the largest scale, by the equations."""
         asked = structure, quantity, EXACT.key, max(self.scales)
         return [each for each in self.stripes if (each.structure, each.quantity, each.model, each.scale) == asked]
 
     def curves_of(self, structure: str, quantity: str) -> tuple[list[Curve], list[Curve]]:
-        """Of one demand of the isolator, by the equations and by the engine."""
+        """Return the curves of one demand of the isolator, by the equations and by the engine."""
         own = [each for each in self.curves if (each.structure, each.quantity) == (structure, quantity)]
         return [each for each in own if each.model == EXACT.key], [each for each in own if each.model != EXACT.key]
 
 
-STORED = StoredFile(FILE, EnsembleResult, "an ensemble", "python -m comparison.ensemble")
+STORED = StoredFile(FILE, EnsembleResult, "an ensemble", "phase-resonance ensemble")

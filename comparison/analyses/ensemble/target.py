@@ -8,7 +8,7 @@ import numpy as np
 
 from comparison.analyses.ensemble.analysis import SCALE, Member
 from comparison.analyses.ensemble.result import MatchedMotion, Target
-from comparison.cli.arguments import number
+from comparison.cli.arguments import read_number
 from comparison.result_types import Array
 from reference.measures import factor_for_spectrum, response_spectrum
 from reference.problem import SceneError
@@ -39,11 +39,13 @@ def read_target(file: str) -> tuple[Array, Array]:
     return period, factor * acceleration
 
 
-def matched(members: Sequence[Member], file: str, ends: Sequence[str] | None) -> tuple[tuple[Member, ...], Target]:
+def match_spectrum(
+    members: Sequence[Member], file: str, ends: Sequence[str] | None
+) -> tuple[tuple[Member, ...], Target]:
     """The members with the factors of their motions, and the spectrum. ends: of the periods, s. Raises SceneError."""
     period, wanted = read_target(file)
     unit = "s: a period of the target spectrum"
-    low, high = (number("--periods", end, period[0], period[-1], unit) for end in ends or period[[0, -1]])
+    low, high = (read_number("--periods", end, period[0], period[-1], unit) for end in ends or period[[0, -1]])
     if not low < high:
         raise SceneError("command line", "--periods", f"{low:g} {high:g}", "must be two periods, s, the shorter first")
 

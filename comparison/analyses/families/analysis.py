@@ -1,15 +1,14 @@
 """A family of scenes in which one value runs: mu of every model, and every bar of the waterfalls, over that value."""
 
+from __future__ import annotations
+
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields
-from typing import Annotated
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 import xarray as xr
 
-from comparison.analyses.demands.analysis import DemandStatistics
-from comparison.analyses.motions.analysis import StoredMotion
 from comparison.result_types import Number, result
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
@@ -17,8 +16,12 @@ from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.model_difference import usable_mu
 from comparison.surfaces.surfaces import values_of
 from comparison.surfaces.waterfall import NAN, Waterfall, WaterfallBar
-from reference.measures import Demands, Estimate
+from reference.measures.peak_demands import list_demands
 from reference.problem import Family, Scene
+
+if TYPE_CHECKING:  # types of what other features found, where the study has them
+    from comparison.analyses.demands.analysis import DemandStatistics
+    from comparison.analyses.motions.analysis import StoredMotion
 
 
 @result
@@ -87,7 +90,7 @@ def family_demands(family: Family, motions: Sequence[StoredMotion]) -> list[Fami
     numbers: dict[tuple[str, str, int], dict[str, list[float]]] = {}
     for motion in motions:
         if motion.demands is not None and motion.place.scene in {scene.name for scene in family.scenes}:
-            for quantity, body, estimate in listed_demands(motion.demands):
+            for quantity, body, estimate in list_demands(motion.demands):
                 if math.isfinite(estimate.value):
                     column = numbers.setdefault((motion.model, quantity, body), {})
                     column.setdefault(motion.place.scene, []).append(estimate.value)
@@ -118,20 +121,6 @@ def _demand(
     """rows: median, lowest, highest and number of motions, by scene."""
     numbers = (rows.get(scene.name, (NAN, NAN, NAN, 0)) for scene in family.scenes)
     return FamilyDemand(*key, *map(tuple, zip(*numbers)))
-
-
-def listed_demands(demands: Demands) -> Iterator[tuple[str, int, Estimate]]:
-    """Field of `Demands`, body (0: the isolator; of a drift the upper one) and number of every demand of a motion."""
-    for field in fields(demands):
-        estimates = getattr(demands, field.name)
-        if isinstance(estimates, Estimate):
-            listed = [(0, estimates)]
-        elif isinstance(estimates, tuple):
-            listed = list(enumerate(estimates, start=2 if field.name == "drift" else 1))
-        else:
-            continue  # the status, or a demand that the model does not have
-        for body, estimate in listed:
-            yield field.name, body, estimate
 
 
 def _bars(waterfall: Waterfall) -> dict[str, WaterfallBar]:

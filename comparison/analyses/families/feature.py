@@ -1,6 +1,6 @@
 """Families of scenes: in the report and in summary.json."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from comparison.analyses.families.analysis import (
@@ -12,18 +12,19 @@ from comparison.analyses.families.analysis import (
     family_demands_over_phases,
     family_steps,
 )
-from comparison.analyses.panels import panel
+from comparison.report.feature import Feature, Findings, ResultField
+from comparison.report.panels import panel
 from comparison.report.plots import DEMANDS, Panel, plain
 from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
-from comparison.report.section import Feature, Findings, Section
+from comparison.report.section import Section
 from comparison.result_types import Part, Text
 from comparison.surfaces.budget import TOTAL
 from comparison.surfaces.waterfall import PHASES
 from comparison.wording import MAX_NAMES
 
 MOTION = "excitation.record.motion"  # a number that no axis has: motions are named
-DECADES = 30.0  # of its largest over its smallest value: beyond it the axis is logarithmic
+DECADES = 30.0  # ratio of its largest to its smallest value: beyond it the axis is logarithmic
 
 
 class FamilyResult(Part):
@@ -48,10 +49,10 @@ class FamilyResult(Part):
 
 
 def family_results(findings: Findings, scenes: Sequence[SceneResult]) -> list[FamilyResult] | None:
-    """Of every family of the study; None without any."""
-    statistics = {scene.name: scene.of("demand_statistics") for scene in scenes}
+    """Return the results of every family of the study; None without any."""
+    statistics = {scene.name: getattr(scene, "demand_statistics", []) for scene in scenes}
     motions, found = findings.found.get("motions") or [], []
-    for family in findings.found.get("families") or []:
+    for family in findings.families:
         over = any(statistics[scene.name] for scene in family.scenes)
         result = FamilyResult(
             name=family.name,
@@ -67,11 +68,19 @@ def family_results(findings: Findings, scenes: Sequence[SceneResult]) -> list[Fa
     return found or None
 
 
+FOUND = ResultField(
+    "families",
+    list[FamilyResult],
+    "families of scenes in which one value runs; null without any",
+    compute=family_results,
+)
+
+
 def family_panels(results: Results) -> list[dict[str, Any]]:
     """For each family: mu of every body by every model over the value that runs, and what each effect adds."""
     scenes = {scene.name: scene for scene in results.scenes}
     listed = []
-    for family in results.of("families") or ():
+    for family in FOUND.get(results) or ():
         first = scenes[family.scenes[0]]
         bodies = range(1, first.bodies + 1)
         panels = [draw(results, family, body) for body in bodies for draw in (_family_mu, _family_steps)]
@@ -93,13 +102,16 @@ def _axis(family: FamilyResult) -> tuple[list[float], dict[str, Any]]:
     return values, {"title": family.key}
 
 
-def _over(family: FamilyResult, title: str, label: str, unit: str, lines: Iterable[tuple[Any, ...]]) -> Panel:
-    """A panel over the value that runs. lines: name, color and values, with the smallest and the largest, if any."""
+def _over(family: FamilyResult, title: str, label: str, unit: str, lines: Sequence[tuple[Any, ...]]) -> Panel:
+    """
+    Return a panel over the value that runs. lines: name, color and values, with the smallest and the largest, if any: a
+    band of the first and of the last model, since those of all hide each other.
+    """
     places, axis = _axis(family)
     series = []
-    for name, color, middle, *band in lines:
+    for number, (name, color, middle, *band) in enumerate(lines):
         line = {"name": name, "x": places, "y": plain(middle), "color": color, "marks": True}
-        if any(low < high for low, high in zip(*band)):
+        if number in (0, len(lines) - 1) and any(low < high for low, high in zip(*band)):
             line |= {**dict(zip(("low", "high"), map(plain, band))), "band": True}
         series.append(line)
     return panel(title, f"{label} over {family.key}", axis, {"title": unit}, series)
@@ -140,13 +152,11 @@ def _family_demand(
 
 FEATURE = Feature(
     "families",
-    list[FamilyResult],
-    "families of scenes in which one value runs; null without any",
-    summary=family_results,
+    (FOUND,),
     section=Section(
         "Families of scenes",
         "a range in a scene file makes one: friction = {range = [0.02, 0.2], steps = 10}",
-        lambda report, figures: {"family_panels": family_panels(report.results)},
+        lambda report: {"family_panels": family_panels(report.results)},
         folded=False,
     ),
 )

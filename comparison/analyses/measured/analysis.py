@@ -12,10 +12,10 @@ from typing import Annotated, Any
 import xarray as xr
 from pydantic import computed_field
 
-from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Number, Phases, Text, result
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.verdicts import (
@@ -25,6 +25,7 @@ from comparison.verdicts import (
     Verdict,
     count_verdicts,
     judge,
+    word_counts,
     word_counts_and_largest,
     word_error,
     word_verdict,
@@ -101,8 +102,8 @@ def phases_of(peak: Measured) -> tuple[float, float]:
     return (0.0, 0.0) if peak.phases is None else (peak.phases[0], peak.phases[1])
 
 
-def _asked(scene: Scene, phases: tuple[float, float], model: Model) -> list[Asked]:
-    """What the test measured; of a model that reads the same motion otherwise mu alone."""
+def _questions(scene: Scene, phases: tuple[float, float], model: Model) -> list[Asked]:
+    """Return what the test measured; of a model that reads the same motion otherwise mu alone."""
     return [
         (peak.quantity, peak.body or 0)
         for peak in scene.measured or ()
@@ -117,21 +118,31 @@ def peaks_at(task: Arguments) -> list[Peak]:
     status = Outcome.OK.value
     known: dict[str, Any] = {}  # estimates by quantity: of the isolator, of every body, or None
     if any(quantity == "mu" for quantity, _ in asked):
-        answer = imported(model.amplification)(scene, [phases], tolerance=tolerance, **settings)
+        answer = import_function(model.amplification)(scene, [phases], tolerance=tolerance, **settings)
         known["mu"] = tuple(map(Estimate, answer.mu[0].tolist(), answer.error[0].tolist()))
         status = str(answer.status[0])
     if any(quantity != "mu" for quantity, _ in asked):
-        motion = imported(model.trajectory)(scene, phases, tolerance=tolerance, **settings)
+        motion = import_function(model.trajectory)(scene, phases, tolerance=tolerance, **settings)
         known, status = vars(demands(motion)) | known, str(motion.status)
     listed = ((known[name], body - OF_BODIES.get(name, 0)) for name, body in asked)
     numbers = [(each[place] if isinstance(each, tuple) else each) or LACKING for each, place in listed]
     return [(number.value, number.error, number.reason or status) for number in numbers]
 
 
+def word_measured(peaks: Sequence[MeasuredPeak]) -> str:
+    """Return what measured peaks say of the models, in a clause; "" without any."""
+    if not peaks:
+        return ""
+    counts = count_verdicts(computed.verdict for peak in peaks for computed in peak.computed)
+    count = "1 measured peak stands" if len(peaks) == 1 else f"{len(peaks)} measured peaks stand"
+    return f"{count} beside the models ({word_counts(counts)})"
+
+
 class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
     """Every measured peak of every scene by every model that has its quantity."""
 
     key, stage, level = "measured", "measured", 2
+    seconds = 1.0
     function = staticmethod(peaks_at)
     without_value = staticmethod(lambda task, failed: [(math.nan, math.nan, failed.outcome.value)] * len(task[4]))
 
@@ -142,7 +153,7 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
                 for model in models_of(scene, study.hierarchy):
                     if model.side == "user":
                         continue
-                    yield scene, model, model.tolerance(study.tolerance), phases, _asked(scene, phases, model)
+                    yield scene, model, model.tolerance(study.tolerance), phases, _questions(scene, phases, model)
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[MeasuredPeak] | None:
         """In the order of the scene files; None where no scene has measured peaks."""

@@ -1,24 +1,30 @@
 """Measured peaks: in the report."""
 
-from comparison.analyses.measured.analysis import MeasuredPeak, MeasuredPeaks, verdict_line
-from comparison.report.section import Feature, Section
+from comparison.analyses.measured.analysis import MeasuredPeak, MeasuredPeaks, verdict_line, word_measured
+from comparison.report.feature import Feature, ResultField
+from comparison.report.section import Section
 from comparison.verdicts import CLASSES
 from reference.measures.peak_demands import QUANTITIES, unit_of
 
-FEATURE = Feature(
-    "measured",
+FOUND = ResultField(
+    MeasuredPeaks.key,
     list[MeasuredPeak],
     "measured peaks beside what every model computes; null where no scene has any",
+)
+FEATURE = Feature(
+    MeasuredPeaks.key,
+    (FOUND,),
     analysis=MeasuredPeaks(),
+    clause=lambda results: word_measured(FOUND.get(results) or ()),
     section=Section(
         "Measured peaks",
         "a scene file with [[measured]] peaks makes it: whoever has measurements can set them beside the models",
-        lambda report, figures: {
+        lambda report: {
             "measured_titles": {"mu": "amplification factor"} | {key: text for key, (text, _) in QUANTITIES.items()},
             "measured_units": {"mu": ""} | {key: unit_of(key) for key in QUANTITIES},
             "measured_classes": CLASSES,
         },
-        verdict=lambda results: verdict_line(results.of("measured")),
+        verdict=lambda results: verdict_line(FOUND.of(results)),
         folded=False,
     ),
 )

@@ -6,20 +6,20 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import difference_of
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
 from reference.measures.demands import ANSWERED
 from reference.problem import Outcome, Scene, Trajectory
-from reference.support.build_cache import cached_on_disk
+from reference.support.build_cache import cache_on_disk
 
-SHARE = 0.003  # of the swing of a component: what a decimated motion may be off by
-MIN_SWING = 0.01  # of its largest value: a component that changes less is as good as constant
+SHARE = 0.003  # share of the swing of a component: what a decimated motion may be off by
+MIN_SWING = 0.01  # share of its largest value: a component that changes less is as good as constant
 SPREAD = 5  # phase pairs (k, 2k) 2 pi/5: evenly over the square, and no two of them mirror images of each other
 
 
@@ -31,7 +31,7 @@ def swing(values: Array) -> Array:
     return np.where(scale > 0.0, scale, 1.0)
 
 
-def decimated(time: Array, values: Array, peaks: NDArray[np.intp], share: float = SHARE) -> NDArray[np.intp]:
+def decimate(time: Array, values: Array, peaks: NDArray[np.intp], share: float = SHARE) -> NDArray[np.intp]:
     """
     Indices to keep of `values` (T, C) at `time` (T,): both ends, `peaks`, and as many more as it takes for straight
     lines between them to miss no value by more than `share` of its component's `swing`.
@@ -44,7 +44,7 @@ def decimated(time: Array, values: Array, peaks: NDArray[np.intp], share: float 
     return np.flatnonzero(kept)
 
 
-@cached_on_disk(__file__, error_model="numpy", nogil=True)
+@cache_on_disk(__file__, error_model="numpy", nogil=True)
 def _keep_corners(time: Array, values: Array, share: float, kept: NDArray[np.bool_]) -> None:
     """Add to `kept` (T,), wherever a straight line misses one of `values` (T, C) by too much, the row missed most."""
     start = 0
@@ -119,7 +119,7 @@ class StoredMotion:
                 raise ValueError(f"{self.time.shape} instants of {name} {values.shape}")
 
     def blocks(self) -> dict[str, Array]:
-        """What the motion has, (T, C) each, by name; "time" comes first."""
+        """Return what the motion has, (T, C) each, by name; "time" comes first."""
         names = ("time", "position", "acceleration", "contact_force", "isolator_force", "support_force", "yaw")
         arrays = {name: np.asarray(getattr(self, name)) for name in names}
         return {name: values.reshape(len(values), -1) for name, values in arrays.items() if values.size}
@@ -128,9 +128,11 @@ class StoredMotion:
 Arguments = tuple[Scene, Model, float, Place, tuple[float, float]]
 
 
-def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Place, set[str]]:
-    """Where the difference of each body is largest, and an even spread; with the engine's models that move there."""
-    engines = {model.key for model in shown_models(study, scene) if model.side == "engine"}
+def choose_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Place, set[str]]:
+    """
+    Return where the difference of each body is largest, and an even spread; with the engine's models that move there.
+    """
+    engines = {model.key for model in models_to_show(study, scene) if model.side == "engine"}
     if scene.recorded:
         return {Place(scene.name, 0, 0, ""): engines}
     places: dict[tuple[int, int], tuple[str, set[str]]] = {}
@@ -145,26 +147,26 @@ def chosen_places(study: Study, surfaces: xr.Dataset, scene: Scene) -> dict[Plac
     return {Place(scene.name, *place, why): moving for place, (why, moving) in places.items()}
 
 
-def shown_models(study: Study, scene: Scene) -> list[Model]:
+def models_to_show(study: Study, scene: Scene) -> list[Model]:
     """The models whose surfaces the page shows, each once; those that have motions."""
     shown = {model.key: model for pair in study.pairs(scene) for model in (pair.first, pair.second)}
     return [model for model in shown.values() if model.trajectory]
 
 
-def moved(task: Arguments) -> StoredMotion:
+def compute_motion(task: Arguments) -> StoredMotion:
     """The motion of one task, decimated; what goes wrong is said in `error_message`."""
     scene, model, tolerance, place, phase = task
     settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
-        motion: Trajectory = imported(model.trajectory)(scene, phase, tolerance=tolerance, **settings)
+        motion: Trajectory = import_function(model.trajectory)(scene, phase, tolerance=tolerance, **settings)
         if len(motion.time) == 0:  # refused before its first step
             return replace(_nothing(place, model.key, Outcome(motion.status), ""), demands=demands(motion))
-        return _stored(place, model, motion)
+        return _store_motion(place, model, motion)
     except Exception as error:
         return _nothing(place, model.key, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
 
 
-def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
+def _store_motion(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
     """The motion with its demands and spectra, decimated. Raises ValueError for numbers that are not finite."""
     whole = StoredMotion(
         place, model.key, motion.time, motion.position[:, :, :2], motion.absolute_acceleration[:, :, :2],
@@ -179,7 +181,7 @@ def _stored(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
         raise ValueError("the motion holds numbers that are not finite")
     extremes = [size.argmax(axis=0), values.argmax(axis=0), values.argmin(axis=0)]
     extremes += [np.linalg.norm(part, axis=1).argmax()[None] for part in (whole.position[:, 0], whole.isolator_force)]
-    kept = decimated(whole.time, values, np.unique(np.concatenate(extremes)))
+    kept = decimate(whole.time, values, np.unique(np.concatenate(extremes)))
     arrays = {name: getattr(whole, name)[kept] for name in whole.blocks()}
     return replace(whole, **arrays)
 
@@ -199,7 +201,8 @@ class Motions(MappedAnalysis[list[StoredMotion]]):
     """Motions kept for the report, at phases that the surfaces choose."""
 
     key, stage, needs_surfaces = "motions", "motions", True
-    function, without_value, collect = staticmethod(moved), staticmethod(_without_value), MappedAnalysis.values
+    seconds = 4.0
+    function, without_value, collect = staticmethod(compute_motion), staticmethod(_without_value), MappedAnalysis.values
 
     def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Arguments]:
         """Every place with every model that moves there, in the order scene, place, model."""
@@ -208,8 +211,8 @@ class Motions(MappedAnalysis[list[StoredMotion]]):
         return [
             (scene, model, model.tolerance(study.tolerance), place, (axes[0][place.row], axes[1][place.column]))
             for scene in study.scenes
-            for place, engines in chosen_places(study, surfaces, scene).items()
-            for model in shown_models(study, scene)
+            for place, engines in choose_places(study, surfaces, scene).items()
+            for model in models_to_show(study, scene)
             if (model.side != "engine" or model.key in engines)
             and place.row % study.stride(model, scene) == place.column % study.stride(model, scene) == 0
         ]

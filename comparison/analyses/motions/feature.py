@@ -8,8 +8,8 @@ from typing import Any
 from pydantic import Field, create_model
 
 from comparison.analyses.motions.analysis import Motions, StoredMotion
-from comparison.analyses.motions.page_data import significant_digits
-from comparison.report.section import Feature, Findings, SceneField
+from comparison.analyses.motions.page_data import motion_data, motion_numbers, significant_digits
+from comparison.report.feature import Feature, Findings, SceneField
 from comparison.result_types import Number, Part, Phases, Text, UncertainNumber
 from reference.measures import Demands
 from reference.measures import FloorSpectra as SpectraOfMotion
@@ -51,19 +51,19 @@ class _Motion(Part):
 
 
 def _kind(annotation: str) -> Any:
-    """Of a field of `Demands`: of the isolator, or of every body; null in a model that lacks it."""
+    """Return the type of a field of `Demands`: of the isolator, or of every body; null in a model that lacks it."""
     kind: Any = list[UncertainNumber] if annotation.startswith("tuple") else UncertainNumber
     return kind | None if annotation.endswith("None") else kind
 
 
-def _described(name: str) -> Any:
+def _describe(name: str) -> Any:
     of = f"; by body, from body {PER_BODY[name] + 1} on" if name in PER_BODY else ""
     meaning, unit = QUANTITIES[name]
     return Field(description=f"{meaning}, {unit}{of}; null where the motion does not have it")
 
 
 _DEMANDS: dict[str, Any] = {
-    each.name: (Residual if each.name == "residual" else _kind(str(each.type)), _described(each.name))
+    each.name: (Residual if each.name == "residual" else _kind(str(each.type)), _describe(each.name))
     for each in fields(Demands)
     if each.name in QUANTITIES
 }
@@ -72,9 +72,9 @@ MotionDemands: Any = create_model("MotionDemands", __base__=_Motion, __doc__=_Mo
 
 
 def _demands(findings: Findings, scene: Scene) -> list[MotionDemands]:
-    """Of every stored motion that was computed."""
+    """Return the demands of every stored motion that was computed."""
     alpha1, alpha2 = (findings.surfaces[name].values for name in ("alpha1", "alpha2"))
-    motions: Sequence[StoredMotion] = findings.found.get("motions") or []
+    motions: Sequence[StoredMotion] = findings.found.get(Motions.key) or []
     listed = []
     for motion in motions:
         place = motion.place
@@ -97,12 +97,14 @@ def _spectra(spectra: SpectraOfMotion | None) -> FloorSpectra | None:
     )
 
 
+DEMANDS = SceneField(
+    "demands", list[MotionDemands], "one per stored phase pair and model; empty without stored motions", _demands
+)
 FEATURE = Feature(
-    "motions",
+    Motions.key,
+    scene_fields=(DEMANDS,),
     analysis=Motions(),
-    scene_fields={
-        "demands": SceneField(
-            list[MotionDemands], "one per stored phase pair and model; empty without stored motions", _demands
-        )
-    },
+    needs="surfaces",  # the motions are shown below them
+    page_data=motion_data,
+    packed_data=motion_numbers,
 )

@@ -34,8 +34,6 @@ support k, at (X, Y) from the center of mass of body 1, begins at the sphere's t
 A column is rounded to at most ROUNDING of its swing, less than thinning leaves, so that it compresses well.
 """
 
-import base64
-import gzip
 from collections.abc import Iterator, Sequence
 from itertools import accumulate, groupby
 from typing import Any
@@ -50,24 +48,28 @@ from reference.problem import Scene
 
 Starts = dict[tuple[Place, str], int]
 
-LEVEL = 6  # of compression: the next one takes half as long again for 2 % less
-ROUNDING = 7e-4  # of the swing of a column
-DIGITS = 4  # of a spectrum: a line on a screen shows no more
-TIME_ROUNDING = 1e-6  # of the duration
+ROUNDING = 7e-4  # share of the swing of a column
+DIGITS = 4  # digits of a spectrum: a line on a screen shows no more
+TIME_ROUNDING = 1e-6  # share of the duration
 
 
-def packed_motions(report: Report) -> str:
-    """The numbers of every motion, packed."""
-    return packed(b"".join(_numbers(motion) for motion in report.found.get("motions") or []))
+def motion_numbers(report: Report) -> bytes:
+    """Return the numbers of every motion, one after the other."""
+    return b"".join(_numbers(motion) for motion in report.found.get("motions") or [])
 
 
-def packed(content: bytes) -> str:
-    """Compressed and written in letters; the browser undoes both."""
-    return base64.b64encode(gzip.compress(content, LEVEL, mtime=0)).decode()
+def motion_data(report: Report, scene: Scene) -> dict[str, Any]:
+    """Return what the page's script reads of the motions of a scene."""
+    return {
+        "contact": contact_geometry(scene),
+        "places": list(places(report, scene)),
+        "spectra": spectrum_axis(report, scene),
+    }
 
 
-def places(report: Report, scene: Scene, starts: Starts) -> Iterator[dict[str, Any]]:
+def places(report: Report, scene: Scene) -> Iterator[dict[str, Any]]:
     """The phase pairs of a scene that have motions, each with its motions by every model."""
+    starts = starts_of(report.found.get("motions") or [])
     of_scene = [motion for motion in report.found.get("motions") or [] if motion.place.scene == scene.name]
     alpha1, alpha2 = (np.asarray(report.surfaces[name]) for name in ("alpha1", "alpha2"))
     for place, motions in groupby(of_scene, key=lambda motion: motion.place):
@@ -86,7 +88,7 @@ def places(report: Report, scene: Scene, starts: Starts) -> Iterator[dict[str, A
                     "count": len(motion.time),
                     "blocks": _blocks(motion),
                     "exponents": _exponents(motion).tolist(),
-                    "demands": None if motion.demands is None else _listed(motion.demands),
+                    "demands": None if motion.demands is None else _list_demands(motion.demands),
                     "spectra": None
                     if motion.spectra is None
                     else significant_digits(motion.spectra.acceleration, DIGITS),
@@ -106,7 +108,7 @@ def spectrum_axis(report: Report, scene: Scene) -> dict[str, Any]:
 
 def contact_geometry(scene: Scene) -> dict[str, Any]:
     """
-    Where the contact points are.
+    Return where the contact points are.
 
     lever: radius of the spheres over rho, null where the scene does not state it or is flat. supports: [x, y] of each
     from the center of mass of the platform at rest, m, null where the scene does not state them.
@@ -119,7 +121,7 @@ def contact_geometry(scene: Scene) -> dict[str, Any]:
 
 
 def _exponents(motion: StoredMotion) -> NDArray[np.int_]:
-    """Of the unit that each column is rounded to."""
+    """Return the exponents of the units that columns are rounded to."""
     values = _columns(motion)
     steps = ROUNDING * swing(values)
     steps[:1] = TIME_ROUNDING * values[-1:, :1].max(initial=1e-300)
@@ -138,7 +140,7 @@ def _numbers(motion: StoredMotion) -> bytes:
 
 
 def starts_of(motions: Sequence[StoredMotion]) -> Starts:
-    """Where the first number of every motion stands among all of them."""
+    """Return where the first number of every motion stands among all of them."""
     sizes = [sum(block.size for block in motion.blocks().values()) for motion in motions]
     return {(motion.place, motion.model): last for motion, last in zip(motions, accumulate(sizes, initial=0))}
 
@@ -156,7 +158,7 @@ def significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:
     return [float(f"{value:.{digits}g}") for value in values]
 
 
-def _listed(demands: Demands) -> dict[str, Any]:
+def _list_demands(demands: Demands) -> dict[str, Any]:
     """The demands as JSON, without the status, which the motion has, too."""
 
     def pair(estimate: Any) -> list[Any] | None:

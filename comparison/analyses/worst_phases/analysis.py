@@ -18,10 +18,10 @@ import numpy as np
 import xarray as xr
 
 import reference
-from comparison.analyses.mapped import MappedAnalysis
 from comparison.result_types import Array, Number, Phases, Text, result
+from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import EXACT, SMALL, SMALL_RESOLVED, Model, models_of, pairs_of
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import usable_mu
@@ -32,7 +32,7 @@ from reference.problem import Scene
 
 TOLERANCE = 1e-5  # relative error of mu by the equations
 ENGINE_HALF_WIDTH = 0.02  # rad, of the square in which the engine is searched
-ENGINE_POINTS = 6  # of it: the middle and the corners of the square, and where it is predicted to be largest
+ENGINE_POINTS = 6  # phase pairs: the middle and the corners of the square, and where it is predicted to be largest
 SOLVED_BY = "reference:amplification"  # the models that `reference.worst_phases` searches
 NOWHERE = (math.nan, math.nan)
 
@@ -131,6 +131,7 @@ class WorstPhases(MappedAnalysis[list[Worst]]):
     """Searches of every scene and body; one more for the displacement."""
 
     key, stage, needs_surfaces = "worst_phases", "worst phases", True
+    seconds = 2.0
     function, without_value = staticmethod(search_worst), staticmethod(_without_value)
 
     def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
@@ -150,7 +151,7 @@ def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolera
     (corners, _), (square, _) = square_nodes(2), square_nodes(3)
     computed = engine.compute(search.phases + ENGINE_HALF_WIDTH * corners)
     equations = _surface(scene, like, TOLERANCE, worst.body).compute(search.phases + ENGINE_HALF_WIDTH * square)
-    highest, _ = predict_best(engine, search, _estimated(start, computed, equations))
+    highest, _ = predict_best(engine, search, _estimate(start, computed, equations))
     search.move_to_best(computed)
     search.move_to_best(engine.compute(highest[None]))
     if not math.isfinite(search.value):
@@ -192,10 +193,10 @@ def _larger_of_grid_and_worst(worst: Worst, scene: Scene, on_grid: OnGrid, toler
 
 
 def _surface(scene: Scene, model: Model, tolerance: float, body: int) -> Surface:
-    return Surface(scene, imported(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
+    return Surface(scene, import_function(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
 
 
-def _estimated(middle: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases) -> ComputedPhases:
+def _estimate(middle: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases) -> ComputedPhases:
     """The engine at the 3 x 3 places of a square that the equations have, from its ratio to them at five of these."""
     like = equations.numerator.reshape(3, 3)
     ratio = np.empty((3, 3))

@@ -2,16 +2,18 @@
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-from comparison.analyses.panels import distribution_panels
-from comparison.analyses.worst_phases.analysis import Worst, WorstPhases
+from comparison.analyses.worst_phases.analysis import Worst, WorstPhases, nearest_search
+from comparison.report.feature import Feature, ResultField
+from comparison.report.page_data import DIGITS
+from comparison.report.panels import distribution_panels
 from comparison.report.plots import fractile_heads
 from comparison.report.scene_result import SceneResult
-from comparison.report.section import Feature, Report, Section
-from comparison.study.models import SMALL, SMALL_RESOLVED, smooth
+from comparison.report.section import Report, Section
+from comparison.study.models import SMALL, SMALL_RESOLVED, models_of, smooth
 from comparison.surfaces.headline import BOTH_READINGS
+from reference.problem import Scene
 
 
 def _kind(worst: Worst) -> str:
@@ -46,7 +48,27 @@ def _reading(report: Report, worst: Worst) -> str:
     return BOTH_READINGS.removeprefix("in ") if smooth(scene) else model.reading
 
 
-def _context(report: Report, figures: Path) -> Mapping[str, Any]:
+FOUND = ResultField(WorstPhases.key, list[Worst], "the largest values over all phases; null if not computed")
+
+
+def _worst_of_models(report: Report, scene: Scene) -> Mapping[str, Any]:
+    """
+    Return `worst`: by model and body, what the page marks on the surface.
+
+    alpha1, alpha2 (rad), the largest mu over all phases, and the model that was searched: this one or one near it. None
+    where none was.
+    """
+    keys = [each.key for each in models_of(scene, report.study.hierarchy)]
+    searched, bodies = report.found.get(WorstPhases.key) or (), range(1, len(scene.bodies) + 1)
+    nearest = {key: [nearest_search(searched, keys, scene.name, key, body) for body in bodies] for key in keys}
+    return {"worst": {key: [worst and _mark(worst) for worst in of_bodies] for key, of_bodies in nearest.items()}}
+
+
+def _mark(worst: Worst) -> list[float | str]:
+    return [*(round(phase, 4) for phase in worst.phases), float(f"{worst.value:.{DIGITS}g}"), worst.model]
+
+
+def _context(report: Report) -> Mapping[str, Any]:
     results = report.results
     titles = {model.key: model.title for model in results.models}
     return {
@@ -59,20 +81,20 @@ def _context(report: Report, figures: Path) -> Mapping[str, Any]:
         ],
         "worst_lines": [
             {"worst": worst, "title": titles[worst.model], "kind": _kind(worst), "reading": _reading(report, worst)}
-            for worst in results.of("worst_phases") or ()
+            for worst in FOUND.of(results)
         ],
         "fractiles": fractile_heads(),
     }
 
 
 FEATURE = Feature(
-    "worst_phases",
-    list[Worst],
-    "the largest values over all phases; null if not computed",
+    WorstPhases.key,
+    (FOUND,),
     analysis=WorstPhases(),
+    page_data=_worst_of_models,
     section=Section(
         "Largest values over all phases",
-        "python -m comparison.run makes it, of scenes with phases",
+        "phase-resonance run makes it, of scenes with phases",
         _context,
         folded=False,
     ),

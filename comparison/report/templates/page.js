@@ -52,6 +52,7 @@ addEventListener("afterprint", () => {
 
 unpacked("data").then(buffer => {
   study = JSON.parse(new TextDecoder().decode(buffer));
+  for (const scene of study?.scenes ?? []) scene.places ??= [];  // a report without motions
   if (part("scene")?.options.length) startViewer();
   document.documentElement.dataset.ready = "true";
   openTarget();

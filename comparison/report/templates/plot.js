@@ -168,20 +168,25 @@ function plotFigure(scene, title, spec) {
   return figure;
 }
 
-// a plot as a file of its own, as it is shown: with its title, its legend and every style
+// a plot as a file of its own: with its title, its legend and every style
 const STYLES = ["fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin", "opacity", "font-size", "font-family"];
 function offerFile(box, scene = "") {
   const caption = box.closest("figure").querySelector("figcaption"), save = element("button", "save", "save as SVG");
   const title = [...caption.childNodes].map(node => (node.nodeName === "SUB" ? "_" : "") + node.textContent).join("");
   save.type = "button";
-  save.addEventListener("click", () => saveFile(fileName(title.startsWith(scene) ? title : `${scene} ${title}`, "svg"), svgFile(title, box), "image/svg+xml"));
+  save.addEventListener("click", () => {
+    const { dataset } = document.documentElement;
+    dataset.paper = "";  // light, however dark the screen
+    saveFile(fileName(title.startsWith(scene) && title !== scene ? title : `${scene} ${title}`), svgFile(title, box));
+    delete dataset.paper;
+  });
   caption.append(save);
 }
-const fileName = (text, ending) => `${text.replace(/[^\p{L}\p{N}_.=+-]+/gu, "-").replace(/^-+|-+$/g, "").slice(0, 120)}.${ending}`;
-function saveFile(name, text, type) {
+const fileName = text => `${text.replace(/[^\p{L}\p{N}_.=+-]+/gu, "-").replace(/^-+|-+$/g, "").slice(0, 120)}.svg`;
+function saveFile(name, text) {
   const link = element("a");
   link.download = name;
-  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.href = URL.createObjectURL(new Blob([text], { type: "image/svg+xml" }));
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }

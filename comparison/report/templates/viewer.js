@@ -65,12 +65,12 @@ function panels() {
     if (largest) notes.push(`largest of ${surface.phases} × ${surface.phases} phases: ${k === 2 ? percentText(largest.z) : digits(largest.z)} at ${at([largest.a, largest.b])}\u00a0▾`);
     else notes.push("no value at any phase pair");
     if (surface.points.some(point => point.error === null)) notes.push("dashed: of unknown error");
-    const worst = k < 2 ? surface.model.worst[body - 1] : null;
+    const worst = k < 2 ? scene.worst?.[k ? pair.second : pair.first]?.[body - 1] : null;
     const own = worst && worst[3] === (k ? pair.second : pair.first);
     if (k < 2) notes.push(worst ? `largest over all phases${own ? "" : `, ${study.titles[worst[3]]}`}: ${digits(worst[2])} at ${at(worst.slice(0, 2))}${own ? "\u00a0▿" : ""}` : "largest over all phases: not searched");
     return { ...common, ...surface, range: k === 2 ? [-reach, reach] : range, color: k === 2 ? signs : light, largest: largest && [largest.a, largest.b], worst: own && worst.slice(0, 2),
       lines: k === 2 && surface.sheet && !surface.completed ? pair.contours[body - 1] : [], notes,
-      title: k === 2 ? "difference, % of the first" : study.titles[k ? pair.second : pair.first], unit: k === 2 ? " %" : "" };
+      title: k === 2 ? "difference, % of the first" : scene.labels[k ? pair.second : pair.first], unit: k === 2 ? " %" : "" };
   });
 }
 
@@ -111,7 +111,7 @@ function readOut() {
   if (!state.cursor) return;
   const [a, b, d] = shown.map(panel => valueAt(panel, state.cursor));
   const written = (value, text) => text(value.z) + (value.error ? ` ± ${digits(value.error, 1)}` : value.error === null ? " (error unknown)" : "");
-  const sizes = [`${study.titles[pair.first]} ${written(a, digits)}`, `${study.titles[pair.second]} ${written(b, digits)}`, `difference ${written(d, percentText)}`];
+  const sizes = [`${scene.labels[pair.first]} ${written(a, digits)}`, `${scene.labels[pair.second]} ${written(b, digits)}`, `difference ${written(d, percentText)}`];
   part("readout").replaceChildren(...indexed(`${at(state.cursor)}: ${sizes.join(", ")}`));
 }
 // height of a surface at a phase pair, or the point that is there, with its error
@@ -129,7 +129,7 @@ function change(changes) {
   const bodies = part("body");
   bodies.replaceChildren(...Array.from({ length: scene.bodies }, (_, i) => new Option(i ? `body ${i + 1}` : "body 1 (platform)", i + 1, false, i + 1 === state.body)));
   const pairs = part("pair");
-  pairs.replaceChildren(...scene.pairs.map(pair => new Option(`${pair.title}: ${study.titles[pair.first]} | ${study.titles[pair.second]}`.replaceAll("_", " "), pair.key, false, pair === pairNow())));
+  pairs.replaceChildren(...scene.pairs.map(pair => new Option(`${pair.title}: ${scene.labels[pair.first]} | ${scene.labels[pair.second]}`.replaceAll("_", " "), pair.key, false, pair === pairNow())));
   part("sentence").replaceChildren(...indexed(`${pairNow().sentence}.`));
   part("scene").value = String(state.scene);
   ["view", "grid"].forEach(name => viewer.querySelectorAll(`button[data-${name}]`).forEach(button => button.setAttribute("aria-pressed", String(button.dataset[name] === state[name]))));

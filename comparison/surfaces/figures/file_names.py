@@ -18,6 +18,6 @@ def figure_file(scene: str, *parts: str, ending: str = ".png") -> str:
 
 
 def with_ending(path: Path, ending: str) -> Path:
-    """The same file name with another ending. Dots before the ending belong to the name of the scene."""
+    """Return the same file name with another ending. Dots before the ending belong to the name of the scene."""
     old = next((known for known in ENDINGS if path.name.endswith(known)), "")
     return path.with_name(path.name.removesuffix(old) + ending)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -12,7 +13,7 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
 from comparison.result_types import Array
-from comparison.study.models import Model, Pair
+from comparison.study.models import Model, Pair, label_of
 from comparison.surfaces.figures.file_names import with_ending
 from comparison.surfaces.model_difference import ModelDifference, difference_of
 from comparison.surfaces.surfaces import stride_of, values_of
@@ -25,12 +26,12 @@ SIGN_COLORS = "RdBu_r"
 TURN = (0.0, 2.0 * np.pi)
 Ticks = tuple[Sequence[float], Sequence[str]]
 QUARTER_TICKS: Ticks = ([0.0, np.pi / 2.0, np.pi, 1.5 * np.pi, 2.0 * np.pi], ["0", "π/2", "π", "3π/2", "2π"])
-PNG = {"compress_level": 3}  # of the dense surfaces: smaller than with the usual 6, in 0.6 of the time
+PNG = {"compress_level": 3}  # compression of the dense surfaces: smaller than with the usual 6, in 0.6 of the time
 
 
 def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: Pair) -> None:
     """Write the two surfaces on one height scale and the map of their relative difference to `path`, PNG."""
-    both = [closed_surface(surfaces, scene, model, body) for model in (pair.first, pair.second)]
+    both = [surface_to_two_pi(surfaces, scene, model, body) for model in (pair.first, pair.second)]
     figure = Figure(figsize=(13.0, 4.6), dpi=110)
     figure.suptitle(
         verbatim(f"{scene.title} ({scene.name}), body {body}: {pair.title} difference"), fontsize=12, y=0.98
@@ -40,7 +41,7 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
         axes = figure.add_axes((left, 0.0, 0.31, 0.86), projection="3d")
         assert isinstance(axes, Axes3D)
         _surface(axes, *surface, low, high)
-        axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(model.title)}", fontsize=11, pad=0)
+        axes.set_title(f"$\\mu_{{{body}}}$, {mathtext(label_of(model, scene))}", fontsize=11, pad=0)
     _map(figure, figure.add_axes((0.70, 0.14, 0.22, 0.65)), difference_of(surfaces, scene.name, pair, body))
     figure.savefig(path, pil_kwargs=PNG)
 
@@ -48,10 +49,16 @@ def draw_pair(path: Path, surfaces: xr.Dataset, scene: Scene, body: int, pair: P
 def save(figure: Figure, path: Path) -> None:
     """Write the figure to `path`, PNG, and beside it as PDF."""
     figure.savefig(path)
-    figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})  # the same figure gives the same file
+    save_pdf(figure, path)
 
 
-def closed(phase: Array, mu: Array) -> tuple[Array, Array]:
+def save_pdf(figure: Figure, path: Path) -> None:
+    """Write the figure as PDF beside `path`: the same figure gives the same file, with fonts as journals take them."""
+    with mpl.rc_context({"pdf.fonttype": 42}):
+        figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
+
+
+def close_period(phase: Array, mu: Array) -> tuple[Array, Array]:
     """The phases up to 2 pi and the surface on them: its first row and column repeated where the period closes."""
     return np.append(phase, 2.0 * np.pi), np.pad(mu, ((0, 1), (0, 1)), mode="wrap")
 
@@ -65,7 +72,7 @@ def limits_of(heights: Sequence[Array]) -> tuple[float, float]:
 
 def draw_map(axes: Axes, phase: Array, values: Array, ticks: Ticks = QUARTER_TICKS, **style: Any) -> QuadMesh:
     """Values at the phases as colors, alpha1 to the right and alpha2 upward; gray where there is none."""
-    phase, height = closed(phase, values)
+    phase, height = close_period(phase, values)
     axes.set_facecolor("0.75")
     image = axes.pcolormesh(phase, phase, height.T, shading="nearest", **style)
     axes.set(xlim=TURN, ylim=TURN, aspect="equal")
@@ -74,10 +81,10 @@ def draw_map(axes: Axes, phase: Array, values: Array, ticks: Ticks = QUARTER_TIC
     return image
 
 
-def closed_surface(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[Array, Array]:
+def surface_to_two_pi(surfaces: xr.Dataset, scene: Scene, model: Model, body: int) -> tuple[Array, Array]:
     """The phases of a model up to 2 pi, and mu on them."""
     phase = surfaces["alpha1"].values[:: stride_of(surfaces, scene.name, model)]
-    return closed(phase, values_of(surfaces, "mu", scene.name, model)[body - 1])
+    return close_period(phase, values_of(surfaces, "mu", scene.name, model)[body - 1])
 
 
 def draw_in_space(

@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d import Axes3D  # type: ignore[import-untyped]
 
+from comparison.study.models import label_of
 from comparison.study.study import Study
-from comparison.surfaces.figures.file_names import with_ending
-from comparison.surfaces.figures.pairs import PNG, closed_surface, draw_in_space, limits_of
+from comparison.surfaces.figures.pairs import PNG, draw_in_space, limits_of, save_pdf, surface_to_two_pi
 from comparison.wording import mathtext
 from reference.problem import Scene
 
@@ -36,15 +36,16 @@ def draw_paper_figure(path: Path, study: Study, surfaces: xr.Dataset, scene: Sce
     with mpl.rc_context(PRINT):
         figure = Figure(figsize=(WIDTH, 2.7 * bodies))
         for row in range(bodies):
-            heights = [closed_surface(surfaces, scene, model, row + 1) for model in (first, last)]
+            heights = [surface_to_two_pi(surfaces, scene, model, row + 1) for model in (first, last)]
             limits = limits_of([height for _, height in heights])
             for column, ((phase, height), model) in enumerate(zip(heights, (first, last))):
                 place = (0.02 + 0.5 * column, 1.0 - (row + 0.98) / bodies, 0.46, 0.88 / bodies)
                 axes = figure.add_axes(place, projection="3d")
                 letter = chr(ord("a") + 2 * row + column)
                 draw_surface(axes, phase, height, limits, rf"$\mu_{{{row + 1}}}$")
-                axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {mathtext(model.title)}", y=1.0, fontsize=9.0)
-        figure.savefig(with_ending(path, ".pdf"), metadata={"CreationDate": None})
+                label = mathtext(label_of(model, scene))
+                axes.set_title(f"({letter}) $\\mu_{{{row + 1}}}$, {label}", y=1.0, fontsize=9.0)
+        save_pdf(figure, path)
         figure.savefig(path, dpi=RESOLUTION, pil_kwargs=PNG)
 
 

@@ -1,10 +1,8 @@
 """All pictures of a study's surfaces, each drawn by whoever has time, and handed back as files."""
 
-import base64
 import tempfile
 from dataclasses import replace
 from functools import partial
-from io import BytesIO
 from pathlib import Path
 
 import xarray as xr
@@ -13,12 +11,12 @@ from comparison.runner.analysis import Analysis
 from comparison.runner.attempts import attempt
 from comparison.runner.task import Task, fingerprint
 from comparison.runner.task_results import TaskResults
-from comparison.study.analyses import EVERYTHING
 from comparison.study.models import Pair
+from comparison.study.selection import Selection
 from comparison.study.study import Study
 from comparison.surfaces.figures.file_names import figure_file
 
-SHOWN = ["mu", "error", "stride", "recorded"]  # of the surfaces: what pictures are made of
+SHOWN = ["mu", "error", "stride", "recorded"]  # variables of the surfaces that pictures are made of
 
 
 Files = tuple[tuple[str, bytes], ...]  # names and contents
@@ -30,13 +28,14 @@ class Pictures(Analysis[dict[str, bytes]]):
     """Every file of every picture by its name."""
 
     key, stage, needs_surfaces = "pictures", "pictures", True
+    seconds = 3.0
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for each picture of the selected sections: a scene without phases has no surfaces."""
         assert surfaces is not None, "they are what is drawn"
         tasks = []
         for scene in study.phased:
-            alone = replace(study, scenes=(scene,), selection=EVERYTHING)
+            alone = replace(study, scenes=(scene,), selection=Selection())
             shown = surfaces[SHOWN].sel(scene=[scene.name])
             bodies = range(1, len(scene.bodies) + 1)
             pictures: list[Picture] = []
@@ -45,21 +44,23 @@ class Pictures(Analysis[dict[str, bytes]]):
                 totals = [pair for pair in study.pairs(scene) if pair.key == "total"]
                 pictures += [("total", alone, shown, body, pair) for body in bodies for pair in totals]
             about = fingerprint(shown)
-            tasks += [Task(drawn, each, self.stage, about=about, needs_compiled_reference=False) for each in pictures]
+            tasks += [
+                Task(draw_picture, each, self.stage, about=about, needs_compiled_reference=False) for each in pictures
+            ]
         return tasks
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> dict[str, bytes]:
         """Return the files; a picture that no worker could draw is tried here, and left out where that raises."""
         files: dict[str, bytes] = {}
         for task in self.tasks(study, surfaces):
-            draw = partial(results.value, task, lambda picture, *failure: drawn(picture))
+            draw = partial(results.value, task, lambda picture, *failure: draw_picture(picture))
             kind, one, _, body, _ = task.argument
             name = f"picture of {one.scenes[0].name}, {f'body {body}' if body else kind},"
             files |= dict(attempt(name, draw) or ())
         return files
 
 
-def drawn(picture: Picture) -> Files:
+def draw_picture(picture: Picture) -> Files:
     """The files of one picture. Runs inside a worker process."""
     from comparison.surfaces.figures import pairs, paper  # plotting: not needed to list what is drawn
 
@@ -73,18 +74,3 @@ def drawn(picture: Picture) -> Files:
             assert pair is not None
             pairs.draw_pair(folder / figure_file(scene.name, f"body{body}", pair.key), surfaces, scene, body, pair)
         return tuple((file.name, file.read_bytes()) for file in sorted(folder.iterdir()))
-
-
-def smaller(png: bytes) -> bytes:
-    """The same picture to the last dot in half the bytes."""
-    from PIL import Image  # as in `drawn`
-
-    found = BytesIO()
-    with Image.open(BytesIO(png)) as picture:
-        picture.convert("RGB").save(found, "WEBP", lossless=True, quality=20, method=1)  # hardly smaller with more
-    return found.getvalue()
-
-
-def inlined(webp: bytes) -> str:
-    """A picture inside the page."""
-    return "data:image/webp;base64," + base64.b64encode(webp).decode()

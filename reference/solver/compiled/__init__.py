@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from reference.solver.compiled.parts import compiled_part
-from reference.support.build_cache import cached_on_disk
+from reference.support.build_cache import cache_on_disk
 
 # Divisions by zero give inf or NaN as in NumPy; other threads run meanwhile.
 OPTIONS = {"error_model": "numpy", "nogil": True}
@@ -25,4 +25,4 @@ def compiled(function: Callable[..., Any]) -> Any:
 
 def cached_entry_point(function: Callable[..., Any]) -> Any:
     """Compile `function` with everything it calls on first use, and keep the build on disk."""
-    return cached_on_disk(Path(__file__).parents[1], slow=True, **OPTIONS)(function)
+    return cache_on_disk(Path(__file__).parents[1], slow=True, **OPTIONS)(function)

@@ -6,9 +6,10 @@ a slip vector s = factor * v_h with v_h the horizontal velocity:
   sliding     factor = mu / v       (v the full sliding speed (3.8))
   creeping    factor = mu / v_reg   (v < v_reg)
   lubricated  factor = f_c
-The dry coefficient may depend on the sliding speed, mu(v) = mu(0) + rise (1 - exp(-rate v)). The condition for rest and
-the directions at a stop take mu(0). Where it depends on the normal force or on heating as well, this is its value
-under the weight, and `acceleration` (platform.py) multiplies the slip vector (load.py).
+The dry coefficient may depend on the sliding speed, mu(v) = mu(0) + rise (1 - exp(-rate v)). The condition for rest
+takes `static_coefficient` and the directions at a stop `kinetic_coefficient`, both mu(0). Where it depends on the
+normal force or on heating as well, this is its value under the weight, and `acceleration` (platform.py) multiplies the
+slip vector (load.py). In the solver only this file reads the law of a system (reference/problem/friction.py).
 """
 
 from __future__ import annotations
@@ -21,6 +22,30 @@ from reference.solver.rows import Number, broadcast_like, where_positive
 from reference.solver.system import CREEPING, Load, System
 
 SMALLEST_SPEED = 1e-200  # m/s: its square underflows, so a slower slide has stopped
+
+
+@compiled
+def static_coefficient(system: System) -> float:
+    """Return the coefficient that holds the platform at rest, under the weight."""
+    return system.friction
+
+
+@compiled
+def kinetic_coefficient(system: System) -> float:
+    """Return the coefficient of a slide at vanishing speed, under the weight."""
+    return system.friction
+
+
+@compiled
+def viscous_factor(system: System) -> float:
+    """Return f_c of a lubricated contact, s/m."""
+    return system.friction
+
+
+@compiled
+def static_limit(system: System, k_t: Number, reaction: Number) -> Number:
+    """Return the largest force that friction takes at rest under a reaction, both over m1."""
+    return scale_by_load(system, k_t, reaction, static_coefficient(system) * reaction)
 
 
 @compiled
@@ -69,7 +94,7 @@ def rest_excess_exact(system: System, load: Load) -> tuple[Number, Number]:
     tx = -load.fx - normal * nx
     ty = -load.fy - normal * ny
     tz = rz - normal * nz
-    limit = scale_by_load(system, load.k_t, normal, system.friction * normal)
+    limit = static_limit(system, load.k_t, normal)
     return tx * tx + ty * ty + tz * tz - limit * limit, normal
 
 
@@ -83,7 +108,7 @@ def rest_excess_small(system: System, load: Load) -> tuple[Number, Number]:
     """
     px, py, radius = load.px, load.py, system.radius
     reaction = system.mass_ratio * (system.gravity + load.uz)
-    friction = scale_by_load(system, load.k_t, reaction, system.friction)
+    friction = scale_by_load(system, load.k_t, reaction, static_coefficient(system))
     gx = load.fx - reaction * px / radius
     gy = load.fy - reaction * py / radius
     a = friction * (reaction - load.ux * px / radius)
@@ -106,7 +131,7 @@ def rest_excess_printed(system: System, load: Load) -> Number:
     printed signs. It serves to measure the effect of this misprint.
     """
     reaction = system.mass_ratio * (system.gravity + load.uz)
-    friction = scale_by_load(system, load.k_t, reaction, system.friction)
+    friction = scale_by_load(system, load.k_t, reaction, static_coefficient(system))
     lx = friction * (reaction - load.ux * (load.px + load.py) / system.radius)
     ly = friction * (reaction - load.uy * (load.px + load.py) / system.radius)
     # The spring force f + u has the opposite sign in print.

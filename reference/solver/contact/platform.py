@@ -12,6 +12,8 @@ from reference.solver.contact.friction import (
     rest_excess_small,
     slip_vector,
     squared_sliding_speed,
+    static_limit,
+    viscous_factor,
 )
 from reference.solver.contact.load import exact_equations, scale_by_load
 from reference.solver.equations import small_acceleration
@@ -52,7 +54,7 @@ def slip_factor(system: System, contact: int, speed2: Number) -> Number:
         return coefficient(system, speed) / speed
     if contact == CREEPING:
         return coefficient(system, sqrt(speed2)) / system.v_reg
-    return broadcast_like(system.friction, speed2)
+    return broadcast_like(viscous_factor(system), speed2)
 
 
 @compiled
@@ -102,5 +104,5 @@ def rest_excess(system: System, load: Load) -> tuple[Number, Number]:
     if system.rest_condition == PRINTED:
         # Where (4.6) as printed lets go of a platform that friction can hold, no motion begins.
         excess = min(excess, rest_excess_printed(system, load))
-    limit = scale_by_load(system, load.k_t, reaction, system.friction * reaction)
+    limit = static_limit(system, load.k_t, reaction)
     return excess - ROUNDING_EXCESS * (limit * limit), reaction

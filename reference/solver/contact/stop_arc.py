@@ -11,7 +11,7 @@ from __future__ import annotations
 from math import cos, pi, sin, sqrt
 
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import slip_vector
+from reference.solver.contact.friction import kinetic_coefficient, slip_vector
 from reference.solver.contact.platform import acceleration, acceleration_along
 from reference.solver.system import Load, System
 
@@ -50,7 +50,7 @@ def direction_at_stop(system: System, load: Load, angle: float, no_turn: float) 
     # It may be close by, or there may be several: the search goes in strides that double from FIRST_STRIDE up to the
     # distance of two samples, and ends at the first change of sign, or after a full turn.
     here = turning_acceleration(system, load, angle)
-    drive = sqrt(load.fx * load.fx + load.fy * load.fy) + system.friction * abs(system.gravity + load.uz)
+    drive = sqrt(load.fx * load.fx + load.fy * load.fy) + kinetic_coefficient(system) * abs(system.gravity + load.uz)
     if abs(here) <= no_turn * drive:
         return angle
     sense = 1.0 if here > 0.0 else -1.0
@@ -71,7 +71,9 @@ def can_begin_slide(system: System, load: Load, angle: float) -> bool:
     sx, sy, _ = slip_vector(system, load.px, load.py, 0.0, ex, ey)
     ax, ay, reaction, determinant = acceleration(system, load, 0.0, sx, sy)
     gain = ax * ex + ay * ey
-    return determinant > 0.0 and reaction > 0.0 and gain >= -MAX_ROUNDING_BRAKING * system.friction * reaction
+    return (
+        determinant > 0.0 and reaction > 0.0 and gain >= -MAX_ROUNDING_BRAKING * kinetic_coefficient(system) * reaction
+    )
 
 
 @compiled

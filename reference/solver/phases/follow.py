@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf, log, sqrt
 
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import decay_rate, rising_rate
+from reference.solver.contact.friction import decay_rate, kinetic_coefficient, rising_rate
 from reference.solver.events import LEVEL, SPEED, expand_level, expand_speed, mark_parts
 from reference.solver.look_ahead import end_early
 from reference.solver.near_stop import solve_near_stop_step
@@ -197,7 +197,7 @@ def solve_step(system: System, work: Workspace, contact: int, settings: RunSetti
         if system.rate > 0.0:
             # Where friction depends on the speed, small errors of the speed grow or decay slowly: they reach the next
             # step and turn its direction.
-            rounding = FRICTION_ROUNDING * system.friction * system.mass_ratio * system.gravity
+            rounding = FRICTION_ROUNDING * kinetic_coefficient(system) * system.mass_ratio * system.gravity
             enough = max(VARYING_NEWTON_FRACTION * enough, rounding)
             enough /= 1.0 + h * rising_rate(system, sqrt(work.squared_start_speed))
     else:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.load import scale_by_load
+from reference.solver.contact.friction import static_limit
 from reference.solver.contact.platform import load_at_stages, rest_excess
 from reference.solver.events import excess_at, expand_drive, locate_onset
 from reference.solver.rows import put
@@ -48,7 +48,7 @@ def cut_at_onset(system: System, work: Workspace, h: float) -> tuple[float, int]
     end = h * onset
     reaction: float = work.stage[REACTION, STAGES - 1]
     # The limit hardly changes in the iteration.
-    limit = scale_by_load(system, work.ground[3, STAGES - 1], reaction, system.friction * reaction) ** 2
+    limit = static_limit(system, work.ground[3, STAGES - 1], reaction) ** 2
     for _ in range(ONSET_ITERATIONS):
         solve_rest_step(system, work, end)
         expand_drive(work)

@@ -6,8 +6,14 @@ from math import atan2, inf, log, sqrt
 
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import coefficient_slope, heading, rising_rate, squared_sliding_speed
-from reference.solver.contact.load import scale_by_load
+from reference.solver.contact.friction import (
+    coefficient_slope,
+    heading,
+    kinetic_coefficient,
+    rising_rate,
+    squared_sliding_speed,
+    static_limit,
+)
 from reference.solver.contact.platform import acceleration_along, load_in_state, rest_excess
 from reference.solver.contact.stop_arc import direction_at_stop, squared_absolute_acceleration
 from reference.solver.events import locate_level_crossing
@@ -134,7 +140,7 @@ def time_to_stop(work: Workspace, speed: float, braking: float) -> float:
 def is_slow(system: System, work: Workspace, h: float) -> bool:
     """Return True if the direction of the slide follows the force within the step."""
     speed = sqrt(work.v[0, 0] ** 2 + work.v[0, 1] ** 2)
-    return speed < STIFF_SPEED_FRACTION * h * system.friction * system.mass_ratio * system.gravity
+    return speed < STIFF_SPEED_FRACTION * h * kinetic_coefficient(system) * system.mass_ratio * system.gravity
 
 
 @compiled
@@ -201,7 +207,7 @@ def barely_slips(system: System, work: Workspace) -> bool:
     """Return True if the drive exceeds the friction limit by so little that a slide need not begin yet."""
     load = load_in_state(system, work, ground_at(system, work, work.time))
     excess, reaction = rest_excess(system, load)
-    return excess <= BARELY_SLIPPING_EXCESS * scale_by_load(system, load.k_t, reaction, system.friction * reaction) ** 2
+    return excess <= BARELY_SLIPPING_EXCESS * static_limit(system, load.k_t, reaction) ** 2
 
 
 @compiled

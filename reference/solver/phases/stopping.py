@@ -7,7 +7,7 @@ from math import exp, log, pi, sqrt
 from reference.solver.chain import set_chain_acceleration
 from reference.solver.collocation import STAGES
 from reference.solver.compiled import compiled
-from reference.solver.contact.friction import SMALLEST_SPEED, heading
+from reference.solver.contact.friction import SMALLEST_SPEED, heading, kinetic_coefficient
 from reference.solver.contact.platform import acceleration_along, load_in_state, rest_excess
 from reference.solver.contact.stop_arc import MAX_ROUNDING_TURN, arc_peak, direction_at_stop
 from reference.solver.events import locate_level_crossing
@@ -180,7 +180,7 @@ def contact_after_stop(system: System, work: Workspace, settings: RunSettings) -
     load = load_in_state(system, work, ground_at(system, work, work.time))
     excess, reaction = rest_excess(system, load)
     if excess > 0.0:
-        straight = abs(across) <= MAX_STRAIGHT_TURN * system.friction * reaction
+        straight = abs(across) <= MAX_STRAIGHT_TURN * kinetic_coefficient(system) * reaction
         if system.rate > 0.0:  # the sign at rest decides: a slide along the drive slows down and does not turn
             ex, ey = heading(work.angle, system.axes)
             ax, ay, _, _ = acceleration_along(system, load, 0.0, ex, ey)

@@ -411,7 +411,7 @@ def test_the_command_prints_the_change_of_every_body(monkeypatch, capsys, tmp_pa
         for n, each in enumerate(variations, start=1)
     ]
     cells.append(replace(cells[0], variation=Variation(ring=4.0), no_effect=ONE_PLANE))
-    monkeypatch.setattr(command, "computed", lambda *rest: None)
+    monkeypatch.setattr(command, "compute_tasks", lambda *rest: None)
     monkeypatch.setattr(Assumptions, "collect", lambda *rest: found_of(cells, [BLIND]))
     file = tmp_path / "fig3-I.toml"
     file.write_text(scene_text("fig3-I", ("ring = 1.0 ", "ring = 2.0 ")), encoding="utf-8")

@@ -20,7 +20,7 @@ from comparison.analyses.ensemble import analysis
 from comparison.analyses.ensemble.command import FILES, main, table_text
 from comparison.analyses.ensemble.feature import demand_rows, labels, largest_differences
 from comparison.analyses.ensemble.result import STORED
-from comparison.analyses.ensemble.target import matched
+from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
 from comparison.wording import percent
 from reference.measures import Demands, Estimate, FloorSpectra
@@ -316,7 +316,7 @@ def test_a_motion_at_many_scales_is_matched_once(tmp_path: Path) -> None:
     (tmp_path / "code.csv").write_text("period [s], acceleration [g]\n0.1, 0.5\n2.0, 0.3\n")
     scene = load_scene("synthetic-pair")
     members = [analysis.Member("a", "m", scale, scene.with_values({analysis.SCALE: scale})) for scale in (0.3, 1.3)]
-    scaled, target = matched(members, str(tmp_path / "code.csv"), None)
+    scaled, target = match_spectrum(members, str(tmp_path / "code.csv"), None)
     assert len(target.motions) == 1
     assert np.ptp(np.diff(np.log(target.acceleration))) < 1e-12, "straight in the logarithms"
     assert {member.factor for member in scaled} == {target.motions[0].factor}

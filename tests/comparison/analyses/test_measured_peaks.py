@@ -2,15 +2,13 @@
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 
 import pytest
 from known_analyses import collected
 
 import reference
 from comparison.analyses.measured import analysis
-from comparison.analyses.measured.analysis import MeasuredPeaks, _beside, verdict_line
-from comparison.report.results import Results
+from comparison.analyses.measured.analysis import MeasuredPeaks, _beside, verdict_line, word_measured
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, RESOLVED, SMALL, TRANSLATIONAL
 from comparison.study.study import Study
 from comparison.study.user_models import user_model
@@ -109,7 +107,7 @@ def test_what_is_not_known_exceeds_nothing():
     assert [each.exceeds for each in found.computed] == [False, True, None], "0.15 < 0.1 + 0.1 < 0.25"
     assert [each.difference for each in found.computed[:2]] == pytest.approx([0.15, -0.25])
     assert [found.word(each) for each in found.computed] == ["met", "not met (by −25 %)", "not compared: ok"]
-    line = Results.measurements.fget(SimpleNamespace(of={"measured": [found]}.get))
+    line = word_measured([found])
     counts = "3 comparisons: 1 met, 1 not met, 1 not compared"
     assert line == f"1 measured peak stands beside the models ({counts})"
     largest = f"largest: {scene.name}, mu of body 1, far, −25 %"

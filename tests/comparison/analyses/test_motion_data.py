@@ -13,8 +13,16 @@ from studies import solved
 import multibody
 import reference
 from comparison.analyses.motions import analysis
-from comparison.analyses.motions.analysis import SHARE, Motions, Place, StoredMotion, chosen_places, decimated, moved
-from comparison.analyses.motions.page_data import contact_geometry, packed_motions, places, starts_of
+from comparison.analyses.motions.analysis import (
+    SHARE,
+    Motions,
+    Place,
+    StoredMotion,
+    choose_places,
+    compute_motion,
+    decimate,
+)
+from comparison.analyses.motions.page_data import contact_geometry, motion_numbers, places
 from comparison.study.models import SMALL, SPATIAL, TRANSLATIONAL, Model
 from comparison.study.study import Study
 from multibody.film import trace_contact_paths
@@ -24,7 +32,9 @@ PHASE = (2.0, 0.7)
 
 
 def stored(scene: Scene, model: Model) -> StoredMotion:
-    motion = moved((scene, model, 1e-6 if model.side == "reference" else 1e-3, Place(scene.name, 0, 0, "why"), PHASE))
+    motion = compute_motion(
+        (scene, model, 1e-6 if model.side == "reference" else 1e-3, Place(scene.name, 0, 0, "why"), PHASE)
+    )
     assert motion.error_message == ""
     return motion
 
@@ -76,12 +86,12 @@ def test_the_path_of_the_contact_follows_from_the_layout(scene) -> None:
 def test_a_refused_motion_has_no_numbers_and_unknown_demands() -> None:
     long = load_scene("fig3-I").with_values({"duration": 1e5})
     motion = stored(long, TRANSLATIONAL)
-    [place] = places(found(motion), long, starts_of([motion]))
+    [place] = places(found(motion), long)
     [about] = place["motions"]
     assert (about["status"], about["count"], about["blocks"]) == ("step limit", 0, {})
     assert about["demands"]["drift"] == [[None, None]]
     assert about["spectra"] is None
-    assert packed_motions(found(motion)) == packed_motions(found())
+    assert motion_numbers(found(motion)) == motion_numbers(found())
 
 
 def test_supports_stand_off_the_center_of_an_eccentric_platform(scene) -> None:
@@ -100,7 +110,7 @@ def test_lines_between_the_kept_instants_miss_little() -> None:
     time = np.linspace(0.0, 20.0, 20001)
     one_high = np.where(np.arange(20001) == 5000, 1.0, 0.0)
     columns = [np.sin(7.0 * time) * np.exp(-time / 4.0), np.sign(np.sin(3.0 * time)) * 40.0, one_high]
-    kept = decimated(time, np.stack(columns, axis=1), np.array([123]))
+    kept = decimate(time, np.stack(columns, axis=1), np.array([123]))
     for values in columns:
         assert np.abs(np.interp(time, time[kept], values[kept]) - values).max() <= SHARE * np.abs(values).max()
     assert {0, 123, 4999, 5000, 5001, 20000} <= set(kept.tolist()), "both ends, the peak asked for and the high instant"
@@ -114,7 +124,7 @@ def test_at_the_largest_difference_of_every_body_its_own_model_moves() -> None:
     ):  # fmt: skip
         place = {"alpha1": surfaces["alpha1"][row], "alpha2": surfaces["alpha2"][column]}
         surfaces["mu"].loc[{"model": model, "body": body, **place}] *= factor
-    places = {(place.row, place.column): place.why for place in chosen_places(study, surfaces, study.scenes[0])}
+    places = {(place.row, place.column): place.why for place in choose_places(study, surfaces, study.scenes[0])}
     assert list(places)[:2] == [(3, 9), (6, 0)]
     assert list(places.values())[:2] == ["largest difference of body 1", "largest difference of body 2"]
     assert places[5, 2] == "largest difference in translation, body 1"
@@ -131,7 +141,7 @@ def test_at_the_largest_difference_of_every_body_its_own_model_moves() -> None:
 def test_no_two_spread_places_are_mirror_images() -> None:
     """A shift of either phase by pi mirrors the motion in a scene such as fig3-I: its image would tell nothing new."""
     study, surfaces = _studied(10)
-    places = [place for place in chosen_places(study, surfaces, study.scenes[0]) if not place.why]
+    places = [place for place in choose_places(study, surfaces, study.scenes[0]) if not place.why]
     assert len({(place.row % 5, place.column % 5) for place in places}) == len(places) >= 4
 
 
@@ -146,9 +156,9 @@ def test_a_motion_keeps_its_peaks_or_says_why_there_is_none() -> None:
     model = replace(SMALL, trajectory="test_motion_data:slides", settings={"cutoff": 1e-3})
     rest = 1e-3, Place("fig3-I", 0, 0, "why"), (0.0, 0.0)
     scene = load_scene("fig3-I")
-    motion, whole = moved((scene, model, *rest)), slides(scene, None, 0.0)
+    motion, whole = compute_motion((scene, model, *rest)), slides(scene, None, 0.0)
     peak = np.linalg.norm(whole.absolute_acceleration, axis=2).argmax(axis=0)
     assert (motion.status, motion.error_message) == ("ok", "")
     assert set(whole.time[peak]) <= set(motion.time), "the peak of every body is kept as it is"
-    missing = moved((scene, replace(model, trajectory="test_motion_data:missing"), *rest))
+    missing = compute_motion((scene, replace(model, trajectory="test_motion_data:missing"), *rest))
     assert (missing.status, missing.error_message.split(":")[0]) == ("solver failed", "AttributeError")

@@ -10,7 +10,7 @@ import xarray as xr
 import reference
 from comparison.analyses.worst_phases import analysis
 from comparison.analyses.worst_phases.feature import _kind
-from comparison.runner.task import unfinished
+from comparison.runner.task import result_without_value
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, SPATIAL, TRANSLATIONAL
 from comparison.study.study import Study
@@ -47,7 +47,7 @@ def test_an_engine_without_an_answer_there_says_why(monkeypatch: pytest.MonkeyPa
         answer.mu[:], answer.error[:], answer.status[:] = math.nan, math.nan, Outcome.STEP_LIMIT.value
         return answer
 
-    monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", lambda path: refusing)
+    monkeypatch.setattr("comparison.analyses.worst_phases.analysis.import_function", lambda path: refusing)
     worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
     engine = analysis._engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
     assert math.isnan(engine.value)
@@ -70,7 +70,7 @@ def test_the_engine_is_asked_where_its_ratio_says(monkeypatch: pytest.MonkeyPatc
         return amplification
 
     sides = {TRANSLATIONAL.amplification: answering(engine), REGULARIZED.amplification: answering(equations)}
-    monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", sides.__getitem__)
+    monkeypatch.setattr("comparison.analyses.worst_phases.analysis.import_function", sides.__getitem__)
     monkeypatch.setattr("reference.measures.local_search.ground_peak", lambda scene, phases: np.full(len(phases), 0.5))
     worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
     beside = analysis._engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
@@ -127,7 +127,7 @@ def test_a_search_that_failed_leaves_a_row_with_the_reason() -> None:
     study, results = study_of(SHORT), TaskResults()
     tasks = analysis.WorstPhases().tasks(study)
     for task in tasks:
-        results.put(task, unfinished(Outcome.TIME_LIMIT, "took too long"))
+        results.put(task, result_without_value(Outcome.TIME_LIMIT, "took too long"))
     rows = analysis.WorstPhases().collect(study, None, results)
     assert len(rows) == len(tasks) + 2  # the engine's rows
     assert all(row.reason == f"{Outcome.TIME_LIMIT}: took too long" and row.phases == analysis.NOWHERE for row in rows)
@@ -144,7 +144,7 @@ def test_the_spatial_engine_has_the_larger_of_its_grid_and_the_worst_phases(
         mu = np.full((len(phases), 2), 2.0)
         return Amplification(mu, 0.01 * mu, np.full(len(phases), "ok"), np.full(len(phases), math.nan), 0.0)
 
-    monkeypatch.setattr("comparison.analyses.worst_phases.analysis.imported", lambda path: steady)
+    monkeypatch.setattr("comparison.analyses.worst_phases.analysis.import_function", lambda path: steady)
     worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.2, 1e-6, (1.0, 2.0), "smooth")
     found = analysis._larger_of_grid_and_worst(worst, SHORT, (SPATIAL, grid, 0.03, (0.5, 0.25)), 1e-3)
     assert (found.model, found.kind, found.value) == ("spatial", kind, pytest.approx(value))

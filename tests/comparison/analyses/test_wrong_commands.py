@@ -7,9 +7,9 @@ from places import scene_text
 from runs import no_executor
 
 from comparison.analyses.assumptions import command as assumptions
-from comparison.analyses.benchmarks import command as benchmarks
-from comparison.analyses.extremes import command as extremes
-from comparison.analyses.tradeoff import command as tradeoff
+from comparison.evidence.benchmarks import command as benchmarks
+from comparison.evidence.extremes import command as extremes
+from comparison.evidence.tradeoff import command as tradeoff
 
 PAIR = "excitation.record = 'synthetic-pair': "
 

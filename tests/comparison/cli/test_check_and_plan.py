@@ -15,11 +15,11 @@ from runs import Run, no_executor
 from studies import difference_rows, solved
 
 import reference
-from comparison.cli.options import parsed
+from comparison.cli.options import parse_options
 from comparison.runner.processes import cores
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
-from comparison.surfaces.acceptance import Limit, checked_limits
+from comparison.surfaces.acceptance import Limit, check_limits
 from comparison.surfaces.body_comparison import body_comparisons
 from comparison.surfaces.unanswered import unanswered
 
@@ -29,7 +29,7 @@ SMALL = ["fig3-I", "--grid", "2", "--only", "differences"]
 
 def limits_of(study: Study, surfaces: xr.Dataset) -> list[Limit]:
     """The limits of a study, compared with its surfaces."""
-    return checked_limits(body_comparisons(study, surfaces), unanswered(study, surfaces))
+    return check_limits(body_comparisons(study, surfaces), unanswered(study, surfaces))
 
 
 def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callable[..., Run], tmp_path: Path) -> None:
@@ -140,13 +140,13 @@ def test_without_a_word_the_study_is_the_papers_four_cases_on_48_phases(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    usual = parsed([])
+    usual = parse_options([])
     assert [scene.name for scene in usual.scenes] == ["fig3-I", "fig3-II", "fig4-dry", "fig4-viscous"]
     assert (usual.grid, usual.tolerance, usual.out, usual.jobs) == (48, 1e-3, Path("report"), cores())
     assert (usual.budget, usual.max_work, usual.scheduler, usual.models) == (None, None, None, ())
     assert not any((usual.check, usual.plan, usual.fresh, usual.full))
     words = "--grid 3 --tolerance 1e-4 --out r --jobs 5 --budget 60 --max-work 7 --check --fresh --full --amplitude 2"
-    asked = parsed([*words.split(), "fig3-I"])
+    asked = parse_options([*words.split(), "fig3-I"])
     assert (asked.grid, asked.tolerance, asked.out, asked.jobs) == (3, 1e-4, Path("r"), 5)
     assert (asked.budget, asked.max_work, asked.scenes[0].amplitudes.max()) == (60.0, 7.0, pytest.approx(2.0))
     assert (asked.check, asked.plan, asked.fresh, asked.full) == (True, False, True, True)
@@ -190,5 +190,5 @@ def test_models_without_a_common_phase_pair_leave_nothing_to_compare() -> None:
     surfaces = solved(study)
     for key, alpha1 in (("regularised", 0.0), ("translational", np.pi)):
         surfaces["mu"].loc[{"model": key, "alpha1": alpha1}] = np.nan
-    broken = next(limit for limit in limits_of(study, surfaces) if limit.key == "median").broken_texts
+    broken = next(limit for limit in limits_of(study, surfaces) if limit.key == "median").breach_texts
     assert [line.split(":")[1] for line in broken] == [" nothing to compare (exact equations, v_reg"]

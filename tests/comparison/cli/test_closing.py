@@ -87,7 +87,7 @@ def test_the_times_of_a_run_are_the_same_in_every_place(
     assert "102.0 s of wall time with" in run.out
     assert ago(times["began"]) == pytest.approx(102.0, abs=60.0)
     facts = run_facts("extremes", Namespace(jobs="3", scheduler=None), ["--a"], time.monotonic() - 90.0)
-    assert (facts["command"], facts["jobs"]) == ("python -m comparison.extremes --a", 3)
+    assert (facts["command"], facts["jobs"]) == ("phase-resonance extremes --a", 3)
     assert ago(facts["began"]) == pytest.approx(90.0, abs=60.0)
     assert 90.0 <= facts["seconds"] < 120.0
 

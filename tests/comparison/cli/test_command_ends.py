@@ -15,9 +15,10 @@ import pytest
 from places import ROOT
 
 import reference
-from comparison.cli.start import COMMANDS, main, start
+from comparison.cli.start import commands, main, start
 
-MODULES = ("multibody.animate", *(f"comparison.{name}" for name in COMMANDS if name not in ("animate", "init")))
+COMMANDS = commands()
+MODULES = ("multibody.animate", "comparison.run")  # started by their own names, too
 BEGIN = """
 import os, signal, sys, types
 signal.signal(signal.SIGINT, signal.default_int_handler)  # what runs in the background inherits it ignored
@@ -169,6 +170,7 @@ def test_workers_of_a_program_elsewhere_import_nothing_there(tmp_path: Path) -> 
         (["extrems"], 2, ["command line: COMMAND = 'extrems': did you mean extremes?\n"]),
         (["--version"], 0, [f"phase-resonance {reference.__version__}\n"]),
         ([], 0, [f"  {name} " for name in COMMANDS]),
+        (["help"], 0, ["  extremes     every model at the extremes of every quantity\n"]),
     ],
 )
 def test_the_script_answers_where_no_command_is_named(
@@ -193,7 +195,7 @@ def test_every_command_states_its_version_and_refuses_a_wrong_option_in_one_line
     assert capsys.readouterr().out == f"phase-resonance {reference.__version__}\n"
     with pytest.raises(SystemExit):
         command(["--help"])
-    place = {"init": "phase-resonance ", "animate": "python -m multibody."}.get(name, "python -m comparison.")
+    place = {"run": "python -m comparison.", "animate": "python -m multibody."}.get(name, "phase-resonance ")
     text = " ".join(capsys.readouterr().out.split()).replace(". ", ".")
     assert text.startswith(f"usage: {place}{name}")
     for words in (["--no-such-option"], ["--jobs", "0"], ["--out"]):

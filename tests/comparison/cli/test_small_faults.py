@@ -44,9 +44,7 @@ def test_control_characters_of_a_motion_s_name_do_not_reach_the_terminal(tmp_pat
 
 def test_a_suite_with_too_many_motions_is_blamed_on_the_suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("reference.problem.families.MAX_SCENES", 2)
-    with pytest.raises(
-        reference.SceneError, match=r"excitation.record.suite = 'motions': 3 motions: a family"
-    ):
+    with pytest.raises(reference.SceneError, match=r"excitation.record.suite = 'motions': 3 motions: a family"):
         load_family(suite(tmp_path, ["a", "b", "c"]))
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import reading_table
 from distinct_models import (
     CHAIN,
     COARSE,
@@ -59,8 +60,13 @@ def scene(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
         limits = "[acceptance]\nmedian = 1e-6\nmaximum = 2e-6\nratio = 1.0\n[acceptance.total]\nmaximum = 3e-6\n"
         words = [limited_scene(folder, limits), "--grid", str(GRID), "--only", "differences,budget"]
         assert main([*words, "--out", str(folder / "report")], distinct_hierarchy(), ThreadPoolExecutor) == 0
+    assert reading_table.main(folder / "report", COARSE) == 0, "by a program that imports nothing of the project"
     [found] = summary_of(folder / "report")["scenes"]
-    lists = {name: rows for name, rows in found.items() if isinstance(rows, list) and name != "analyses"}
+    lists = {
+        name: rows
+        for name, rows in found.items()
+        if isinstance(rows, list) and all(isinstance(row, dict) for row in rows)
+    }
     of_body = {name: [row for row in rows if row.get("body", body) == body] for name, rows in lists.items()}
     return {**of_body, "number": body, "models": found["models"]}
 

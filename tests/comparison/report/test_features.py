@@ -1,19 +1,22 @@
-"""A feature is one folder and its entry in the registry: one is added to a copy of the package, another deleted."""
+"""A feature is one folder and its line in the registry: one is added to a copy of the package, each other deleted."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from places import ROOT
+from places import HELPERS, ROOT
 from report_texts import page_of, summary_of
 
+REGISTRY = "comparison/registry.py"
 FOLDER = {
     "__init__.py": "",
     "feature.py": '''
-from comparison.report.section import Feature, Section
+from comparison.report.feature import Feature, ResultField
+from comparison.report.section import Section
 from comparison.result_types import Number
 
 
@@ -23,48 +26,126 @@ def ratios(findings, scenes):
     return (mu.sel(body=2) / mu.sel(body=1)).max(["alpha1", "alpha2"]).values.tolist()
 
 
-def _draw(figures, report):
-    (figures / "ratio.txt").write_text(str(len(report.results.of("ratio"))))
-
-
-SECTION = Section("Ratio of the factors", draw=_draw)
-FEATURE = Feature("ratio", list[Number], "ratio of two factors", summary=ratios, section=SECTION)
+RATIO = ResultField("ratio", list[Number], "ratio of two factors", compute=ratios)
+FEATURE = Feature(
+    "ratio",
+    (RATIO,),
+    section=Section("Ratio of the factors"),
+    figures=lambda report: {"ratio.txt": str(len(RATIO.of(report.results))).encode()},
+)
 ''',
     "section.html.j2": '{% for ratio in results.ratio %}<p class="ratio">{{ ratio }}</p>{% endfor %}',
 }
+# one process loads what the packages share; a child of it for each feature loads the package without that one
+CHILDREN = """
+import importlib, os, sys, traceback
+import contourpy, h5netcdf, jinja2, markupsafe, matplotlib.figure, pydantic, rich.console, rich.table, xarray
+import reference, multibody
+from pathlib import Path
+
+def load_without(copy, key):
+    sys.path.insert(0, str(copy))
+    from runs import RUN
+    from comparison.cli.start import commands
+    from comparison.run import main
+    from comparison import registry
+    from comparison.report.writing import write_report
+    from comparison.study.study import Study
+    from comparison.surfaces.surfaces import label_surfaces
+    for command in commands().values():
+        importlib.import_module(command.module)
+    assert key not in commands()
+    os.chdir(copy)
+    assert main(["fig3-I", "--grid", "2", "--plan"]) == 0
+    study = Study((reference.load_scene("fig3-I"),), 2, 1e-3, selection=registry.EVERYTHING)
+    surfaces = label_surfaces(study, [], [])
+    for name, value in {"mu": 2.0, "error": 1e-9, "status": "ok"}.items():
+        surfaces[name][:] = value
+    report = registry.report_of(study, surfaces, {}, [], RUN, families=())
+    place = copy / "report"
+    place.mkdir()
+    write_report(place, report)
+    assert key not in {feature.key for feature in registry.FEATURES}
+    assert key not in registry.EVERYTHING.names
+    assert f'id="{key}"' not in (place / "index.html").read_text() + (place / "verification.html").read_text()
+
+for copy in map(Path, sys.argv[1:]):
+    child = os.fork()
+    if child == 0:
+        try:
+            load_without(copy, copy.name)
+        except BaseException:
+            print(f"without {copy.name}:", traceback.format_exc(), file=sys.stderr, flush=True)
+            os._exit(1)
+        os._exit(0)
+    if os.waitpid(child, 0)[1]:
+        sys.exit(1)
+"""
+
+
+def folders() -> list[str]:
+    """The folders that the registry names."""
+    return re.findall(r'_feature\("([\w.]+)"\)', (ROOT / REGISTRY).read_text(encoding="utf-8"))
+
+
+def copy_package(place: Path) -> Path:
+    """Return the registry of a copy of the package in a folder that exists, beside the packages that it needs."""
+    for name in ("reference", "multibody"):
+        (place / name).symlink_to(ROOT / name)
+    shutil.copytree(ROOT / "comparison", place / "comparison")  # with what is compiled of it
+    return place / REGISTRY
+
+
+def replace_once(file: Path, old: str, new: str) -> None:
+    """Replace a text that stands once in a file."""
+    text = file.read_text(encoding="utf-8")
+    assert text.count(old) == 1
+    file.write_text(text.replace(old, new), encoding="utf-8")
+
+
+def test_every_folder_is_a_feature() -> None:
+    rooms = [folder for room in ("analyses", "evidence") for folder in (ROOT / "comparison" / room).glob("*/")]
+    assert sorted(folders()) == sorted(f"{each.parent.name}.{each.name}" for each in rooms if each.name[0] != "_")
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="children of a process that has loaded the packages")
+def test_each_feature_can_be_deleted(tmp_path: Path) -> None:
+    """Without its folder and its line the commands, the plan and a report do without it."""
+    copies = []
+    for folder in folders():
+        room, key = folder.split(".")
+        copies.append(tmp_path / key)
+        copies[-1].mkdir()
+        replace_once(copy_package(copies[-1]), f'    _feature("{folder}"),\n', "")
+        shutil.rmtree(copies[-1] / "comparison" / room / key)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (HELPERS, ROOT)))}
+    run = subprocess.run(
+        [sys.executable, "-P", "-c", CHILDREN, *map(str, copies)],
+        cwd=tmp_path,
+        env={**environment, "PYTHONDONTWRITEBYTECODE": "1"},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
 
 
 @pytest.mark.long
-def test_a_folder_and_its_entry_are_a_feature(tmp_path: Path) -> None:
-    """A copy of the package has the feature `ratio` and not the claims: in file, page and figures."""
-    copy, report = tmp_path, tmp_path / "report"
-    for name in ("reference", "multibody"):
-        (copy / name).symlink_to(ROOT / name)
-    shutil.copytree(ROOT / "comparison", copy / "comparison", ignore=shutil.ignore_patterns("__pycache__"))
-    folder = copy / "comparison" / "analyses" / "ratio"
+def test_a_folder_and_its_line_are_a_feature(tmp_path: Path) -> None:
+    """A copy of the package has the feature `ratio` besides: in file, page and figures."""
+    registry, report = copy_package(tmp_path), tmp_path / "report"
+    folder = tmp_path / "comparison" / "evidence" / "ratio"
     folder.mkdir()
     for name, text in FOLDER.items():
         (folder / name).write_text(text, encoding="utf-8")
-    shutil.rmtree(copy / "comparison" / "analyses" / "claims")
-    registry = copy / "comparison" / "registry.py"
-    text = registry.read_text(encoding="utf-8")
-    measured = "from comparison.analyses.measured import feature as measured\n"
-    edits = {
-        "from comparison.analyses.claims import feature as claims\n": "",
-        "    claims.FEATURE,\n": "    ratio.FEATURE,\n",
-        measured: measured + "from comparison.analyses.ratio import feature as ratio\n",
-    }
-    for old, new in edits.items():
-        assert text.count(old) == 1
-        text = text.replace(old, new)
-    registry.write_text(text, encoding="utf-8")
-    command = [sys.executable, "-P", "-m", "comparison.run", "fig3-I", "--grid", "2", "--only", "surfaces,budget"]
-    environment = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
-    subprocess.run([*command, "--out", str(report)], cwd=copy, env=environment, check=True)
+    claims = '    _feature("evidence.claims"),\n'
+    replace_once(registry, claims, f'{claims}    _feature("evidence.ratio"),\n')
+    command = [sys.executable, "-P", "-m", "comparison.run", "fig3-I", "--grid", "2", "--only", "surfaces,ratio"]
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
+    subprocess.run([*command, "--out", str(report)], cwd=tmp_path, env=environment, check=True)
     summary = summary_of(report)
     count = len(summary["models"])
     assert (len(summary["ratio"]), page_of(report).count('<p class="ratio">')) == (count, count)
     assert (report / "figures" / "ratio.txt").read_text() == str(count)
     assert '"ratio"' in (report / "summary.schema.json").read_text(encoding="utf-8")
-    assert "claims" not in summary
-    assert 'id="claims"' not in page_of(report, "verification.html")

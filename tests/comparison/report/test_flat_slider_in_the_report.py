@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from comparison.analyses.effective_values.analysis import read_back
+from comparison.evidence.effective.analysis import read_back
 from comparison.study.models import MODEL_HIERARCHY, models_of
 from multibody.film import make_drawing
 from reference import demands, trajectory

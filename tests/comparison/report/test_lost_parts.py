@@ -17,7 +17,7 @@ from report_texts import page_of
 from runs import quick_figures
 
 import comparison.registry
-from comparison.cli.reports import Complete, Reports
+from comparison.cli.reports import CompleteLevel, Reports
 from comparison.registry import FEATURES
 from comparison.report import page, writing
 from comparison.report.results import Results
@@ -48,40 +48,36 @@ class Place(NamedTuple):
 
 def places() -> Iterator[Place]:
     """Every call by which a section, a picture or a file gets its content."""
-    for feature in FEATURES:
-        if feature.analysis and feature.key != "demands":  # not asked for here
+    for feature in (each for each in FEATURES if each.key != "demands"):  # not asked for here
+        if feature.analysis:
             yield Place(feature.key, "collect", f"section {feature.key}")
-        if feature.summary:
-            yield Place(feature, "summary", f"section {feature.key}")
-        for name in feature.scene_fields:
-            yield Place(feature, f"scene_fields {name}", f"section {name}")
-        if (section := feature.section) and feature.key != "demands":
+        for field in (*feature.fields, *feature.scene_fields):
+            if field.compute:
+                yield Place(field, "compute", f"section {field.name}")
+        for name, said in {"figures": "pictures of ", "packed_data": ""}.items():
+            if getattr(feature, name):
+                yield Place(feature, name, f"{said}{feature.key}")
+        if section := feature.section:
             yield Place(section, "context", f"section {section.name}")
-            for name, said in (("draw", "pictures of section"), ("verdict", "verdict of section")):
-                if getattr(section, name):
-                    yield Place(section, name, f"{said} {section.name}")
+            if section.verdict:
+                yield Place(section, "verdict", f"verdict of section {section.name}")
             if section.lead:
                 yield Place(section, "lead", "sentences of sections")
-            if section.tasks:
-                yield Place(section, "tasks", "drawings")
     for name, said in {"netcdf": "surfaces.nc", "summary_text": "summary.md", "junit": "junit.xml",
                        "schema_json": "summary.schema.json"}.items():  # fmt: skip
         yield Place(writing, name, said)
     yield Place(Results, "as_json", "summary.json")
     for name, said in {"word_verdict": "verdict", "_alert_groups": "alerts", "scale_of": "summary",
-                       "page_data": "surfaces", "packed_motions": "motions"}.items():  # fmt: skip
+                       "page_data": "surfaces"}.items():  # fmt: skip
         yield Place(page, name, said)
 
 
 def put(place: Place, value: Any) -> None:
     """Set the attribute, of a frozen dataclass, too."""
-    name, _, key = place.name.partition(" ")
-    if key:
-        value = {**getattr(place.owner, name), key: getattr(place.owner, name)[key]._replace(of=value)}
     if isinstance(place.owner, type) or place.owner in (page, writing):
-        setattr(place.owner, name, value)
+        setattr(place.owner, place.name, value)
     else:
-        object.__setattr__(place.owner, name, value)
+        object.__setattr__(place.owner, place.name, value)
 
 
 @contextmanager
@@ -89,16 +85,15 @@ def raising(place: Place) -> Iterator[None]:
     """Let the call raise in the block."""
     if isinstance(place.owner, str):  # known answers are in the place of the analysis itself
         place = place._replace(owner=next(each for each in comparison.registry.ANALYSES if each.key == place.owner))
-    name, _, key = place.name.partition(" ")
-    before, own = getattr(place.owner, name), key or name in vars(place.owner)
+    before, own = getattr(place.owner, place.name), place.name in vars(place.owner)
     put(place, fail)
     try:
         yield
     finally:
         if own:
-            put(place._replace(name=name), before)
+            put(place, before)
         else:
-            object.__delattr__(place.owner, name)
+            object.__delattr__(place.owner, place.name)
 
 
 @pytest.fixture(scope="module")
@@ -108,8 +103,8 @@ def last_report(tmp_path_factory: pytest.TempPathFactory) -> Last:
     leave_beside(place, FILES, "fig3-I")
     write = Reports.write
 
-    def remember(self: Reports, complete: Complete, runner: Runner, stopped: bool = False) -> Results:
-        calls.append(partial(write, self, complete, runner, stopped))
+    def remember(self: Reports, complete: CompleteLevel, runner: Runner) -> Results:
+        calls.append(partial(write, self, complete, runner))
         return calls[-1]()
 
     with pytest.MonkeyPatch.context() as patch:

@@ -6,12 +6,13 @@ from pathlib import Path
 import pytest
 from recorded_figures import figures_are_told
 
-from comparison.analyses.panels import draw_panels, panel, trend_panels
-from comparison.analyses.tradeoff.feature import tradeoff_answers, tradeoff_panels
-from comparison.analyses.tradeoff.trade import Answered, Entry, Trade
-from comparison.analyses.trends import Trend
+from comparison.evidence.tradeoff.feature import tradeoff_answers, tradeoff_panels
+from comparison.evidence.tradeoff.trade import Answered, Entry, Trade
+from comparison.evidence.trend_panels import trend_panels
+from comparison.evidence.trends import Trend
 from comparison.report.glossary import GLOSSARY, explained
 from comparison.report.page import content_policy
+from comparison.report.panels import draw_panels, panel
 from comparison.report.plots import MAX_CURVES
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from browsers import CHROMIUM, LAPTOP, OVERLAPS, Scheme, chromium, opened, until
 from playwright.sync_api import Browser, Page
-from pypdf import PdfReader
+from pypdf import PageObject, PdfReader
 from report_texts import page_of
 
 from comparison.registry import StudyResults
@@ -17,17 +17,19 @@ from comparison.surfaces.statements import CELLS
 
 A4 = 210.0, 297.0  # mm
 MARGIN = 12.0  # mm, as report.css says
-DOT = 25.4 / 96.0  # mm of a CSS pixel
+DOT, POINT = 25.4 / 96.0, 25.4 / 72.0  # mm of a CSS pixel and of a point
 PAGES = {"index.html": range(5, 21), "verification.html": range(2, 9)}  # how many may be printed
 
 BEYOND = """right => [...document.querySelectorAll('main *, header *')]
   .filter(each => each.checkVisibility() && !each.closest('svg') && each.getBoundingClientRect().right > right + 1)
   .map(each => `${each.tagName} ${each.className} of ${each.closest('[id]')?.id}: ${each.textContent.slice(0, 40)}`)"""
-CUT = """() => [...document.querySelectorAll('main td, main th, main p, main li')].filter(each => each.checkVisibility()
-  && each.scrollWidth > each.clientWidth + 1 && getComputedStyle(each).display !== 'inline').map(each => each.textContent)"""
+CUT = """() => [...document.querySelectorAll('main td, main th, main p, main li')]
+  .filter(each => each.checkVisibility() && getComputedStyle(each).display !== 'inline')
+  .filter(each => each.scrollWidth > each.clientWidth + 1).map(each => each.textContent)"""
 
+# small charts hide some of their ticks
 CELLS_OF_TABLES = """[...document.querySelectorAll('main td, main th')]
-  .filter(cell => !cell.querySelector('svg text')).map(cell => cell.innerText)"""  # small charts hide some of their ticks
+  .filter(cell => !cell.querySelector('svg text')).map(cell => cell.innerText)"""
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
 
@@ -57,22 +59,27 @@ def as_printed(page: Page) -> Page:
     return page
 
 
+def lowest_text(sheet: PageObject) -> float:
+    """Height of the lowest text of a sheet above its lower edge, points."""
+    heights = [math.inf]
+
+    def see(text: str, of_all: list[float], of_text: list[float], *rest: object) -> None:
+        if text.strip():
+            heights.append(of_all[5] + of_all[3] * of_text[5])
+
+    sheet.extract_text(visitor_text=see)
+    return min(heights)
+
+
 def printed_page(browser: Browser, file: Path) -> Printed:
     """Print a page through Chromium and read it back."""
     page = opened(browser, file, LAPTOP).page
     pdf = file.parent.parent / f"{file.stem}.pdf"
     page.pdf(path=pdf, prefer_css_page_size=True)
-    sizes, texts, filled = [], [], []
-    for sheet in PdfReader(pdf).pages:
-        height, lowest = float(sheet.mediabox.height), [math.inf]
-
-        def see(text: str, of_all: list[float], of_text: list[float], *rest: object) -> None:
-            if text.strip():
-                lowest.append(of_all[5] + of_all[3] * of_text[5])
-
-        texts.append(letters(sheet.extract_text(visitor_text=see)))
-        sizes.append((float(sheet.mediabox.width) / 72.0 * 25.4, height / 72.0 * 25.4))
-        filled.append(1.0 - min(lowest) / height)
+    sheets = PdfReader(pdf).pages
+    sizes = [(float(sheet.mediabox.width) * POINT, float(sheet.mediabox.height) * POINT) for sheet in sheets]
+    texts = [letters(sheet.extract_text()) for sheet in sheets]
+    filled = [1.0 - lowest_text(sheet) / float(sheet.mediabox.height) for sheet in sheets]
     cells = as_printed(page).evaluate(CELLS_OF_TABLES)
     page.close()
     return Printed(sizes, texts, filled, cells)

@@ -15,7 +15,7 @@ import xarray as xr
 from jsonschema import Draft202012Validator
 from places import ROOT
 from pydantic import TypeAdapter
-from report_texts import summary_of
+from report_texts import data_of, summary_of
 
 from comparison.registry import StudyResults
 from comparison.report.results import Run
@@ -80,10 +80,17 @@ def test_every_key_of_the_summary_is_as_documented(finished: Path) -> None:
     assert json.loads(StudyResults.model_validate_json(text).as_json()) == json.loads(text)
 
 
+def test_motions_of_the_summary_are_at_the_phases_of_the_page(finished: Path) -> None:
+    for listed, drawn in zip(summary_of(finished)["scenes"], data_of(finished)["scenes"]):
+        motions = {(motion["why"], *motion["phases"]) for motion in listed["demands"]}
+        assert motions == {(place["why"], *place["phases"]) for place in drawn["places"]}
+        assert any(first < second for _, first, second in motions), "not as many on either side of the diagonal"
+
+
 def test_a_missing_number_is_null_in_one_way() -> None:
-    form, bar = TypeAdapter(WaterfallBar), WaterfallBar("exact", math.nan, math.inf)
+    form, bar = TypeAdapter(WaterfallBar), WaterfallBar("exact", math.nan, math.inf, resolved=False)
     written = form.dump_python(bar, mode="json")
-    assert written == {"model": "exact", "size": None, "error": None, "real": False}
+    assert written == {"model": "exact", "size": None, "error": None, "resolved": False}
     assert math.isnan(form.validate_python(written).size)
 
 

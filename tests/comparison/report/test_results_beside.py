@@ -12,7 +12,7 @@ from report_texts import both_pages, page_of
 from runs import SMALL, Run
 
 from comparison.analyses.ensemble import result as ensemble
-from comparison.analyses.tradeoff.trade import FILE as TRADES
+from comparison.evidence.tradeoff.trade import FILE as TRADES
 from comparison.runner.output import publish
 
 MAKES = ("extremes", "benchmarks", "tradeoff SCENE", "ensemble SCENE", "validation FOLDER")
@@ -22,17 +22,16 @@ def test_results_beside_a_report_are_part_of_the_next(command: Callable[..., Run
     alone = both_pages(command(*SMALL).report)
     place = tmp_path / "report"
     leave_beside(place, FILES, "fig3-I", "fig3-II")
-    diagrams = {f"fig3-I-tradeoff.{ending}" for ending in ("nc", "png", "pdf")}
-    kept = {name: (place / name).read_bytes() for name in (*FILES, TRADES, *diagrams)}
+    kept = {name: (place / name).read_bytes() for name in (*FILES, TRADES, "fig3-I-tradeoff.nc")}
     pages = both_pages(command(*SMALL).report)
     for name in MAKES:
-        line = f"python -m comparison.{name} makes it"
+        line = f"phase-resonance {name} makes it"
         assert (line in alone, line in pages) == (True, False), name
     for seen in ("hangs: &lt;forever&gt;", "a &lt;frame&gt;", "it agrees &lt;with itself&gt;", "a &lt;fact&gt;",
                  "Tower &amp; &lt;town&gt;", "(fig3-II)</span>: not a scene of this study"):  # fmt: skip
         assert seen in pages, seen
     assert pages.count("made &lt;by a test&gt;") >= 4, "every command says how it was made"
-    assert "1.0e-03, 1.0e-03" not in pages, "what is beaten is in the picture alone"
+    assert "1.0e-03, 1.0e-03" not in pages, "what is beaten is in the plot alone"
     assert pages.count("not a scene of this study") == 1
     assert {name: (place / name).read_bytes() for name in kept} == kept
 
@@ -44,7 +43,7 @@ def test_a_file_that_is_no_result_is_refused_at_the_start(
     publish(tmp_path / "report", {name: b'{"schema": "a-secret", "a-secret": 1}'}, "a test")
     run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
     assert (run.code, run.out, run.err.count("\n")) == (2, "", 1)
-    assert re.search(rf"{name}: not (a|an) .*: run python -m comparison\.", run.err)
+    assert re.search(rf"{name}: not (a|an) .*: run phase-resonance ", run.err)
     assert "a-secret" not in run.err, "nothing of it is quoted"
 
 

@@ -11,12 +11,12 @@ from fake_models import fake_hierarchy
 from known_results import FILES, known_trade
 from runs import SMALL, Run
 
-from comparison.analyses.benchmarks.table import STORED as BENCHMARKS
 from comparison.analyses.ensemble.result import STORED as ENSEMBLE
-from comparison.analyses.extremes.matrix import STORED as MATRIX
-from comparison.analyses.tradeoff import growth
-from comparison.analyses.tradeoff.trade import SCHEMA, STORED, TradeFile
-from comparison.analyses.validation.table import STORED as VALIDATION
+from comparison.evidence.benchmarks.table import STORED as BENCHMARKS
+from comparison.evidence.extremes.matrix import STORED as MATRIX
+from comparison.evidence.tradeoff import growth
+from comparison.evidence.tradeoff.trade import SCHEMA, STORED, TradeFile
+from comparison.evidence.validation.table import STORED as VALIDATION
 from comparison.runner.output import publish
 
 STORES = {each.name: each for each in (BENCHMARKS, ENSEMBLE, MATRIX, STORED, growth.STORED, VALIDATION)}

@@ -13,9 +13,9 @@ from rich.console import Console
 from runs import RUN, Run
 from studies import solved
 
-from comparison.analyses.panels import draw_panels, panel
-from comparison.registry import report_of
+from comparison.registry import EVERYTHING, report_of
 from comparison.report.junit import junit
+from comparison.report.panels import draw_panels, panel
 from comparison.report.summary_text import summary_text
 from comparison.runner.progress import progress, wide_console
 from comparison.study.study import Study
@@ -68,10 +68,10 @@ def test_junit_and_summary_are_well_formed_for_any_name() -> None:
     title = "[a](http://b) #1 $x$ &copy; ~~c~~ <b>\n| d"
     valid = load_scene("fig3-I")
     scene = Scene.model_construct(**{**dict(valid), "name": "a\x00\x01\ud800\ufffe<b>", "title": title})
-    study = Study((scene,), 2, 1e-3, fake_hierarchy())
+    study = Study((scene,), 2, 1e-3, fake_hierarchy(), selection=EVERYTHING)
     surfaces = solved(study)
     surfaces["mu"].loc[{"model": "spatial", "alpha1": 0.0}] = np.nan
-    results = report_of(study, surfaces, {}, [], RUN).results
+    results = report_of(study, surfaces, {}, [], RUN, families=[]).results
     assert results.broken
     suites = ElementTree.fromstring(junit(results).encode())
     assert suites[0].get("name") == "a\ufffd\ufffd\ufffd\ufffd<b>"
@@ -86,8 +86,8 @@ def test_a_page_of_records_says_nothing_of_phases(command: Callable[..., Run]) -
     page = page_of(run.report)
     top = page[page.index("<h1>") : page.index("</nav")]
     assert "initial phases" not in top
-    assert "Exudyn (spatial) from them (synthetic-pair, " in top
-    assert "Values and motions under the records" in top
+    assert " (spatial) from them (synthetic-pair, " in top
+    assert "Amplification and motions" in top
     summary = (run.report / "summary.md").read_text(encoding="utf-8")
     assert "1 scene, one value under each recorded motion" in summary
     assert ("48 ×" in summary, "over the phases" in run.out) == (False, False)

@@ -27,9 +27,9 @@ from places import ROOT
 from runs import no_executor
 
 import multibody.models.engine
-from comparison.analyses.claims.table import paper_complete
 from comparison.analyses.motions.analysis import Place, StoredMotion
-from comparison.registry import ANALYSES, first_tasks
+from comparison.evidence.claims.table import paper_complete
+from comparison.registry import ANALYSES, EVERYTHING, first_tasks
 from comparison.runner.cache import MAGIC, Cache, Key
 from comparison.runner.environment import (
     environment_fingerprint,
@@ -244,7 +244,7 @@ def test_a_task_that_fails_has_its_reason_and_costs_no_other(tmp_path: Path) -> 
 
 
 def test_every_task_of_a_study_has_a_place_of_its_own() -> None:
-    study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3)
+    study = Study(tuple(map(load_scene, builtin_scenes())), 6, 1e-3, selection=EVERYTHING)
     tasks = first_tasks(study, ANALYSES)
     assert paper_complete(study)
     assert len({task.key for task in tasks}) == len(tasks)

@@ -13,14 +13,15 @@ from known_results import FOUND
 from report_texts import page_of, summary_of
 from runs import SMALL, Run
 
-from comparison.analyses.extremes import command as extremes
 from comparison.cli import reports
+from comparison.evidence.extremes import command as extremes
 from comparison.report import page
-from comparison.runner.cache import Cache, Key
+from comparison.runner.cache import Cache, Key, store_beside
 from comparison.runner.output import (
     MANIFEST,
     Own,
     clear_dead,
+    destination,
     foreign,
     manifest_json,
     publish,
@@ -198,7 +199,7 @@ def test_extremes_replace_no_file_of_the_user(
     extremes.main([*EXTREMES, "--out", str(tmp_path / "meanwhile")])
     assert all(map(is_mine, files))
     assert "extremes-2.json" in {entry.name for entry in (tmp_path / "meanwhile").iterdir()}
-    assert capsys.readouterr().err.count("not a file of this study") == 2
+    assert capsys.readouterr().err.count("not a file of this study") == 1
 
 
 def test_files_of_other_commands_in_the_report_are_kept(tmp_path: Path) -> None:
@@ -305,3 +306,8 @@ def test_what_a_killed_run_left_is_cleared_of_a_living_one_not(tmp_path: Path) -
     clear_dead(tmp_path / "report")
     assert sorted(entry.name for entry in tmp_path.iterdir()) == sorted(alike)
     assert all(is_mine(tmp_path / name / "old" / "photo.jpg") for name in alike)
+
+
+def test_the_working_directory_has_a_store_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert store_beside(destination(Path("."))) == tmp_path.resolve().with_name(f"{tmp_path.name}.tiles")

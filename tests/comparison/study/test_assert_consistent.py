@@ -60,7 +60,7 @@ def test_a_broken_limit_names_body_phase_values_and_errors(monkeypatch: pytest.M
 def test_median_and_maximum_have_limits_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
     """One of nine phase pairs is off by 1 %, that with the last alpha_1 and the first alpha_2."""
 
-    def imported(path: str) -> Any:
+    def import_function(path: str) -> Any:
         def amplification(scene: Scene, phases: np.ndarray, **settings: Any) -> reference.Amplification:
             there = (phases[:, 0] > 4.0) & (phases[:, 1] < 1.0) & ("multibody" in path)
             found = answering(1.0, 1e-6)(scene, phases)
@@ -69,7 +69,7 @@ def test_median_and_maximum_have_limits_of_their_own(monkeypatch: pytest.MonkeyP
 
         return amplification
 
-    monkeypatch.setattr("comparison.study.batches.imported", imported)
+    monkeypatch.setattr("comparison.study.batches.import_function", import_function)
     assert_consistent("fig3-II", like_for_like=1e-3, grid=3)
     line, _ = failure("fig3-II", like_for_like_maximum=1e-3, grid=3)
     assert "like_for_like: maximum difference 0.01, allowed 0.001; largest 0.01 at (4.1888, 0.0000) rad" in line

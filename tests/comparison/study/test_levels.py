@@ -64,7 +64,8 @@ def test_every_grid_and_every_level_is_part_of_the_next(grid: int) -> None:
 
 def test_the_first_level_is_coarse_and_the_last_is_whole() -> None:
     models = [*MODEL_HIERARCHY, user_model("mine", {"function": "user_engines:plain"})]
-    first, second, last = (level.study for level in registry.levels(Study((load_scene("fig3-I"),), 48, 1e-3, models)))
+    study = Study((load_scene("fig3-I"),), 48, 1e-3, models, selection=registry.EVERYTHING)
+    first, second, last = (level.study for level in registry.levels(study))
     grids = [[len(study.axis(model)) for model in study.hierarchy[5:]] for study in (first, second, last)]
     assert grids == [[16, 8, 4, 8], [48, 16, 8, 8], [48, 16, 16, 8]]
     why = "follows at a later level of the study"
@@ -78,7 +79,7 @@ def test_each_level_has_a_whole_report_that_names_it(
 ) -> None:
     write, seen = reports.Reports.write, []
 
-    def noting(self: reports.Reports, complete: reports.Complete, *rest: Any, **more: Any) -> Any:
+    def noting(self: reports.Reports, complete: reports.CompleteLevel, *rest: Any, **more: Any) -> Any:
         said = write(self, complete, *rest, **more)
         seen.append((summary_of(self.place), xr.load_dataset(self.place / "surfaces.nc"), page_of(self.place)))
         return said
@@ -146,15 +147,15 @@ def test_an_end_before_the_first_level_is_one_line(
 def test_finished_analyses_are_in_the_report_of_a_stopped_run(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    finished = command_module.computed_level
+    finished = command_module.compute_level
 
-    def computed(level: Any, runner: Any) -> Any:
+    def compute(level: Any, runner: Any) -> Any:
         complete = finished(level, runner)
         if level.number == 2:
             raise TimeUpError  # everything of the second level is computed, but it is not taken for complete
         return complete
 
-    monkeypatch.setattr(command_module, "computed_level", computed)
+    monkeypatch.setattr(command_module, "compute_level", compute)
     summary = summary_of(command(*WORDS, "--budget", "1000").report)
     assert summary["run"]["level"] == 1
     assert ("effective" in summary["absent"], "motions" in summary["absent"]) == (False, True)

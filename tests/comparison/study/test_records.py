@@ -6,8 +6,8 @@ from studies import solved
 
 import multibody
 from comparison.analyses.assumptions.command import main as assumptions
-from comparison.analyses.motions.analysis import chosen_places
-from comparison.registry import ANALYSES, first_tasks
+from comparison.analyses.motions.analysis import choose_places
+from comparison.registry import ANALYSES, EVERYTHING, first_tasks
 from comparison.study.batches import refusal_of
 from comparison.study.costs import seconds_per_point
 from comparison.study.models import (
@@ -21,17 +21,17 @@ from comparison.study.models import (
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures
-from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.surfaces import label_surfaces
 from comparison.surfaces.unanswered import advice
 from reference.problem import Outcome, Scene, load_scene
 
 
 def test_what_needs_phases_is_not_asked_of_a_record(capsys):
-    study = Study((load_scene("synthetic-pair"),), 4, 1e-3)
+    study = Study((load_scene("synthetic-pair"),), 4, 1e-3, selection=EVERYTHING)
     assert {task.stage for task in first_tasks(study, ANALYSES)} == {"effective values"}
-    assert Pictures().tasks(study, labeled_surfaces(study, [], [])) == []
+    assert Pictures().tasks(study, label_surfaces(study, [], [])) == []
     assert reductions(study) == []
-    (place,) = chosen_places(study, None, study.scenes[0])
+    (place,) = choose_places(study, None, study.scenes[0])
     assert (place.row, place.column) == (0, 0)
     assert assumptions(["synthetic-pair"]) == 2
     assert capsys.readouterr().err.count("\n") == 1, "rings of a record are not varied"

@@ -150,7 +150,7 @@ def test_just_outside_the_condition_nothing_is_saved(amplitudes: list[list[float
 def test_the_report_counts_what_a_model_computed() -> None:
     models = [replace(model, symmetric=mirror_symmetric) for model in fake_hierarchy()]
     study = Study((load_scene("fig3-I"),), GRID, 1e-3, models)
-    [scene] = report_of(study, solved(study), {}, [], RUN).results.scenes
+    [scene] = report_of(study, solved(study), {}, [], RUN, families=[]).results.scenes
     assert {(row.points, row.computed) for row in scene.models.values()} == {(16, 4)}
 
 

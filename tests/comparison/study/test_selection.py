@@ -11,14 +11,14 @@ from places import scene_text
 from report_texts import both_pages, schema_errors, summary_of
 from runs import Run
 
-from comparison.cli.options import parsed
-from comparison.registry import FEATURES, chosen_analyses, first_tasks
+from comparison.cli.options import parse_options
+from comparison.registry import EVERYTHING, FEATURES, SELECTABLE, first_tasks, select_analyses
 from comparison.runner.cache import Key
 from comparison.runner.task import Task
-from comparison.study.analyses import ANALYSES, Selection, selected
+from comparison.study.selection import select, select_names
 from comparison.study.study import Study
 from comparison.surfaces.figures.pictures import Pictures
-from comparison.surfaces.surfaces import labeled_surfaces
+from comparison.surfaces.surfaces import label_surfaces
 from reference.problem import load_scene
 
 GRID = ("--grid", "4")
@@ -39,9 +39,9 @@ def test_a_selected_analysis_has_its_tasks_and_pictures_and_no_others() -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3)
 
     def tasks(only: list[str] | None, skip: list[str] | None) -> tuple[list[Task], set[Key]]:
-        part = replace(study, selection=Selection.of(study.scenes, only, skip))
-        pictures = Pictures().tasks(part, labeled_surfaces(study, [], []))
-        return first_tasks(part, chosen_analyses(part)), {task.key for task in pictures}
+        part = replace(study, selection=select(SELECTABLE, study.scenes, only, skip))
+        pictures = Pictures().tasks(part, label_surfaces(study, [], []))
+        return first_tasks(part, select_analyses(part)), {task.key for task in pictures}
 
     every, all_pictures = tasks(None, None)
     for analysis, stage in STAGES.items():
@@ -58,7 +58,7 @@ def test_only_leaves_the_sections_asked_for(command: Callable[..., Run]) -> None
     run = command("fig3-I", *GRID, "--only", "surfaces,budget")
     assert (run.code, run.err) == (0, "")
     page, summary = both_pages(run.report), summary_of(run.report)
-    selectable = {feature.key for feature in FEATURES if feature.section} & set(ANALYSES)
+    selectable = {feature.key for feature in FEATURES if feature.section} & set(EVERYTHING.names)
     assert sections(page) & selectable == {"surfaces", "budget"}
     assert sections(page) - selectable == {"outcomes", "models", "verification", "provenance"}
     missing = "".join(part.split("</ul>")[0] for part in page.split('id="absent">')[1:])
@@ -84,7 +84,7 @@ def test_the_command_line_selects_before_the_scene(command: Callable[..., Run], 
     table = page.split('id="differences">')[1].split("</table>")[0]
     assert [f"<td>{name}</td>" in table for name in ("fig4-viscous", "mine")] == [True, False]
     assert [f'<option value="{number}">' in page for number in (1, 0)] == [True, False]
-    options = parsed([mine, "--only", "budget", "--out", str(tmp_path / "other")])
+    options = parse_options([mine, "--only", "budget", "--out", str(tmp_path / "other")])
     assert options.selection.by_scene == {"mine": ("budget",)}
 
 
@@ -92,7 +92,7 @@ def test_the_command_line_selects_before_the_scene(command: Callable[..., Run], 
     ("words", "analyses", "line"),
     [
         (["--only", "surfaces,bugdet"], "", "--only = 'surfaces,bugdet': 'bugdet' is no analysis; did you mean budg"),
-        (["--skip", ""], "", "--skip = '': '' is no analysis; the analyses are differences, "),
+        (["--skip", ""], "", "--skip = '': '' is no analysis; the analyses are surfaces, motions, "),
         (["--also", "demand"], "", "--also = 'demand': 'demand' is no analysis; did you mean demands?"),
         (["--only", "budget", "--skip", "claims"], "", "--skip = 'claims': names what --only leaves out anyway"),
         ([], 'only = ["bugdet"]', "analyses.only = ['bugdet']: 'bugdet' is no analysis; did you mean budget?"),
@@ -109,17 +109,17 @@ def test_a_wrong_selection_is_one_line(
 
 
 def test_motions_bring_the_surfaces_below_which_they_are_shown() -> None:
-    assert set(selected(["motions"], None)) == {"motions", "surfaces"}
-    assert {"motions", "surfaces"}.isdisjoint(selected(None, ["surfaces"]))
+    assert set(select_names(SELECTABLE, ["motions"], None)) == {"motions", "surfaces"}
+    assert {"motions", "surfaces"}.isdisjoint(select_names(SELECTABLE, None, ["surfaces"]))
 
 
 def test_claims_are_of_the_papers_scenes(command: Callable[..., Run], tmp_path: Path) -> None:
     files = scene_file(tmp_path, ""), scene_file(tmp_path, 'only = ["claims", "surfaces"]', "named")
     mine, named, paper = map(load_scene, (*files, "fig3-I"))
-    selection = Selection.of([mine, named, paper], None, None)
+    selection = select(SELECTABLE, [mine, named, paper], None, None)
     assert [selection.has("claims", scene.name) for scene in (mine, named, paper)] == [False, True, True]
-    assert Selection.of([mine], ["claims"], None).has("claims", "mine")
-    skipped = Selection.of([mine], None, ["claims", "demands"])
+    assert select(SELECTABLE, [mine], ["claims"], None).has("claims", "mine")
+    skipped = select(SELECTABLE, [mine], None, ["claims", "demands"])
     assert not skipped.has("claims", "mine")
     assert [skipped.why_absent(key) for key in ("claims", "demands")] == ["not asked for"] * 2
     assert summary_of(command(files[0], *GRID).report)["absent"] == {
@@ -138,8 +138,8 @@ def test_demands_of_every_phase_are_computed_on_request(command: Callable[..., R
         (asking, (None, None), True),
         (asking, (None, None, []), False),
     ):
-        study = Study((of,), 4, 1e-3, selection=Selection.of((of,), *asked))
-        assert ("demands" in {analysis.key for analysis in chosen_analyses(study)}) == made
+        study = Study((of,), 4, 1e-3, selection=select(SELECTABLE, (of,), *asked))
+        assert ("demands" in {analysis.key for analysis in select_analyses(study)}) == made
     plans = (command("fig3-I", *GRID, *words, "--plan").out for words in ((), ("--also", "demands")))
     usual, also = (" ".join(plan.split()) for plan in plans)
     assert (", demands (" in usual, ", demands (" in also) == (False, True)

@@ -22,13 +22,13 @@ from runs import Run
 from studies import difference_rows, solved
 
 import reference
-from comparison.analyses.extremes.analysis import cells
-from comparison.analyses.extremes.rows import rows, user_column
-from comparison.analyses.tradeoff import analysis
-from comparison.analyses.tradeoff.analysis import TradeOff
-from comparison.analyses.tradeoff.feature import tradeoff_panels
-from comparison.analyses.tradeoff.settings import QUESTIONS, user_settings
 from comparison.cli.user_models import as_words, look_at, user_models
+from comparison.evidence.extremes.analysis import cells
+from comparison.evidence.extremes.rows import rows, user_column
+from comparison.evidence.tradeoff import analysis
+from comparison.evidence.tradeoff.analysis import TradeOff
+from comparison.evidence.tradeoff.feature import tradeoff_panels
+from comparison.evidence.tradeoff.settings import QUESTIONS, user_settings
 from comparison.runner import environment
 from comparison.runner.environment import engine_fingerprint, source_digest
 from comparison.runner.processes import process_pool
@@ -40,7 +40,7 @@ from comparison.surfaces.body_comparison import body_comparisons
 from comparison.surfaces.budget import budget
 from comparison.surfaces.headline import headline
 from comparison.surfaces.surfaces import surface_tasks
-from comparison.surfaces.unanswered import compared_study, unanswered
+from comparison.surfaces.unanswered import study_of_results, unanswered
 from comparison.surfaces.waterfall import waterfall
 from comparison.wording import percent
 from reference.problem import Outcome, SceneError, load_scene, phase_grid
@@ -63,7 +63,7 @@ def studied(*models: Model) -> tuple[Study, xr.Dataset]:
     """A study with models of known answer and these, computed here."""
     study = Study((SCENE,), 4, 1e-3, [*fake_hierarchy(gap=0.01), *models])
     surfaces = solved(study)
-    return compared_study(study, surfaces), surfaces
+    return study_of_results(study, surfaces), surfaces
 
 
 def test_the_engine_of_the_documentation_appears_in_the_report(

@@ -1,3 +1,4 @@
+# ruff: noqa: E501 (a sentence stands on one line where it can)
 """Whatever a reader must know before trusting a number is an alert, and nothing else is."""
 
 from collections.abc import Callable
@@ -8,8 +9,12 @@ import pytest
 from fake_models import errors_in
 from report_texts import summary_of
 from runs import Run
+from studies import solved
 
 import reference
+from comparison.study.study import Study
+from comparison.surfaces.alerts import alerts
+from comparison.surfaces.unanswered import OutcomeNote, Unanswered
 from reference.problem import Outcome, load_scene
 
 
@@ -57,3 +62,48 @@ def test_a_motion_close_to_the_rim_is_seen():
     lost = reference.amplification(scene.with_amplitude(100.0), PHASES[:1])
     assert lost.status[0] != Outcome.OK
     assert np.isnan(lost.cap_share).all()
+
+
+@pytest.mark.parametrize(
+    ("share", "said"),  # of rho; the travel is half of it
+    [
+        (0.449, []),
+        (0.452, [("travel", "uses up to 90.4 % of the isolator's travel")]),
+        (0.498, [("travel", "uses up to 99.6 % of the isolator's travel")]),
+        (0.501, [("swing", "moves up to 50.1 % of rho from the middle"), ("travel", "uses up to 100.2 % of the isolator's travel")]),
+    ],
+)  # fmt: skip
+def test_a_far_motion_is_told_with_its_model_share_and_base(share: float, said: list[tuple[str, str]]) -> None:
+    scene = load_scene("fig3-I")
+    scene = scene.with_values({"isolator.travel": 0.5 * scene.radius})
+    study = Study((scene,), 2, 1e-3, errors_in({}))
+    surfaces = solved(study)
+    place = {"model": "spatial", "alpha1": surfaces["alpha1"][1], "alpha2": surfaces["alpha2"][0]}
+    surfaces["cap_share"].loc[place] = share
+    surfaces["displacement"].loc[place] = share * scene.radius
+    found = alerts(study, surfaces, [], [], [])
+    assert [(each.kind, each.text) for each in found] == [
+        (kind, f"spatial engine: the platform {text}") for kind, text in said
+    ]
+    assert {each.level for each in found} <= {"amber"}
+
+
+@pytest.mark.parametrize(
+    ("points", "unusable", "outcomes", "used", "said"),
+    [
+        (4, 0, {"rim reached": 4}, False, "red refused: no value at any of 4 phase pairs: rim reached; comparisons leave this model out"),
+        (3, 1, {"rim reached": 2, "step limit": 1}, False, "red refused: no value at 3 of 4 phase pairs, only values with errors above "
+         "half of them at 1 of 4 phase pairs: 2 × rim reached, 1 × step limit; comparisons leave this model out"),
+        (1, 0, {"rim reached": 1}, True, "amber lacking: no value at 1 of 4 phase pairs: 1 × rim reached"),
+        (0, 1, {}, True, "amber lacking: only values with errors above half of them at 1 of 4 phase pairs"),
+    ],
+)  # fmt: skip
+def test_a_gap_is_told_with_its_counts_and_outcomes(
+    points: int, unusable: int, outcomes: dict[str, int], used: bool, said: str
+) -> None:
+    notes = tuple(OutcomeNote(outcome, count, f"help for {outcome}") for outcome, count in outcomes.items())
+    lacking = Unanswered("fig3-I", "spatial", "spatial engine", points, unusable, 4, used, notes)
+    study = Study((load_scene("fig3-I"),), 2, 1e-3, errors_in({}))
+    (found,) = alerts(study, solved(study), [lacking], [], [])
+    assert f"{found.level} {found.kind}: {found.text}" == said.replace(": ", ": spatial engine: ", 1)
+    assert found.help == "; ".join(f"help for {outcome}" for outcome in outcomes)

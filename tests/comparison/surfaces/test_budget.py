@@ -12,10 +12,10 @@ import pytest
 import xarray as xr
 from studies import GRID, planted_study, solved
 
-from comparison.study.batches import imported
+from comparison.study.batches import import_function
 from comparison.study.models import MODEL_HIERARCHY, Model
 from comparison.study.study import Study
-from comparison.surfaces.acceptance import checked_limits
+from comparison.surfaces.acceptance import check_limits
 from comparison.surfaces.body_comparison import BodyComparison, body_comparisons
 from comparison.surfaces.budget import TOTAL, BudgetEntry, budget, closure
 from comparison.surfaces.differences import Difference
@@ -146,7 +146,7 @@ def _with(sound: Solved, mistake: Mistake) -> Solved:
 
 
 def _broken(found: Solved) -> list[str]:
-    return [line for limit in checked_limits(body_comparisons(*found), unanswered(*found)) for line in limit.broken]
+    return [line for limit in check_limits(body_comparisons(*found), unanswered(*found)) for line in limit.broken]
 
 
 def _steps(found: Solved, body: int) -> list[tuple[str, ModelDifference]]:
@@ -208,7 +208,7 @@ def test_a_resolved_step_is_known_to_a_fifth_of_itself(name: str) -> None:
     phases = np.array([(a, b) for a in surfaces["alpha1"].values for b in surfaces["alpha2"].values])
 
     def tight(model: Model) -> np.ndarray:
-        mu = imported(model.amplification)(scene, phases, **model.settings, tolerance=1e-8).mu
+        mu = import_function(model.amplification)(scene, phases, **model.settings, tolerance=1e-8).mu
         return mu.T.reshape(len(scene.bodies), 4, 4)
 
     truth = {model.key: tight(model) for model in study.hierarchy if model.applies(scene)}

@@ -18,8 +18,8 @@ from comparison.surfaces.completion import (
     CompletedSurfaces,
     Completion,
     HeldOut,
+    choose_held_out,
     completions,
-    held_out_places,
 )
 from reference.problem import load_scene
 
@@ -60,7 +60,7 @@ ENGINE = errors_in({})[6]
 
 def unused(study: Study, truth: Array) -> HeldOut:
     """The truth at the held-out phase pairs of the translational model, the same for both bodies."""
-    values = np.repeat(truth.ravel()[held_out_places(study, study.scenes[0], ENGINE)][:, None], 2, axis=1)
+    values = np.repeat(truth.ravel()[choose_held_out(study, study.scenes[0], ENGINE)][:, None], 2, axis=1)
     share = np.where(np.arange(len(values)) == 7, 1.0, 0.5)  # the largest is at one of them
     return HeldOut(values, ENGINE_ERROR * share[:, None] * values)
 
@@ -166,18 +166,18 @@ def test_records_and_models_with_all_phases_are_not_completed(blank: tuple[Study
 def test_held_out_phases_are_no_mirror_images(scene: str, images: int) -> None:
     model = replace(TRANSLATIONAL, most=COARSE)
     study = Study((load_scene(scene),), FINE, 1e-3, (model,))
-    chosen = held_out_places(study, study.scenes[0], model)
+    chosen = choose_held_out(study, study.scenes[0], model)
     assert len(chosen) == 59
-    np.testing.assert_array_equal(chosen, held_out_places(study, study.scenes[0], model), err_msg="alike in every run")
+    np.testing.assert_array_equal(chosen, choose_held_out(study, study.scenes[0], model), err_msg="alike in every run")
     row, column = np.divmod(chosen, FINE)
     half = FINE // 2
     shifts = [(0, 0), (half, half), (0, half), (half, 0)][:images]
     every = {((r + a) % FINE, (c + b) % FINE) for r, c in zip(row, column) for a, b in shifts}
     assert len(every) == 59 * images, "each counts once"
     assert all(r % 3 or c % 3 for r, c in every), "none was computed"
-    other = held_out_places(study, load_scene("fig4-dry"), model)
+    other = choose_held_out(study, load_scene("fig4-dry"), model)
     assert len(np.intersect1d(chosen, other)) < 20, "another scene, another choice"
-    full = held_out_places(replace(study, full=True), study.scenes[0], model)
+    full = choose_held_out(replace(study, full=True), study.scenes[0], model)
     assert len(full) == 59
     assert (np.column_stack(np.divmod(full, FINE)) % 3).any(axis=1).all()
 
@@ -187,7 +187,7 @@ def test_the_analysis_computes_what_is_held_out(blank: tuple[Study, xr.Dataset])
     found = collected(CompletedSurfaces(), study)
     (scene,) = study.scenes
     assert set(found) == {(scene.name, "translational"), (scene.name, "spatial")}
-    place = held_out_places(study, scene, ENGINE)
+    place = choose_held_out(study, scene, ENGINE)
     truth = surfaces["mu"].sel(scene=scene.name, model="exact").values.reshape(2, -1)[:, place]
     np.testing.assert_allclose(found[scene.name, "translational"].mu.T, truth, rtol=1e-12)
     assert all(surface.accepted for surface in completions(study, surfaces, scene, found))
@@ -218,7 +218,7 @@ def test_a_certificate_holds_as_often_as_its_confidence() -> None:
         sparse = np.full((2, grid**2), np.nan)
         sparse[:, every] = truth.reshape(2, -1)[:, every]
         mu = blank["mu"].copy(data=np.stack([np.stack([base, base]), sparse.reshape(truth.shape)])[None])
-        values = truth.reshape(2, -1)[:, held_out_places(study, scene, models[1])].T
+        values = truth.reshape(2, -1)[:, choose_held_out(study, scene, models[1])].T
         known, held_out = blank.assign(mu=mu, error=0.0 * mu), {(scene.name, ENGINE.key): HeldOut(values, 0.0 * values)}
         for surface in completions(study, known, scene, held_out):
             missed = np.abs(surface.mu / truth[surface.body - 1] - 1.0).ravel()

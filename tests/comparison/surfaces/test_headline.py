@@ -13,7 +13,7 @@ from studies import GRID, KEYS, planted_study, solved
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import BodyComparison
 from comparison.surfaces.headline import Headline, headline
-from comparison.surfaces.unanswered import compared_study
+from comparison.surfaces.unanswered import study_of_results
 from comparison.surfaces.waterfall import waterfall
 from reference.problem import Scene, load_scene
 
@@ -22,7 +22,7 @@ MEAN = "Exudyn (spatial) gives {} than the paper's equations in the mean over 4 
 
 
 def told(study: Study, surfaces: xr.Dataset, body: int = 1) -> Headline:
-    study = compared_study(study, surfaces)
+    study = study_of_results(study, surfaces)
     comparison = BodyComparison(study, surfaces, study.scenes[0], body)
     return headline(comparison, waterfall(comparison))
 
@@ -71,6 +71,43 @@ def test_an_effect_between_literal_suprema_stands_beside_that_as_integrated() ->
     effect = told(study, surfaces).effect_named(GEOMETRY)
     assert [effect.mean, effect.supremum, effect.share] == pytest.approx([-0.02, 0.01, 1.0])
     assert effect.interaction == pytest.approx(0.0, abs=1e-12)
+
+
+def test_an_interaction_is_the_effect_in_another_order_less_that_of_the_chain() -> None:
+    numbers = told(*planted_study({**gaps(0.05, 0.03, 0.03, 0.03), "small-regularised": -0.04}))
+    effects = [numbers.effect_named(name) for name in (GEOMETRY, FRICTION)]
+    assert [effect.elsewhere for effect in effects] == pytest.approx([0.07, -0.04])
+    assert [effect.interaction for effect in effects] == pytest.approx([0.02, -0.02])
+
+
+def test_the_largest_literal_supremum_is_above_not_the_largest_size() -> None:
+    """30 % higher everywhere but at one phase pair, at which it is 60 % lower."""
+    study, surfaces = planted_study({"small": 0.3, "exact": 0.3, "spatial": 0.02})
+    place = {"model": "small", "body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][4]}
+    surfaces["mu"].loc[place] *= 0.4 / 1.3
+    numbers = told(study, surfaces)
+    assert numbers.supremum_maximum == pytest.approx(0.3)
+    assert numbers.supremum_phases != (surfaces["alpha1"][2], surfaces["alpha2"][4])
+
+
+def test_the_largest_difference_has_the_phases_of_its_own_model() -> None:
+    """Of two engines the translational one is off most, elsewhere than the spatial one, of which the mean is told."""
+    study, surfaces = planted_study({"spatial": 0.02})
+    for key, row, column, factor in (("translational", 2, 4, 0.5), ("spatial", 6, 0, 1.3)):
+        place = {"model": key, "body": 1, "alpha1": surfaces["alpha1"][row], "alpha2": surfaces["alpha2"][column]}
+        surfaces["mu"].loc[place] *= factor
+    numbers = told(study, surfaces)
+    assert (numbers.maximum_model, numbers.maximum) == ("translational", pytest.approx(-0.5))
+    assert numbers.maximum_phases == pytest.approx((np.pi / 2.0, np.pi))
+    assert numbers.high_phases == pytest.approx((1.5 * np.pi, 0.0))
+
+
+def test_one_unknown_error_leaves_the_agreement_of_the_codes_open() -> None:
+    study, surfaces = planted_study({"spatial": 0.02})
+    assert told(study, surfaces).like_for_like_met is True
+    place = {"model": "translational", "body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][4]}
+    surfaces["error"].loc[place] = np.nan
+    assert told(study, surfaces).like_for_like_met is None
 
 
 def test_the_ends_of_the_range_have_their_signs_and_phases() -> None:

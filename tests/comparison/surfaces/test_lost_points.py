@@ -13,12 +13,12 @@ from runs import Run
 from studies import solved
 
 from comparison.analyses.motions import analysis as motions
-from comparison.analyses.motions.analysis import moved
+from comparison.analyses.motions.analysis import compute_motion
 from comparison.study.models import MODEL_HIERARCHY, chain_of
 from comparison.study.study import Study
 from comparison.surfaces.body_comparison import body_comparisons
 from comparison.surfaces.budget import closure
-from comparison.surfaces.unanswered import compared_study, unanswered
+from comparison.surfaces.unanswered import study_of_results, unanswered
 from reference.problem import load_scene
 
 GRID = ["--grid", "4", "--only", "differences"]
@@ -62,7 +62,7 @@ def test_a_scene_without_any_answer_still_gets_its_report(command: Callable[...,
 def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3, silenced(silent))
     surfaces = solved(study)
-    study = compared_study(study, surfaces)
+    study = study_of_results(study, surfaces)
     scene = study.scenes[0]
     left = [model.key for model in chain_of(scene, study.hierarchy) if model.key != silent]
     for comparison in body_comparisons(study, surfaces):
@@ -76,7 +76,7 @@ def test_the_total_leads_to_the_last_model_with_values(silent: str) -> None:
     alike = "like-for-like" in {pair.key for pair in study.pairs(scene)}
     assert alike == (silent in ("spatial", "resolved", "small-resolved")), "never said of other models"
     surfaces["mu"].loc[{"model": [*left[1:]]}] = np.nan
-    alone = compared_study(study, surfaces)
+    alone = study_of_results(study, surfaces)
     assert alone.left_out(scene) == (), "nothing would be left to compare"
     assert not any(lacking.used for lacking in unanswered(alone, surfaces))
 
@@ -117,7 +117,7 @@ def test_a_motion_is_asked_for_with_the_equations_and_friction_of_its_model(monk
     monkeypatch.setattr(motions, "imported", lambda path: lambda *motion, **settings: asked.append(settings))
     place = motions.Place("fig3-I", 0, 0, "")
     for model in MODEL_HIERARCHY[:6]:
-        moved((load_scene("fig3-I"), model, 1e-3, place, (0.0, 0.0)))
+        compute_motion((load_scene("fig3-I"), model, 1e-3, place, (0.0, 0.0)))
     assert [(settings["equations"], settings["regularization"]) for settings in asked] == [
         ("small", None), ("exact", None), ("small", None), ("exact", None), ("small", 1e-3), ("exact", 1e-3),
     ]  # fmt: skip

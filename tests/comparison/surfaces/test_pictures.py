@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 from fake_models import fake_hierarchy
 from known_analyses import collected
+from pypdf import PdfReader
 from runs import quick_figures
 from studies import solved
 
@@ -18,6 +19,7 @@ from comparison.runner.runner import Runner
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from comparison.surfaces.figures.pairs import limits_of
+from comparison.surfaces.figures.paper import draw_paper_figure
 from comparison.surfaces.figures.pictures import Pictures
 from reference.problem import load_scene
 
@@ -61,3 +63,11 @@ def test_a_flat_surface_has_room_above_and_below() -> None:
     flat, nothing = np.full((2, 2), 2.0), np.full((2, 2), np.nan)
     assert limits_of([flat, nothing]) == pytest.approx((1.7, 2.3))
     assert (limits_of([flat, 3.0 * flat]), limits_of([nothing])) == ((2.0, 6.0), (0.0, 1.0))
+
+
+def test_fonts_of_a_figure_in_the_manner_of_the_paper_are_such_as_journals_take(tmp_path: Path) -> None:
+    study, surfaces = _solved()
+    draw_paper_figure(tmp_path / "paper.png", study, surfaces, study.scenes[0])
+    (page,) = PdfReader(tmp_path / "paper.pdf").pages
+    fonts = [font.get_object() for font in page["/Resources"]["/Font"].values()]
+    assert {font["/Subtype"] for font in fonts} == {"/Type0"}, "TrueType: type 42"

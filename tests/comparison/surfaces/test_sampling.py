@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import reference
-from comparison.surfaces.sampling import known_mean, sampling_error
+from comparison.surfaces.sampling import mean_of_known, sampling_error
 from reference.problem import phase_grid
 
 FINE = 48
@@ -55,6 +55,6 @@ def test_phase_pairs_that_symmetry_relates_tell_no_error() -> None:
 def test_missing_values_leave_the_others() -> None:
     sizes = np.arange(16.0).reshape(4, 4)
     sizes[0, 1] = np.nan
-    assert known_mean(sizes) == pytest.approx((120.0 - 1.0) / 15.0)
+    assert mean_of_known(sizes) == pytest.approx((120.0 - 1.0) / 15.0)
     assert sampling_error(sizes, 15) > 0.0
-    assert np.isnan(known_mean(np.full((2, 2), np.nan)))
+    assert np.isnan(mean_of_known(np.full((2, 2), np.nan)))

@@ -2,8 +2,9 @@
 
 import math
 import runpy
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -12,9 +13,11 @@ from chains import refusal
 import multibody
 import reference
 from reference.problem import Outcome, SceneError, load_scene
-from reference.problem.ranges import REGULARIZATION, SCENE
-from reference.problem.scene import KEYS
-from reference.surface import checked_demand
+from reference.problem.keys import Table
+from reference.problem.ranges import REGULARIZATION
+from reference.problem.scene import KEYS, Scene
+from reference.support.arguments import Range
+from reference.surface import prepare_run
 
 FIG3 = load_scene("fig3-I")
 PHASES = [(0.1, 0.2)]
@@ -40,6 +43,27 @@ def test_the_page_of_keys_is_what_the_schema_says() -> None:
     docs = Path(__file__).parents[3] / "docs"
     made = runpy.run_path(str(docs / "scene_keys.py"))["page"]()
     assert (docs / "scene.md").read_text(encoding="utf-8") == made, "run: python docs/scene_keys.py"
+
+
+def tables_in(kind: Any) -> Iterator[type[Table]]:
+    """Iterate over the tables that an annotation names."""
+    if isinstance(kind, type) and issubclass(kind, Table):
+        yield kind
+    for part in get_args(kind):
+        yield from tables_in(part)
+
+
+def ranges_in(table: type[Table], start: str = "") -> Iterator[tuple[str, Range]]:
+    """Iterate over the keys of a table and of the tables in it, with the ranges of their numbers."""
+    for name, field in table.model_fields.items():
+        said = field.json_schema_extra
+        if isinstance(said, dict) and "range" in said:
+            yield start + name, Range(*said["range"])
+        for inner in tables_in(field.annotation):
+            yield from ranges_in(inner, f"{start}{name}.")
+
+
+SCENE = dict(ranges_in(Scene))
 
 
 def test_every_number_of_a_scene_has_a_range() -> None:
@@ -145,5 +169,5 @@ def test_a_ground_whose_squares_lose_digits_is_at_rest() -> None:
 
 def test_a_loading_without_decay_is_refused_after_so_many_steps_and_not_hours_later() -> None:
     scene = load_scene("fig3-I").with_values({"duration": 8e5, "excitation.decay": [0.0, 0.0]})
-    _, demand = checked_demand(scene, "exact", None, 1e-6, None, "consistent")
+    _, demand = prepare_run(scene, "exact", None, 1e-6, None, "consistent")
     assert demand.step_limit < 0.01 * (1000.0 * scene.duration / 0.9)

@@ -23,7 +23,7 @@ from reference.problem import (
     untilted,
     unused_harmonics,
 )
-from reference.problem.symmetry import surface
+from reference.problem.symmetry import complete_surface
 
 FIG3 = load_scene("fig3-I")
 ALONE = {"bodies": [{"mass": 1.0, "height": 0.0, "size": [2.0, 2.0, 0.2]}], "isolator.ring": 0.12}
@@ -130,7 +130,7 @@ def test_a_surface_follows_from_as_few_pairs_as_symmetries_leave(amplitudes: lis
         asked.append(len(phases))
         return reference.amplification(scene, phases, full=True)
 
-    mu, error, statuses = surface(scene, 4, solve)
+    mu, error, statuses = complete_surface(scene, 4, solve)
     whole = reference.amplification(scene, reference.phase_grid(4), full=True)
     assert (asked, statuses) == ([solved], ["ok"])
     np.testing.assert_allclose(mu.reshape(16, 2), whole.mu, rtol=2e-6)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from chains import refusal
 
-from comparison.analyses.scaling.analysis import scaled
+from comparison.evidence.scaling.analysis import scale_scene
 from reference.problem import Scene, SceneError, builtin_scenes, in_plane, load_family, load_scene
 from reference.problem.scene_file import scene_text
 
@@ -64,7 +64,7 @@ def test_a_scale_is_the_same_as_larger_amplitudes_and_counts_once() -> None:
         by_hand = scene.with_values({"excitation.amplitudes": (1.7 * scene.amplitudes).tolist()})
         assert np.array_equal(by_key.amplitudes, by_hand.amplitudes)
         assert by_key.digest() != scene.digest()
-        assert np.array_equal(scaled(by_key, 0.5).amplitudes, scaled(by_hand, 0.5).amplitudes)
+        assert np.array_equal(scale_scene(by_key, 0.5).amplitudes, scale_scene(by_hand, 0.5).amplitudes)
         assert np.abs(by_key.with_amplitude(3.0).amplitudes).max() == pytest.approx(3.0)
         plane = by_key.with_values({"excitation.amplitudes": [[0.0, 0.0], [1.0, 0.5]]})
         assert in_plane(plane).amplitudes[0] == pytest.approx([1.7, 0.85])

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reference.problem import GRAVITY
-from reference.records.formats import RecordError, at2_samples, csv_samples
+from reference.records.formats import RecordError, read_at2_samples, read_csv_samples
 
 finite = st.floats(-1e3, 1e3)
 PLAIN = "time [s],ax [g]\n0,0.1\n0.01,0.2\n"
@@ -38,7 +38,7 @@ def test_csv_reads_what_was_written(rows, axes, order, brackets):
     kept = [i for i in order if names[i] in axes or i == 0]
     header = ",".join(names[i] + brackets.format("s" if i == 0 else "m/s^2") for i in kept)
     lines = [",".join(repr(float(row[i])) for i in kept) for row in table]
-    samples = csv_samples("# made up\n" + header + "\n" + "\n".join(lines))
+    samples = read_csv_samples("# made up\n" + header + "\n" + "\n".join(lines))
     for i, name in enumerate(names[1:], start=1):
         assert (samples[:, i] == (table[:, i] if name in axes else 0.0)).all()
     assert (samples[:, 0] == times - times[0]).all()
@@ -48,7 +48,7 @@ def test_csv_reads_what_was_written(rows, axes, order, brackets):
 def test_at2_reads_what_was_written_under_either_header(values, step, old):
     """repr keeps every bit of the values; %g six digits of DT."""
     sizes = "{:6d}  {:g}  NPTS, DT" if old else "NPTS= {:6d}, DT= {:g} SEC,"
-    samples = at2_samples({"y": at2(values, step, sizes=sizes)})
+    samples = read_at2_samples({"y": at2(values, step, sizes=sizes)})
     assert (samples[:, 2] == GRAVITY * np.array(values)).all()
     assert not samples[:, [1, 3]].any()
     assert samples[:, 0] == pytest.approx(step * np.arange(len(values)), rel=1e-5)
@@ -60,12 +60,12 @@ UNITS |= {"cm/s^2": 0.01, "cm/s2": 0.01, "cm/s²": 0.01, "gal": 0.01, "Gal": 0.0
 
 def test_units_become_si():
     for unit, factor in UNITS.items():
-        samples = csv_samples(PLAIN.replace("[g]", f"[{unit}]"))
+        samples = read_csv_samples(PLAIN.replace("[g]", f"[{unit}]"))
         assert samples[:, 1] == pytest.approx([0.1 * factor, 0.2 * factor], rel=1e-15), unit
 
 
 def test_a_direction_that_ends_early_is_at_rest_then():
-    samples = at2_samples({"x": at2([1.0, 2.0, 3.0]), "z": at2([4.0, 5.0])})
+    samples = read_at2_samples({"x": at2([1.0, 2.0, 3.0]), "z": at2([4.0, 5.0])})
     assert samples[:, [1, 3]] == pytest.approx(GRAVITY * np.array([[1.0, 4.0], [2.0, 5.0], [3.0, 0.0]]))
 
 
@@ -83,7 +83,7 @@ OF_THE_GROUND = "0.00630 0.00364 0.00099\n-0.00128 0.00368 0.00864\n"
     ],
 )
 def test_at2_headers_of_any_length_that_name_g_are_read(header):
-    samples = at2_samples({"x": header + OF_THE_GROUND})
+    samples = read_at2_samples({"x": header + OF_THE_GROUND})
     assert samples[:, 0] == pytest.approx(0.02 * np.arange(6))
     assert samples[:, 1] == pytest.approx(GRAVITY * np.array([0.0063, 0.00364, 0.00099, -0.00128, 0.00368, 0.00864]))
 
@@ -124,14 +124,16 @@ NO_AT2 = [
     ({"x": at2([1.0, 2.0], sizes="NPTS=" + 16_000 * "NPTS=" + ", D")}, "must have a line 'NPTS"),
 ]
 NO_DOUBLE = [
-    (csv_samples, PLAIN.replace("0.2", "9" * 140_000)),
-    (csv_samples, PLAIN.replace("0.01", "1e-300")),
-    (at2_samples, {"x": at2([1.0, 2.0], count=0).replace(" 0,", " " + "9" * 5000 + ",")}),
-    (at2_samples, {"x": at2([1e308, 2.0])}),
+    (read_csv_samples, PLAIN.replace("0.2", "9" * 140_000)),
+    (read_csv_samples, PLAIN.replace("0.01", "1e-300")),
+    (read_at2_samples, {"x": at2([1.0, 2.0], count=0).replace(" 0,", " " + "9" * 5000 + ",")}),
+    (read_at2_samples, {"x": at2([1e308, 2.0])}),
 ]
 
 
-REFUSED = [(csv_samples, text, said) for text, said in NO_CSV] + [(at2_samples, files, said) for files, said in NO_AT2]
+REFUSED = [(read_csv_samples, text, said) for text, said in NO_CSV] + [
+    (read_at2_samples, files, said) for files, said in NO_AT2
+]
 
 
 @pytest.mark.parametrize(("read", "given", "said"), [*REFUSED, *((*given, "") for given in NO_DOUBLE)])
@@ -148,7 +150,7 @@ def test_what_is_no_record_is_refused_in_one_short_line_at_once(read, given, sai
 )
 def test_of_a_file_that_is_no_record_nothing_is_quoted(text):
     text = text.format(secret := "xK7-of-somebody-else")
-    for read, content in ((csv_samples, text), (at2_samples, {"x": text})):
+    for read, content in ((read_csv_samples, text), (read_at2_samples, {"x": text})):
         line = str(refusal(read, content, kind=RecordError))
         assert secret not in line
         assert "header" in line
@@ -161,7 +163,7 @@ def test_shipped_records_are_those_of_their_formula():
     assert sorted(made) == sorted(entry.name for entry in folder.iterdir() if not entry.name.endswith(".toml"))
     for name, text in made.items():
         there = (folder / name).read_text()
-        read = [csv_samples(t) if name.endswith(".csv") else at2_samples({"x": t}) for t in (there, text)]
+        read = [read_csv_samples(t) if name.endswith(".csv") else read_at2_samples({"x": t}) for t in (there, text)]
         assert read[0] == pytest.approx(read[1], rel=1e-5, abs=1e-9), name
         assert "Synthetic" in there.splitlines()[0]
         assert 600 <= len(read[0]) <= 1000

@@ -11,17 +11,17 @@ from numba.core.errors import TypingError
 from numba.core.runtime import _nrt_python, rtsys
 
 import reference
-from reference.support.build_cache import cached_on_disk
+from reference.support.build_cache import cache_on_disk
 
 
 def test_python_searches_for_garbage_again_after_compiling(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
 
-    @cached_on_disk(__file__)
+    @cache_on_disk(__file__)
     def sound(x):
         return x + 1.0
 
-    @cached_on_disk(__file__)
+    @cache_on_disk(__file__)
     def unsound(x):
         return x + "1"
 

@@ -53,8 +53,8 @@ def test_without_a_home_a_private_directory_takes_its_place_and_none_of_others(
 
 def test_a_first_call_says_once_that_it_compiles(tmp_path: Path) -> None:
     program = (
-        "from reference.support.build_cache import cached_on_disk\n"
-        "slow, fast = (cached_on_disk(__file__, slow=slow)(lambda x: x + 1) for slow in (True, False))\n"
+        "from reference.support.build_cache import cache_on_disk\n"
+        "slow, fast = (cache_on_disk(__file__, slow=slow)(lambda x: x + 1) for slow in (True, False))\n"
         "print(slow(1), slow(2), fast(1))\n"
     )
     (tmp_path / "program.py").write_text(program, encoding="utf-8")

@@ -1,1 +1,0 @@
-"""Measured motions beside what both sides compute."""

@@ -1,0 +1,139 @@
+"""Published numbers as an analysis: a task for every benchmark and side."""
+
+import math
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from comparison.evidence.benchmarks.cases import Case, Reading
+from comparison.evidence.benchmarks.table import FRICTION, MODEL, Benchmark, Benchmarks, Number, Row
+from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
+from comparison.json_file import finite_or_none
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import import_function
+from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
+from comparison.study.study import Study
+from comparison.verdicts import MET, NOT_MET
+from reference.measures.demands import ANSWERED
+from reference.problem import State, Trajectory
+
+MODELS = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}
+TOLERANCES = {EQUATIONS: 1e-8, SMOOTHED: 1e-8, ENGINE: 1e-4}
+SAMPLES = 100_001  # instants at which the equations are read
+SECONDS = {EQUATIONS: 0.1, SMOOTHED: 0.1, ENGINE: 3.5}  # predicted cost
+LIMIT = 300.0  # s of processor time of one task
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The numbers of one side with their errors, and how the motion ended."""
+
+    values: list[float]
+    errors: list[float]
+    ending: str
+    seconds: float
+
+
+@dataclass(frozen=True)
+class BenchmarkTable(Analysis[Benchmarks]):
+    """Every benchmark by the equations, by the equations with the engine's friction law, and by the engine."""
+
+    key, stage = "benchmarks", "benchmarks"
+    cases: Sequence[Case]
+
+    def tasks(self, study: Study | None = None, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One task for each benchmark and side."""
+        return [self._task(case, side) for case in self.cases for side in MODELS]
+
+    def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> Benchmarks:
+        """The table, without what the command knows of the run."""
+        answers = [
+            {side: results.value(self._task(case, side), _answer_of_failure) for side in MODELS} for case in self.cases
+        ]
+        return Benchmarks([_benchmark(case, of_case) for case, of_case in zip(self.cases, answers)], {})
+
+    def _task(self, case: Case, side: str) -> Task:
+        seconds = SECONDS[side] * max(1.0, case.scene.duration / 12.0)
+        return Task(solve, (case, side), self.stage, seconds, case.scene, side != ENGINE, timeout=LIMIT)
+
+
+def solve(question: tuple[Case, str]) -> Answer:
+    """The numbers of one side. Runs inside a worker process."""
+    case, side = question
+    settings = dict(MODELS[side].settings)
+    if side != EQUATIONS:
+        settings["regularization"] = case.regularization
+    if side != ENGINE:
+        settings["times"] = np.linspace(0.0, case.scene.duration, SAMPLES)
+    if case.start:
+        place = np.array(case.start)
+        settings["initial"] = State(place, np.zeros_like(place))
+    clock = time.process_time()
+    trajectory = import_function(MODELS[side].trajectory)
+    motion: Trajectory = trajectory(case.scene, case.phases, tolerance=TOLERANCES[side], **settings)
+    return Answer(*_read(case.reading, motion), str(motion.status), time.process_time() - clock)
+
+
+def _read(reading: Reading, motion: Trajectory) -> tuple[list[float], list[float]]:
+    """The numbers and their estimated absolute errors; none of a motion that ended early."""
+    if motion.status not in ANSWERED or len(motion.time) < 2:
+        return [], []
+    values, accuracy = reading.of(motion), motion.accuracy
+    others = [] if accuracy is None else [reading.of(each) for each in (decimate(motion), *accuracy.coarser)]
+    if accuracy is None or any(len(other) != len(values) for other in others):  # another number of swings
+        return values, [math.nan] * len(values)
+    rows = zip(values, *others)
+    return values, [accuracy.error_of(value, rest) + abs(value - halved) / 3.0 for value, halved, *rest in rows]
+
+
+def decimate(motion: Trajectory) -> Trajectory:
+    """Every second sample of a motion: what is read of it is four times as wrong, at kinks, and more elsewhere."""
+    kept = np.append(np.arange(0, len(motion.time) - 1, 2), len(motion.time) - 1)
+    arrays = {name: getattr(motion, name)[kept] for name in ("time", "position", "velocity", "absolute_acceleration")}
+    return replace(motion, **arrays)
+
+
+def _benchmark(case: Case, answers: Mapping[str, Answer]) -> Benchmark:
+    return Benchmark(
+        name=case.scene.name,
+        title=case.title,
+        source=case.source,
+        evidence=case.evidence,
+        regularization=case.regularization,
+        difference=case.difference,
+        rows=[_row(case, place, answers) for place in range(len(case.published))],
+        endings={side: answer.ending for side, answer in answers.items()},
+        seconds={side: round(answer.seconds, 3) for side, answer in answers.items()},
+    )
+
+
+def _row(case: Case, place: int, answers: Mapping[str, Answer]) -> Row:
+    """A published number with that of every side, NaN where a side has not as many values as are published."""
+    row = case.published[place]
+    numbers = dict.fromkeys(answers, (math.nan, math.nan))
+    for side, answer in answers.items():
+        if len(answer.values) == len(case.published):
+            numbers[side] = answer.values[place], answer.errors[place]
+
+    def read_number(side: str) -> Number:
+        value, error = map(finite_or_none, numbers[side])
+        verdict = row.judge(value, error)
+        return Number(value, error, verdict, explain(side) if verdict == NOT_MET else "")
+
+    def explain(side: str) -> str:
+        if case.difference:
+            return MODEL
+        (value, error), (smoothed, its_error) = numbers[side], numbers[SMOOTHED]
+        same = replace(row, published=smoothed, uncertainty=its_error, numbers={})
+        return FRICTION if side != EQUATIONS and same.judge(value, error) == MET else ""
+
+    return replace(row, numbers={side: read_number(side) for side in numbers})
+
+
+def _answer_of_failure(question: tuple[Case, str], failed: TaskResult) -> Answer:
+    return Answer([], [], failed.reason, 0.0)

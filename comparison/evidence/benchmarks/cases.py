@@ -1,0 +1,283 @@
+"""
+The benchmarks: published numbers, what the scenes that state them are, and how a motion is read for them.
+
+Only facts are taken from the sources: parameters and numbers. A closed form was evaluated again and gives the printed
+digits.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from comparison.evidence.benchmarks import readings
+from comparison.evidence.benchmarks.table import Row
+from comparison.result_types import Array
+from reference.problem import GRAVITY, Scene, SceneError, Trajectory, load_scene
+from reference.problem.readings import DEFAULT_V_REG
+from reference.records.formats import LARGEST, RecordError, read_csv_samples
+from reference.support.files import read_file
+
+SCENES = resources.files("comparison.evidence.benchmarks") / "scenes"
+INCH = 0.0254  # m
+WEIGHT = 10.0  # N, of code_aster's blocks
+RAMP = 2e-7  # m, what it changes that Newmark's pulse ends within 1 ms
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How a motion is read: `factor` times `function(motion, **arguments)`, one number or several."""
+
+    function: Callable[..., float | Sequence[float] | Array]
+    arguments: Mapping[str, Any] = field(default_factory=dict)
+    factor: float = 1.0  # from SI units to those of the published number
+
+    def of(self, motion: Trajectory) -> list[float]:
+        """The numbers, in the published units."""
+        values = np.atleast_1d(self.function(motion, **self.arguments))
+        return [self.factor * float(value) for value in values]
+
+
+def published(quantity: str, value: float, uncertainty: float, unit: str = "") -> Row:
+    """A published number; uncertainty: absolute, as published or half of the last digit."""
+    return Row(quantity, unit, value, uncertainty)
+
+
+@dataclass(frozen=True)
+class Case:
+    """
+    One benchmark.
+
+    source: where the numbers are published. evidence: for what it is evidence. reading: gives a value for each of
+    `published`. phases: rad. start: m, where the bodies are released from rest; at the equilibrium if empty.
+    regularization: m/s, v_reg of the engine, and of the equations that are compared with it. difference: what the
+    source models and this project does not, or the other way round; empty where the models are the same.
+    """
+
+    title: str
+    source: str
+    evidence: str
+    published: Sequence[Row]
+    reading: Reading
+    scene: Scene
+    phases: tuple[float, float] = (0.0, 0.0)
+    start: Sequence[tuple[float, float]] = ()
+    regularization: float = 1e-4
+    difference: str = ""
+
+
+def shipped(name: str, values: Mapping[str, Any] | None = None) -> Scene:
+    """A scene of this package, with other values."""
+    return load_scene(Path(str(SCENES / f"{name}.toml"))).with_values({"name": name, **(values or {})})
+
+
+def cases() -> list[Case]:
+    """The benchmarks whose inputs are shipped."""
+    return [*_wear_power(), _release(), _coulomb_damping(), _den_hartog(), _harmonic_block(), _pulse(), *_linear()]
+
+
+def _wear_power() -> list[Case]:
+    numbers = ((15.0, 15.2671, 5e-5), (1.5, 0.409062, 5e-7), (1.01, 2.26164e-4, 5e-10), (0.99, 0.0, 0.0))
+    kinds = ("always sliding", "sticking and sliding", "just sliding", "held")
+    return [
+        Case(
+            title=f"code_aster SDND104, A = {amplitude:g} m/s²: {kind}",
+            source="code_aster, test SDND104 (V5.01.104): closed form; its integrators are within 5e-4, 5e-3 at 1.01",
+            evidence="friction energy of stick and slip under harmonic shaking",
+            published=[published("power of friction", power, digits, "W")],
+            reading=Reading(readings.path_length, {"begin": 4.0, "end": 12.0}, WEIGHT / 8.0),
+            scene=shipped("sdnd104", {"excitation.scale": amplitude, "name": f"sdnd104-{amplitude:g}"}),
+            phases=(-0.5 * math.pi, 0.0),
+        )
+        for (amplitude, power, digits), kind in zip(numbers, kinds)
+    ]
+
+
+def _release() -> Case:
+    return Case(
+        title="code_aster SDND100: release with friction",
+        source="code_aster, test SDND100 (V5.01.100): closed form",
+        evidence="turning points, and rest at the end",
+        published=[
+            published(f"turning point {number}", place, 0.0, "mm")
+            for number, place in enumerate((-0.65, 0.45, -0.25, 0.05), start=1)
+        ],
+        reading=Reading(readings.turning_points, factor=1e3),
+        scene=shipped("sdnd100"),
+        start=((0.85e-3, 0.0),),
+        regularization=1e-7,
+    )
+
+
+def _coulomb_damping() -> Case:
+    stretch = math.sqrt(30.0 * 386.0 / 10.0) * 10.0  # time factor: from 386 in/s^2 and 10 lb to a radius of 981 m
+    times = (0.09, 0.102, 0.183)
+    return Case(
+        title="ANSYS VM73: free vibration with Coulomb damping",
+        source="ANSYS Verification Manual, VM73, after Tse, Morse and Hinkle, Mechanical Vibrations: closed form",
+        evidence="the motion between stops, at given instants",
+        published=[
+            published(f"place at {time:g} s", value, 5e-6, "in")
+            for time, value in zip(times, (0.87208, 0.83132, -0.74874))
+        ],
+        reading=Reading(readings.positions_at, {"times": [stretch * time for time in times]}, 1.0 / INCH),
+        scene=shipped("vm73"),
+        start=((-INCH, 0.0),),
+        regularization=1e-7,
+    )
+
+
+def _den_hartog() -> Case:
+    scene = shipped("den-hartog")
+    unit = 1e-3 * scene.radius / GRAVITY  # m: static displacement under the force
+    return Case(
+        title="Den Hartog: forced oscillation with friction",
+        source="J. P. Den Hartog, Forced vibrations with combined Coulomb and viscous friction, 1931: closed form",
+        evidence="steady sliding oscillation beside resonance",
+        published=[published("amplitude over static one", 1.535602, 5e-7)],
+        reading=Reading(readings.half_range, {"begin": scene.duration * 5.0 / 6.0}, 1.0 / unit),
+        scene=scene,
+        phases=(0.18581959993316782, 0.0),
+        start=((1.5356018092808652 * unit, 0.0),),
+        regularization=1e-7,
+    )
+
+
+def _harmonic_block() -> Case:
+    share = 1.0 / 2.5  # friction limit over the ground's acceleration
+    amplitude = math.sqrt(1.0 - (0.5 * math.pi * share) ** 2)
+    return Case(
+        title="Rigid block on a harmonically shaken plane",
+        source="B. Westermo and F. Udwadia, Earthquake Engineering and Structural Dynamics 11, 1983: closed form",
+        evidence="steady sliding on a plane, reached from rest",
+        published=[published("amplitude over ground's", round(amplitude, 6), 5e-7)],
+        reading=Reading(readings.half_range, {"begin": 11.0}, (2.0 * math.pi) ** 2 / 2.5),
+        scene=shipped("harmonic"),
+        phases=(-0.5 * math.pi, 0.0),
+    )
+
+
+def _pulse() -> Case:
+    return Case(
+        title="Newmark's block under a rectangular pulse",
+        source="N. M. Newmark, Géotechnique 15, 1965: V² / (2 N g) (1 - N / A)",
+        evidence="residual displacement after a pulse; a recorded motion",
+        published=[published("displacement", 0.75, RAMP, "m")],
+        reading=Reading(readings.positions_at, {"times": [3.0]}),
+        scene=shipped("newmark"),
+    )
+
+
+def _linear() -> list[Case]:
+    stories = (2.0, 0.6852, 0.4346, 0.3383, 0.2966)
+    return [
+        Case(
+            title="Chopra: one-story frame on isolators",
+            source="A. K. Chopra, Dynamics of Structures, base-isolated one-story building: natural periods",
+            evidence="stiffness of the isolator, mass and link",
+            published=[
+                published("isolation period", 2.0242, 5e-5, "s"),
+                published("structural period", 0.2500, 5e-5, "s"),
+            ],
+            reading=Reading(readings.natural_periods),
+            scene=shipped("frame"),
+            start=((1e-4, 0.0), (0.0, 0.0)),
+        ),
+        Case(
+            title="Chopra: uniform five-story shear building",
+            source="A. K. Chopra, Dynamics of Structures, uniform five-story shear building: natural periods",
+            evidence="chain of links above a platform that friction holds",
+            published=[
+                published(f"natural period {number}", period, 5e-5, "s")
+                for number, period in enumerate(stories, start=1)
+            ],
+            reading=Reading(readings.natural_periods),
+            scene=shipped("stories"),
+            start=(*((0.0, 0.0),) * 5, (1e-4, 0.0)),
+            regularization=DEFAULT_V_REG,
+        ),
+        Case(
+            title="Pendulum released at 60°",
+            source="M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, table 17.1: K(sin² 30°)",
+            evidence="exact geometry of the sphere at large displacement",
+            published=[published("period over small one's", 1.073182, 5e-7)],
+            reading=Reading(readings.period, factor=math.sqrt(GRAVITY) / (2.0 * math.pi)),
+            scene=shipped("pendulum"),
+            start=((math.sin(math.pi / 3.0), 0.0),),
+        ),
+    ]
+
+
+OPTION = "--mastodon"
+READ_TO = 3.0  # mm, from the published loops
+RADIUS = 2.2352  # m
+HEAVY = 6285710.0  # N, of the pendulum
+LASTING = 8.0  # s of 50: later displacements are smaller
+SAMPLES, STEP = 5002, 0.01  # samples of their input; the step in s, of all samples but the first
+PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, of their input along x, y and z
+ROUNDED = 1e-3  # relative, by how much a copy of their input in other units or digits may be off
+LIMITS = (-432.0, 330.0, -197.0, 152.0)  # mm: smallest and largest along x, then along y
+FRICTION = {
+    "slow": 0.03 * 0.789 / 0.79,  # theirs has k_T = 0.789 (0.7^(0.02 T) + 0.4)
+    "fast": 0.06 * 0.789 / 0.79,
+    "rate": 100.0,
+    "load_exponent": -0.357,  # slope of 0.7^(0.02 (p - 50)) at p = 50 MPa, that of the weight
+    "heating": {"contact_radius": 0.2, "conductivity": 18.0, "diffusivity": 4.4e-6},
+}
+
+
+def mastodon(path: Path) -> Case:
+    """The benchmark with the input motion of a CSV file: time, s, ax, ay and the vertical az. Raises SceneError."""
+    try:
+        samples = read_csv_samples(read_file(path, LARGEST).decode("utf-8-sig"))
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "must be text in UTF-8"
+        raise SceneError("command line", OPTION, str(path), reason) from None
+    except RecordError as error:
+        raise SceneError("command line", OPTION, str(path), str(error)) from None
+    _refuse_other_input(path, samples)
+    scene = Scene.model_validate(
+        {
+            "title": "MASTODON: friction pendulum under three-directional shaking",
+            "name": "mastodon",
+            "duration": LASTING,
+            "isolator": {"radius": RADIUS, "friction": FRICTION},
+            "bodies": [{"mass": HEAVY / GRAVITY}],
+            "excitation": {"record": {"time": samples[:, 0], "acceleration": samples[:, 1:]}},
+        }
+    )
+    names = ("smallest along x", "largest along x", "smallest along y", "largest along y")
+    return Case(
+        title="MASTODON and OpenSees: friction pendulum under three-directional shaking",
+        source="idaholab/mastodon, test fp_isolator_seismic_PTV and its manual: displacements read from the published "
+        "loops of both programs",
+        evidence="a recorded motion in three directions with friction that depends on velocity, pressure and heat",
+        published=[published(name, value, READ_TO, "mm") for name, value in zip(names, LIMITS)],
+        reading=Reading(readings.ranges, factor=1e3),
+        scene=scene,
+        regularization=DEFAULT_V_REG,
+        difference="their bearing is elastic up to 1 mm, and its restoring force N y / sqrt(R² - y²) lies between "
+        "those of the exact and the small equations. The small equations give -429 to 329 and -199 to 151 mm",
+    )
+
+
+def _refuse_other_input(path: Path, samples: Array) -> None:
+    """Raise SceneError unless the samples are those of MASTODON's test, of which alone the published numbers are."""
+    if not samples[:, 1:].any(axis=0).all():
+        rule = "must have accelerations along x, y and z: columns ax, ay and az"
+        raise SceneError("command line", OPTION, str(path), rule)
+
+    def words(count: int, step: float, peaks: Sequence[float] | Array) -> str:
+        return f"{count} samples every {step:.4g} s with peaks of " + ", ".join(f"{peak:.4g}" for peak in peaks)
+
+    step, peaks = float(np.median(np.diff(samples[:, 0]))), np.abs(samples[:, 1:]).max(axis=0)
+    if len(samples) != SAMPLES or not np.allclose([step, *peaks], [STEP, *PEAKS], rtol=ROUNDED, atol=0.0):
+        rule = (
+            f"must be the input of MASTODON's test fp_isolator_seismic_PTV, {words(SAMPLES, STEP, PEAKS)} m/s^2; "
+            f"it has {words(len(samples), step, peaks)}"
+        )
+        raise SceneError("command line", OPTION, str(path), rule)

@@ -1,0 +1,93 @@
+"""
+Numbers published elsewhere, each solved by the equations and by the engine: `phase-resonance benchmarks`.
+
+Exit codes: 0 every number is met or its difference explained; 1 not; 2 a wrong option; 3 the files could not be
+written; others as in `run_command`.
+"""
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from rich.console import Console
+
+from comparison.cli.arguments import CommandParser, command, number_of_jobs, write_and_show
+from comparison.cli.computing import compute_tasks, run_facts
+from comparison.cli.terminal import new_table
+from comparison.evidence.benchmarks.analysis import MODELS, BenchmarkTable
+from comparison.evidence.benchmarks.cases import Case, cases, mastodon
+from comparison.evidence.benchmarks.table import PAGE, STORED, Benchmarks, page, with_error, word_explanations
+from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.runner.attempts import attempt
+from comparison.runner.output import destination, publish, refuse_foreign_files
+from comparison.runner.processes import Pool, process_pool
+from comparison.runner.progress import wide_console
+from comparison.verdicts import NOT_COMPARED
+from reference.problem import SceneError
+
+DIGITS = 6  # digits of a number on the terminal
+SOLVERS = {model.trajectory for model in MODELS.values()}  # what the workers ask
+
+
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+    """Solve the benchmarks that the command line asks for; the exit code."""
+    begin = time.monotonic()
+    parser = CommandParser("benchmarks", "Numbers published elsewhere, each by the equations and by the engine.")
+    parser.add_out(f"where {STORED.name} and {PAGE} go")
+    parser.add_computing()
+    parser.add_argument("--only", default="", metavar="TEXT", help="the benchmarks whose name contains this")
+    parser.add_argument(
+        "--mastodon",
+        type=Path,
+        metavar="FILE",
+        help="CSV with the input of MASTODON's friction pendulum test, which is not shipped: adds that benchmark",
+    )
+    options = parser.parse_args(argv)
+    number_of_jobs(options)  # refused before anything else is looked at
+    analysis = BenchmarkTable(_choose_cases(options.only, options.mastodon))
+    out = destination(options.out)
+    refuse_foreign_files(out, [STORED.name, PAGE])
+    console = wide_console()
+    results = compute_tasks("benchmarks", options, argv, analysis.tasks(), SOLVERS, console, executor)
+    solved = analysis.collect(None, None, results)
+    table = replace(solved, run=run_facts("benchmarks", options, argv, begin))
+
+    def write() -> list[Path]:
+        files = publish(out, {STORED.name: STORED.as_json(table)}, "comparison.benchmarks")
+        text = attempt(PAGE, partial(page, table))
+        return files + publish(out, {} if text is None else {PAGE: text.encode()}, "comparison.benchmarks")
+
+    files = write_and_show(out, write, partial(print_benchmarks, console, table))
+    console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)
+    console.print("A report written into the same directory by phase-resonance run shows them.")
+    return 1 if table.explained()[""] or table.counts()[NOT_COMPARED] else 0
+
+
+def print_benchmarks(console: Console, table: Benchmarks) -> None:
+    """A row for every published number, the differences of the models, the counts and the explanations."""
+    lines = new_table("scene", "quantity", "published", "equations", "verdict", "engine", "verdict")
+    for each in table.benchmarks:
+        for row in each.rows:
+            cells = [f"{row.published:g}"]
+            for side in (EQUATIONS, ENGINE):
+                cells += [with_error(row.numbers[side], DIGITS), row.word(side)]
+            lines.add_row(each.name, ", ".join(filter(None, (row.quantity, row.unit))), *cells)
+    console.print(lines)
+    for each in table.benchmarks:
+        if each.difference:
+            console.print(f"{each.name}: {each.difference}", soft_wrap=True)
+    for sentence in word_explanations(table):
+        console.print(f"{sentence}.", soft_wrap=True)
+
+
+def _choose_cases(only: str, mastodon_input: Path | None) -> list[Case]:
+    """The benchmarks that the options leave. Raises SceneError."""
+    known = cases() + ([] if mastodon_input is None else [mastodon(mastodon_input)])
+    chosen = [case for case in known if only in case.scene.name]
+    if not chosen:
+        names = ", ".join(case.scene.name for case in known)
+        raise SceneError("command line", "--only", only, f"no benchmark is left: take part of a name, {names}")
+    return chosen

@@ -1,0 +1,62 @@
+"""The statements of the paper in both readings of (5.1): `phase-resonance claims [--grid N]`."""
+
+from collections.abc import Sequence
+
+from rich.console import Console
+from rich.table import Table
+
+from comparison.cli.arguments import STORED_RESULTS, CommandParser, command, read_whole_number
+from comparison.cli.computing import compute_tasks
+from comparison.evidence.claims.table import GRID, Claims, ClaimTable, claims_line
+from comparison.evidence.forced_ratios import forced_ratios
+from comparison.runner.processes import Pool, process_pool
+from comparison.runner.progress import wide_console
+from comparison.study.study import Study
+from reference.problem import builtin_scenes, load_scene
+
+TOLERANCE = 1e-3  # relative error of a study; the surfaces of the claims have one of their own
+SURFACES = "reference:amplification"  # the function that the workers ask
+
+
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+    """Print the table of statements; return the exit code."""
+    parser = CommandParser("claims", "The statements of section 5 of the paper in both readings of (5.1).")
+    parser.add_argument("--grid", metavar="N", help=f"phases per axis (default {GRID})")
+    parser.add_out(STORED_RESULTS)
+    parser.add_computing()
+    options = parser.parse_args(argv)
+    grid = GRID if options.grid is None else read_whole_number("--grid", options.grid, 8, 512)
+    study = Study(tuple(map(load_scene, builtin_scenes())), grid, TOLERANCE)
+    console = wide_console()
+    claims = Claims(grid)
+    results = compute_tasks("claims", options, argv, claims.tasks(study), {SURFACES}, console, executor)
+    table = claims.collect(study, None, results)
+    assert table is not None, "the study has every scene of the paper"
+    print_claims(console, table)
+    print_ratios(console, study)
+    console.print(claims_line(table), soft_wrap=True)
+    return 0
+
+
+def print_claims(console: Console, table: ClaimTable) -> None:
+    """Print the verdicts in both readings, then what decides each statement and which cannot hold."""
+    grid = Table("about", "statement", *table.counts, box=None, pad_edge=False)
+    for each in table.statements:
+        grid.add_row(each.figure, each.says, *(each.verdicts[name].verdict for name in table.counts))
+    console.print(grid)
+    for each in table.statements:
+        console.print(f"{each.figure}: {each.says}; met if: {each.rule}", soft_wrap=True)
+        for text in [*each.reasons, *filter(None, [each.cannot])]:
+            console.print(f"   {text}", soft_wrap=True)
+
+
+def print_ratios(console: Console, study: Study) -> None:
+    """Print how intensively the bodies above the platform are forced, by (4.4) alone."""
+    console.print("Amplitude of a body over that of the platform under each harmonic, by (4.4) alone:")
+    grid = Table("scene", "axis", "period, s", "body", "ratio", "without decay", box=None, pad_edge=False)
+    for scene in study.scenes:
+        for each in forced_ratios(scene):
+            numbers = f"{each.period:.3g}", str(each.body), f"{each.ratio:.2f}", f"{each.steady:.2f}"
+            grid.add_row(scene.name, each.axis, *numbers)
+    console.print(grid)

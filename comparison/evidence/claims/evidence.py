@@ -1,0 +1,104 @@
+"""What one case shows in one reading of (5.1): its surfaces, how smooth they are, and facts about its motion."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+import reference
+from comparison.evidence.claims.readings import CASES, PeakReading
+from comparison.evidence.claims.smoothness import Bend, bends
+from comparison.result_types import Array
+from comparison.runner.task import TaskResult
+from reference.problem import Amplification, Scene, exponents, ground_peak, phase_grid
+from reference.problem.symmetry import complete_surface
+
+TOLERANCE = 1e-3  # relative, of surfaces that the study does not have: peaks are counted in parts of their range
+SHARP = 1e-6  # relative error of the values that tell a fold from a curvature
+FLAT = 0.05  # range of a surface over its mean, below which it has no peaks to speak of
+MOTIONS = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, whose motion is looked at
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """One case in one reading, by the printed equations (4.3)-(4.4)."""
+
+    mu: Array = field(default_factory=lambda: np.full((0, 0, 0), np.nan))  # (n, n, N), NaN without an answer
+    error: float = float("nan")  # largest absolute error estimate
+    statuses: tuple[str, ...] = ()  # the outcomes met
+    bends: tuple[Bend, ...] = ()  # sharpest bend of each body's surface
+    apart: tuple[float, ...] = ()  # max |x_i - y_i| over the largest of |x_i| and |y_i|, for each body over MOTIONS
+    swing: float = float("nan")  # max (x_1^2 + y_1^2) / rho^2 over MOTIONS
+    resonance: tuple[tuple[float, float], ...] = ()  # period of each harmonic and the closest natural period, s
+    ground: Bend | None = None  # sharpest bend of the denominator of (5.1)
+    error_message: str = ""  # why there is nothing
+    case: str = ""  # its name
+
+    def flat(self, body: int) -> bool:
+        """Return whether a surface varies by less than its errors, or so little that it shows no resonance."""
+        mu = self.mu[..., body - 1]
+        return bool(np.ptp(mu) <= max(2.0 * self.error, FLAT * abs(float(mu.mean()))))
+
+    @property
+    def complete(self) -> bool:
+        """Return whether every point has a value."""
+        return self.mu.size > 0 and bool(np.isfinite(self.mu).all())
+
+
+@dataclass(frozen=True)
+class CaseInReading:
+    """
+    One case in one reading, on a grid of `grid` phases per axis.
+
+    known: its surfaces, where the study has them; otherwise they are computed.
+    """
+
+    case: str
+    reading: PeakReading
+    grid: int
+    known: Evidence | None = None
+
+
+def gather_evidence(question: CaseInReading) -> Evidence:
+    """Return surfaces, bends and facts of the motions of one case in one reading. Runs inside a worker process."""
+    scene, cutoff = CASES[question.case](), question.reading.cutoff
+
+    def solve(scene: Scene, phases: Array, tolerance: float = TOLERANCE) -> Amplification:
+        return reference.amplification(scene, phases, equations="small", cutoff=cutoff, tolerance=tolerance)
+
+    surfaces = question.known
+    if surfaces is None:
+        mu, error, statuses = complete_surface(scene, question.grid, solve)
+        surfaces = Evidence(mu, float(np.nanmax(error, initial=0.0)), tuple(statuses), case=question.case)
+    if not surfaces.complete or len(scene.bodies) == 1:
+        return surfaces
+
+    def ground(phases: Array) -> Array:
+        return ground_peak(scene, phases)[:, None]
+
+    grid, natural = len(surfaces.mu), reference.modes(scene).period.ravel()
+    periods = 2.0 * np.pi / exponents(scene).imag
+    apart, swing = _motion_facts(scene)
+    return replace(
+        surfaces,
+        bends=bends(surfaces.mu, lambda phases: solve(scene, phases, SHARP).mu),
+        apart=apart,
+        swing=swing,
+        resonance=tuple((float(each), float(natural[np.abs(each / natural - 1.0).argmin()])) for each in periods),
+        ground=bends(ground(phase_grid(grid)).reshape(grid, grid, 1), ground)[0],
+    )
+
+
+def evidence_of_failure(question: CaseInReading, failed: TaskResult) -> Evidence:
+    """Return what stands in place of the evidence that a task did not return."""
+    return Evidence(error_message=failed.reason, case=question.case)
+
+
+def _motion_facts(scene: Scene) -> tuple[tuple[float, ...], float]:
+    """Return `apart` and `swing` of the motions from MOTIONS."""
+    apart, swing = np.zeros(len(scene.bodies)), 0.0
+    for phase in MOTIONS:
+        place = reference.trajectory(scene, phase, equations="small").position[..., :2]
+        reach = np.abs(place).max(axis=(0, 2))
+        apart = np.maximum(apart, np.abs(place[..., 0] - place[..., 1]).max(axis=0) / np.where(reach > 0, reach, 1.0))
+        swing = max(swing, float((place[:, 0] ** 2).sum(axis=-1).max()) / scene.radius**2)
+    return tuple(map(float, apart)), swing

@@ -1,0 +1,24 @@
+"""The statements of the paper: in the report."""
+
+from comparison.evidence.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE, SHARE
+from comparison.evidence.claims.table import Claims, ClaimTable, claims_line, count_met
+from comparison.report.feature import Feature, ResultField
+from comparison.report.section import Section
+
+FOUND = ResultField(
+    Claims.key, ClaimTable, "the paper's statements about its figures; null unless every scene of the paper was studied"
+)
+FEATURE = Feature(
+    Claims.key,
+    (FOUND,),
+    analysis=Claims(),
+    of_the_paper=True,
+    section=Section(
+        "The paper's claims",
+        "phase-resonance run with every scene of the paper makes it, and phase-resonance claims alone",
+        lambda report: {"peak_share": SHARE, "peak_shares": (LEAST_SHARE, MOST_SHARE)},
+        verifies=True,
+        verdict=lambda results: f"of {len(FOUND.of(results).statements)} statements, {count_met(FOUND.of(results))}",
+        lead=lambda results: claims_line(FOUND.of(results)),
+    ),
+)

@@ -1,0 +1,121 @@
+"""
+Peaks and valleys of a surface over the phases, by prominence.
+
+A peak is a maximum whose prominence is at least SHARE of the surface's range (highest minus lowest value) and larger
+than what the errors of the values can make; its prominence is how far one must go down from it to reach anything
+higher. A valley is a peak of the surface upside down. The square is periodic, so a ridge that leaves through one edge
+comes back through the opposite one and counts once. `drawn` counts on one period as it is drawn instead, bounded by
+its edges, where the same ridge is cut in two. `profiled` counts on the mean along the diagonals alpha1 - alpha2.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.result_types import Array
+
+SHARE = 0.3  # share of the range
+LEAST_SHARE, MOST_SHARE = 0.2, 0.4  # a count that changes between these depends on the definition
+
+
+@dataclass(frozen=True)
+class Relief:
+    """Peaks (row, column), highest first; and at each point the number of the peak that steepest ascent leads to."""
+
+    tops: Sequence[tuple[int, int]]
+    regions: NDArray[np.int_]
+
+
+class Counts(NamedTuple):
+    """Peaks and valleys of one surface."""
+
+    peaks: int
+    valleys: int
+
+
+def periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+    """
+    Peaks and valleys on the square that closes at 2 pi.
+
+    mu: (n, n), finite, at phases 2 pi k / n. error: absolute, of the values. share: least prominence over the range.
+    """
+    return Counts(len(relief(mu, error, share).tops), len(relief(-mu, error, share).tops))
+
+
+def drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+    """Peaks, and valleys between two peaks, on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges."""
+    return _count_bounded(np.pad(mu, ((0, 1), (0, 1)), mode="wrap"), error, share)
+
+
+def profiled(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+    """Peaks and valleys of the mean along the diagonals alpha1 - alpha2 as the drawn square shows it, -2 pi to 2 pi."""
+    n = len(mu)
+    rows = np.arange(n)
+    along = np.array([mu[(rows + k) % n, rows].mean() for k in range(n)])
+    if np.ptp(along) < share * np.ptp(mu):
+        return Counts(0, 0)
+    return _count_bounded(np.concatenate([along, along, along[:1]])[:, None], error, share)
+
+
+def _count_bounded(mu: Array, error: float, share: float) -> Counts:
+    peaks, valleys = (relief(side * mu, error, share, closed=False) for side in (1.0, -1.0))
+    between = [np.unique(peaks.regions[valleys.regions == number]) for number in range(len(valleys.tops))]
+    return Counts(len(peaks.tops), sum(len(sides) > 1 for sides in between))
+
+
+def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = True) -> Relief:
+    """The peaks of a surface (n, m), `closed` if periodic; none where its range is within its errors."""
+    span = float(np.ptp(mu))
+    if not span > 2.0 * error:
+        return Relief([], np.full(mu.shape, -1))
+    least = max(share * span, 2.0 * error)
+    around = _neighbors(*mu.shape, closed)
+    height = mu.ravel().tolist()
+    order = np.argsort(-mu.ravel(), kind="stable").tolist()
+    rank = [0] * len(height)
+    for place, node in enumerate(order):
+        rank[node] = place
+    parent = [-1] * len(height)  # islands above the falling water: every island's root is its highest node
+    top_of = [-1] * len(height)  # the maximum that steepest ascent leads to
+    into = list(range(len(height)))  # for lesser maxima, the one across their saddle
+    tops = []
+    for node in order:
+        islands: dict[int, int] = {}  # beside this node, with their highest node beside it
+        for other in sorted(around[node], key=rank.__getitem__):
+            if parent[other] >= 0:
+                islands.setdefault(_root(parent, other), other)
+        if not islands:
+            tops.append(node)
+            parent[node] = top_of[node] = node
+            continue
+        top_of[node] = top_of[next(iter(islands.values()))]
+        highest, *others = sorted(islands, key=rank.__getitem__)
+        parent[node] = highest
+        for lesser in others:
+            parent[lesser] = highest
+            if height[lesser] - height[node] < least:
+                into[lesser] = top_of[islands[highest]]
+    peaks = [top for top in tops if into[top] == top]
+    number = {top: peaks.index(_root(into, top)) for top in tops}
+    regions = np.array([number[top] for top in top_of]).reshape(mu.shape)
+    return Relief([divmod(top, mu.shape[1]) for top in peaks], regions)
+
+
+def _root(parent: list[int], node: int) -> int:
+    while parent[node] != node:
+        parent[node] = parent[parent[node]]
+        node = parent[node]
+    return node
+
+
+@cache
+def _neighbors(rows: int, columns: int, closed: bool) -> list[list[int]]:
+    """The nodes in the square around each: a ridge may run along the diagonal of the grid."""
+    numbers = np.arange(rows * columns).reshape(rows, columns)
+    padded = np.pad(numbers, 1, mode="wrap") if closed else np.pad(numbers, 1, constant_values=-1)
+    squares = np.lib.stride_tricks.sliding_window_view(padded, (3, 3)).reshape(-1, 9).tolist()
+    return [[node for node in square if node >= 0] for square in squares]

@@ -1,0 +1,93 @@
+"""
+Whether a surface is smooth: zoom into where it bends most and see how its second difference falls with the step.
+
+In every direction the second difference f(p - h) - 2 f(p) + f(p + h) of a surface with a curvature falls like h^2, of
+one with a fold like h, and of one with a jump not at all. The zoom starts at the places of the grid that bend most and
+halves the step again and again, every time around the point of the three that bends most.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from comparison.result_types import Array
+
+DIRECTIONS = np.array([(1, 0), (0, 1), (1, 1), (1, -1)])
+PLACES = 2  # places of the grid that are looked at
+HALVINGS = 5
+JUDGED = 3  # the last halvings, from which the exponent is taken: the first still see the shape of the peak
+FOLD, JUMP = 1.5, 0.5  # exponents below these are a fold, a jump
+
+
+@dataclass(frozen=True)
+class Bend:
+    """
+    Where a surface bends most: phases (alpha1, alpha2), rad; exponent of its second difference there, NaN unless a
+    value is missing; the lowest of the places looked at.
+    """
+
+    exponent: float
+    phases: tuple[float, float]
+
+    @property
+    def smooth(self) -> bool:
+        """Return whether the surface is smooth there."""
+        return self.exponent > FOLD
+
+    @property
+    def kind(self) -> str:
+        """ "smooth", "fold", "jump" or "no answer"."""
+        if not np.isfinite(self.exponent):
+            return "no answer"
+        return "smooth" if self.smooth else "fold" if self.exponent > JUMP else "jump"
+
+
+def bends(mu: Array, solve: Callable[[Array], Array]) -> tuple[Bend, ...]:
+    """The sharpest bend of every body's surface mu (n, n, N); solve: mu (M, N) at phases (M, 2), rad, to 1e-4."""
+    n, _, bodies = mu.shape
+    step = 2.0 * np.pi / n
+    starts = [(body, *start) for body in range(bodies) for start in _sharpest(mu[..., body])]
+    body, places, ways = (np.array(part) for part in zip(*starts))
+    center, way = step * places, step * ways
+    values = np.array([[mu[*((at + side * go) % n), i] for side in (-1, 0, 1)] for i, at, go in starts])
+    every = np.arange(len(starts))
+    sizes = [np.abs(_second(values))]
+    for _ in range(HALVINGS):
+        way = way / 2.0
+        new = solve(np.concatenate([center - way, center + way])).reshape(2, len(starts), bodies)[:, every, body]
+        row = np.stack([values[:, 0], new[0], values[:, 1], new[1], values[:, 2]], axis=1)
+        best = np.argmax([np.abs(_second(row[:, i : i + 3])) for i in range(3)], axis=0)
+        values = np.stack([row[every, best + i] for i in range(3)], axis=1)
+        center = center + (best - 1)[:, None] * way
+        sizes.append(np.abs(_second(values)))
+    tiny = np.finfo(float).tiny
+    exponents = np.log2(np.maximum(sizes[-1 - JUDGED], tiny) / np.maximum(sizes[-1], tiny)) / JUDGED
+    of_bodies = (np.flatnonzero(body == number) for number in range(bodies))
+    sharpest = [of_body[np.argmin(exponents[of_body])] for of_body in of_bodies]  # NaN is the least
+    phases = np.mod(center, 2.0 * np.pi)
+    return tuple(Bend(float(exponents[at]), (float(phases[at, 0]), float(phases[at, 1]))) for at in sharpest)
+
+
+def _second(values: Array) -> Array:
+    difference: Array = values[:, 0] - 2.0 * values[:, 1] + values[:, 2]
+    return difference
+
+
+def _sharpest(mu: Array) -> list[tuple[NDArray[np.int_], NDArray[np.int_]]]:
+    """The PLACES of largest second difference, not beside each other: index pair and direction."""
+    size = np.array(
+        [np.abs(np.roll(mu, -way, (0, 1)) - 2.0 * mu + np.roll(mu, way, (0, 1))) / (way @ way) for way in DIRECTIONS]
+    )
+    best, direction = size.max(axis=0), size.argmax(axis=0)
+    n = len(mu)
+    places: list[tuple[NDArray[np.int_], NDArray[np.int_]]] = []
+    for at in np.argsort(-best.ravel(), kind="stable"):
+        place = np.array(divmod(int(at), n))
+        apart = [np.abs((place - other + n // 2) % n - n // 2).max() for other, _ in places]
+        if all(distance > 1 for distance in apart):
+            places.append((place, DIRECTIONS[direction[*place]]))
+        if len(places) == PLACES:
+            break
+    return places

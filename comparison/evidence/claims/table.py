@@ -1,0 +1,183 @@
+"""The statements of section 5 in the two readings of (5.1), with the parameters as printed."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+import xarray as xr
+from pydantic import computed_field
+
+from comparison.evidence.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict, Word
+from comparison.evidence.claims.claims import CLAIMS
+from comparison.evidence.claims.evidence import CaseInReading, Evidence, evidence_of_failure, gather_evidence
+from comparison.evidence.claims.readings import (
+    AS_INTEGRATED,
+    CASES,
+    LITERAL_SUPREMUM,
+    READINGS,
+    PeakReading,
+    effective_reading,
+)
+from comparison.result_types import result
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
+from comparison.study.study import Study
+from comparison.surfaces.surfaces import values_of
+from reference.problem import builtin_scenes
+
+GRID = 24  # phases per axis: on 16, 32, 48 and 64 the same statements are met
+COARSE = 2  # every which phase of surfaces that are only correlated with another
+VERDICTS: tuple[Word, ...] = (MET, NOT_MET, NOT_COMPARED)
+
+
+@result
+class Statement:
+    """One statement of the paper about its figures."""
+
+    figure: Annotated[str, "figure of the paper"]
+    says: Annotated[str, "what the paper says"]
+    rule: Annotated[str, "when it is met"]
+    cannot: Annotated[str, "in which sense it holds under no parameters, and why; empty where it can"]
+    verdicts: Annotated[dict[str, StatementVerdict], "by name of the reading of (5.1)"]
+
+    @property
+    def reasons(self) -> list[str]:
+        """
+        Return what decides: one text where both readings say the same, else one for each that begins with its name.
+        """
+        texts = {name: verdict.reason for name, verdict in self.verdicts.items()}
+        same = len({*texts.values()}) == 1
+        return [*{*texts.values()}] if same else [f"{name}: {text}" for name, text in texts.items()]
+
+
+@result
+class ClaimTable:
+    """The paper's statements about its figures, in the two readings of (5.1), with the parameters as printed."""
+
+    grid: Annotated[int, "phases per axis"]
+    statements: Annotated[tuple[Statement, ...], "in the order of the figures"]
+
+    @computed_field  # type: ignore[prop-decorator]
+    @property
+    def counts(self) -> dict[str, dict[str, int]]:
+        """How many statements are met, not met and not compared, by name of the reading."""
+        return {
+            reading.name: {
+                word: sum(each.verdicts[reading.name].verdict == word for each in self.statements) for word in VERDICTS
+            }
+            for reading in READINGS
+        }
+
+
+def claims_line(table: ClaimTable) -> str:
+    """
+    Return how many of the paper's statements are met in each reading of (5.1), in one sentence.
+
+    Parameters
+    ----------
+    table : ClaimTable
+        Of the command, or `claims` of the results of a study.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> claims_line(ClaimTable(16, ())).partition(", with")[0]
+    "Of the paper's 0 statements about its figures"
+    """
+    return (
+        f"Of the paper's {len(table.statements)} statements about its figures, with the parameters as printed, "
+        f"{count_met(table)}; its plots were not available, and the text at hand names no authors and no year."
+    )
+
+
+def count_met(table: ClaimTable) -> str:
+    """Return how many statements are met in each reading, and how many are not compared, in a clause."""
+    integrated, supremum = (table.counts[reading.name] for reading in (AS_INTEGRATED, LITERAL_SUPREMUM))
+    lacking = {name: counts[NOT_COMPARED] for name, counts in table.counts.items() if counts[NOT_COMPARED]}
+    rest = "".join(f", {count} {NOT_COMPARED} ({name})" for name, count in lacking.items())
+    return f"{integrated[MET]} are met {AS_INTEGRATED.name} and {supremum[MET]} as {LITERAL_SUPREMUM.name}{rest}"
+
+
+@dataclass(frozen=True)
+class Claims(Analysis[ClaimTable]):
+    """Every statement in both readings, on `grid` phases per axis, from the study's surfaces where it has these."""
+
+    key, stage, needs_surfaces = "claims", "claims", True
+    seconds = 0.3
+    grid: int = GRID
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """Return one task for each case and reading; none unless the study has every scene of the paper."""
+        return list(self._tasks(study, surfaces).values())
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> ClaimTable | None:
+        """Return the table; None unless the study has every scene of the paper."""
+        tasks = self._tasks(study, surfaces)
+        if not tasks:
+            return None
+        evidence: Mapping[str, Mapping[str, Evidence]] = {
+            reading.name: {
+                case: results.value(tasks[case, effective_reading(reading, make())], evidence_of_failure)
+                for case, make in CASES.items()
+            }
+            for reading in READINGS
+        }
+        return table_of(
+            {name: [claim.verdict(cases) for claim in CLAIMS] for name, cases in evidence.items()}, self.grid
+        )
+
+    def _tasks(self, study: Study, surfaces: xr.Dataset | None) -> dict[tuple[str, PeakReading], Task]:
+        """Return the tasks by case and effective reading: where friction cannot hold the platform both have one."""
+        if not paper_complete(study):
+            return {}
+        tasks = {}
+        for case, make in CASES.items():
+            nested = len(make().bodies) == 1 and self.grid % COARSE == 0
+            grid = self.grid // COARSE if nested else self.grid
+            for reading in dict.fromkeys(effective_reading(each, make()) for each in READINGS):
+                question = CaseInReading(case, reading, grid, surfaces_of_study(study, surfaces, case, reading, grid))
+                tasks[case, reading] = Task(gather_evidence, question, self.stage)
+        return tasks
+
+
+def surfaces_of_study(
+    study: Study, surfaces: xr.Dataset | None, case: str, reading: PeakReading, grid: int
+) -> Evidence | None:
+    """
+    Return the surfaces of a case in a reading that the study has on a grid that holds `grid` phases per axis.
+
+    None where it has not: without that model, on another grid, or for a scene that is not as printed.
+    """
+    scene = next((scene for scene in study.scenes if scene.name == case), None)
+    model = next((model for model in study.hierarchy if model.key == reading.model), None)
+    if surfaces is None or scene is None or model is None or not model.applies(scene):
+        return None
+    stride = study.stride(model, scene)
+    if scene.digest() != CASES[case]().digest() or study.grid % (stride * grid):
+        return None
+    every = slice(None, None, study.grid // (stride * grid))
+    mu, error = (
+        np.moveaxis(values_of(surfaces, name, case, model)[: len(scene.bodies), every, every], 0, -1)
+        for name in ("mu", "error")
+    )
+    statuses = np.unique(values_of(surfaces, "status", case, model)[every, every].astype(str)).tolist()
+    return Evidence(mu.copy(), float(np.nanmax(error, initial=0.0)), tuple(statuses), case=case)
+
+
+def paper_complete(study: Study) -> bool:
+    """Return whether a study has every scene of the paper: the statements are about all of them."""
+    return {scene.name for scene in study.scenes} >= set(builtin_scenes())
+
+
+def table_of(verdicts: Mapping[str, list[StatementVerdict]], grid: int = GRID) -> ClaimTable:
+    """Return the table from the verdicts of CLAIMS by name of the reading."""
+    rows = [dict(zip(verdicts, row)) for row in zip(*verdicts.values(), strict=True)]
+    return ClaimTable(
+        grid,
+        tuple(Statement(c.figure, c.says, c.rule, c.cannot, row) for c, row in zip(CLAIMS, rows)),
+    )

@@ -1,0 +1,178 @@
+"""What each model really computed with, read back from one of its motions and not from its inputs."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Annotated, Any
+
+import numpy as np
+import xarray as xr
+
+from comparison.result_types import Number, Radius, Text, result
+from comparison.runner.mapped_analysis import MappedAnalysis
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import import_function
+from comparison.study.models import Model, chain_of
+from comparison.study.study import Study
+from comparison.wording import percent
+from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
+from reference.problem.friction import LEAST_LOAD
+
+PHASES = (0.3, 1.1)  # rad, of the motion that is measured
+DURATION = 6.0  # s: two frequencies are strongest in their first seconds; a record is followed to its end
+LEAST_SHARE = 0.1  # share of the change from slow to fast: motions that see less of it do not tell the fast one
+LEVEL = 1e-5  # rise of a flat slider over its displacement that counts as none: what contacts give way by
+FASTEST = 0.9  # friction is measured where the platform slides faster than this part of its largest speed
+
+
+@result
+class Effective:
+    """Values read back from one motion of a model, or as the scene states them; null where the motion does not tell."""
+
+    scene: Annotated[Text, "name of the scene"]
+    model: Annotated[str, "key of the model, or scene"]
+    radius: Annotated[Radius, 'radius of the sphere that the platform moves on, m; "inf" on a plane'] = float("nan")
+    friction: Annotated[Number, "coefficient of friction, or s/m in a lubricated scene"] = float("nan")
+    contact: Annotated[Number, "contact force at t = 0, N"] = float("nan")
+    mass: Annotated[Number, "total mass, kg"] = float("nan")
+    acceleration: Annotated[Number, "absolute acceleration of the platform at t = 0, m/s^2"] = float("nan")
+    damping: Number = float("nan")
+    """coefficient of the damper of the top link along x, N s/m; null without dampers, and where bodies turn"""
+    stiffness: Annotated[Number, "of the top link along x, N/m; null where it is not given by bars"] = float("nan")
+    error_message: Annotated[Text, "why there are no values, or empty"] = ""
+
+
+def word_effective(values: Sequence[Effective]) -> str:
+    """Return how far the values read back lie at most from those that the scenes state."""
+    known = {each.scene: each for each in values if each.model == "scene"}
+    parts = []
+    for name, words in (("radius", "radius"), ("friction", "friction"), ("mass", "total mass")):
+        pairs = [(getattr(each, name), getattr(known[each.scene], name)) for each in values if each.model != "scene"]
+        apart = [
+            abs(found / meant - 1.0) for found, meant in pairs if math.isfinite(found) and meant not in (0.0, math.inf)
+        ]
+        parts.append(f"{words} {percent(max(apart))}" if apart else f"{words} not compared")
+    return f"largest departures from what the scenes state: {', '.join(parts)}"
+
+
+def stated(scene: Scene) -> Effective:
+    """Return the values as the scene states them; the platform begins at rest on the plate and moves with it."""
+    ground = ground_acceleration(scene, PHASES, [0.0])[0]
+    return Effective(
+        scene=scene.name,
+        model="scene",
+        radius=scene.radius,
+        friction=scene.dry_friction.fast if scene.dry_friction.varies else scene.friction_coefficient,
+        contact=float(scene.total_mass * (GRAVITY + ground[2])),
+        mass=scene.total_mass,
+        acceleration=float(np.linalg.norm(ground)),
+        damping=float(scene.damping[-1, 0]) if scene.damping.any() else float("nan"),
+        stiffness=float(scene.stiffness[-1, 0]) if scene.bodies[-1].bars is not None else float("nan"),
+    )
+
+
+def read_back(task: tuple[Scene, Model]) -> Effective:
+    """The values of one model. What goes wrong is said in `error_message`; a value is never made up."""
+    scene, model = task
+    nothing = Effective(scene.name, model.key)
+    lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
+    short = scene.with_values({"duration": lasting})
+    settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
+    try:
+        motion: Trajectory = import_function(model.trajectory)(short, PHASES, **settings)
+        ended = {"error_message": f"the motion ended: {motion.status}"}
+        return replace(nothing, **(_read_values(short, motion) if motion.status == Outcome.OK else ended))
+    except Exception as error:
+        return replace(nothing, error_message=f"{type(error).__name__}: {error}")
+
+
+class EffectiveValues(MappedAnalysis[list[Effective]]):
+    """For every scene what it states, then what the motion of each model shows."""
+
+    key, stage, level = "effective", "effective values", 2
+    seconds = 1.0
+    function = staticmethod(read_back)
+    without_value = staticmethod(lambda task, failed: Effective(task[0].name, task[1].key, error_message=failed.reason))
+
+    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[tuple[Scene, Model]]:
+        """Every model of every scene."""
+        return [(scene, model) for scene in study.scenes for model in chain_of(scene, study.hierarchy)]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effective]:
+        """In the order scene, model; what the scene states comes first."""
+        read = self.values(study, surfaces, results)
+        of_scenes = ([stated(scene), *(each for each in read if each.scene == scene.name)] for scene in study.scenes)
+        return [value for values in of_scenes for value in values]
+
+
+def _read_values(scene: Scene, motion: Trajectory) -> dict[str, Any]:
+    place = motion.position[:, 0]
+    ground = ground_acceleration(scene, PHASES, motion.time)
+    swing = (place**2).sum(axis=1)
+    far = int(np.argmax(swing))
+    radius = float(swing[far] / (2.0 * place[far, 2])) if place[far, 2] > 0.0 else float("nan")
+    if scene.flat and abs(place[far, 2]) <= LEVEL * float(np.hypot(*place[far, :2])):
+        radius = float("inf")
+    return {
+        "radius": radius,
+        "friction": _friction(scene, motion, radius),
+        "contact": float(motion.contact_force[0]),
+        "mass": float(motion.contact_force[0] / (GRAVITY + ground[0, 2])),
+        "acceleration": float(np.linalg.norm(motion.absolute_acceleration[0, 0])),
+        **_top_link(scene, motion),
+    }
+
+
+def _top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
+    """
+    The force on the top body as a spring and a damper of the link below it, by least squares.
+
+    Where bodies turn, the force acts half-way up and leans with the bars, by which the weight has a part along x.
+    """
+    turning, damped = "turns" in motion.extra, bool(scene.damping.any())
+    barred = scene.bodies[-1].bars is not None and not (scene.offsets.any() or scene.yaws.any())
+    if not barred and (turning or not damped):
+        return {}
+    stretch, rate = (part[:, -1, 0] - part[:, -2, 0] for part in (motion.position, motion.velocity))
+    force = -scene.masses[-1] * motion.absolute_acceleration[:, -1, 0]
+    if turning:
+        lower, upper = scene.bodies[-2].height, scene.bodies[-1].height
+        assert lower is not None
+        assert upper is not None
+        lean = motion.extra["turns"][:, -2:, 1].mean(axis=1)
+        stretch = stretch - (upper - lower) * lean
+        force = force + scene.masses[-1] * (GRAVITY + motion.absolute_acceleration[:, -1, 2]) * lean
+        rate = np.gradient(stretch, motion.time)
+    columns = [stretch, rate] if damped else [stretch]
+    factors, _, rank, _ = np.linalg.lstsq(np.column_stack(columns), force)
+    if rank < len(columns):
+        return {}
+    read = {"stiffness": float(factors[0])} if barred else {}
+    return read | ({"damping": float(factors[1])} if damped and not turning else {})
+
+
+def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
+    """Median ratio of contact forces across and along the normal in fast slides; NaN where heat changes it."""
+    if np.isnan(radius) or scene.dry_friction.heat is not None:
+        return float("nan")
+    force = np.einsum("i,tik->tk", scene.masses, motion.absolute_acceleration)
+    force[:, 2] += scene.total_mass * GRAVITY
+    if radius == np.inf:
+        normal = np.broadcast_to([0.0, 0.0, 1.0], motion.position[:, 0].shape)
+    else:
+        normal = np.array([0.0, 0.0, radius]) - motion.position[:, 0]
+        normal = normal / np.linalg.norm(normal, axis=1)[:, None]
+    along = np.einsum("tk,tk->t", force, normal)
+    across = np.linalg.norm(force - along[:, None] * normal, axis=1)
+    speed = np.linalg.norm(motion.velocity[:, 0], axis=1)
+    fast = speed > FASTEST * speed.max()
+    ratio = across[fast] / along[fast]
+    law = scene.dry_friction
+    if law.exponent:  # back to the weight
+        ratio /= np.maximum(along[fast] / (scene.total_mass * GRAVITY), LEAST_LOAD) ** law.exponent
+    if law.varies:
+        share = -np.expm1(-law.rate * speed[fast])  # share of the change from slow to fast
+        if not share.min() > LEAST_SHARE:
+            return float("nan")
+        ratio = law.slow + (ratio - law.slow) / share
+    return float(np.median(ratio / speed[fast] if scene.lubricated else ratio))

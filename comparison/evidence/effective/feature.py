@@ -1,0 +1,39 @@
+"""Effective values: in the report."""
+
+from comparison.evidence.effective.analysis import (
+    PHASES,
+    Effective,
+    EffectiveValues,
+    word_effective,
+)
+from comparison.evidence.forced_ratios import ForcedRatio, forced_ratios
+from comparison.report.feature import Feature, Findings, SceneField
+from comparison.report.section import Section
+from reference.problem import Scene
+
+
+def _effective(findings: Findings, scene: Scene) -> list[Effective]:
+    return [each for each in findings.found.get(EffectiveValues.key) or [] if each.scene == scene.name]
+
+
+EFFECTIVE = SceneField(EffectiveValues.key, list[Effective], "the scene, then every model", _effective)
+FORCED = SceneField(
+    "forced",
+    list[ForcedRatio],
+    "one per axis, harmonic and body above the platform; empty under a recorded motion",
+    lambda findings, scene: forced_ratios(scene),
+)
+FEATURE = Feature(
+    EffectiveValues.key,
+    scene_fields=(EFFECTIVE, FORCED),
+    analysis=EffectiveValues(),
+    section=Section(
+        "Effective values",
+        context=lambda report: {
+            "effective": [values for scene in report.results.scenes for values in EFFECTIVE.of(scene)],
+            "phases": PHASES,
+        },
+        verifies=True,
+        verdict=lambda results: word_effective([each for scene in results.scenes for each in EFFECTIVE.of(scene)]),
+    ),
+)

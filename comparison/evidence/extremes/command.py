@@ -1,0 +1,98 @@
+"""
+Numerical stability at the extremes: `phase-resonance extremes [--out DIR]`.
+
+Exit codes: 0 no cell failed; 1 some did; 2 a wrong option; 3 the files could not be written; others as in
+`run_command`.
+"""
+
+import argparse
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+from rich.console import Console
+
+from comparison.cli.arguments import CommandParser, command, number_of_jobs, read_number, write_and_show
+from comparison.cli.computing import compute_tasks, run_facts
+from comparison.cli.user_models import add_models, user_models
+from comparison.evidence.extremes.analysis import LIMIT, Extremes, cells, reduced
+from comparison.evidence.extremes.matrix import FILE, STORED, Matrix, Verdict
+from comparison.evidence.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, rows, user_column
+from comparison.runner.output import destination, publish, refuse_foreign_files
+from comparison.runner.processes import Pool, process_pool
+from comparison.runner.progress import wide_console
+from reference.problem import SceneError
+
+MODELS = {EQUATIONS, ENGINE, STATED}  # what the workers ask
+
+
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+    """Judge the cells that the command line asks for; the exit code."""
+    parser = CommandParser(
+        "extremes", "Every model at the extremes of every quantity, judged by finer runs, as a matrix."
+    )
+    parser.add_out(f"where {FILE} goes")
+    parser.add_computing()
+    parser.add_argument("--limit", metavar="SECONDS", help=f"most processor time of one cell (default {LIMIT:g})")
+    parser.add_argument("--rows", default="", metavar="TEXT", help="the extremes whose name contains this")
+    parser.add_argument("--only", help=argparse.SUPPRESS)  # answered with the name of the option that is meant
+    keys = [column.key for column in COLUMNS]
+    parser.add_argument("--models", nargs="+", choices=keys, metavar="KEY", help=f"some of {', '.join(keys)}")
+    add_models(parser)
+    parser.add_argument("--reduced", action="store_true", help="what takes little: mostly the equations alone")
+    options = parser.parse_args(argv)
+    extremes = _choose_cells(options)
+    out = destination(options.out)
+    refuse_foreign_files(out, [FILE])
+    console = wide_console()
+    matrix = judge_matrix(extremes, options, argv, console, executor)
+
+    def show() -> None:
+        for verdict in (Verdict.LIMIT, Verdict.FAILED):
+            for row, title, entry in matrix.listed(verdict):
+                console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
+
+    (file,) = write_and_show(out, partial(publish, out, {FILE: STORED.as_json(matrix)}, "comparison.extremes"), show)
+    counts = ", ".join(f"{count} {name}" for name, count in matrix.counts().items())
+    spent = f"{matrix.run['seconds']} s, {matrix.run['cpu_seconds']} s of processor time"
+    console.print(f"{sum(matrix.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)
+    console.print(f"Matrix: {file}", soft_wrap=True)
+    console.print("A report written into the same directory by phase-resonance run shows it.")
+    return 1 if matrix.counts()[Verdict.FAILED] else 0
+
+
+def judge_matrix(
+    extremes: Extremes, options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
+) -> Matrix:
+    """The matrix with all that is known of its run; stored cells are not judged again."""
+    begin, tasks = time.monotonic(), extremes.tasks()
+    results = compute_tasks("extremes", options, words, tasks, MODELS, console, executor)
+    matrix = extremes.collect(None, None, results)
+    totals = [entry.total or 0.0 for row in matrix.rows for entry in row.entries.values()]
+    run = {
+        **run_facts("extremes", options, words, begin),
+        "cpu_seconds": round(sum(totals), 1),
+        "stored_before": results.parts[extremes.stage].stored,
+        "limit": extremes.limit,
+        "reduced": len([task for task in tasks if not task.group]) < len(cells(list(rows()))),
+    }
+    return replace(matrix, run=run)
+
+
+def _choose_cells(options: argparse.Namespace) -> Extremes:
+    """The cells that the options leave. Raises SceneError."""
+    if options.only is not None:
+        rule = "selects analyses of a study; the extremes are chosen with --rows TEXT"
+        raise SceneError("command line", "--only", options.only, rule)
+    limit = LIMIT if options.limit is None else read_number("--limit", options.limit, 0.1, 1e6, "s of processor time")
+    number_of_jobs(options)  # refused before anything else is looked at
+    supplied = user_models(options.model, options.model_limit, options.scheduler)
+    every = list(rows())
+    kept = [row for row in (reduced(every) if options.reduced else every) if options.rows in row.name]
+    columns = [column for column in COLUMNS if not options.models or column.key in options.models]
+    columns += [user_column(model) for model in supplied]
+    if not cells(kept, columns):
+        raise SceneError("command line", "--rows", options.rows, "no cell is left: take part of a row's name")
+    return Extremes(kept, columns, limit)

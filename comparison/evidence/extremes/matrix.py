@@ -1,0 +1,102 @@
+"""The matrix of extremes as data: what every model made of every extreme, as a file and as the report needs it."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from enum import StrEnum
+from itertools import groupby
+from typing import Annotated, Any
+
+from comparison.json_file import StoredFile
+from comparison.result_types import require, result
+
+FILE = "extremes.json"
+
+
+class Verdict(StrEnum):
+    """From best to worst; a cell of several phase pairs is as good as its worst one."""
+
+    CONVERGED = "converged"
+    REFUSED = "refused"
+    LIMIT = "limit"
+    FAILED = "FAILED"
+
+
+MEANING = {
+    Verdict.CONVERGED: "converged: error claimed, confirmed by a finer run",
+    Verdict.REFUSED: "refused: against a rule, or the motion leaves the model",
+    Verdict.LIMIT: "limit: the model says that it cannot",
+    Verdict.FAILED: "FAILED: no answer, or a wrong one",
+}
+
+
+@result
+class Entry:
+    """One cell of the matrix."""
+
+    verdict: Verdict
+    """converged: error confirmed by a finer run; refused: against a rule or outside the model; limit: the model says
+    that it cannot; FAILED: all else"""
+    reason: Annotated[str, "in a few words"]
+    status: str = ""
+    """outcome that decides the verdict, in the words of `reference.problem.Outcome`; empty for an input against a rule
+    and for an error that was raised"""
+    error: Annotated[float | None, "largest relative error estimate; null without a value"] = None
+    seconds: Annotated[float | None, "processor time of the model's answer, s; null without an answer"] = None
+    total: Annotated[float | None, "processor time of the cell with its finer runs, s; null without an answer"] = None
+
+
+@result
+class Extreme:
+    """One row of the matrix: one extreme."""
+
+    group: Annotated[str, "the quantity"]
+    title: Annotated[str, "its extreme value"]
+    entries: Annotated[Mapping[str, Entry], "by key of the model; none for a model that the extreme does not concern"]
+
+
+@result
+class Matrix:
+    """Every model at the extremes of every quantity, judged by finer runs."""
+
+    columns: Annotated[Mapping[str, str], "titles of the models by key"]
+    rows: Annotated[Sequence[Extreme], "one per extreme"]
+    run: Annotated[Mapping[str, Any], "command, times, provenance, and whether it is the reduced form"]
+
+    def __post_init__(self) -> None:
+        for row in self.rows:
+            for key in row.entries:
+                require(key in self.columns, f"model {key[:40]!r} of a row is none of the columns")
+
+    def counts(self) -> dict[str, int]:
+        """Number of cells of each verdict, from the best to the worst, zeros included."""
+        seen = Counter(entry.verdict for row in self.rows for entry in row.entries.values())
+        return {verdict.value: seen[verdict] for verdict in Verdict}
+
+    @property
+    def count_line(self) -> str:
+        """The counts in one line."""
+        counts = self.counts()
+        return f"{sum(counts.values())} cells: {', '.join(f'{n} {verdict}' for verdict, n in counts.items())}"
+
+    def groups(self) -> list[list[Extreme]]:
+        """The rows that share a quantity."""
+        return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]
+
+    def listed(self, verdict: str) -> list[tuple[Extreme, str, Entry]]:
+        """Row, title of the column and entry of the cells of one verdict."""
+        return [
+            (row, self.columns[key], entry)
+            for row in self.rows
+            for key, entry in row.entries.items()
+            if entry.verdict == verdict
+        ]
+
+
+STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "phase-resonance extremes")
+
+
+def describe(entry: Entry) -> str:
+    """Return what stands in the field: the error claimed, or the status in its own words."""
+    if entry.verdict == Verdict.CONVERGED and entry.error is not None:
+        return f"{entry.error:.0e}"
+    return "FAILED" if entry.verdict == Verdict.FAILED else entry.status or "against a rule"

@@ -1,0 +1,50 @@
+"""How intensively the loading forces the bodies above the platform, by (4.4) alone."""
+
+from typing import Annotated
+
+import numpy as np
+
+from comparison.result_types import Array, Radius, result
+from reference.problem import Scene, exponents
+
+AXES = "x", "y"
+
+
+@result
+class ForcedRatio:
+    """Amplitude of a body over that of the platform under one harmonic, by (4.4) alone."""
+
+    body: Annotated[int, "from 2"]
+    harmonic: Annotated[int, "1 or 2"]
+    axis: Annotated[str, "x or y"]
+    period: Annotated[float, "period of the harmonic, s"]
+    ratio: Annotated[Radius, "with the decay of the loading"]
+    steady: Annotated[Radius, 'without it; "inf" at resonance']
+
+
+def forced_ratios(scene: Scene) -> list[ForcedRatio]:
+    """The ratios by axis, harmonic and body above the platform; none under a recorded motion."""
+    if scene.recorded or len(scene.bodies) == 1:
+        return []
+    return [
+        ForcedRatio(body, harmonic, name, float(2.0 * np.pi / s.imag), float(forced), float(steady))
+        for axis, name in enumerate(AXES)
+        for harmonic, s in enumerate(exponents(scene), start=1)
+        if scene.amplitudes[axis, harmonic - 1] != 0.0
+        for body, (forced, steady) in enumerate(
+            zip(*(_ratios(scene, axis, each) for each in (s, 1j * s.imag))), start=2
+        )
+    ]
+
+
+def _ratios(scene: Scene, axis: int, s: complex) -> Array:
+    """|A_i / A_1| for the bodies above the platform: (m_i s^2 + links) A = link to the platform times A_1."""
+    links = scene.stiffness[:, axis] + s * scene.damping[:, axis]
+    matrix = np.diag(scene.masses[1:] * s**2 + links + np.append(links[1:], 0.0))
+    matrix -= np.diag(links[1:], 1) + np.diag(links[1:], -1)
+    drive = np.zeros(len(links), complex)
+    drive[0] = links[0]
+    if np.linalg.matrix_rank(matrix) < len(matrix):
+        return np.full(len(links), np.inf)
+    sizes: Array = np.abs(np.linalg.solve(matrix, drive))
+    return sizes

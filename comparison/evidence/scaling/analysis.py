@@ -1,0 +1,96 @@
+"""
+The scaling test: what is left of the step from small to exact equations when loading and friction grow small together.
+
+Loading and dry friction scaled by s (the rate at which it changes with the speed by 1/s) scale the motion by s, and the
+geometry that the small equations drop is of the
+order of its square: the step must fall like s^2, or geometry is not its cause. Viscous friction mu = f_c |v|
+scales by itself. The printed small equations are not quite invariant either: their friction terms with xi'' x_1 / rho
+shrink like s^2 too, which the second trend shows.
+"""
+
+from typing import Any
+
+import numpy as np
+
+import reference
+from comparison.evidence.trends import NONE, Trend, trend
+from comparison.result_types import Array
+from comparison.runner.mapped_analysis import MappedAnalysis
+from comparison.runner.task import TaskResult
+from comparison.study.models import dry
+from comparison.study.study import Study
+from reference.problem import Scene
+from reference.problem.readings import DEFAULT_V_C
+
+SCALES = (1.0, 0.5, 0.25, 0.125)
+PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
+TOLERANCE = 1e-8  # relative: the step at the smallest scale is 1e-5
+STEP = "exact minus small"
+PRINTED = "small, s minus s/2"
+
+Arguments = tuple[Scene, bool]  # and whether the supremum is taken
+
+
+def scale_scene(scene: Scene, s: float) -> Scene:
+    """The scene with loading, dry friction and travel times s, the rate of friction with speed over s."""
+    values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
+    law = scene.dry_friction
+    if not law.constant:
+        table = {"slow": s * law.slow} | ({"load_exponent": law.exponent} if law.exponent else {})
+        values["isolator.friction"] = table | ({"fast": s * law.fast, "rate": law.rate / s} if law.varies else {})
+    elif not scene.lubricated:
+        values["isolator.friction"] = s * scene.friction_coefficient
+    if scene.isolator.travel is not None:
+        values["isolator.travel"] = s * scene.isolator.travel
+    return scene.with_values(values)
+
+
+def scene_trends(task: Arguments) -> list[Trend]:
+    """Both trends of one scene for each body. Runs inside a worker process."""
+    scene, supremum = task
+    answers = [_both(scale_scene(scene, s), supremum, s) for s in SCALES]
+    mu, error = (np.array([answer[part] for answer in answers]) for part in (0, 1))  # (S, 2, P, N)
+    (small, exact), (small_error, exact_error) = np.moveaxis(mu, 1, 0), np.moveaxis(error, 1, 0)
+    step, step_error = exact / small - 1.0, np.hypot(exact_error, small_error) / small
+    halving = small[:-1] / small[1:] - 1.0
+    halving_error = np.hypot(small_error[:-1], small_error[1:]) / small[1:]
+    name = _peak(scene, supremum)
+    return [
+        trend(scene.name, body + 1, f"{what}, {name}", SCALES[: len(size)], size[..., body].T, error[..., body].T, 2.0)
+        for body in range(len(scene.bodies))
+        for what, size, error in ((STEP, step, step_error), (PRINTED, halving, halving_error))
+    ]
+
+
+def _both(scene: Scene, supremum: bool, s: float) -> tuple[Array, Array]:
+    """mu and error, (2, P, N): small, exact."""
+    cutoff = None if supremum else DEFAULT_V_C * s  # it scales with the motion
+    answers = [
+        reference.amplification(scene, PHASES, equations=equations, tolerance=TOLERANCE, cutoff=cutoff)
+        for equations in ("small", "exact")
+    ]
+    return np.array([answer.mu for answer in answers]), np.array([answer.error for answer in answers])
+
+
+def _without_value(task: Arguments, failed: TaskResult) -> list[Trend]:
+    scene, supremum = task
+    what = f"{STEP}, {_peak(scene, supremum)}"
+    bodies = range(1, len(scene.bodies) + 1)
+    return [trend(scene.name, body, what, SCALES, NONE, NONE, 2.0, failed.reason) for body in bodies]
+
+
+def _peak(scene: Scene, supremum: bool) -> str:
+    return "peak" if not dry(scene) else "supremum" if supremum else "resolved peak"
+
+
+class Scaling(MappedAnalysis[list[Trend]]):
+    """The trends of every scene and body, for the supremum and, where that differs, the resolved peak."""
+
+    key, stage, level = "scaling", "scaling test", 2
+    seconds = 0.1
+    function, without_value = staticmethod(scene_trends), staticmethod(_without_value)
+
+    def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
+        """Every scene with phases and without heat, which does not scale, and whether the supremum is taken."""
+        scenes = [scene for scene in study.phased if scene.dry_friction.heat is None]
+        return [(scene, supremum) for scene in scenes for supremum in ([True, False] if dry(scene) else [True])]

@@ -1,0 +1,1 @@
+"""Error against compute time, for every model and every numerical parameter."""

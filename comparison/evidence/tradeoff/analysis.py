@@ -1,0 +1,213 @@
+"""The trade-off as an analysis: a task for every few seconds of a function's phase pairs, and the diagram of them."""
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from comparison.evidence.tradeoff import trade
+from comparison.evidence.tradeoff.settings import Question, Setting, Settings, asked, settings, user_settings
+from comparison.json_file import finite_or_none
+from comparison.result_types import Array
+from comparison.runner.analysis import Analysis
+from comparison.runner.task import Task, TaskResult
+from comparison.runner.task_results import TaskResults
+from comparison.study.batches import import_function
+from comparison.study.models import Model
+from comparison.study.study import Study
+from comparison.study.user_models import engine_of
+from comparison.wording import exception_line
+from reference.problem import Amplification, Scene
+
+SEED = 20  # seed of the sample of phase pairs: the same in every run
+SHORT = 0.2  # s of motion, to warm up
+CHUNK = 3.0  # s of work in one task, about
+CHEAP = 0.01  # s per point of a reference solution of its own, about
+OTHER_METHODS = {"SciPy": "another method on the same equations", "translational": "other code from the bodies up"}
+
+Function = tuple[str, Settings]  # "package:function" and its keyword arguments
+_warm: set[str] = set()  # functions that this process has called
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """Some phase pairs of the sample under one function."""
+
+    scene: Scene
+    function: Function
+    phases: Array  # (M, 2), rad
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a measurement gave."""
+
+    mu: Array  # (M, N), NaN without a value
+    error_estimate: Array  # (M, N), absolute, NaN without
+    seconds: float  # s of processor time
+    step: float  # mean step, s; NaN where the function does not tell it
+    error_message: str = ""  # what went wrong, or empty
+
+    def __post_init__(self) -> None:
+        if self.mu.ndim != 2 or self.error_estimate.shape != self.mu.shape:
+            raise ValueError(f"mu {self.mu.shape}, error_estimate {self.error_estimate.shape}")
+
+
+def sample(points: int) -> Array:
+    """The phase pairs that are measured, rad."""
+    return np.random.default_rng(SEED).uniform(0.0, 2.0 * np.pi, (points, 2))
+
+
+def measure(measurement: Measurement) -> Measured:
+    """Call the function, warm, inside a worker process; where it raises there are no values, but the reason."""
+    path, settings = measurement.function
+    if path not in _warm:
+        _warm.add(path)
+        _call_function(measurement.scene.with_values({"duration": SHORT}), measurement.phases[:1], path, settings)
+    return _call_function(measurement.scene, measurement.phases, path, settings)
+
+
+def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -> Measured:
+    nothing, step, clock = np.full((len(phases), len(scene.bodies)), np.nan), np.nan, time.process_time()
+    try:
+        answer = import_function(path)(scene, phases, **settings)
+    except Exception as error:
+        return Measured(nothing, nothing, time.process_time() - clock, np.nan, exception_line(error))
+    seconds = time.process_time() - clock
+    if isinstance(answer, tuple):
+        answer, step = answer
+    if isinstance(answer, Amplification):
+        return Measured(answer.mu, answer.error, seconds, step)
+    return Measured(np.asarray(answer, dtype=float), nothing, seconds, step)
+
+
+def without_value(measurement: Measurement, failed: TaskResult) -> Measured:
+    """In place of what a task did not return: phase pairs without a value."""
+    nothing = np.full((len(measurement.phases), len(measurement.scene.bodies)), np.nan)
+    return Measured(nothing, nothing, 0.0, np.nan, failed.reason)
+
+
+def joined(parts: Sequence[Measured]) -> Measured:
+    """The measurements of one function as one: times added up, and the first error message."""
+    mu, error_estimate = map(np.concatenate, zip(*((part.mu, part.error_estimate) for part in parts)))
+    seconds, step = sum(part.seconds for part in parts), float(np.mean([part.step for part in parts]))
+    return Measured(mu, error_estimate, seconds, step, next(filter(None, (part.error_message for part in parts)), ""))
+
+
+@dataclass(frozen=True)
+class TradeOff(Analysis[list[trade.MeasuredTrade]]):
+    """Error against compute time of every setting in every scene with phases; quick: fewer points and values."""
+
+    key, stage = "tradeoff", "trade-off"
+    quick: bool = False
+    supplied: tuple[Model, ...] = ()
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """Every function of every scene, its sample in parts of about CHUNK seconds."""
+        tasks = [task for scene in study.phased for parts in self._measurements(scene) for task in parts]
+        return list({task.key: task for task in tasks}.values())  # one function may serve two settings
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[trade.MeasuredTrade]:
+        """One diagram for each scene, without what the command knows of the run."""
+        return [self._trade(scene, results) for scene in study.phased]
+
+    def _settings(self, scene: Scene) -> list[Setting]:
+        return [*settings(scene, self.quick), *user_settings(self.supplied)]
+
+    def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
+        """The tasks of the reference solution of every question; then of every setting, and of what it is against."""
+        questions = {question.key: question for question in asked(scene)}
+        for question in questions.values():
+            yield self._tasks(scene, question.reference_solution, question, question.seconds)
+        for each in self._settings(scene):
+            question = questions[each.question]
+            yield self._tasks(scene, (each.function, each.settings), question, each.seconds)
+            seconds = CHEAP if each.against else question.seconds
+            yield self._tasks(scene, each.against or question.reference_solution, question, seconds)
+
+    def _tasks(self, scene: Scene, function: Function, question: Question, seconds: float) -> list[Task]:
+        """Those of one function on the sample of a question; seconds: per point of a motion of 20 s, about."""
+        count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
+        size, phases = int(np.clip(CHUNK / each, 1, count)), sample(count)
+        engine = engine_of(function[1]).get("function", "")
+        limits = {engine_of(model.settings)["function"]: model.timeout for model in self.supplied}
+        limit, chunks = limits.get(engine), (phases[first : first + size] for first in range(0, count, size))
+        more: dict[str, Any] = {"about": scene, "timeout": limit and limit * size, "group": engine}
+        return [
+            Task(measure, Measurement(scene, function, chunk), self.stage, each * len(chunk), **more)
+            for chunk in chunks
+        ]
+
+    def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
+        measured = (
+            joined([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
+        )
+        solutions = [(question, next(measured)) for question in asked(scene)]
+        rows = [(setting, next(measured), next(measured)) for setting in self._settings(scene)]
+        entries = [entry(setting, answer, against.mu) for setting, answer, against in rows]
+        entries = trade.with_pareto_fronts(entries, len(scene.bodies))
+        answered = [_count_answers(*solution, entries) for solution in solutions]
+        numbers = zip(*((answer.mu, against.mu, answer.error_estimate) for _, answer, against in rows))
+        values = dict(zip(trade.MEANINGS, map(list, numbers)))
+        phases = sample(max(question.points for question in answered))
+        found = trade.Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
+        return trade.MeasuredTrade(found, trade.labeled(entries, values, phases))
+
+
+def entry(setting: Setting, measured: Measured, reference_solution: Array) -> trade.Entry:
+    """Return what one setting gave at M phase pairs, against mu (M, N) of the reference solution there."""
+    error = np.abs(measured.mu / reference_solution - 1.0)
+    error_estimate = measured.error_estimate / np.abs(measured.mu)
+    points = len(measured.mu)
+    median, most, estimate = (
+        [trade.quantile(column, share) for column in errors.T]
+        for errors, share in ((error, 0.5), (error, 0.95), (error_estimate, 0.95))
+    )
+    return trade.Entry(
+        **{field.name: getattr(setting, field.name) for field in fields(trade.Stated)},
+        points=points,
+        answered=int(np.isfinite(error).all(axis=1).sum()),
+        seconds=measured.seconds / points,
+        median=median,
+        most=most,
+        error_estimate=estimate,
+        step=finite_or_none(measured.step),
+        error_message=measured.error_message,
+    )
+
+
+def _count_answers(question: Question, reference_solution: Measured, entries: Sequence[trade.Entry]) -> trade.Answered:
+    """The question with its reference solution, and what is known about that."""
+    error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
+    error = trade.quantile(error_estimate.ravel(), 1.0)
+    tolerance = question.reference_solution[1]["tolerance"]
+    side = "the reference" if question.reference_solution[0].startswith("reference") else "the engine"
+    seconds = reference_solution.seconds / len(reference_solution.mu)
+    solution = f"{side} at a tolerance of {tolerance:.0e}, {seconds:.2g} s per point"
+    own = "it answers at none of them" if error is None else f"its own error estimate is {error:.0e} at most"
+    checks = [own, *_agreements(question, entries)]
+    return trade.Answered(question.key, question.title, len(reference_solution.mu), solution, error, checks)
+
+
+def _agreements(question: Question, entries: Sequence[trade.Entry]) -> list[str]:
+    """
+    Return how far the most accurate setting of other methods, else of the same one, agrees with the reference solution.
+    """
+    by_engine = question.reference_solution[0].startswith("multibody")
+    candidates = [each for each in entries if each.question == question.key and not each.model_error and each.answered]
+    families = [(what, [each for each in candidates if each.method.startswith(family)])
+                for family, what in ({} if by_engine else OTHER_METHODS).items()]  # fmt: skip
+    if not any(others for _, others in families):
+        families = [("the same code, asked for less", [each for each in candidates if each.controlled])]
+
+    def largest(setting: trade.Entry) -> float:
+        return max(np.inf if error is None else error for error in setting.most)
+
+    best = [(what, min(others, key=largest)) for what, others in families if others]
+    return [
+        f"{each.method} ({each.parameter} {each.value:.0e}), {what}, agrees with it to {largest(each):.0e} at 95 %"
+        for what, each in best
+    ]

@@ -1,0 +1,176 @@
+"""
+Speed for accuracy: `phase-resonance tradeoff [SCENE ...] [--quick | --growth] [--out DIR]`.
+
+Exit codes: 0 done; 2 a wrong scene or option; 3 the files could not be written; others as in `run_command`.
+"""
+
+import argparse
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from rich.console import Console
+
+from comparison.cli.arguments import CommandParser, command, number_of_jobs, write_and_show
+from comparison.cli.computing import compute_tasks, run_facts
+from comparison.cli.terminal import new_table
+from comparison.cli.user_models import add_models, user_models
+from comparison.evidence.tradeoff import growth
+from comparison.evidence.tradeoff.analysis import TradeOff
+from comparison.evidence.tradeoff.growth import Growth, MeasuredGrowth, Series, by_workers
+from comparison.evidence.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
+from comparison.evidence.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, Trade, TradeFile, load
+from comparison.runner.attempts import attempt
+from comparison.runner.output import destination, netcdf, publish, refuse_foreign_files
+from comparison.runner.processes import Pool, process_pool
+from comparison.runner.progress import wide_console
+from comparison.study.study import Study, refuse_same_names
+from comparison.surfaces.figures.file_names import figure_file
+from reference.problem import Scene, SceneError, load_scene
+from reference.support.command import UsageError
+
+DEFAULT = "fig3-I"
+COMMAND = "comparison.tradeoff"
+STARTING = 8.0  # s of a worker before its first task: imports, compiled code loaded
+MODELS = {REFERENCE, ENGINE, RUN, LEVEL, CONSTANT, SCIPY}  # what the workers ask
+TOLERANCE = 1e-3  # tolerance of a study; every setting has one of its own
+
+
+@command
+def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
+    """Measure the scenes of the command line; the exit code."""
+    parser = CommandParser(
+        "tradeoff", "Error of mu_i against compute time for every model and every numerical parameter."
+    )
+    parser.add_scenes(DEFAULT)
+    parser.add_out("where the files go")
+    parser.add_computing()
+    parser.add_argument(
+        "--growth",
+        action="store_true",
+        help="instead: cost against bodies, duration, phase pairs and workers, with slopes",
+    )
+    add_models(parser)
+    parser.add_argument("--quick", action="store_true", help="fewer points and values: under a minute")
+    options = parser.parse_args(argv)
+    number_of_jobs(options)  # refused before anything else is looked at
+    scenes = [_load_phased_scene(name) for name in options.scenes or [DEFAULT]]
+    refuse_same_names((scene.name, scene.name) for scene in scenes)
+    out = destination(options.out)
+    _load_trades(out)  # a file that is no trade is refused before anything is measured
+    written = [growth.FILE] if options.growth else [FILE, *(_values_file(each.name) for each in scenes)]
+    refuse_foreign_files(out, written)
+    console = wide_console()
+    if options.growth:
+        return _measure_growth(scenes[0], options, argv, out, console, executor)
+    measured = measure_trades(scenes, options, argv, console, executor)
+
+    def write() -> list[Path]:
+        trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
+        files = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
+        for each in measured:
+            name = _values_file(each.trade.scene)
+            values = attempt(name, partial(netcdf, each.values))
+            publish(out, {} if values is None else {name: values}, COMMAND)
+        return files
+
+    def show() -> None:
+        for each in measured:
+            print_trade(console, each.trade)
+
+    (file,) = write_and_show(out, write, show)
+    console.print(f"Trade: {file}, and SCENE-tradeoff.nc beside it.", soft_wrap=True)
+    return 0
+
+
+def _measure_growth(
+    scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
+) -> int:
+    begin, study = time.monotonic(), Study((scene,), 1, TOLERANCE)
+    tasks = Growth().tasks(study)
+    models = {task.argument.function[0] for task in tasks}
+    results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)
+    series = [*Growth().collect(study, None, results), by_workers(scene, process_pool)]
+    facts = run_facts("tradeoff", options, words, begin)
+    measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
+    write = partial(publish, out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
+    write_and_show(out, write, partial(print_growth, console, series))
+    console.print(f"Growth: {out / growth.FILE}", soft_wrap=True)
+    return 0
+
+
+def print_growth(console: Console, series: Sequence[Series]) -> None:
+    """A row for every value, with the slope of its series in the last one."""
+    table = new_table("quantity", "model", "value", "s", "slope")
+    for each in series:
+        slope = "" if each.slope is None else f"{each.slope:.2f} ± {each.uncertainty:.2f}"
+        for value, seconds in zip(each.values, each.seconds):
+            known = "no answer" if seconds is None else f"{seconds:.3g}"
+            last = value == each.values[-1]
+            table.add_row(each.quantity, each.model, f"{value:g}", known, slope if last else "")
+    console.print(table)
+
+
+def _load_phased_scene(name: str) -> Scene:
+    scene = load_scene(name)
+    if scene.recorded:
+        rule = "reference solutions need phases, which a recorded motion has not: give a scene of two frequencies"
+        raise SceneError(name, "excitation.record", scene.name, rule)
+    stated = scene.model_dump()["isolator"]["friction"]
+    for key in ("load_exponent", "heating") if isinstance(stated, dict) else ():
+        if value := stated[key]:
+            rule = "the solvers outside the package know no friction that depends on load or heat: remove this key"
+            raise SceneError(name, f"isolator.friction.{key}", value, rule)
+    return scene
+
+
+def _load_trades(out: Path) -> list[Trade]:
+    """The trades that are in the folder. Raises UsageError for a file that is none."""
+    try:
+        return load(out) or []
+    except (OSError, ValueError) as error:
+        raise UsageError(str(error)) from None
+
+
+def measure_trades(
+    scenes: Sequence[Scene], options: argparse.Namespace, words: Sequence[str], console: Console, executor: Pool
+) -> list[MeasuredTrade]:
+    """The trades of the scenes with all that is known of their run; what is stored is not measured again."""
+    supplied = user_models(options.model, options.model_limit, options.scheduler)
+    tradeoff, study = TradeOff(options.quick, supplied), Study(tuple(scenes), 1, TOLERANCE)
+    tasks, width = tradeoff.tasks(study), number_of_jobs(options)
+    about = STARTING + sum(task.seconds for task in tasks) / width
+    for scene in scenes:
+        console.print(f"{scene.title} ({scene.name})")
+    console.print(f"Unless they are stored: about {about:.0f} s with {width} workers.")
+    begin = time.monotonic()
+    results = compute_tasks("tradeoff", options, words, tasks, MODELS, console, executor)
+    more = {"quick": options.quick, "stored_before": results.parts[tradeoff.stage].stored}
+    run = run_facts("tradeoff", options, words, begin) | more
+    attributes = {"command": run["command"], **run["provenance"]}
+    return [
+        MeasuredTrade(replace(measured.trade, run=run), measured.values.assign_attrs(attributes))
+        for measured in tradeoff.collect(study, None, results)
+    ]
+
+
+def _values_file(scene: str) -> str:
+    return figure_file(scene, "tradeoff", ending=".nc")
+
+
+def print_trade(console: Console, trade: Trade) -> None:
+    """The fronts: what to take for which accuracy; and how each reference solution was checked."""
+    for question in trade.questions:
+        console.print(f"{trade.scene}, {question.title}: {question.points} phase pairs", style="bold")
+        console.print(
+            f"  reference solution: {question.reference_solution}; {'; '.join(question.checks)}", soft_wrap=True
+        )
+        table = new_table("on the Pareto front of a mu", "value", "s per point", "median error", "95 %")
+        for entry in sorted(trade.of(question.key), key=lambda setting: setting.seconds):
+            if any(entry.pareto_front):
+                sizes = ("  ".join(f"{part:.0e}" for part in parts) for parts in (entry.median, entry.most))
+                value = f"{entry.value:.0e} {entry.unit}".strip()
+                table.add_row(entry.method, value, f"{entry.seconds:.4f}", *sizes)
+        console.print(table)

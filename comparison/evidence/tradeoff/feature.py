@@ -1,0 +1,135 @@
+"""Speed for accuracy: in the report."""
+
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+from typing import Any
+
+from comparison.evidence.tradeoff import growth, trade
+from comparison.evidence.tradeoff.growth import MeasuredGrowth, Series
+from comparison.evidence.tradeoff.trade import Answered, Entry, Trade
+from comparison.report.feature import Feature, ResultField
+from comparison.report.panels import panel
+from comparison.report.plots import MAX_CURVES, Panel
+from comparison.report.section import Report, Section
+from comparison.wording import scientific
+
+TARGETS = 1e-2, 1e-3, 1e-4, 1e-6  # relative errors for which the trade is put into words
+
+
+def tradeoff_panels(trade: Trade) -> list[Panel]:
+    """One panel for each question, of the platform and of the last body."""
+    bodies = sorted({0, trade.bodies - 1})
+    return [_tradeoff_panel(trade, question, body) for question in trade.questions for body in bodies]
+
+
+def word_trades(trades: Sequence[Trade]) -> str:
+    """Return what was measured: speed has no verdict."""
+    settings = sum(len(trade.entries) for trade in trades)
+    return f"{settings} settings measured in {len(trades)} scene{'' if len(trades) == 1 else 's'}; speed has no verdict"
+
+
+def tradeoff_answers(trade: Trade) -> list[dict[str, str]]:
+    """For each question, which method meets which error in the least time: one that estimates its error, if any."""
+    answers = []
+    for question in trade.questions:
+        parts = []
+        for target in TARGETS:
+            listed = [entry for entry in trade.of(question.key) if entry.complete and not entry.model_error]
+            able = [entry for entry in listed if all(size is not None and size <= target for size in entry.most)]
+            estimated = [entry for entry in able if entry.controlled]
+            if not able:
+                parts.append(f"for {target:.0e} none")
+                continue
+            best = min(estimated or able, key=lambda entry: entry.seconds)
+            time = f"{1e3 * best.seconds:.3g} ms{'' if estimated else ', no error estimate'}"
+            parts.append(f"for {target:.0e} ask {best.method}, {best.setting} ({time})")
+        answers.append({"title": question.title, "text": "; ".join(parts) + "."})
+    return answers
+
+
+def growth_panels(listed: Sequence[Series]) -> list[Panel]:
+    """One panel for each quantity that grows: seconds over it, the slopes in the legend."""
+    panels: list[Panel] = []
+    titles = list(dict.fromkeys(each.model for each in listed))
+    for quantity, group in groupby(listed, key=lambda each: each.quantity):
+        curves = list(group)
+        series: list[dict[str, Any]] = []
+        for each in curves:
+            slope = "" if each.slope is None else f": slope {each.slope:.2f} ± {each.uncertainty:.2f}"
+            points = {"x": list(each.values), "y": list(each.seconds), "marks": True}
+            series.append({"name": f"{each.model}{slope}", **points, "color": titles.index(each.model)})
+        wall = quantity == "workers"
+        time = "wall time, s" if wall else "processor time, s"
+        longest = max((value for each in curves for value in each.seconds if value is not None), default=1.0)
+        label = f"{time} over {quantity}; " + "; ".join(str(line["name"]) for line in series)
+        x = {"title": f"{quantity}, {curves[0].unit}".rstrip(", "), "log": True}
+        y = {"title": time, "range": [0.0, 1.1 * longest]} if wall else {"title": time, "log": True}
+        panels.append(panel(quantity, label, x, y, series))
+    return panels
+
+
+def _tradeoff_panel(trade: Trade, question: Answered, body: int) -> Panel:
+    curves = {
+        method: known
+        for method, entries in trade.methods(question.key).items()
+        if (known := [entry for entry in entries if entry.most[body] is not None and entry.complete])
+    }
+
+    def rank(method: str) -> tuple[bool, int]:
+        return curves[method][0].model_error, -sum(any(entry.pareto_front[body:][:1]) for entry in curves[method])
+
+    shown = sorted(curves, key=rank)[:MAX_CURVES]
+    title = f"{question.title}, mu_{body + 1}"
+    return panel(
+        title,
+        f"{trade.scene}, {title}: relative error over processor time; " + ", ".join(shown),
+        {"title": "processor time per point, s", "log": True},
+        {"title": "relative error, 95 %", "log": True},
+        [_curve(method, curves[method], body, number) for number, method in enumerate(shown)],
+        bands=[{"from": 1e-30, "to": question.error}] if question.error else [],
+        height=260,
+    )
+
+
+def _curve(method: str, entries: Sequence[Entry], body: int, number: int) -> dict[str, Any]:
+    times = [f"{scientific(entry.most[body] or 0.0)} in {1e3 * entry.seconds:.3g} ms" for entry in entries]
+    x, y = [entry.seconds for entry in entries], [max(entry.most[body] or 0.0, 1e-16) for entry in entries]
+    titles = [f"{method}, {entry.setting}: {time}" for entry, time in zip(entries, times)]
+    line: dict[str, Any] = {"name": method, "x": x, "y": y, "marks": True, "titles": titles, "color": number}
+    return {**line, "dash": "5 3"} if entries[0].model_error else line
+
+
+TRADES = ResultField(
+    "tradeoff",
+    list[Trade],
+    "error against compute time for every model and parameter; null unless phase-resonance tradeoff left it "
+    "beside the report",
+    load=trade.load,
+)
+GROWTH = ResultField(
+    "growth",
+    MeasuredGrowth,
+    "how the cost grows with bodies, duration, phase pairs and workers; null unless phase-resonance tradeoff "
+    "--growth left it beside the report",
+    load=growth.STORED.load,
+)
+
+
+def _context(report: Report) -> Mapping[str, Any]:
+    measured = GROWTH.get(report.results)
+    panels, digests = growth_panels(measured.series if measured else ()), {s.digest for s in report.results.scenes}
+    functions = {"tradeoff_panels": tradeoff_panels, "tradeoff_answers": tradeoff_answers}
+    return {**functions, "growth_panels": panels, "digests": digests}
+
+
+FEATURE = Feature(
+    "tradeoff",
+    (TRADES, GROWTH),
+    section=Section(
+        "Speed for accuracy",
+        "phase-resonance tradeoff SCENE makes it, beside the report; the next run of the study shows it",
+        _context,
+        verifies=True,
+        verdict=lambda results: word_trades(TRADES.get(results) or ()),
+    ),
+)

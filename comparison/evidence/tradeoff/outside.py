@@ -1,0 +1,124 @@
+"""
+The outside measure: solvers of SciPy on the exact equations with friction linear below v_reg, the right-hand side
+compiled by numba. They know nothing of rest, stops or corners.
+"""
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike
+from scipy.integrate import solve_ivp
+
+from comparison.result_types import Array
+from reference.problem import GRAVITY, Scene, checked_phases, exponents, ground_acceleration, ground_peak
+from reference.solver.equations import exact_acceleration
+from reference.solver.system import pack
+
+ABSOLUTE = 1e-2  # absolute tolerance of a step, m and m/s, over its relative one
+SAMPLES = 2001  # samples of the motion besides the solver's own steps, to find where the peaks are
+NEAR = 1e-3  # share of the peak: samples as high as that are looked at again, FINER times as closely
+FINER = 50
+ALWAYS_LINEAR = 1e6  # m/s, corner of the lubricated law mu = f_c |v|: above any speed
+
+
+@njit  # type: ignore[untyped-decorator]
+def slope(t: float, y: Array, system: Any, s: Any, phase: Array, corner: float) -> Array:
+    """Time derivative of y = (x, v), each (N, 2), under (3.9)-(3.13) and (4.4), friction linear below `corner`, m/s."""
+    below, above, radius, friction = system.below, system.above, system.radius, system.friction
+    count = len(below)
+    z = np.exp(s * t + 1j * phase)
+    u = (system.amplitudes[:, 0] * z[0] + system.amplitudes[:, 1] * z[1]).real
+    state = np.ascontiguousarray(y)  # Radau passes columns of a matrix
+    x, v = state[: 2 * count].reshape((count, 2)), state[2 * count :].reshape((count, 2))
+    px, py, vx, vy = x[0, 0], x[0, 1], v[0, 0], v[0, 1]
+    speed2 = vx * vx + vy * vy + (px * vx + py * vy) ** 2 / (radius * radius - px * px - py * py)
+    speed = np.sqrt(speed2)
+    if system.rate > 0.0:
+        friction -= system.rise * np.expm1(-system.rate * speed)
+    factor = friction / max(speed, corner)
+    out = np.empty(4 * count)
+    out[: 2 * count] = y[2 * count :]
+    acceleration = out[2 * count :].reshape((count, 2))
+    for i in range(count):
+        for axis in range(2):
+            pull = -u[axis]
+            if i > 0:
+                pull -= below[i, axis] * (x[i, axis] - x[i - 1, axis])
+                pull -= system.damping_below[i, axis] * (v[i, axis] - v[i - 1, axis])
+            if i + 1 < count:
+                pull += above[i, axis] * (x[i + 1, axis] - x[i, axis])
+                pull += system.damping_above[i, axis] * (v[i + 1, axis] - v[i, axis])
+            acceleration[i, axis] = pull
+    ax, ay, _, _ = exact_acceleration(
+        px, py, acceleration[0, 0], acceleration[0, 1], GRAVITY + u[2], speed2, factor * vx, factor * vy,
+        system.mass_ratio, radius,
+    )  # fmt: skip
+    acceleration[0, 0], acceleration[0, 1] = ax, ay
+    return out
+
+
+@njit  # type: ignore[untyped-decorator]
+def slopes(times: Array, states: Array, constants: Any) -> Array:
+    """`slope` at times (T,) and states (T, 4 N)."""
+    out = np.empty_like(states)
+    for n in range(len(times)):
+        out[n] = slope(times[n], states[n], *constants)
+    return out
+
+
+def constants_of(scene: Scene, phase: ArrayLike, v_reg: float) -> tuple[Any, ...]:
+    """Return what `slope` is called with after t and y."""
+    system = pack(scene, False, v_reg)
+    if scene.lubricated:
+        system, v_reg = system._replace(friction=system.friction * ALWAYS_LINEAR), ALWAYS_LINEAR
+    return system, exponents(scene), np.asarray(phase, dtype=float), v_reg
+
+
+def motion(scene: Scene, phase: ArrayLike, method: str, tolerance: float, v_reg: float) -> tuple[Array, Array]:
+    """Instants, s, close near the peaks, and states (T, 4 N) of a motion by SciPy. Raises ValueError if it fails."""
+    run = solve_ivp(
+        slope, (0.0, scene.duration), np.zeros(4 * len(scene.bodies)), method, dense_output=True,
+        args=constants_of(scene, phase, v_reg), rtol=tolerance, atol=tolerance * ABSOLUTE,
+    )  # fmt: skip
+    if not run.success:
+        raise ValueError(f"{method}: {run.message}")
+    times = np.union1d(run.t, np.linspace(0.0, scene.duration, SAMPLES))
+
+    def states(instants: Array) -> Array:
+        return np.ascontiguousarray(run.sol(instants).T)
+
+    high = accelerations(scene, phase, times, states(times), v_reg)
+    near = np.flatnonzero((high >= (1.0 - NEAR) * high.max(axis=0)).any(axis=1))
+    before, after = times[np.maximum(near - 1, 0)], times[np.minimum(near + 1, len(times) - 1)]
+    closer = np.linspace(before, after, 2 * FINER + 1)
+    times = np.union1d(times, closer)
+    return times, states(times)
+
+
+def accelerations(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
+    """Sizes of the absolute accelerations of a motion, (T, N)."""
+    constants, count = constants_of(scene, phase, v_reg), len(scene.bodies)
+    a = slopes(times, states, constants)[:, 2 * count :].reshape(-1, count, 2)
+    x, v = states[:, :2], states[:, 2 * count : 2 * count + 2]
+    depth = np.sqrt(scene.radius**2 - (x**2).sum(axis=1))
+    vz = (x * v).sum(axis=1) / depth
+    vertical = ((v**2).sum(axis=1) + vz**2 + (x * a[:, 0]).sum(axis=1)) / depth
+    ground = ground_acceleration(scene, phase, times)
+    total = a + ground[:, None, :2]
+    size: Array = np.sqrt((total**2).sum(axis=2) + (vertical + ground[:, 2])[:, None] ** 2)
+    return size
+
+
+def factors(scene: Scene, phase: ArrayLike, times: Array, states: Array, v_reg: float) -> Array:
+    """mu_i (N,) of a motion."""
+    peaks: Array = (
+        accelerations(scene, phase, times, states, v_reg).max(axis=0) / ground_peak(scene, np.reshape(phase, (1, 2)))[0]
+    )
+    return peaks
+
+
+def factors_by_scipy(scene: Scene, phases: ArrayLike, method: str, tolerance: float, v_reg: float) -> Array:
+    """mu (M, N) by `scipy.integrate.solve_ivp`. Raises ValueError if that fails at a phase pair."""
+    pairs: Array = checked_phases(phases)
+    return np.array([factors(scene, phase, *motion(scene, phase, method, tolerance, v_reg), v_reg) for phase in pairs])

@@ -1,0 +1,169 @@
+"""
+What is measured: questions, each with a reference solution, and the settings of methods that answer them.
+
+A reference solution is a run at a tolerance at least 100 times tighter than any setting that is compared with it.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from comparison.evidence.tradeoff.trade import Stated
+from comparison.study.models import V_REG_TEXT, Model, dry, has_spatial_data
+from comparison.study.user_models import engine_of
+from reference.problem import Scene
+from reference.problem.readings import DEFAULT_V_REG
+
+REFERENCE, ENGINE = "reference:amplification", "multibody:amplification"
+RUN, LEVEL, CONSTANT = (
+    f"comparison.evidence.tradeoff.single_runs:{name}" for name in ("reference_run", "engine_run", "constant_step_run")
+)
+SCIPY = "comparison.evidence.tradeoff.outside:factors_by_scipy"
+
+TIGHT = 1e-10  # the tightest the reference takes
+SPATIAL_TIGHT = 1e-5
+STEPS = {
+    "generalized alpha": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
+    "trapezoidal": (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4),
+    "RK44": (4e-4, 2e-4, 1e-4),
+    "velocity Verlet": (4e-4, 2e-4, 1e-4, 5e-5),
+}  # s
+DRY_SPEEDS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # m/s, v_reg
+
+PENETRATION = "penetration under the weight, over rho"
+
+Settings = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Question:
+    """One panel. reference_solution: its function and settings. points, quick: phase pairs of the sample."""
+
+    key: str
+    title: str
+    reference_solution: tuple[str, Settings]
+    points: int
+    quick: int
+    seconds: float  # s of the reference solution, per point, about
+
+
+@dataclass(frozen=True)
+class Setting(Stated):
+    """
+    One point of a diagram. function: answers (scene, phases, **settings). against: reference solution of its own in
+    place of the question's. seconds: per point, about.
+    """
+
+    function: str
+    settings: Settings
+    seconds: float
+    against: tuple[str, Settings] | None = None
+
+
+_LAWS: Mapping[str, Settings] = {
+    "exact": {},
+    "small": {"equations": "small"},
+    "regularised": {"regularization": DEFAULT_V_REG},
+}  # settings of the equations, by question
+_SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "tolerance": SPATIAL_TIGHT}
+_TIGHT = {question: (REFERENCE, {**law, "tolerance": TIGHT}) for question, law in _LAWS.items()}
+QUESTIONS = (
+    Question("exact", "exact equations, supremum", _TIGHT["exact"], 48, 12, 0.006),
+    Question("small", "small equations, supremum", _TIGHT["small"], 48, 12, 0.006),
+    Question("regularised", f"exact equations, v_reg = {V_REG_TEXT}", _TIGHT["regularised"], 12, 3, 0.01),
+    Question("spatial", f"spatial engine model, v_reg = {V_REG_TEXT}", (ENGINE, _SPATIAL), 6, 2, 3.0),
+)
+
+
+def asked(scene: Scene) -> list[Question]:
+    """The questions that a scene allows."""
+    return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
+
+
+def settings(scene: Scene, quick: bool = False) -> list[Setting]:
+    """Every setting that is measured for a scene; quick: every other one of the expensive ones."""
+    keys = {question.key for question in asked(scene)}
+    every = [*_reference(scene), *_scipy(quick), *_levels(quick), *_constant(quick)]
+    return [setting for setting in every if setting.question in keys]
+
+
+def _curve(
+    question: str, method: str, parameter: str, call: tuple[str, str, Settings], values: Sequence[float],
+    seconds: float | Sequence[float], unit: str = "", controlled: bool = False, model_error: bool = False,
+    against: tuple[str, Settings] | None = None,
+) -> list[Setting]:  # fmt: skip
+    """The settings of a curve. call: function, the key of it that has each of the values, its other settings."""
+    function, key, others = call
+    stated = question, method, parameter, unit
+    return [
+        Setting(*stated, value, controlled, model_error, function, {**others, key: value}, time, against)
+        for value, time in zip(values, np.broadcast_to(seconds, len(values)).tolist())
+    ]
+
+
+def _reference(scene: Scene) -> Iterator[Setting]:
+    powers = [10.0**-power for power in range(1, 9)]
+    for question, law in _LAWS.items():
+        held, single = (REFERENCE, "tolerance", law), (RUN, "inside", law)
+        method = "reference, two runs and an estimate"
+        yield from _curve(question, method, "tolerance of mu", held, powers[1:], 0.003, controlled=True)
+        yield from _curve(question, "reference, one run", "tolerance inside a step", single, powers, 0.0015)
+    call = REFERENCE, "regularization", {"tolerance": 1e-6}
+    for speed in DRY_SPEEDS if dry(scene) else ():
+        faster = REFERENCE, {"cutoff": speed, "tolerance": TIGHT}
+        for what, against in (("supremum", None), ("peak faster than v_reg", faster)):
+            method = f"v_reg, model error against the {what}"
+            yield from _curve("exact", method, "v_reg", call, [speed], 0.004, "m/s", False, True, against)
+
+
+def _scipy(quick: bool) -> Iterator[Setting]:
+    lsoda, others = ((4, 10), (4, 8)) if quick else ((3, 4, 6, 8, 10), (3, 4, 6, 8))
+    # LSODA checks the reference solution, too
+    for method, powers, seconds in (("LSODA", lsoda, 0.15), ("Radau", others, 1.0), ("DOP853", others, 1.0)):
+        call = SCIPY, "tolerance", {"method": method, "v_reg": DEFAULT_V_REG}
+        values = [10.0**-power for power in powers]
+        yield from _curve("regularised", f"SciPy {method}", "relative tolerance of a step", call, values, seconds)
+
+
+def _levels(quick: bool) -> Iterator[Setting]:
+    """The engine as the package runs it: error-controlled, and single runs with one parameter changed."""
+    parameters = (
+        ("step", "largest step over the usual one", "step", (8.0, 4.0, 2.0, 1.0, 0.5, 0.25)),
+        ("contact compliance", PENETRATION, "penetration", (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8)),
+        ("Newton", "relative tolerance of Newton's iteration", "newton", (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)),
+    )
+    for question, model, tolerances, dearer in (
+        ("regularised", "translational", {1e-2: 0.35, 1e-3: 0.35, 1e-4: 1.0, 1e-5: 1.8}, 1.0),
+        ("spatial", "spatial", {1e-2: 0.35, 1e-3: 0.35}, 1.7),
+    ):
+        law, method = {"model": model, "regularization": DEFAULT_V_REG}, f"{model} engine, two levels and an estimate"
+        seconds, held = [dearer * each for each in tolerances.values()], (ENGINE, "tolerance", law)
+        yield from _curve(question, method, "tolerance of mu", held, list(tolerances), seconds, controlled=True)
+        for name, parameter, key, values in parameters:
+            method, few = f"{model} engine, one run: {name}", values[:: 3 if quick else 1]
+            yield from _curve(question, method, parameter, (LEVEL, key, law), few, 0.25 * dearer)
+
+
+def _constant(quick: bool) -> Iterator[Setting]:
+    for solver, steps in STEPS.items():
+        call, few = (CONSTANT, "step", {"solver": solver, "v_reg": DEFAULT_V_REG}), steps[:: 2 if quick else 1]
+        seconds = [0.25e-3 / step for step in few]
+        yield from _curve("regularised", f"Exudyn, {solver}", "constant step", call, few, seconds, "s")
+
+
+def user_settings(models: Sequence[Model]) -> list[Setting]:
+    """Engines of the user at the tolerances that they take, or as they are."""
+    measured = []
+    for model in models:
+        law = {key: value for key, value in model.settings.items() if key != "engine"}
+        question, against = str(model.like), None
+        if question not in {each.key for each in QUESTIONS}:
+            question, against = "exact", (REFERENCE, {**law, "tolerance": TIGHT})
+        parameter, values = "as it is, beside a tolerance of", [1e-3]
+        if "tolerance" in engine_of(model.settings).get("names", ""):
+            parameter, values = "tolerance of mu", [1e-2, 1e-3, 1e-4, 1e-5]
+        call = model.amplification, "tolerance", model.settings
+        measured += _curve(question, f"user model: {model.title}", parameter, call, values, 1.0, against=against)
+    return measured

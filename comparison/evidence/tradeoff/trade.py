@@ -1,0 +1,172 @@
+"""What was measured, as data: errors and compute time of every setting, the fronts, and the files they are kept in."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+import xarray as xr
+
+from comparison.json_file import StoredFile
+from comparison.result_types import Array, require, require_size, result
+from reference.problem.scene import MAX_BODIES
+
+FILE = "tradeoff.json"
+SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"
+MEANINGS = {
+    "mu": "amplification factor (5.1)",
+    "reference_solution": "the same by the reference solution of the question",
+    "error_estimate": "estimated absolute error of mu",
+}
+
+
+@result
+class Stated:
+    """What is known of a setting before it is measured."""
+
+    question: Annotated[str, "key of the question that it answers"]
+    method: Annotated[str, "the curve that it belongs to"]
+    parameter: Annotated[str, "what varies along the curve"]
+    unit: Annotated[str, "unit of the value; empty for a pure number"]
+    value: Annotated[float, "value of the parameter"]
+    controlled: Annotated[bool, "whether an error estimate comes with it"]
+    model_error: Annotated[bool, "whether its error is that of another model, not of numerics"]
+
+    @property
+    def setting(self) -> str:
+        """Parameter, value and unit."""
+        return f"{self.parameter} {self.value:.3g} {self.unit}".strip()
+
+
+@result
+class Entry(Stated):
+    """One setting of a method, measured."""
+
+    points: Annotated[int, "phase pairs asked for"]
+    answered: Annotated[int, "phase pairs with a value"]
+    seconds: Annotated[float, "processor time per point, s"]
+    median: Annotated[Sequence[float | None], "median relative error of each mu; null without a value"]
+    most: Annotated[Sequence[float | None], "relative error of each mu that 95 % of the points meet; null without"]
+    error_estimate: Annotated[Sequence[float | None], "estimate of it that 95 % of the points meet; null without"]
+    step: Annotated[float | None, "mean step, s; null where the method does not tell it"] = None
+    pareto_front: Annotated[Sequence[bool], "by mu: whether no other method is as accurate (95 %) in less time"] = ()
+    error_message: Annotated[str, "what went wrong, or empty"] = ""
+
+    @property
+    def complete(self) -> bool:
+        """Return whether it has a value at every point."""
+        return self.answered == self.points
+
+
+@result
+class Answered:
+    """One question with its reference solution."""
+
+    key: Annotated[str, "key of the question"]
+    title: Annotated[str, "equations and law of friction"]
+    points: Annotated[int, "phase pairs of the sample"]
+    reference_solution: Annotated[str, "what the errors are against"]
+    error: Annotated[float | None, "largest relative error estimate of the reference solution; null without an answer"]
+    checks: Annotated[Sequence[str], "how the reference solution was checked"]
+
+
+@result
+class Trade:
+    """The measured trade of one scene."""
+
+    scene: Annotated[str, "name of the scene"]
+    title: Annotated[str, "title of the scene"]
+    digest: Annotated[str, "hash of the scene"]
+    bodies: Annotated[int, "number of bodies"]
+    questions: Annotated[Sequence[Answered], "one per panel of the diagram"]
+    entries: Annotated[Sequence[Entry], "one per setting"]
+    run: Annotated[Mapping[str, Any], "command, times, provenance"]
+
+    def __post_init__(self) -> None:
+        require(1 <= self.bodies <= MAX_BODIES, f"bodies must be from 1 to {MAX_BODIES}, not {self.bodies}")
+        for each in self.entries:
+            for what, values in (("median", each.median), ("most", each.most), ("error_estimate", each.error_estimate)):
+                require_size(what, values, self.bodies)
+            known = any(each.question == question.key for question in self.questions)
+            require(known, f"question {each.question[:40]!r} of an entry is none of the questions")
+
+    def of(self, question: str) -> list[Entry]:
+        """The entries of one question, in the order in which they were listed."""
+        return [entry for entry in self.entries if entry.question == question]
+
+    def methods(self, question: str) -> dict[str, list[Entry]]:
+        """The curves of one question, from the cheapest value to the dearest."""
+        curves: dict[str, list[Entry]] = {}
+        for entry in self.of(question):
+            curves.setdefault(entry.method, []).append(entry)
+        return curves
+
+
+def quantile(errors: Array, share: float) -> float | None:
+    """The error that a share of the points does not exceed: one that occurred; None if no error is known."""
+    known = errors[np.isfinite(errors)]
+    return float(np.quantile(known, share, method="higher")) if len(known) else None
+
+
+def unbeaten(mine: tuple[float, float], others: Sequence[tuple[float, float]]) -> bool:
+    """Return whether nothing else is at least as good in cost and error and better in one."""
+    beaten = any(other != mine and other[0] <= mine[0] and other[1] <= mine[1] for other in others)
+    return math.isfinite(sum(mine)) and not beaten
+
+
+def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
+    """The entries with `pareto_front` filled in, compared with those that answer their question at every point."""
+    complete = [entry for entry in entries if entry.complete and not entry.model_error]
+
+    def pair(entry: Entry, body: int) -> tuple[float, float]:
+        error = entry.most[body]
+        return entry.seconds, math.inf if error is None else error
+
+    def front(entry: Entry, body: int) -> bool:
+        rivals = [pair(other, body) for other in complete if other.question == entry.question]
+        return entry in complete and unbeaten(pair(entry, body), rivals)
+
+    return [replace(entry, pareto_front=tuple(front(entry, body) for body in range(bodies))) for entry in entries]
+
+
+@result
+class TradeFile:
+    """Content of the file."""
+
+    schema: Annotated[Literal["phase-resonance/tradeoff"], "what the file is"]
+    trades: Annotated[list[Trade], "one per scene"]
+
+
+STORED = StoredFile(FILE, TradeFile, "a measured trade", "phase-resonance tradeoff")
+
+
+def load(folder: Path) -> list[Trade] | None:
+    """The trades that a command left in a folder, as `StoredFile.load`."""
+    content = STORED.load(folder)
+    return None if content is None else content.trades
+
+
+@dataclass(frozen=True)
+class MeasuredTrade:
+    """One scene: the diagram, and every value behind it by setting, point and body."""
+
+    trade: Trade
+    values: xr.Dataset
+
+
+def labeled(entries: Sequence[Entry], values: Mapping[str, Sequence[Array]], phases: Array) -> xr.Dataset:
+    """Every value (P, N) by setting, point and body; a question with fewer points leaves the rest NaN."""
+    axes = ("setting", "point", "body")
+    variables: dict[str, Any] = {}
+    for name, rows in values.items():
+        filled = np.full((len(rows), len(phases), rows[0].shape[1]), np.nan)
+        for row, value in zip(filled, rows):
+            row[: len(value)] = value
+        variables[name] = axes, filled, {"long_name": MEANINGS[name], "units": "1"}
+    variables["seconds"] = "setting", [entry.seconds for entry in entries], {"units": "s", "long_name": "per point"}
+    for name in ("value", "question", "method", "parameter", "unit"):
+        variables[name] = "setting", [getattr(entry, name) for entry in entries]
+    alpha1, alpha2 = (("point", phases[:, axis], {"units": "rad"}) for axis in (0, 1))
+    return xr.Dataset(variables, {"body": np.arange(1, filled.shape[2] + 1), "alpha1": alpha1, "alpha2": alpha2})

@@ -1,0 +1,29 @@
+"""The panels of trends: what a difference falls with."""
+
+import math
+from collections.abc import Sequence
+from itertools import groupby
+from typing import Any
+
+from comparison.evidence.trends import Trend
+from comparison.report.panels import panel
+from comparison.report.plots import MAX_CURVES, Panel, plain
+
+
+def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:
+    """One log-log panel for each scene and parameter: median difference over it, the fitted slopes in the legend."""
+    panels = []
+    ordered = sorted(trends, key=lambda trend: (trend.scene, trend.parameter[-1]))
+    for (scene, values), group in groupby(ordered, key=lambda trend: (trend.scene, tuple(trend.parameter))):
+        rows = list(group)
+        series: list[dict[str, Any]] = []
+        for number, trend in enumerate(rows[:MAX_CURVES]):
+            slope = f"{trend.exponent:.2f} ± {trend.uncertainty:.2f}" if math.isfinite(trend.exponent) else "none"
+            points = {"x": list(values), "y": plain(trend.medians), "color": number, "marks": True}
+            series.append({"name": f"μ_{trend.body}, {trend.what}: slope {slope}", **points})
+        axis = parameter or ("penetration, ρ" if "contact" in rows[0].what else "v_reg, m/s")
+        label = f"{scene}: median relative difference over {axis}; " + "; ".join(line["name"] for line in series)
+        axes = {"title": axis, "log": True}, {"title": "median relative difference", "log": True}
+        cut = f", {MAX_CURVES} of {len(rows)} differences: the table has all" if len(rows) > MAX_CURVES else ""
+        panels.append(panel(f"{scene}{cut}", label, *axes, series))
+    return panels

@@ -1,0 +1,121 @@
+"""
+How a difference falls with what causes it: an exponent fitted through values that have error bars.
+
+A value enters the fit only where it is known to a fifth of itself: a slope through noise is not a slope. All phase
+pairs of a surface share one exponent and have a size of their own. Its uncertainty is two standard errors, of the
+scatter about the line and of the error bars together.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from comparison.result_types import Array, Number, Text, result
+from comparison.surfaces.model_difference import RESOLVED
+from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, Verdict, count_verdicts, word_counts
+
+NONE: Array = np.empty((0, 1))  # sizes and errors where nothing has a value
+KNOWN = 1.0 / RESOLVED  # largest error of a value that enters the fit, as its fraction
+SETTLED = 0.25  # largest uncertainty of an exponent that says something
+SLOW = 0.3  # exponent below which a difference is no smaller at any value in use
+AGREES = 0.15  # allowed distance of an exponent from theory: the largest parameter is not yet in the asymptotic range
+
+
+class Slope(NamedTuple):
+    """size ~ parameter^exponent, +- uncertainty, NaN where too few values are known; points used, of phase pairs."""
+
+    exponent: float
+    uncertainty: float
+    points: int
+    pairs: int
+
+
+@result
+class Trend:
+    """How a difference falls with what causes it."""
+
+    scene: Annotated[Text, "name of the scene"]
+    body: Annotated[int, "number of the body; 1 is the platform"]
+    what: Annotated[str, "the two things that differ"]
+    parameter: Annotated[tuple[float, ...], "values of the parameter, falling"]
+    medians: Annotated[tuple[Number, ...], "median absolute relative difference over the phase pairs, for every value"]
+    exponent: Number
+    """exponent of the power law fitted to the differences above their errors; null without enough of them"""
+    uncertainty: Annotated[Number, "of the exponent"]
+    points: Annotated[int, "differences in the fit"]
+    pairs: Annotated[int, "phase pairs that they are of"]
+    expected: Annotated[float | None, "exponent that theory gives, or null"]
+    verdict: Annotated[Text, "what the fit allows to say"]
+
+
+def fit_slope(parameter: Sequence[float], sizes: Array, errors: Array) -> Slope:
+    """One exponent for all rows of sizes (P, S) with absolute errors (P, S), over the parameter (S,)."""
+    known = np.isfinite(sizes) & (errors <= KNOWN * np.abs(sizes)) & (sizes != 0.0)
+    rows = np.flatnonzero(known.sum(axis=1) > 1)
+    points = int(known[rows].sum())
+    freedom = points - len(rows) - 1
+    if freedom < 1:
+        return Slope(np.nan, np.nan, points, len(rows))
+    parts = []
+    for row in rows:
+        size = np.abs(sizes[row, known[row]])
+        logarithms = np.log([np.asarray(parameter)[known[row]], size])
+        parts.append([*(logarithms - logarithms.mean(axis=1, keepdims=True)), errors[row, known[row]] / size])
+    along, up, noise = (np.concatenate(column) for column in zip(*parts))
+    spread = float(along @ along)
+    exponent = float(along @ up) / spread
+    scatter = float(((up - exponent * along) ** 2).sum()) / freedom / spread
+    carried = float(((along * noise) ** 2).sum()) / spread**2
+    return Slope(exponent, 2.0 * float(np.sqrt(scatter + carried)), points, len(rows))
+
+
+def trend(
+    scene: str,
+    body: int,
+    what: str,
+    parameter: Sequence[float],
+    sizes: Array,
+    errors: Array,
+    expected: float | None,
+    error_message: str = "",
+) -> Trend:
+    """A trend from signed sizes and their errors, (P, S), NaN without an answer; error_message: what went wrong."""
+    slope = fit_slope(parameter, sizes, errors)
+    columns = [column[np.isfinite(column)] for column in np.abs(sizes).T] if len(sizes) else [sizes] * len(parameter)
+    medians = tuple(float(np.median(column)) if column.size else math.nan for column in columns)
+    return Trend(
+        scene, body, what, tuple(parameter), medians, *slope, expected, error_message or _verdict(slope, expected)
+    )
+
+
+def word_trends(trends: Sequence[Trend]) -> str:
+    """Return how many exponents that theory gives are met, and the first that is not."""
+    expected = [each for each in trends if each.expected is not None]
+    verdicts = {id(each): _judge(each) for each in expected}
+    missed = [each for each in expected if verdicts[id(each)] == NOT_MET]
+    where = ""
+    if missed:
+        each = missed[0]
+        found = f"{each.exponent:.2f} ± {each.uncertainty:.2f} for {each.expected:g}"
+        where = f"{each.scene}, body {each.body}, {each.what}, {found}"
+    words = word_counts(count_verdicts(verdicts.values()), "expected exponent")
+    return f"{words} (first: {where})" if where else words
+
+
+def _judge(each: Trend) -> Verdict:
+    if each.verdict == f"like the power {each.expected:g}":
+        return MET
+    return NOT_MET if each.verdict == f"not like the power {each.expected:g}" else NOT_COMPARED
+
+
+def _verdict(slope: Slope, expected: float | None) -> str:
+    if not np.isfinite(slope.exponent):
+        return "within the error bars: no slope can be told"
+    if slope.uncertainty > SETTLED:
+        return "no single slope: phase pairs or values do not agree"
+    if expected is None:
+        return "hardly falls: not converged at any value in use" if slope.exponent < SLOW else "falls"
+    agrees = abs(slope.exponent - expected) <= max(AGREES, slope.uncertainty)
+    return f"like the power {expected:g}" if agrees else f"not like the power {expected:g}"

@@ -1,0 +1,1 @@
+"""Measured motions, by the equations and by the engine."""

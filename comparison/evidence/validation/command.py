@@ -1,0 +1,106 @@
+"""
+Measured motions, by the equations and by the engine: `phase-resonance validation [FOLDER]`.
+
+Exit codes: 0 done; 1 a side has no value for a quantity; 2 wrong input; 3 the file could not be written; others as in
+`run_command`.
+"""
+
+import time
+import warnings
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from comparison.cli.arguments import CommandParser, command, write_and_show
+from comparison.cli.terminal import new_table
+from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.evidence.validation import frame, pendulum
+from comparison.evidence.validation.files import DECAY, FRAME_SOURCE, LARGE, PENDULUM_SOURCE, read_folder, wrong_file
+from comparison.evidence.validation.table import STORED, Found, Validation, joined, recorded
+from comparison.runner.environment import provenance
+from comparison.runner.output import destination, publish, refuse_foreign_files
+from comparison.runner.progress import wide_console
+from comparison.verdicts import NOT_COMPARED, word_counts
+from comparison.wording import exception_line
+from reference.problem import SceneError
+
+REASON = 150  # letters of what a library says of a motion
+
+
+@command
+def main(argv: Sequence[str]) -> int:
+    """Compare with the measured files that the command line names, or print what is recorded; the exit code."""
+    parser = CommandParser("validation", "Measured motions beside what the equations and the engine compute of them.")
+    parser.add_argument(
+        "folder",
+        nargs="?",
+        type=Path,
+        metavar="FOLDER",
+        help="folder with the measured files; recorded results without",
+    )
+    parser.add_out(f"where {STORED.name} goes")
+    options = parser.parse_args(argv)
+    console = wide_console()
+    if options.folder is None:
+        print_validation(console, recorded())
+        console.print("Recorded in the package. To compute it anew, or with other runs of the frame, get the files:")
+        for source in (FRAME_SOURCE, PENDULUM_SOURCE):
+            console.print(f"  {source}", soft_wrap=True)
+        console.print(f"and name their folder: {STORED.command} FOLDER")
+        return 0
+    out = destination(options.out)
+    refuse_foreign_files(out, [STORED.name])
+    table = compared(options.folder)
+    write = partial(publish, out, {STORED.name: STORED.as_json(table)}, "comparison.validation")
+    files = write_and_show(out, write, partial(print_validation, console, table))
+    console.print(f"Table: {', '.join(map(str, files))}", soft_wrap=True)
+    console.print("A report written into the same directory by phase-resonance run shows it.")
+    return 1 if table.counts()[NOT_COMPARED] else 0
+
+
+def compared(folder: Path) -> Validation:
+    """Everything that a folder of measured files allows."""
+    begin = time.process_time()
+    measured = read_folder(folder)
+    found = [_compare("s_b_<weight>g_x.mat", frame.compare, measured.runs)] if measured.runs else []
+    found += [_compare(DECAY, pendulum.compare_decay, measured.decay)] if measured.decay else []
+    found += [_compare(LARGE, pendulum.compare_large, measured.large)] if measured.large else []
+    seconds = round(time.process_time() - begin, 1)
+    run = {"command": f"{STORED.command} FOLDER", "seconds": seconds, "provenance": provenance()}
+    return Validation(*joined(found), run)
+
+
+def _compare(file: str, compare: Callable[[Any], Found], measured: Any) -> Found:
+    """Return what an experiment adds. Raises SceneError, one line, for a motion that no comparison can be made of."""
+    try:
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return compare(measured)
+    except SceneError:
+        raise
+    except (ArithmeticError, ValueError, LookupError, TypeError, AssertionError) as error:  # of NumPy, SciPy, pydantic
+        reason = exception_line(error)[:REASON]
+        rule = f"must hold motions like the published ones: none can be compared with these ({reason})"
+        raise wrong_file(file, rule) from error
+
+
+def print_validation(console: Console, table: Validation) -> None:
+    """A row for every quantity, the causes, the inputs, and the counts."""
+    heads = ("D", "u_D", "u_input", "E equations", "u_num", "E engine", "u_num", "u_val", "verdict")
+    lines = new_table("quantity", *heads)
+    for each in table.quantities:
+        sides = [each.sides[side] for side in (EQUATIONS, ENGINE)]
+        numbers = [number for side in sides for number in (side.error, side.numerical)] + [sides[0].validation]
+        cells = [f"{each.data:.2g}", f"{each.inputs:.2g}", *("-" if n is None else f"{n:.2g}" for n in numbers)]
+        lines.add_row(f"{each.experiment}: {each.name}, {each.unit}", f"{each.measured:.5g}", *cells, each.word_both())
+    console.print(lines)
+    causes = []
+    for cause, rows in table.explanations().items():
+        causes.append(f"{cause} ({'; '.join(f'{each.experiment}, {each.name}' for each in rows)})")
+    for text in (*causes, *table.facts, *(f"input of the {each}" for each in table.inputs)):
+        console.print(f"{text[0].upper()}{text[1:]}.", soft_wrap=True)
+    console.print(f"{word_counts(table.counts())}.", soft_wrap=True)

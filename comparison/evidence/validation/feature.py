@@ -1,0 +1,60 @@
+"""Measured motions: in the report."""
+
+from itertools import groupby
+from typing import Any
+
+from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.evidence.validation.files import FRAME_SOURCE, PENDULUM_SOURCE
+from comparison.evidence.validation.statements import verdict_line
+from comparison.evidence.validation.table import STORED, Validation
+from comparison.report.feature import Feature, ResultField
+from comparison.report.panels import panel
+from comparison.report.plots import Panel
+from comparison.report.section import Section
+from comparison.verdicts import CLASSES, MEANING
+
+LOOKS: dict[str, dict[str, Any]] = {
+    "measured": {"color": "ink", "width": 2.4},
+    EQUATIONS: {"color": 0},
+    ENGINE: {"color": 1, "dash": "5 3"},
+}
+
+
+def panels(table: Validation) -> list[Panel]:
+    """A plot for every experiment: measured and computed."""
+    drawn = []
+    for title, group in groupby(table.curves, key=lambda curve: curve.panel):
+        curves = list(group)
+        few = max(len(curve.x) for curve in curves) < 200
+        series = [
+            {"name": curve.name, "x": list(curve.x), "y": list(curve.y), "marks": few, **LOOKS[curve.name]}
+            for curve in curves
+        ]
+        x, y = curves[0].axes
+        drawn.append(panel(title, f"{title}: {y} over {x}; " + ", ".join(LOOKS), {"title": x}, {"title": y}, series))
+    return drawn
+
+
+FOUND = ResultField(
+    "validation",
+    Validation,
+    "measured motions beside what both sides compute; null unless phase-resonance validation left it beside the report",
+    load=STORED.load,
+)
+FEATURE = Feature(
+    "validation",
+    (FOUND,),
+    section=Section(
+        "Measured motions",
+        "phase-resonance validation FOLDER makes it of measured files, beside the report; the next run of the "
+        "study shows it",
+        lambda report: {
+            "validation_panels": panels,
+            "validation_verdicts": MEANING,
+            "validation_colors": CLASSES,
+            "validation_sources": (FRAME_SOURCE, PENDULUM_SOURCE),
+        },
+        verifies=True,
+        verdict=lambda results: verdict_line(FOUND.of(results)),
+    ),
+)

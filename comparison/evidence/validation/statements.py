@@ -1,0 +1,170 @@
+"""What the measured motions say, in sentences: each is worded here from a table, and nowhere else."""
+
+from collections.abc import Sequence
+
+from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.evidence.validation.frame import LOADED
+from comparison.evidence.validation.table import Quantity, Validation
+from comparison.verdicts import (
+    MET,
+    NOT_COMPARED,
+    NOT_MET,
+    Verdict,
+    word_counts_and_largest,
+    word_error,
+    word_verdict,
+)
+from comparison.wording import percent
+
+BOTH = EQUATIONS, ENGINE
+ORDER: Sequence[Verdict] = (MET, NOT_MET, NOT_COMPARED)  # from the best to the worst
+HALF_RANGE = "half range"
+INSTANTS = "phase of the starts", "phase of the stops", "share of time at rest"
+FRAME, PENDULUM = "frame, ", "pendulum, "  # begin the names of the experiments
+
+
+def worse_side(each: Quantity) -> str:
+    """Return the side with the worse verdict on a quantity, of equal ones that with the larger error."""
+    return max(BOTH, key=lambda side: (ORDER.index(each.sides[side].verdict), abs(each.sides[side].error or 0.0)))
+
+
+def verdict_on(each: Quantity) -> Verdict:
+    """Return the worse verdict of both sides on a quantity: met where both meet it."""
+    return each.sides[worse_side(each)].verdict
+
+
+def word_quantity(each: Quantity) -> str:
+    """Return the worse verdict with the numbers behind it: "met (E = +1.4 %, within 2.2 %)", "not met (by +12 %)"."""
+    found = each.sides[worse_side(each)]
+    if found.verdict != MET or found.error is None or found.validation is None:
+        return word_verdict(found.verdict, found.error, each.base, each.unit)
+    allowed = word_error(found.validation, each.base, each.unit).removeprefix("+")
+    return f"{found.verdict} (E = {word_error(found.error, each.base, each.unit)}, within {allowed})"
+
+
+def frame_rows(table: Validation, loaded: bool, use: str) -> list[Quantity]:
+    """Return the quantities of the frame by one law of friction, predicted or calibrated."""
+    rows = [each for each in table.quantities if each.experiment.startswith(FRAME) and each.use == use]
+    return [each for each in rows if each.experiment.endswith(LOADED) == loaded]
+
+
+def name_run(each: Quantity) -> str:
+    """Return the weight of the disc in the run of a quantity, in words."""
+    return each.experiment.removeprefix(FRAME).removesuffix(LOADED)
+
+
+def word_fit(table: Validation, loaded: bool) -> str:
+    """Return what friction of the frame was fitted to: "friction of the load, fitted at 250 g and 450 g"."""
+    laws = (False, True) if loaded else (False,)  # both laws have the first run in common
+    fitted = [each for law in laws for each in frame_rows(table, law, "calibrated")]
+    runs = " and ".join(dict.fromkeys(map(name_run, fitted)))
+    return f"{'friction of the load' if loaded else 'one friction ratio'}, fitted at {runs}"
+
+
+def word_runs(table: Validation, loaded: bool, use: str) -> str:
+    """Return the verdicts on the half range by one law, run by run: "at 350 g met (...), at 550 g not met (...)"."""
+    rows = [each for each in frame_rows(table, loaded, use) if each.name == HALF_RANGE]
+    return ", ".join(f"at {name_run(each)} {word_quantity(each)}" for each in rows) or f"{NOT_COMPARED}: no such run"
+
+
+def word_met_of(rows: Sequence[Quantity]) -> str:
+    """Return how many of the quantities both sides meet: "6 of 10"."""
+    return f"{sum(verdict_on(each) == MET for each in rows)} of {len(rows)}"
+
+
+def word_validated(table: Validation) -> str:
+    """Return what the measured motions validate, and what not, without the last full stop."""
+    loaded = [each for each in frame_rows(table, True, "predicted") if each.name == HALF_RANGE]
+    held = bool(loaded) and all(verdict_on(each) == MET for each in loaded)
+    head = "Validated is one quantity" if held else "Nothing is validated, not even one quantity"
+    load, ratio = (f"with {word_fit(table, law)}, {word_runs(table, law, 'predicted')}" for law in (True, False))
+    what = f"the {HALF_RANGE} of a frame shaken against dry friction"
+    return f"{head}: {what}, {load}; {ratio}. No building has been compared"
+
+
+def word_validated_briefly(table: Validation) -> str:
+    """Return the same in one sentence for a first screen, without the full stop."""
+    met = {}
+    for loaded in (True, False):
+        rows = [each for each in frame_rows(table, loaded, "predicted") if each.name == HALF_RANGE]
+        met[loaded] = word_met_of(rows)
+    return (
+        f"measurements of a shaken frame test dry friction alone: both codes predict its {HALF_RANGE} within the "
+        f"uncertainties at {met[True]} loads where friction depends on the load, at {met[False]} with a constant "
+        "coefficient; no building has been compared"
+    )
+
+
+def word_calibrated(table: Validation) -> str:
+    """Return the verdicts on the half range in the runs that friction is fitted to, without the full stop."""
+    runs = ", ".join(word_runs(table, law, "calibrated") for law in (False, True))
+    return f"the {HALF_RANGE} in the runs that friction is fitted to: {runs}"
+
+
+def word_motions(table: Validation, loaded: bool) -> str:
+    """Return by how much the predicted motions of the frame are off as a whole, by one law of friction."""
+    rows = [each for each in table.residuals if each.use == "predicted" and each.experiment.endswith(LOADED) == loaded]
+    sizes = [f"{percent(each.share)} at {each.experiment.removeprefix(FRAME).removesuffix(LOADED)}" for each in rows]
+    return f"whole motion off by {', '.join(sizes)} (rms over the half range)"
+
+
+def verdict_line(table: Validation) -> str:
+    """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
+    rows = [(each, worse_side(each)) for each in table.quantities if verdict_on(each) == NOT_MET and each.base]
+    largest = max(rows, key=lambda row: abs(row[0].sides[row[1]].error or 0.0) / abs(row[0].measured), default=None)
+    where = ""
+    if largest:
+        each, side = largest
+        where = f"{each.experiment}, {each.name}, {word_error(each.sides[side].error or 0.0, each.base, each.unit)}"
+    return word_counts_and_largest(table.counts(), where)
+
+
+def readme_rows(table: Validation) -> list[str]:
+    """Return the rows of README's table that are about measurements."""
+    rows, checked = [], "| equations and engine | **measured**: "
+    for law in (True, False):
+        predicted = frame_rows(table, law, "predicted")
+        rows.append(
+            f"{checked}a frame shaken against dry friction; {word_fit(table, law)} ([all](docs/validation.md)) "
+            f"| {HALF_RANGE} {word_runs(table, law, 'predicted')}; {word_met_of(predicted)} predicted values met, "
+            f"largest error: {word_largest(predicted)}; {word_motions(table, law)} |"
+        )
+    return [
+        *rows,
+        f"{checked}a pendulum, its decay by dry friction and its period at large angles "
+        f"| {word_predicted_pendulum(table)} |",
+    ]
+
+
+def word_instants(table: Validation, experiment: str = f"{FRAME}450 g") -> str:
+    """
+    Return what a run says of starts, stops and rests, in one sentence without the full stop.
+
+    Where the share of time at rest is met and an instant is not, the reason is stated if both instants shift to the
+    same side: the share holds their difference alone.
+    """
+    rows = {each.name: each for each in table.quantities if each.experiment == experiment}
+    starts, stops, share = (rows[name] for name in INSTANTS)
+    named = {"starts": starts, "stops": stops, share.name: share}
+    words = f"{experiment}: " + ", ".join(f"{name} {word_quantity(each)}" for name, each in named.items())
+    errors = [each.sides[worse_side(each)].error or 0.0 for each in (starts, stops)]
+    hidden = verdict_on(share) == MET and NOT_MET in (verdict_on(starts), verdict_on(stops))
+    alike = errors[0] * errors[1] > 0.0
+    return f"{words}, because starts and stops shift alike" if hidden and alike else words
+
+
+def word_predicted_pendulum(table: Validation) -> str:
+    """Return how many of the pendulum's predicted values both sides meet, in a sentence without the full stop."""
+    rows = [each for each in table.quantities if each.experiment.startswith(PENDULUM) and each.use == "predicted"]
+    met = sum(verdict_on(each) == MET for each in rows)
+    count = f"{met or 'none'} of the {len(rows)} predicted values of the pendulum"
+    return f"{count} {'is' if met < 2 else 'are'} met"
+
+
+def word_largest(rows: Sequence[Quantity]) -> str:
+    """Return the largest relative error of some quantities and where it is: "rms about the mean at 550 g +13 %"."""
+    each = max(
+        (each for each in rows if each.base),
+        key=lambda row: abs(row.sides[worse_side(row)].error or 0.0) / row.measured,
+    )
+    return f"{each.name} at {name_run(each)} {word_error(each.sides[worse_side(each)].error or 0.0, each.base)}"

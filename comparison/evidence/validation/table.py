@@ -1,0 +1,243 @@
+"""Measured quantities beside what both sides compute, as data: a file, and what the report needs of it."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from importlib import resources
+from typing import Annotated, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import TypeAdapter
+from scipy.interpolate import CubicHermiteSpline
+
+import multibody
+import reference
+from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
+from comparison.json_file import StoredFile, finite_or_none
+from comparison.result_types import Array, require, require_size, result
+from comparison.verdicts import NOT_MET, Verdict, count_verdicts, judge, word_verdict
+from reference.measures.demands import ANSWERED
+from reference.problem import Scene, State, Trajectory
+
+SIDES = (EQUATIONS, SMOOTHED, ENGINE)
+COVERAGE = 2.0  # standard deviations of an expanded uncertainty
+LAW, INPUT, OPEN = "the friction law", "an input", "not explained"  # begin the explanation of what is not met
+DEGREES, CYCLE = "deg", "% of a cycle"
+ABSOLUTE = (DEGREES, CYCLE)  # units of which a share says nothing
+
+
+@result
+class Comparison:
+    """One quantity by one side."""
+
+    value: Annotated[float | None, "S; null without an answer"]
+    error: Annotated[float | None, "E = S - D"]
+    numerical: Annotated[float | None, "u_num, as the side states it"]
+    validation: Annotated[float | None, "u_val, root of u_num^2 + u_input^2 + u_D^2"]
+    verdict: Annotated[Verdict, "met: |E| is within u_val; not met; not compared: no E or no u_val"]
+
+    def __post_init__(self) -> None:
+        if self.verdict != judge(self.error, self.validation):
+            raise ValueError(f"verdict {self.verdict!r} contradicts E = {self.error} and u_val = {self.validation}")
+
+
+@result
+class Quantity:
+    """One measured quantity."""
+
+    experiment: Annotated[str, "frame or pendulum, and the run"]
+    name: Annotated[str, "what it is"]
+    unit: Annotated[str, "of all its numbers"]
+    use: Annotated[str, "calibrated: an input was fitted to it or to its run; predicted: blind"]
+    measured: Annotated[float, "D"]
+    data: Annotated[float, "u_D"]
+    inputs: Annotated[float, "u_input"]
+    cause: Annotated[str, "explanation of what is not met: the friction law, an input, or none found; empty where met"]
+    sides: Annotated[Mapping[str, Comparison], "by side: equations, smoothed (with the engine's friction law), engine"]
+
+    def __post_init__(self) -> None:
+        for side in (EQUATIONS, ENGINE):
+            require(side in self.sides, f"sides must have {side}")
+
+    @property
+    def base(self) -> float | None:
+        """Value to which an E is relative, None where a share of it says nothing."""
+        return None if self.unit in ABSOLUTE else self.measured
+
+    def word(self, side: str) -> str:
+        """Return the verdict on one side in words."""
+        found = self.sides[side]
+        return word_verdict(found.verdict, found.error, self.base, self.unit)
+
+    def word_both(self) -> str:
+        """Return the verdicts on equations and engine in words, once where they are alike."""
+        one, two = (self.word(side) for side in (EQUATIONS, ENGINE))
+        if one == two:
+            return one
+        if self.sides[EQUATIONS].verdict == self.sides[ENGINE].verdict:
+            return f"{one.removesuffix(')')} / {two.split('(by ')[1]}"
+        return f"{one} / {two}"
+
+
+@result
+class Curve:
+    """One line of a plot; empty in the table that the package holds."""
+
+    panel: Annotated[str, "title of its plot"]
+    axes: Annotated[tuple[str, str], "titles of the axes, with units"]
+    name: Annotated[str, "measured, equations or engine"]
+    x: Annotated[Sequence[float], "along the first axis"]
+    y: Annotated[Sequence[float], "along the second axis"]
+
+    def __post_init__(self) -> None:
+        known = ("measured", EQUATIONS, ENGINE)
+        require(self.name in known, f"name of a curve must be one of {', '.join(known)}, not {self.name[:40]!r}")
+        require_size("y", self.y, len(self.x))
+
+
+@result
+class Residual:
+    """How far a whole motion is off, which quantities of it alone do not show."""
+
+    experiment: Annotated[str, "the run, and the law of friction where it is of the load"]
+    use: Annotated[str, "calibrated or predicted"]
+    share: Annotated[float, "rms difference of the equations from the mean cycle, over the measured half range"]
+
+
+@result
+class Validation:
+    """All measured quantities. Every uncertainty is expanded, about 95 %."""
+
+    quantities: Annotated[Sequence[Quantity], "in the order of the experiments"]
+    inputs: Annotated[Sequence[str], "of the computations, in sentences: value, uncertainty, unit, and who states them"]
+    facts: Annotated[Sequence[str], "what else was found, in sentences"]
+    residuals: Annotated[Sequence[Residual], "of the runs of the frame"]
+    curves: Annotated[Sequence[Curve], "of the plots; only in the file of a user who has the measured files"]
+    run: Annotated[Mapping[str, Any], "command, provenance"]
+
+    def explanations(self) -> dict[str, list[Quantity]]:
+        """Quantities that are not met, by their explanation."""
+        groups: dict[str, list[Quantity]] = {}
+        for each in self.quantities:
+            if each.cause:
+                groups.setdefault(each.cause, []).append(each)
+        return groups
+
+    def counts(self) -> dict[Verdict, int]:
+        """Quantities of the equations and of the engine by verdict."""
+        return count_verdicts(each.sides[side].verdict for each in self.quantities for side in (EQUATIONS, ENGINE))
+
+
+STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "phase-resonance validation")
+
+
+def recorded() -> Validation:
+    """The table of the published files, as the command made it; without their motions."""
+    file = resources.files("comparison.evidence.validation") / "recorded.json"
+    return TypeAdapter(Validation).validate_json(file.read_bytes())
+
+
+class Answer(NamedTuple):
+    """What one side computes, (Q,), with its numerical errors."""
+
+    values: Array
+    errors: Array
+
+
+class Found(NamedTuple):
+    """What one experiment adds to the table."""
+
+    quantities: list[Quantity]
+    inputs: list[str]
+    facts: list[str]
+    residuals: list[Residual]
+    curves: list[Curve]
+
+
+def joined(parts: Sequence[Found]) -> Found:
+    """Return what several experiments add."""
+    return Found(*([each for part in column for each in part] for column in zip(*parts)))
+
+
+class Data(NamedTuple):
+    """What was measured: names and units of the quantities, their use, D and u_D."""
+
+    names: Sequence[str]
+    units: Sequence[str]
+    use: Sequence[str]
+    values: Array
+    uncertainty: Array
+
+
+def motion_of(
+    side: str,
+    scene: Scene,
+    phases: tuple[float, float],
+    place: Array,
+    regularization: float,
+    tolerance: float,
+    equations: str = "exact",
+) -> Trajectory:
+    """The motion of bodies released from rest at `place` (N,), m along x; the tolerance is the engine's."""
+    start = np.column_stack([place, np.zeros_like(place)])
+    initial = State(start, np.zeros_like(start))
+    if side == ENGINE:
+        return multibody.trajectory(scene, phases, tolerance=tolerance, regularization=regularization, initial=initial)
+    threshold = regularization if side == SMOOTHED else None
+    return reference.trajectory(scene, phases, equations, threshold, 1e-7, initial=initial)
+
+
+def answer(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> Answer:
+    """Return what is read from a motion, `count` values, and its errors; NaN from one that ended early."""
+    nothing = np.full(count, np.nan)
+    if motion.status not in ANSWERED or motion.accuracy is None:
+        return Answer(nothing, nothing)
+    values, others = read(motion), [read(each) for each in motion.accuracy.coarser]
+    errors = [motion.accuracy.error_of(value, rest) for value, *rest in zip(values, *others)]
+    return Answer(values, np.array(errors))
+
+
+def spline(motion: Trajectory) -> CubicHermiteSpline:
+    """Position of the platform along x, m."""
+    return CubicHermiteSpline(motion.time, motion.position[:, 0, 0], motion.velocity[:, 0, 0])
+
+
+def given(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:
+    """An input as a sentence."""
+    return f"{name} {value:.5g} ± {uncertainty:.2g} {unit}".rstrip() + f" ({source})"
+
+
+def quantities(
+    experiment: str,
+    data: Data,
+    answers: Mapping[str, Answer],
+    varied: Sequence[Array],
+    explain: Callable[[int, float], str],
+) -> list[Quantity]:
+    """
+    The table of one run.
+
+    varied: by the equations, with each input changed by its uncertainty; u_input is the root of the sum of the squared
+    changes. explain: why quantity k has an E beyond this u_val.
+    """
+    rows, inputs = [], np.sqrt(np.sum(np.square([each - answers[EQUATIONS].values for each in varied]), axis=0))
+    for k, (name, unit, use) in enumerate(zip(data.names, data.units, data.use)):
+        if math.isnan(data.values[k]):  # phases of starts and stops in a run at rest
+            continue
+        sides, cause = {}, ""
+        for side, (values, errors) in answers.items():
+            error = float(values[k] - data.values[k])
+            allowed = math.hypot(errors[k], inputs[k], data.uncertainty[k])
+            verdict = judge(error, allowed)
+            if verdict == NOT_MET and side != SMOOTHED:
+                cause = explain(k, allowed)
+            value, off, numerical, limit = map(finite_or_none, (float(values[k]), error, float(errors[k]), allowed))
+            sides[side] = Comparison(value, off, numerical, limit, verdict)
+        measured, spread, propagated = (float(row[k]) for row in (data.values, data.uncertainty, inputs))
+        rows.append(Quantity(experiment, name, unit, use, measured, spread, propagated, cause, sides))
+    return rows
+
+
+def curves(title: str, axes: tuple[str, str], lines: Mapping[str, tuple[NDArray[Any], Array]]) -> list[Curve]:
+    """The lines of one plot, by name."""
+    return [Curve(title, axes, name, x.tolist(), y.tolist()) for name, (x, y) in lines.items()]

@@ -1,0 +1,122 @@
+"""
+A question that a report answers, entered once: one folder of comparison/analyses or comparison/evidence, and one line
+of the registry.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Generic, TypeVar
+
+import xarray as xr
+
+from comparison.report.results import Results
+from comparison.report.scene_result import SceneResult
+from comparison.report.section import Report, Section
+from comparison.runner.analysis import Analysis
+from comparison.study.selection import Selectable
+from comparison.study.study import Study
+from reference.problem import Family, Scene
+
+Value = TypeVar("Value")
+
+
+@dataclass(frozen=True)
+class Findings:
+    """Findings of a run: by its study, in its surfaces, and by its features. families: of the study's scenes."""
+
+    study: Study
+    surfaces: xr.Dataset
+    found: Mapping[str, Any]  # by key of the feature
+    families: Sequence[Family] = ()
+
+
+@dataclass(frozen=True)
+class ResultField(Generic[Value]):
+    """
+    A field of the results, null where nothing was found.
+
+    name: its key in summary.json. kind: its type. meaning: its description in the schema. load: reads it from the
+    folder of the report, where a command left it. compute: makes it of what was found and of the results of the scenes,
+    unless it is what was found by its name.
+    """
+
+    name: str
+    kind: type[Value]
+    meaning: str
+    load: Callable[[Path], Value | None] | None = None
+    compute: Callable[[Findings, Sequence[SceneResult]], Value | None] | None = None
+
+    def get(self, results: Results) -> Value | None:
+        """Return the value in these results, None where nothing was found."""
+        value: Value | None = getattr(results, self.name)
+        return value
+
+    def of(self, results: Results) -> Value:
+        """Return the value in results that have one, as where the section of the field is shown."""
+        value = self.get(results)
+        assert value is not None, f"{self.name} is shown only where it was found"
+        return value
+
+
+@dataclass(frozen=True)
+class SceneField(Generic[Value]):
+    """A field of the results of every scene. name, kind, meaning: as of a `ResultField`. compute: makes it."""
+
+    name: str
+    kind: type[Value]
+    meaning: str
+    compute: Callable[[Findings, Scene], Value]
+
+    def of(self, scene: SceneResult) -> Value:
+        """Return the value in the results of a scene."""
+        value: Value = getattr(scene, self.name)
+        return value
+
+
+@dataclass(frozen=True)
+class Feature:
+    """
+    Everything that the study, the report and the command line know of a question.
+
+    key: its name everywhere, and the name of its folder. fields: of the results. scene_fields: of the results of every
+    scene. analysis: what computes it in a study. section: where a page shows it. selectable: whether --only, --skip and
+    --also know it. on_request, of_the_paper, needs: as of a `Selectable`. page_data: what the script of the page reads
+    of a scene, by name. packed_data: numbers that the script reads beside them. dataset: surfaces.nc with what the
+    analysis found. figures: files for the folder of the figures. clause: what it adds to the statement on measurements,
+    "" for nothing.
+    """
+
+    key: str
+    fields: tuple[ResultField[Any], ...] = ()
+    scene_fields: tuple[SceneField[Any], ...] = ()
+    analysis: Analysis[Any] | None = None
+    section: Section | None = None
+    selectable: bool = True
+    on_request: bool = False
+    of_the_paper: bool = False
+    needs: str = ""
+    page_data: Callable[[Report, Scene], Mapping[str, Any]] | None = None
+    packed_data: Callable[[Report], bytes] | None = None
+    dataset: Callable[[xr.Dataset, Any], xr.Dataset] | None = None
+    figures: Callable[[Report], Mapping[str, bytes]] | None = None
+    clause: Callable[[Results], str] | None = None
+
+    def __post_init__(self) -> None:
+        if self.section:
+            template = self.section.template or f"{self.key}/section.html.j2"
+            shows = tuple(field.name for field in self.fields)
+            section = replace(self.section, name=self.key, template=template, shows=shows)
+            object.__setattr__(self, "section", section)
+
+    @property
+    def stored(self) -> list[ResultField[Any]]:
+        """The fields that a command leaves beside a report."""
+        return [field for field in self.fields if field.load]
+
+    @property
+    def choice(self) -> Selectable:
+        """Return what a selection must know of it."""
+        return Selectable(self.key, self.on_request, self.of_the_paper, self.needs)

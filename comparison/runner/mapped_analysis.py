@@ -1,0 +1,36 @@
+"""Analyses that map one function over arguments, each in a task of its own."""
+
+from collections.abc import Iterable
+from typing import Any, ClassVar
+
+import xarray as xr
+
+from comparison.runner.analysis import Analysis, Result
+from comparison.runner.task import Task
+from comparison.runner.task_results import TaskResults
+from comparison.study.study import Study
+
+
+class MappedAnalysis(Analysis[Result]):
+    """One task for each argument, a tuple that begins with its scene."""
+
+    function: ClassVar[Any]  # runs inside a worker process
+    without_value: ClassVar[Any]  # makes the value of a task that returned none, from its argument and result
+    needs_compiled_reference: ClassVar[bool] = True
+
+    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterable[tuple[Any, ...]]:
+        """Return what the function is called with."""
+        raise NotImplementedError
+
+    def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
+        """One for each argument."""
+        compiled, arguments = self.needs_compiled_reference, self.arguments(study, surfaces)
+        return [Task(self.function, each, self.stage, 1.0, each[0], compiled) for each in arguments]
+
+    def values(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Any]:
+        """Return what the tasks returned, in the order of the arguments."""
+        return [results.value(task, self.without_value) for task in self.tasks(study, surfaces)]
+
+    def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> Any:
+        """Return all that the tasks listed; None if they listed nothing."""
+        return [each for listed in self.values(study, surfaces, results) for each in listed] or None

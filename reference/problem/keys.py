@@ -1,0 +1,139 @@
+"""Keys with their meaning and range, of which every table of a scene file is made; comparison of tables."""
+
+from __future__ import annotations
+
+import math
+import unicodedata
+from collections.abc import Iterator, Mapping
+from dataclasses import astuple
+from typing import Annotated, Any, ClassVar, Self, cast
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
+
+from reference.problem.validation import PlacedError
+from reference.support.arguments import Range
+from reference.support.plain_values import hashable, plain
+
+USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
+# Models, or others, that read a key
+ALL, SPATIAL, STUDY, REPORT, NONE = "all", "spatial", "`--check`", "the report", "none"
+REQUIRED = ...  # default of a key that a file must have
+
+
+def key(
+    meaning: str,
+    allowed: Range | None = None,
+    *,
+    models: str = ALL,
+    default: Any = None,
+    other_form: bool = False,
+) -> Any:
+    """
+    Declare a key of a table: its meaning and the models that read it in docs/scene.md, and the range of its numbers.
+
+    other_form: the key has another form than a number, whose lists of numbers have ranges of their own.
+    """
+    said: dict[str, Any] = {"unit": allowed.unit if allowed else "", "models": models}
+    if allowed is not None:
+        said |= {"range": [*astuple(allowed)], "other_form": other_form}
+    return Field(default, description=meaning, json_schema_extra=said)
+
+
+def range_of(table: type[Table], name: str) -> Range:
+    """Return the range of a key of a table."""
+    return Range(*_schema_of_key(table, name)["range"])
+
+
+def _schema_of_key(table: type[Table], name: str) -> dict[str, Any]:
+    return cast("dict[str, Any]", table.model_fields[name].json_schema_extra or {})
+
+
+def _numbers_in(value: Any, place: tuple[int, ...] = ()) -> Iterator[tuple[tuple[int, ...], float]]:
+    """Iterate over the numbers of a value and of its lists, with the place of each."""
+    if isinstance(value, list):
+        for n, part in enumerate(value):
+            yield from _numbers_in(part, (*place, n))
+    elif isinstance(value, int | float):
+        yield place, value
+
+
+def in_range(allowed: Range) -> AfterValidator:
+    """Return the rule that a number lies within a range."""
+
+    def check(value: float) -> float:
+        if value not in allowed:
+            raise ValueError(allowed.rule)
+        return value
+
+    return AfterValidator(check)
+
+
+def _check_text(text: str) -> str:
+    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in text):
+        raise ValueError("must have no control characters")
+    return text
+
+
+Text = Annotated[str, AfterValidator(_check_text)]
+Positive = Annotated[float, Field(gt=0.0)]
+NonNegative = Annotated[float, Field(ge=0.0)]
+# JSON has no infinity: there it is the text "inf"
+Radius = Annotated[
+    float,
+    Field(gt=0.0, allow_inf_nan=True),
+    PlainSerializer(lambda value: "inf" if value == math.inf else value, when_used="json"),
+]
+
+
+class Table(BaseModel):
+    """One table of the file: unknown keys, wrong types and numbers outside their range are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False)
+    long_keys: ClassVar[frozenset[str]] = frozenset()  # arrays that stay arrays, and that a hash leaves out
+
+    @model_validator(mode="before")
+    @classmethod
+    def _make_plain(cls, table: Any) -> Any:
+        """Replace arrays, tuples and numbers of numpy by those of a file."""
+        if not isinstance(table, dict):
+            return table
+        return {key: value if key in cls.long_keys else plain(value) for key, value in table.items()}
+
+    @field_validator("*")
+    @classmethod
+    def _check_range(cls, value: Any, info: ValidationInfo) -> Any:
+        said = _schema_of_key(cls, info.field_name or "")
+        if "range" in said and not (said["other_form"] and isinstance(value, list)):
+            allowed = Range(*said["range"])
+            for place, number in _numbers_in(value):
+                if number not in allowed:
+                    raise PlacedError(place, number, allowed.rule)
+        return value
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, type(self)) and self.model_dump() == other.model_dump()
+
+    def __hash__(self) -> int:
+        short = [hashable(getattr(self, key)) for key in type(self).model_fields if key not in self.long_keys]
+        return hash((type(self).__name__, *short))
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy without changes. Raises ValueError with `update`, which pydantic would not validate."""
+        if update:
+            raise ValueError(USE_WITH_VALUES)
+        return super().model_copy(deep=deep)
+
+
+def exactly_one(table: BaseModel, *keys: str) -> None:
+    """Raise ValueError, one line, unless exactly one of the keys of a table has a value."""
+    if sum(getattr(table, key) is not None for key in keys) != 1:
+        raise ValueError(f"give exactly one of {', '.join(keys[:-1])} and {keys[-1]}")

@@ -1,0 +1,228 @@
+"""The matrix of extremes: what is wrong is found, what is right passes, and the equations fail nowhere."""
+
+import re
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from known_analyses import collected
+from known_results import FOUND, PLAIN, fake
+from runs import no_executor
+
+import multibody
+from comparison.evidence.extremes import analysis
+from comparison.evidence.extremes.command import main
+from comparison.evidence.extremes.engine import amplification
+from comparison.evidence.extremes.matrix import STORED, Verdict
+from comparison.evidence.extremes.rows import CAUSES, rows, scene
+from comparison.runner.processes import TimeLimitError, WorkerDiedError, process_pool
+from comparison.runner.task import TaskResult
+from reference.problem import Outcome
+
+
+class Ending(ThreadPoolExecutor):
+    """In place of worker processes: one that would hang takes too long, one that would crash dies."""
+
+    def start(self, call: Any, seconds: float | None, group: str) -> Future[TaskResult]:
+        [task] = call.args
+        ends = {"hangs": TimeLimitError(f"no answer within {seconds:g} s of processor time"),
+                "crashes": WorkerDiedError("exit code 3", exit_code=3)}  # fmt: skip
+        error = ends.get(task.argument.column.amplification.partition(":")[2])
+        if error is None:
+            return self.submit(call)
+        ended: Future[TaskResult] = Future()
+        ended.set_exception(error)
+        return ended
+
+
+def test_a_model_that_hangs_or_crashes_costs_its_cell_alone():
+    columns = [replace(fake(model), key=model) for model in ("hangs", "crashes", "raises", "honest")]
+    extremes = analysis.Extremes([replace(PLAIN, columns=tuple(each.key for each in columns))], columns, 2.0)
+    (row,) = collected(extremes, None, executor=Ending).rows
+    found = {key: (entry.verdict, entry.status, entry.reason) for key, entry in row.entries.items()}
+    assert found["hangs"] == ("FAILED", "time limit", "hangs: no answer within 2 s of processor time")
+    assert found["crashes"] == ("FAILED", "worker died", "crashes: the worker process died 2 times (exit code 3)")
+    assert found["raises"] == ("FAILED", "", "raises ZeroDivisionError: an inner fault")
+    assert found["honest"][0] == Verdict.CONVERGED
+
+
+AGAINST_A_RULE = replace(PLAIN, scene=scene(friction=-0.1))
+
+
+@pytest.mark.parametrize(
+    ("row", "column", "verdict", "reason"),
+    [
+        (PLAIN, fake("honest"), "converged", "confirmed"),
+        (replace(PLAIN, settings={"tolerance": 1e-7}), fake("honest"), "converged", "confirmed"),  # by as much less
+        (PLAIN, fake("at_the_rim"), "refused", "rim reached"),
+        (PLAIN, fake("at_the_rim", finer="unable"), "refused", "rim reached"),
+        (PLAIN, fake("unable"), "limit", "step limit"),
+        (PLAIN, fake("honest", finer="unable"), "FAILED", "no finer run confirms it: step limit"),
+        (replace(PLAIN, right=("contact lost",)), fake("at_the_rim"), "FAILED", "instead of contact lost"),
+        (replace(AGAINST_A_RULE, invalid=True), fake("honest"), "refused", "friction"),
+        (AGAINST_A_RULE, fake("honest"), "FAILED", "friction"),
+        (replace(PLAIN, invalid=True), fake("honest"), "FAILED", "accepts an input that is against the rules"),
+        (PLAIN, fake("raises"), "FAILED", "an inner fault"),
+        (PLAIN, fake("calls_nan_ok"), "FAILED", "no finite number"),
+        (PLAIN, fake("lies_about_its_error"), "FAILED", "times what is claimed"),
+        (PLAIN, fake("misses_the_tolerance"), "FAILED", "asked: 0.001"),
+        (PLAIN, fake("refuses_what_can_be_done"), "FAILED", "but a finer run: ok"),
+        (PLAIN, fake("gives_a_value_with_a_refusal"), "FAILED", "and yet a value"),
+        (PLAIN, fake("invents_a_status"), "FAILED", "no answer of a model"),
+    ],
+)
+def test_every_kind_of_answer_has_its_verdict(row, column, verdict, reason):
+    cell = analysis.solve_cell(analysis.Cell(row, column))
+    assert (cell.verdict, reason in cell.reason) == (verdict, True), cell.reason
+
+
+def test_the_equations_fail_at_no_extreme():
+    groups = {"friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"}
+    chosen = [row for row in analysis.reduced(list(rows())) if row.group in groups]
+    assert {row.group for row in chosen} == groups
+    for cell in analysis.cells(chosen):
+        entry = analysis.solve_cell(cell)
+        assert entry.verdict != Verdict.FAILED, (cell.row.title, cell.column.key, entry.reason)
+        assert entry.total >= entry.seconds, "with its finer runs"
+
+
+QUANTITIES = {
+    "friction": lambda at: at.friction_coefficient,
+    "lubrication, s/m": lambda at: at.friction_coefficient,
+    "amplitude, m/s^2": lambda at: at.amplitudes[0, 0],
+    "vertical loading, m/s^2": lambda at: at.amplitudes[2, 0],
+    "rho, m": lambda at: at.radius,
+    "travel, m": lambda at: at.isolator.travel,
+    "bodies N": lambda at: len(at.bodies),
+    "total mass, kg": lambda at: at.total_mass,
+    "platform's share of the mass": lambda at: at.masses[0] / at.total_mass,
+    "link periods, s": lambda at: at.bodies[1].period[0],
+    "load over the buckling load of bars": lambda at: 9.81 / (4.0 * np.pi**2 * at.bodies[1].bars.bending_stiffness),
+    "decay, 1/s": lambda at: at.excitation.decay[1],
+    "duration, s": lambda at: at.duration,
+    "three supports, ring in m": lambda at: at.isolator.ring,
+    "offset over the ring": lambda at: np.hypot(*at.offsets[1]) / at.isolator.ring,
+    "yaw, rad": lambda at: at.yaws[1],
+}
+
+
+def test_a_row_has_the_quantity_that_it_names():
+    seen = set()
+    for row in rows():
+        number = row.title.replace("-g exactly", "9.81").partition(",")[0]
+        if row.group in QUANTITIES and re.fullmatch(r"[-+.\de]+|inf", number) and not row.invalid:
+            found = QUANTITIES[row.group](analysis.read_scene(row.scene))
+            assert found == pytest.approx(float(number), rel=1e-2), row.name
+            seen.add(row.group)
+        for key in ("regularization", "cutoff", "contact_stiffness", "step", "tolerance"):
+            if key in row.settings and not (key == "tolerance" and row.amplification) and not row.invalid:
+                assert row.settings[key] == pytest.approx(float(row.title)), row.name
+    assert seen == {*QUANTITIES}
+    asked = {((cell.row.group, cell.row.title), cell.column.key) for cell in analysis.cells(list(rows()))}
+    assert {(extreme, model) for extreme, models in CAUSES.items() for model in models} <= asked
+
+
+@pytest.mark.long
+def test_the_equations_fail_at_none_of_the_extremes():
+    matrix = collected(analysis.Extremes(analysis.reduced(list(rows())), limit=120.0), None, executor=process_pool)
+    assert [(row.group, row.title, title, cell.reason) for row, title, cell in matrix.listed(Verdict.FAILED)] == []
+    assert sum(matrix.counts().values()) >= 120
+
+
+def test_the_command_writes_the_matrix_and_computes_once(tmp_path, capsys):
+    words = ["--models", "small", "--rows", "amplitude, m/s^2 1e", "--jobs", "1", "--out", str(tmp_path / "report")]
+    assert main(words, ThreadPoolExecutor) == 0
+    matrix = STORED.load(tmp_path / "report")
+    assert matrix.run["command"].startswith("phase-resonance extremes --models small ")
+    assert main(words, no_executor) == 0
+    assert f"3 of 3 tasks are in {tmp_path / 'report'}.tiles: only the others are computed." in capsys.readouterr().out
+    again = STORED.load(tmp_path / "report")
+    assert (again.rows, again.run["stored_before"]) == (matrix.rows, 3)
+    with pytest.raises(AssertionError, match="computed"):
+        main([*words, "--fresh"], no_executor)
+
+
+def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
+    columns = tuple(replace(fake(model), key=model) for model in ("calls_nan_ok", "unable", "at_the_rim", "honest"))
+    plain = replace(PLAIN, columns=tuple(each.key for each in columns))
+    monkeypatch.setattr("comparison.evidence.extremes.command.COLUMNS", columns)
+    monkeypatch.setattr("comparison.evidence.extremes.command.rows", lambda: iter([plain]))
+    assert main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
+    limit, failed, counts, *_ = capsys.readouterr().out.splitlines()[-5:]
+    assert limit == "limit: anything plain, unable: step limit"
+    assert failed == "FAILED: anything plain, calls_nan_ok: ok, but no finite number"
+    assert counts.endswith(": 1 converged, 1 refused, 1 limit, 1 FAILED.")
+    monkeypatch.setattr(analysis.Extremes, "collect", lambda *rest: FOUND)
+    main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor)
+    assert "1.0 s of processor time: 1 converged, 0 refused, 1 limit, 1 FAILED" in capsys.readouterr().out
+
+
+def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    brief, asked = analysis.read_scene(scene(duration=0.5)), {}
+    usual = multibody.levels(brief, "translational", 1e-2, 1e-3)[0]
+    monkeypatch.setattr("multibody.amplification", lambda *rest, levels, **settings: asked.update(first=levels[0]))
+    amplification(brief, [(0.3, 1.1)], contact_stiffness=1e4)
+    assert asked["first"].penetration == pytest.approx(brief.total_mass * 9.81 / (1e4 * brief.radius))
+    amplification(brief, [(0.3, 1.1)], step=0.1)
+    assert asked["first"].step * np.sqrt(brief.radius / 9.81) == pytest.approx(0.1)
+    longer = asked["first"].step / usual.step
+    assert asked["first"].error_floor / usual.error_floor == pytest.approx(longer**2)
+    assert asked["first"].max_divisions - usual.max_divisions == np.ceil(np.log(longer) / np.log(4.0))
+
+
+def test_the_engine_does_the_work_that_a_row_allows(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr(analysis, "imported", lambda path: lambda *given, **settings: asked.append(settings))
+    column = replace(fake("honest"), settings={"max_work": 6e5})
+    analysis.solve_cell(analysis.Cell(replace(PLAIN, max_work=123.0), column))
+    assert asked == [{"max_work": 123.0, "tolerance": 1e-3}]
+
+
+def test_a_limit_states_its_cause_and_no_other_verdict_does(monkeypatch):
+    monkeypatch.setitem(CAUSES, (PLAIN.group, PLAIN.title), {"fake": "the fake gives up"})
+    assert analysis.solve_cell(analysis.Cell(PLAIN, fake("unable"))).reason == "step limit: the fake gives up"
+    assert "gives up" not in analysis.solve_cell(analysis.Cell(PLAIN, fake("honest"))).reason
+
+
+def test_a_value_with_an_error_as_large_as_itself_is_not_confirmed() -> None:
+    mu, status = np.array([[1.0, 2.0]]), (Outcome.TOLERANCE_NOT_MET.value,)
+    assert [analysis.answers(analysis.Reply(mu, share * mu, status)) for share in (1.0, 0.9)] == [False, True]
+
+
+def test_a_motion_that_leaves_the_model_is_refused() -> None:
+    mu, verdicts = np.full((1, 2), np.nan), {}
+    for outcome in Outcome:
+        reply = analysis.Reply(mu, mu, (outcome.value,))
+        verdicts.setdefault(str(analysis.judged(reply, [reply], 1e-3, False, ()).verdict), set()).add(outcome.value)
+    physics = {"rim reached", "travel reached", "contact lost", "overturned", "painleve paradox"}
+    assert verdicts["refused"] == physics | {"non-finite load", "no ground motion"}
+    assert verdicts["limit"] == {"step limit", "solver failed"}
+
+
+def test_the_body_that_is_farthest_beyond_its_own_error_fails() -> None:
+    reply, known = (
+        analysis.Reply(np.array([[10.0 + off, 1.0 + 0.1 * off]]), np.array([[error, 0.01 * error]]), ("ok",))
+        for off, error in ((0.05, 0.1), (0.0, 0.0))
+    )
+    entry = analysis.judged(reply, [known], 1e-1, False, ())
+    assert (entry.verdict, entry.reason[:14]) == ("FAILED", "mu_2 is off by"), "mu_1 is off by more, and allowed to be"
+
+
+@pytest.mark.parametrize(
+    ("off", "claimed", "finer", "verdict"),
+    [
+        (0.9e-3, 1e-3, 1e-6, "converged"),
+        (1.5e-3, 1e-3, 1e-6, "FAILED"),
+        (0.0, 1e-3, 2e-3, "FAILED"),  # the finer run knows it less well than claimed, and not to a tenth of 1e-2
+        (0.0, 1e-4, 9e-4, "converged"),
+        (0.0, 1.5e-2, 1e-6, "FAILED"),
+        (0.9e-2, np.nan, 1e-6, "converged"),
+        (1.5e-2, np.nan, 1e-6, "limit"),
+    ],
+)
+def test_an_error_half_of_what_it_should_be_fails(off: float, claimed: float, finer: float, verdict: str) -> None:
+    mu = np.array([[1.0, 2.0], [1.0, 2.0]])
+    reply = analysis.Reply(mu * [[1.0, 1.0], [1.0, 1.0 + off]], claimed * mu, ("ok", "ok"))
+    assert analysis.judged(reply, [analysis.Reply(mu, finer * mu, ("ok", "ok"))], 1e-2, False, ()).verdict == verdict

@@ -1,0 +1,235 @@
+"""The measured trade and how the cost grows: fronts, errors along every parameter, checked solutions, known slopes."""
+
+import inspect
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from known_analyses import collected
+from known_results import known_trade
+from rich.console import Console
+from scipy.stats import linregress
+
+from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs
+from comparison.evidence.tradeoff.analysis import Measured, Measurement, entry, joined, sample
+from comparison.evidence.tradeoff.growth import QUANTITIES, STORED, Growth, fit_slope, tall, with_slope
+from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
+from comparison.evidence.tradeoff.trade import load, quantile, unbeaten, with_pareto_fronts
+from comparison.study.batches import import_function
+from comparison.study.study import Study
+from reference import amplification
+from reference.problem import Amplification, Scene, load_scene
+
+SCENE = load_scene("fig3-I")
+
+
+SETTING = Setting("exact", "one", "step", "", 1.0, False, False, RUN, {}, 1.0)
+
+
+def test_nothing_on_the_front_is_beaten_and_all_else_is() -> None:
+    pairs = [(1.0, 1e-2), (2.0, 1e-3), (3.0, 1e-4), (2.5, 2e-3), (1.0, 1e-1), (4.0, float("inf"))]
+    assert [unbeaten(pair, pairs) for pair in pairs] == [True, True, True, False, False, False]
+    assert unbeaten(pairs[0], [pairs[0]] * 2), "two that are alike"
+
+
+def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
+    assert quantile(np.array([1.0, 2.0, 3.0, 40.0]), 0.95) == 40.0
+    assert quantile(np.array([np.nan]), 0.5) is None
+    share = np.arange(101.0)[:, None]
+    shares = entry(SETTING, Measured(1.0 + share, share * (1.0 + share), 1.0, np.nan), np.ones((101, 1)))
+    assert (shares.median, shares.most, shares.error_estimate) == ([50.0], [95.0], [95.0])
+
+
+def test_a_setting_with_gaps_is_not_on_the_front() -> None:
+    ones = np.ones((3, 1))
+    good, lost, uneven, other = (
+        entry(SETTING, Measured(ones * mu, 0.1 * ones * mu, seconds, np.nan), ones)
+        for mu, seconds in (
+            (1.1, 3.0),
+            ([[1.0], [np.nan], [1.0]], 1.0),
+            ([[1.0], [1.0], [1.5]], 6.0),  # a smaller median, a larger error at 95 %
+            (1.0, 0.1),
+        )
+    )
+    marked = with_pareto_fronts([good, lost, uneven, replace(other, model_error=True)], 1)
+    assert [setting.pareto_front for setting in marked] == [(True,), (False,), (False,), (False,)]
+    assert lost.answered == 2
+    assert (good.seconds, good.error_estimate) == (1.0, [pytest.approx(0.1)]), "per point, and relative"
+    parts = [Measured(ones[:2], ones[:2], part, step, why) for part, step, why in ((2.0, 0.1, ""), (4.0, 0.3, "no"))]
+    both = joined(parts)
+    assert (both.seconds, both.step, both.error_message) == (6.0, pytest.approx(0.2), "no")
+
+
+def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> None:
+    mu, share = np.array([[1.0, 2.0], [4.0, 5.0], [7.0, 8.0]]), np.array([[0.01, 0.03], [0.02, 0.005], [0.01, 0.01]])
+    plain = entry(SETTING, Measured(mu, mu, 1.0, np.nan), mu)
+    entries = [
+        replace(plain, method=method, value=value, most=most, model_error=method.startswith("v_reg"))
+        for method, value, most in (
+            ("SciPy LSODA", 1e-4, (1e-4, 2e-4)),
+            ("SciPy Radau", 1e-6, (3e-5, 1e-6)),
+            ("SciPy Radau", 1e-8, (1e-6, None)),
+            ("translational engine, one run", 0.5, (2e-3, 1e-3)),
+            ("v_reg", 0.1, (0.0, 0.0)),
+        )
+    ]
+    found = analysis._answered(QUESTIONS[0], Measured(mu, share * mu, 6.0, np.nan), entries)
+    assert (found.points, found.error) == (3, pytest.approx(0.03))
+    assert found.reference_solution == "the reference at a tolerance of 1e-10, 2 s per point"
+    assert found.checks == [
+        "its own error estimate is 3e-02 at most",
+        "SciPy Radau (step 1e-06), another method on the same equations, agrees with it to 3e-05 at 95 %",
+        "translational engine, one run (step 5e-01), other code from the bodies up, agrees with it to 2e-03 at 95 %",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("name", "friction"),
+    [("fig3-I", 0.1), ("fig3-I", {"slow": 0.05, "fast": 0.15, "rate": 0.9}), ("fig4-viscous", None)],
+    ids=str,
+)
+def test_scipy_has_the_factors_of_the_equations(monkeypatch: pytest.MonkeyPatch, name: str, friction: object) -> None:
+    for function in ("slope", "slopes", "exact_acceleration"):  # not compiled
+        monkeypatch.setattr(outside, function, getattr(outside, function).py_func)
+    bodies = [{"mass": 1.0}, *({"mass": 0.5, "period": [0.6, 0.5], "damping": ratio} for ratio in (0.3, 0.1))]
+    values = {"duration": 0.8, "bodies": bodies} | ({"isolator.friction": friction} if friction else {})
+    scene = load_scene(name).with_values(values).with_amplitude(3.0)
+    expected = amplification(scene, [(0.3, 1.1)], regularization=None if scene.lubricated else 1e-2)
+    found = outside.factors_by_scipy(scene, [(0.3, 1.1)], "LSODA", 1e-8, 1e-2)
+    np.testing.assert_allclose(found, expected.mu, rtol=2e-6)
+
+
+def test_single_runs_have_the_factors_at_the_step_that_is_asked() -> None:
+    short, phases = load_scene("fig3-I").with_values({"duration": 0.5}), [(0.3, 1.1)]
+    expected = amplification(short, phases, regularization=1e-3).mu
+    loose, tight = (single_runs.reference_run(short, phases, inside, regularization=1e-3) for inside in (1e-3, 1e-8))
+    assert np.abs(tight[0] / expected - 1.0).max() < 1e-5
+    assert 0.5 > loose[1] > tight[1] > 1e-4, "mean steps, s"
+    usual, coarse = (np.abs(single_runs.engine_run(short, phases, "translational", 1e-3, step) / expected - 1.0).max()
+                     for step in (1.0, 16.0))  # fmt: skip
+    assert usual < 1e-3 < coarse
+    assert np.abs(single_runs.constant_step_run(short, phases, "trapezoidal", 5e-4, 1e-3) / expected - 1.0).max() < 5e-3
+
+
+def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
+    every = settings(load_scene("fig3-I"))
+    for question in QUESTIONS:
+        of_question = [setting for setting in every if setting.question == question.key]
+        side = "multibody" if question.key == "spatial" else "reference"
+        held = [setting.value for setting in of_question if setting.controlled and side in setting.function]
+        assert question.reference_solution[1]["tolerance"] <= 1.0001e-2 * min(held)
+    loosest = {each.method: each.value for each in reversed(every) if each.question == "exact"}
+    assert [loosest[f"reference, {runs}"] for runs in ("two runs and an estimate", "one run")] == [1e-2, 1e-1]
+    for each in every:
+        inspect.signature(import_function(each.function)).bind(SCENE, sample(1), **each.settings)
+    model_errors = [each for each in every if each.model_error]
+    for each in model_errors:
+        assert each.settings == {"tolerance": 1e-6, "regularization": each.value}
+        faster = "reference:amplification", {"cutoff": each.value, "tolerance": 1e-10}
+        assert each.against == (faster if "faster than v_reg" in each.method else None)
+    assert len(model_errors) == 2 * 6
+
+
+def _known(scene: Scene, phases: np.ndarray, gap: float, tolerance: float = 1e-6) -> Amplification:
+    """mu = 1 + gap at every phase pair."""
+    mu = np.full((len(phases), 2), 1.0 + gap)
+    nothing = np.full(len(phases), np.nan)
+    return Amplification(mu, 1e-3 * mu, np.full(len(phases), "ok"), nothing, 0.0)
+
+
+def test_a_model_that_raises_leaves_points_without_a_value() -> None:
+    measured = analysis.measure(Measurement(SCENE, ("fake_models:always_raising", {}), sample(2)))
+    assert np.isnan(measured.mu).all()
+    assert measured.error_message == "TypeError: always_raising() missing 1 required positional argument: 'tolerance'"
+
+
+def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
+    path, gaps = f"{__name__}:_known", (1e-3, 1e-2)
+    question = Question("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
+    known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
+    monkeypatch.setattr(analysis, "settings", lambda scene, quick: known)
+    monkeypatch.setattr(analysis, "asked", lambda scene: [question])
+    words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
+    assert command.main(words, ThreadPoolExecutor) == 0
+    (first,) = load(tmp_path / "out")
+    assert [entry.most for entry in first.entries] == [pytest.approx([gap] * 2) for gap in gaps]
+    values = xr.load_dataset(tmp_path / "out" / "fig3-I-tradeoff.nc", engine="h5netcdf")
+    assert dict(values.sizes) == {"setting": 2, "point": 3, "body": 2}
+    assert np.stack([values["alpha1"], values["alpha2"]], axis=1).tolist() == sample(3).tolist()
+    assert values["mu"][:, 0, 0].values == pytest.approx([1.001, 1.01])
+    assert (values["reference_solution"] == 1.0).all()
+    assert values["error_estimate"][0].values == pytest.approx(np.full((3, 2), 1.001e-3))
+    monkeypatch.setattr(analysis, "imported", lambda path: pytest.fail("it was measured again"))
+    assert command.main(words, ThreadPoolExecutor) == 0
+    (again,) = load(tmp_path / "out")
+    assert (again.entries, again.run["stored_before"]) == (first.entries, 9)
+
+
+def test_a_known_slope_is_found_in_the_larger_half() -> None:
+    values = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0]
+    seconds = [1.0, 1.0, 1.0, *(value**1.5 for value in values[3:])]
+    assert fit_slope(values, seconds) == pytest.approx((1.5, 0.0), abs=1e-12)
+    assert fit_slope([*values, 64.0], [*seconds, np.nan])[0] == pytest.approx(1.5), "no answer does not count"
+    assert np.isnan(fit_slope(values[:2], seconds[:2])[0])
+    line = linregress(np.log([1.0, 2.0, 4.0]), np.log([1.0, 3.0, 5.0]))
+    assert fit_slope([1.0, 2.0, 4.0], [1.0, 3.0, 5.0]) == pytest.approx((line.slope, line.stderr))
+
+
+def test_a_tall_scene_has_its_bodies_one_above_the_other() -> None:
+    scene = tall(SCENE, 6)
+    heights = [body.height for body in scene.bodies]
+    assert (len(heights), heights) == (6, sorted(heights))
+    assert scene.isolator.ring >= 6.0
+    assert scene.masses[1:].tolist() == pytest.approx([SCENE.masses[1] / 5.0] * 5)
+    assert scene.amplitudes.tolist() == (3.0 * SCENE.amplitudes).tolist(), "else friction holds it"
+    assert [(each.name, each.unit) for each in QUANTITIES] == [("bodies", ""), ("duration", "s"), ("phase pairs", "")]
+    assert QUANTITIES[1].scene(SCENE, 30.0).duration == 30.0
+
+
+def test_the_front_is_printed_with_median_and_95_percent(capsys: pytest.CaptureFixture[str]) -> None:
+    first, second = (trade := known_trade("fig3-I")).entries
+    entries = [replace(first, pareto_front=(True, False)), second]
+    command.print_trade(Console(width=200), replace(trade, entries=entries))
+    heads, row = (
+        line.split() for line in capsys.readouterr().out.splitlines() if "median" in line or "one run" in line
+    )
+    assert heads[-9:] == ["mu", "value", "s", "per", "point", "median", "error", "95", "%"]
+    assert row[-6:] == ["1e-03", "0.0020", "1e-09", "2e-09", "3e-08", "4e-08"]
+
+
+def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.MonkeyPatch) -> None:
+    def measured(measurement: Measurement) -> Measured:
+        """A second for every body of every phase pair."""
+        mu = np.ones((len(measurement.phases), len(measurement.scene.bodies)))
+        return Measured(mu, mu, float(mu.size), np.nan)
+
+    monkeypatch.setattr(growth, "measure", measured)
+    few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 16))]
+    *bodies, pairs = collected(Growth(few), Study((SCENE,), 1, 1e-3))
+    assert [each.seconds for each in bodies] == [[2.0, 4.0, 8.0]] * 3, "of every model"
+    assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 32.0])
+
+
+def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path):
+    bodies = with_slope("bodies", "", "exact", (2.0, 4.0, 8.0), (0.5, 2.0, 8.0))
+    workers = with_slope("workers", "", "exact", (1.0, 2.0), (3.0, float("nan")))
+    monkeypatch.setattr(command, "compute_tasks", lambda *rest: None)
+    monkeypatch.setattr(Growth, "collect", lambda *rest: [bodies])
+    monkeypatch.setattr(command, "by_workers", lambda *rest: workers)
+    assert command.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0
+    found = STORED.load(tmp_path)
+    assert found.series == [bodies, workers]
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["bodies", "exact", "2", "0.5"] in rows
+    assert ["bodies", "exact", "8", "8", "2.00", "±", "0.00"] in rows, "the slope stands in the last row"
+    assert ["workers", "exact", "2", "no", "answer"] in rows
+
+
+def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[object] = []
+    monkeypatch.setattr(growth, "measure", calls.append)
+    series = growth.by_workers(SCENE, ThreadPoolExecutor, 3)
+    assert list(series.values) == [1.0, 2.0, 3.0]
+    assert len(calls) == 3 * growth.CALLS + 2 * (1 + 2 + 3), "the same work for all, and two calls to warm each up"

@@ -1,0 +1,338 @@
+"""Measured motions: files by an independent integration of the frame, closed forms, the real files, and wrong ones."""
+
+import math
+import os
+import re
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.io import savemat
+from scipy.special import ellipk
+
+from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
+from comparison.evidence.validation import frame, pendulum, table
+from comparison.evidence.validation.command import compared, main
+from comparison.evidence.validation.feature import panels
+from comparison.evidence.validation.files import DECAY, LARGE, Shaken, read_folder
+from comparison.evidence.validation.table import COVERAGE, LAW, Validation, recorded
+from comparison.verdicts import MET, NOT_COMPARED, NOT_MET
+
+MASS, STIFFNESS, DAMPING, RATIO = 3.0799, 1191.0, 0.6690, 0.24
+FREQUENCY, AMPLITUDE, RATE, GRAVITY = 1.003, 1.8e-3, 250.0, 9.80665
+PARTS = "Time_id", "Time_vad", "Y_id", "Y_vad"
+MEASURED = os.environ.get("PHASE_RESONANCE_MEASURED", "")  # folder with the published files
+
+
+@cache
+def shaken(weight: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time, plate and base, mm, of the frame as SciPy integrates it, from a stop to the next, behind six cycles."""
+    turn, friction, end = 2.0 * math.pi * FREQUENCY, RATIO * weight * GRAVITY, 18.0 / FREQUENCY
+
+    def pull(t: float | np.ndarray) -> float | np.ndarray:
+        return AMPLITUDE * (STIFFNESS * np.cos(turn * t) - DAMPING * turn * np.sin(turn * t))
+
+    begin, place = 0.0, AMPLITUDE
+    instants, places = [0.0], [place]
+    while begin < end:
+        held = begin + np.arange(0.0, 1.0, 1e-5)
+        rest = np.abs(pull(held) - STIFFNESS * place) <= friction
+        slip = float(held[np.argmin(rest)])  # the first instant at which it is not held
+        sign = math.copysign(1.0, pull(slip) - STIFFNESS * place)
+
+        def rate(t: float, state: np.ndarray, sign: float = sign) -> list[float]:
+            force = pull(t) - DAMPING * state[1] - STIFFNESS * state[0] - sign * friction
+            return [state[1], force / MASS]
+
+        def stops(t: float, state: np.ndarray, sign: float = sign) -> float:
+            return sign * state[1]
+
+        stops.terminal, stops.direction = True, -1.0
+        slide = solve_ivp(
+            rate, (slip, end + 1.0), [place, sign * 1e-12], events=stops, rtol=1e-10, atol=1e-14, max_step=0.004
+        )
+        instants += [slip, *slide.t[1:]]
+        places += [place, *slide.y[0, 1:]]
+        begin, place = float(slide.t[-1]), float(slide.y[0, -1])
+    time = 6.25 / FREQUENCY + np.arange(2501) / RATE
+    return time, 1e3 * np.interp(time, instants, places), 1e3 * AMPLITUDE * np.cos(turn * time)
+
+
+def save(folder: Path, grams: int, offset: float = 0.0) -> None:
+    """The files of a run, with an offset of the plate's sensor."""
+    time, plate, base = shaken(1e-3 * grams)
+    savemat(folder / f"s_b_{grams}g_x.mat", {"t": time[:, None], "x": plate[:, None] + offset})
+    savemat(folder / f"s_b_{grams}g_y.mat", {"t": time[:, None], "y": base[:, None]})
+
+
+def test_the_equations_predict_a_run_of_an_independent_program(tmp_path: Path):
+    save(tmp_path, 450, offset=-0.15)
+    cycles = frame.fold(read_folder(tmp_path).runs[0])
+    assert cycles.frequency == pytest.approx(FREQUENCY, abs=1e-5)
+    found = np.mean([frame.read_cycle(each, cycles.frequency) for each in cycles.motions], axis=0)
+    computed = frame.read(cycles, frame.compute(EQUATIONS, cycles, frame.Setup(ratio=RATIO))).values
+    assert computed[:2] == pytest.approx(found[:2], rel=5e-4)  # without the damper: 5e-3
+    assert computed[2:] == pytest.approx(found[2:], abs=0.2)
+
+
+def test_the_numbers_of_a_known_cycle_are_read():
+    turn = np.arange(frame.SAMPLES) * 360.0 / frame.SAMPLES
+    motion = np.interp(turn, [0.0, 70.0, 150.0, 250.0, 330.0, 360.0], [1.5, 1.5, -1.5, -1.5, 1.5, 1.5])
+    half_range, rms, rest, starts, stops = frame.read_cycle(motion, 1.0)
+    assert half_range == 1.5
+    assert rms == pytest.approx(math.sqrt((200.0 * 1.5**2 + 160.0 * 1.5**2 / 3.0) / 360.0), rel=1e-3)
+    width, top = 360.0 * frame.WIDTH / frame.SAMPLES, 3.0 / (80.0 / 360.0)  # velocity: a mean over twice the width
+    early = width * (1.0 - 2.0 * frame.SPEED / top)
+    assert (starts, stops) == pytest.approx((70.0 - early, 150.0 + early), abs=0.2)
+    assert rest == pytest.approx(100.0 * (200.0 - 4.0 * early) / 360.0, abs=0.2)
+    at_rest = frame.read_cycle(0.05 * np.sin(np.linspace(0.0, 6.283, frame.SAMPLES)), 1.0)
+    assert [at_rest[0], at_rest[2]] == pytest.approx([0.05, 100.0], rel=1e-3)
+    assert np.isnan(at_rest[3:]).all(), "nothing starts or stops"
+
+
+def test_a_run_is_folded_at_the_turns_of_its_base():
+    """Base and second harmonic, 7 and 0.2 mm, the latter behind by 40 degrees; the plate is behind the base by 50."""
+    time, turn = np.arange(2501) / RATE, 2.0 * math.pi * FREQUENCY * np.arange(2501) / RATE + 1.0
+    base = 7.0 * np.cos(turn) + 0.2 * np.cos(2.0 * turn - np.radians(40.0))
+    cycles = frame.fold(Shaken(0.25, time, 3.0 * np.cos(turn - np.radians(50.0)), base))
+    assert (cycles.frequency, cycles.amplitude) == pytest.approx((FREQUENCY, 7.0), rel=1e-6)
+    assert cycles.second == pytest.approx(0.2 * np.exp(-1j * np.radians(40.0)), abs=1e-6)
+    expected = 3.0 * np.cos(2.0 * math.pi * np.arange(frame.SAMPLES) / frame.SAMPLES - np.radians(50.0))
+    assert cycles.mean == pytest.approx(expected - expected.mean(), abs=2e-3)
+
+
+def test_the_scene_of_a_run_has_the_force_of_disc_and_base():
+    cycles = frame.Cycles(Shaken(0.25, *np.zeros((3, 1))), np.zeros((4, frame.SAMPLES)), 1.0, 2.0, 0.3 + 0.4j)
+    scene, phases = frame.scene_of(cycles, frame.Setup(disc=1.1, ratio=0.2, scale=1.5, second=0.5))
+    law, weight = scene.dry_friction, scene.total_mass * 9.81
+    assert law.slow * weight == pytest.approx(0.2 * 1.1 * 0.25 * 9.81)
+    assert weight / scene.radius == pytest.approx(STIFFNESS)
+    assert (law.fast - law.slow) * law.rate * weight == pytest.approx(DAMPING)
+    for number, base in enumerate((2e-3, 0.5 * (0.3 + 0.4j) * 1e-3), start=1):
+        force = -1.5 * base * (STIFFNESS + 2j * math.pi * number * DAMPING) / MASS
+        assert scene.amplitudes[0, number - 1] == pytest.approx(abs(force))
+        assert phases[number - 1] == pytest.approx(np.angle(force))
+
+
+def test_the_numbers_of_a_motion_have_its_errors():
+    accuracy = SimpleNamespace(coarser=[[1.5, 2.5], [3.0, 7.0]], error_of=lambda value, others: sum(others) - 2 * value)
+    motion = SimpleNamespace(status="ok", accuracy=accuracy)
+    found = table.answer(motion, lambda each: np.array([1.0, 2.0] if each is motion else each), 2)
+    assert (found.values.tolist(), found.errors.tolist()) == ([1.0, 2.0], [2.5, 5.5])
+    ended = SimpleNamespace(status="rim reached", accuracy=accuracy)
+    assert np.isnan(np.concatenate(table.answer(ended, np.asarray, 2))).all()
+
+
+def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
+    """In place of the equations a cycle 10 scale cos - 8 ratio disc sin, mm; ratios as the power 0.15 of the weight."""
+    turn = 2.0 * np.pi * np.arange(frame.SAMPLES) / frame.SAMPLES
+
+    def cycle(setup: frame.Setup) -> np.ndarray:
+        return 10.0 * setup.scale * np.cos(turn) - 8.0 * setup.ratio * setup.disc * np.sin(turn)
+
+    def folded(run: Shaken) -> frame.Cycles:
+        ratio = RATIO * (run.weight / 0.25) ** 0.15
+        motions = [cycle(frame.Setup(ratio=ratio + change)) for change in (5e-4, -5e-4, 5e-4, -5e-4)]
+        return frame.Cycles(run, np.array(motions), 1.0, 2.0, 0.02)
+
+    def read(cycles: frame.Cycles, setup: frame.Setup) -> table.Answer:
+        return table.Answer(frame.read_cycle(cycle(setup), 1.0), np.full(5, 1e-3))
+
+    for name, known in (("fold", folded), ("compute", lambda side, cycles, setup: setup), ("read", read)):
+        monkeypatch.setattr(frame, name, known)
+    monkeypatch.setattr(frame, "last_cycle", lambda motion, frequency: cycle(motion))
+    found = frame.compare([Shaken(weight, *np.zeros((3, 1))) for weight in (0.25, 0.35, 0.45)])
+    rows = {(each.experiment, each.name): each for each in found.quantities}
+    uses = {title: each.use for (title, name), each in rows.items() if name == "half range"}
+    plain = [f"frame, {grams} g" for grams in (250, 350, 450)]
+    assert list(uses) == [*plain, *(f"{name}, friction of the load" for name in plain[1:])]
+    assert list(uses.values()) == ["calibrated", *["predicted"] * 3, "calibrated"]
+    first, constant, loaded = (rows[title, "half range"] for title in (*list(uses)[:2], list(uses)[3]))
+    size, spread = math.hypot(10.0, 8.0 * RATIO), 2.0 * 5e-4 * math.sqrt(4.0 / 3.0)
+    assert first.measured == pytest.approx(size, rel=2e-3)
+    sizes = [math.hypot(10.0, 8.0 * (RATIO + change)) for change in (5e-4, -5e-4)]
+    assert first.data == pytest.approx(2.0 * np.std(sizes * 2, ddof=1), rel=0.1), "u_D is two standard deviations"
+    changed = (10.0, 8.0 * (RATIO + spread)), (10.0, 8.0 * RATIO * 1.01), (10.1, 8.0 * RATIO)
+    assert first.inputs == pytest.approx(math.hypot(*(math.hypot(*each) - size for each in changed)), rel=2e-2)
+    assert first.sides[EQUATIONS].verdict == loaded.sides[EQUATIONS].verdict == MET
+    ratio, share = RATIO * 1.4**0.15, math.log(1.4) / math.log(1.8)
+    at = [ratio * (1.0 + spread / RATIO) ** (1.0 - share), ratio * (1.0 + spread / (RATIO * 1.8**0.15)) ** share]
+    changed = [{"ratio": each} for each in at] + [{"disc": 1.01}, {"scale": 1.01}]
+    begin, *shifted = (
+        frame.read_cycle(cycle(frame.Setup(**{"ratio": ratio, **each})), 1.0)[3] for each in ({}, *changed)
+    )
+    starts = rows["frame, 350 g, friction of the load", "phase of the starts"]
+    assert starts.inputs == pytest.approx(math.hypot(*(each - begin for each in shifted)), rel=5e-3), (
+        "scatter of both fitted ratios"
+    )
+    phase = rows["frame, 350 g", "phase of the starts"]
+    assert phase.sides[EQUATIONS].verdict == NOT_MET
+    assert phase.cause.startswith(f"{LAW}: gone with the ratio of this run, 0.252")
+    assert abs(loaded.sides[EQUATIONS].error) < 0.05 * abs(constant.sides[EQUATIONS].error)
+    for place, (grams, fitted) in ((-2, (250, 0.24)), (-1, (450, RATIO * 1.8**0.15))):
+        source = f"fitted to the motion of the run with {grams} g; its scatter over the cycles"
+        assert found.inputs[place] == f"frame: friction ratio {fitted:.5g} ± {spread:.2g} ({source})"
+    (plot, *_), titles = (
+        panels(Validation([], [], [], [], found.curves, {})),
+        ("phase of the base, deg", "top plate, mm"),
+    )
+    assert (plot["title"], plot["plot"]["x"]["title"], plot["plot"]["y"]["title"]) == ("frame, 250 g", *titles)
+    lines = {line["name"]: line["y"] for line in plot["plot"]["series"]}
+    assert lines["measured"] == pytest.approx(cycle(frame.Setup(ratio=RATIO)).tolist(), abs=1e-9)
+    assert lines["equations"] == pytest.approx(lines["measured"], abs=1e-3)
+    off = [8.0 * RATIO * (change**0.15 - 1.0) / math.sqrt(2.0) for change in (1.0, 1.4, 1.8)]
+    for residual, expected, row in zip(found.residuals, off, (first, constant, rows["frame, 450 g", "half range"])):
+        assert residual.share == pytest.approx(expected / row.measured, abs=1e-4), "rms over the half range"
+    power = "fitted to frame, 250 g and to frame, 450 g grow as the load to the power 0.150"
+    assert any(power in fact for fact in found.facts)
+
+
+def test_losses_and_later_turns_of_a_known_swing_are_met(tmp_path: Path):
+    half, loss, step = 0.39, 0.005, 1.5e-4
+    time = np.arange(-0.3 * half, 16.0 * half, 1e-3)
+    number = np.floor(time / half)
+    middle = 0.5 * loss * (-1.0) ** number  # a half swing is a cosine about a point that friction shifts
+    angle = middle + (0.0659 - (number + 0.5) * loss) * np.cos(np.pi * time / half)
+    angle[number >= 13] = angle[number < 13][-1]
+    values = math.pi + step * np.round(angle / step)
+    savemat(tmp_path / DECAY, {"Theta1": {"time": time, "signals": {"values": values}}})
+    swing = read_folder(tmp_path).decay
+    np.testing.assert_allclose(swing.angle, values - math.pi, atol=1e-12)
+    found = pendulum.compare_decay(swing)
+    assert float(found.inputs[1].split("swing ")[1].split(" ")[0]) == pytest.approx(loss, abs=3e-5)
+    turns = np.array(found.curves[0].y[:11])  # mrad
+    design = np.column_stack([np.ones(11), np.arange(11), (-1.0) ** np.arange(11)])
+    [left] = np.linalg.lstsq(design, turns, rcond=None)[1]
+    deviation = math.sqrt(left / (11 - 3) * np.linalg.inv(design.T @ design)[1, 1])
+    assert f"± {2e-3 * deviation:.2g} rad" in found.inputs[1]
+    assert found.quantities[0].data == pytest.approx(2e3 * step / math.sqrt(12.0)), "the encoder reads in steps"
+    for each in found.quantities[:4]:
+        assert {side.verdict for side in each.sides.values()} == {MET}, each
+
+
+def test_half_periods_are_those_of_elliptic_integrals(tmp_path: Path):
+    mean = pendulum._of_mean(np.array([1.0, 3.0, 1.0, 3.0]))
+    assert mean == pytest.approx(COVERAGE * np.sqrt(4.0 / 3.0) / 2.0), "scatter over the root of the count"
+    rate, amplitude, time = np.pi / 0.39, 1.6, 0.0
+    instants, angles = [], []
+    while amplitude > 0.2:
+        half = 2.0 * float(ellipk(np.sin(0.5 * amplitude) ** 2)) / rate
+        dense = np.linspace(0.0, np.pi, 200, endpoint=False)
+        instants += list(time + half * dense / np.pi)
+        angles += list((-1.0) ** (len(angles) // 200) * amplitude * np.sin(dense))
+        time, amplitude = time + half, amplitude - 0.01
+    even = np.arange(0.0, time, 1e-3)
+    cells: dict[str, np.ndarray] = {name: np.empty(2, dtype=object) for name in PARTS}
+    for number, part in enumerate(np.array_split(np.arange(len(even)), 4)):
+        kind = ("id", "vad")[number // 2]
+        angle = math.pi + np.interp(even[part], instants, angles)
+        cells[f"Time_{kind}"][number % 2], cells[f"Y_{kind}"][number % 2] = even[part], np.array([angle, 0.0 * angle])
+    savemat(tmp_path / LARGE, cells)
+    swing = read_folder(tmp_path).large
+    np.testing.assert_allclose(swing.angle, np.interp(even, instants, angles), atol=1e-12)
+    found = pendulum.compare_large(swing)
+    for each in found.quantities:
+        assert abs(each.sides[EQUATIONS].error) < 2e-4 * each.measured, each
+        assert abs(each.sides[ENGINE].error) < 4e-4 * each.measured, each
+    assert "-14" in found.facts[0]  # what the small-vibration equations are off by at 1.5 rad
+
+
+@pytest.mark.long
+def test_both_sides_meet_runs_of_an_independent_program(tmp_path: Path):
+    save(tmp_path, 250)
+    save(tmp_path, 450, offset=0.3)
+    table = compared(tmp_path)
+    assert len(table.quantities) == 10
+    assert table.counts()[MET] == 20
+    assert "ratio of this run alone is 0.240" in table.facts[1]
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not MEASURED, reason="PHASE_RESONANCE_MEASURED names no folder with the published files")
+def test_the_recorded_table_is_that_of_the_published_files():
+    table = compared(Path(MEASURED))
+    new = {(each.experiment, each.name): each for each in table.quantities}
+    for each in recorded().quantities:
+        again = new[each.experiment, each.name]
+        assert again.measured == pytest.approx(each.measured, rel=1e-6)
+        for side, computed in each.sides.items():
+            assert again.sides[side].value == pytest.approx(computed.value, abs=3.0 * computed.numerical + 1e-5)
+            assert again.sides[side].verdict == computed.verdict
+
+
+def test_page_and_terminal_have_the_recorded_table(capsys: pytest.CaptureFixture[str]):
+    assert main([]) == 0
+    printed = capsys.readouterr().out
+    for part in ("so the ratio depends on the load", "arXiv 2303.03858", "GPL-3.0", "MultiArm-Pendulum"):
+        assert part in printed, part
+    lines = [re.split(r"\s{2,}", line.strip()) for line in printed.splitlines()]
+    heads = ["quantity", "D", "u_D", "u_input", "E equations", "u_num", "E engine", "u_num", "u_val", "verdict"]
+    assert heads in lines
+    assert sum(recorded().counts().values()) == 2 * len(recorded().quantities)
+    assert recorded().curves == []  # nothing of the files is in the package
+    for each in recorded().quantities:
+        equations, smoothed, engine = (each.sides[side] for side in (EQUATIONS, SMOOTHED, ENGINE))
+        measured = f"{each.measured:.5g}"
+        sides = [number for side in (equations, engine) for number in (side.error, side.numerical)]
+        numbers = [f"{n:.2g}" for n in (each.data, each.inputs, *sides, equations.validation)]
+        assert [measured, *numbers] in [cells[1:-1] for cells in lines]
+        assert abs(engine.value - smoothed.value) <= engine.numerical + smoothed.numerical, each
+
+
+X, Y = "s_b_250g_x.mat", "s_b_250g_y.mat"
+
+
+def make(folder: Path) -> Path:
+    folder.mkdir()
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda folder: (folder / Y).unlink(), "s_b_250g_y.mat is missing"),
+        (lambda folder: savemat(folder / X, {"t": np.arange(700.0), "x": np.zeros((700, 3))}), "x must be one column"),
+        (lambda folder: (folder / Y).write_bytes(b"MATLAB 5.0" + bytes(range(256)) * 4), "must be a MATLAB file"),
+        (lambda folder: savemat(folder / DECAY, {"Theta1": np.zeros(800)}), "Theta1 must be a structure"),
+        (lambda folder: savemat(folder / LARGE, dict.fromkeys(PARTS, 1.0)), "must be"),
+        (lambda folder: [file.unlink() for file in folder.iterdir()], "holds none of the measured files"),
+        (lambda folder: folder.rename(folder.with_name("other")), "must be a folder"),
+        (lambda folder: [save(make(folder / part), 350) for part in "ab"], "must hold each file once: also a/s_b_350"),
+    ],
+)  # fmt: skip
+def test_wrong_files_end_in_one_line(tmp_path, capsys, spoil, said):
+    folder = tmp_path / "files"
+    folder.mkdir()
+    save(folder, 250)
+    spoil(folder)
+    assert main([str(folder), "--out", str(tmp_path / "report")]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert said in error
+
+
+def test_a_side_without_a_value_is_an_exit_code(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+    first, *rest = recorded().quantities
+    nothing = table.Comparison(None, None, None, None, NOT_COMPARED)
+    lacking = replace(first, sides={**first.sides, ENGINE: nothing})
+    for quantities, code in ((recorded().quantities, 0), ([lacking, *rest], 1)):
+        compared = replace(recorded(), quantities=quantities)
+        monkeypatch.setattr("comparison.evidence.validation.command.compared", lambda folder, table=compared: table)
+        assert main([str(tmp_path), "--out", str(tmp_path / "report")]) == code
+
+
+def test_a_comparison_error_is_within_all_uncertainties():
+    """0.03, 0.04 and 0.12 make 0.13: 0.125 is within, 0.135 is not; any two of them make less than 0.127."""
+    one = np.ones(2)
+    data = table.Data(("a", "b"), ("mm", "mm"), ("predicted",) * 2, one, np.array([0.12, 0.12]))
+    values = np.array([1.1285, 1.135])
+    answers, varied = {EQUATIONS: table.Answer(values, np.array([0.03, 0.03]))}, [values + 0.024, values - 0.032]
+    first, second = table.quantities("run", data, answers, varied, lambda k, allowed: "why")
+    assert [each.sides[EQUATIONS].verdict for each in (first, second)] == [MET, NOT_MET]
+    assert [each.sides[EQUATIONS].error for each in (first, second)] == pytest.approx([0.1285, 0.135])
+    assert first.sides[EQUATIONS].validation == pytest.approx(0.13)
+    assert (first.cause, second.cause) == ("", "why")

@@ -1,0 +1,131 @@
+"""Sentences about measured motions follow their record: each contradiction planted into it changes what is said."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.evidence.validation import statements
+from comparison.evidence.validation.table import STORED, Comparison, Quantity, Validation, recorded
+from comparison.verdicts import judge
+
+LOADED = ", friction of the load"
+Change = Callable[[Comparison], Comparison]
+
+
+def changed(experiment: str, name: str, change: Change, sides: tuple[str, ...] = (EQUATIONS, ENGINE)) -> Validation:
+    """The record with another comparison of one quantity, by some sides."""
+    table = recorded()
+
+    def altered(each: Quantity) -> Quantity:
+        if (each.experiment, each.name) != (experiment, name):
+            return each
+        return replace(each, sides={**each.sides, **{side: change(each.sides[side]) for side in sides}})
+
+    return replace(table, quantities=list(map(altered, table.quantities)))
+
+
+def of_error(factor: float) -> Change:
+    def change(found: Comparison) -> Comparison:
+        error = factor * found.error
+        return replace(found, error=error, verdict=judge(error, found.validation))
+
+    return change
+
+
+def without_uncertainty(found: Comparison) -> Comparison:
+    return replace(found, validation=None, verdict="not compared")
+
+
+PLANTED = {
+    "met for not met": (("frame, 450 g", of_error(0.1)), "at 450 g met (E = +0.77 %, within 2.7 %)"),
+    "not met for met": (("frame, 550 g" + LOADED, of_error(10.0)), "at 550 g not met (by +6.8 %)"),
+    "sign": (("frame, 550 g", of_error(-1.0)), "at 550 g not met (by −12 %)"),
+    "sign of what is met": (("frame, 350 g" + LOADED, of_error(-1.0)), "at 350 g met (E = −1.4 %, within 2.2 %)"),
+    "missing uncertainty": (("frame, 350 g" + LOADED, without_uncertainty), "at 350 g not compared"),
+}
+
+
+@pytest.mark.parametrize("planted", PLANTED)
+def test_what_is_validated_follows_the_record(planted: str) -> None:
+    (experiment, change), said = PLANTED[planted]
+    table = changed(experiment, "half range", change)
+    assert said in statements.word_validated(table)
+    assert said not in statements.word_validated(recorded())
+    assert said in "\n".join(statements.readme_rows(table))
+
+
+def test_the_runs_of_the_fit_are_judged_as_well() -> None:
+    words = statements.word_calibrated
+    assert words(recorded()).endswith("fitted to: at 250 g not met (by +2.6 %), at 450 g not met (by +4.2 %)")
+    assert words(changed("frame, 250 g", "half range", of_error(0.1))).endswith(
+        "at 250 g met (E = +0.26 %, within 1.6 %), at 450 g not met (by +4.2 %)"
+    )
+    assert words(changed("frame, 450 g" + LOADED, "half range", without_uncertainty)).endswith("at 450 g not compared")
+
+
+def test_nothing_is_validated_where_one_run_or_one_side_is_not_met() -> None:
+    assert statements.word_validated(recorded()).startswith("Validated is one quantity: ")
+    for sides in ((EQUATIONS,), (ENGINE,)):
+        table = changed("frame, 350 g" + LOADED, "half range", of_error(10.0), sides)
+        assert statements.word_validated(table).startswith("Nothing is validated, not even one quantity: ")
+    rest = [each for each in recorded().quantities if not each.experiment.endswith(LOADED)]
+    alone = statements.word_validated(replace(recorded(), quantities=rest))
+    assert alone.startswith("Nothing is validated")
+    assert "friction of the load, fitted at 250 g, not compared: no such run;" in alone
+
+
+def test_the_runs_of_the_fit_are_those_of_the_record() -> None:
+    other = [
+        replace(each, use="predicted" if each.use == "calibrated" else "calibrated")
+        if each.experiment in ("frame, 250 g", "frame, 350 g")
+        else each
+        for each in recorded().quantities
+    ]
+    text = statements.word_validated(replace(recorded(), quantities=other))
+    assert "one friction ratio, fitted at 350 g, at 250 g not met (by +2.6 %), at 450 g" in text
+
+
+def test_a_share_of_rest_that_hides_its_instants_says_so() -> None:
+    why, run = "because starts and stops shift alike", "frame, 450 g"
+    assert statements.word_instants(recorded()).endswith(why)
+    starts, stops, share = statements.INSTANTS
+    for name, factor in ((starts, -1.0), (stops, 0.1), (share, 10.0)):
+        assert why not in statements.word_instants(changed(run, name, of_error(factor)))
+    assert "stops not met (by +2.7 deg)" in statements.word_instants(changed(run, stops, of_error(-1.0)))
+
+
+def test_the_predictions_of_the_pendulum_are_counted() -> None:
+    words = statements.word_predicted_pendulum
+    assert words(recorded()) == "none of the 7 predicted values of the pendulum is met"
+    one = changed("pendulum, decay", "turning point 11", of_error(0.1))
+    assert words(one) == "1 of the 7 predicted values of the pendulum is met"
+    half = changed("pendulum, decay", "turning point 11", of_error(0.1), (EQUATIONS,))
+    assert words(half) == words(recorded()), "met by one side alone"
+
+
+def test_counts_and_the_largest_error_are_those_of_the_record() -> None:
+    rows = statements.readme_rows(recorded())
+    assert "5 of 10 predicted values met, largest error: rms about the mean at 350 g +3.3 %" in rows[0]
+    more = statements.readme_rows(changed("frame, 550 g" + LOADED, "rms about the mean", of_error(-2.0)))
+    assert "4 of 10 predicted values met, largest error: rms about the mean at 550 g −4.1 %" in more[0]
+    residuals = [replace(each, share=2.0 * each.share) for each in recorded().residuals]
+    off = statements.readme_rows(replace(recorded(), residuals=residuals))
+    assert "whole motion off by 24 % at 350 g, 15 % at 550 g" in off[0]
+    line = statements.verdict_line(recorded())
+    assert (
+        line
+        == "88 comparisons: 35 met, 53 not met (largest: pendulum, decay, turning point 13, −137 %), 0 not compared"
+    )
+    line = statements.verdict_line(changed("frame, 450 g", "half range", without_uncertainty))
+    assert "35 met, 51 not met" in line
+    assert line.endswith("2 not compared")
+
+
+def test_a_record_whose_verdict_contradicts_its_numbers_is_refused(tmp_path) -> None:
+    content = STORED.as_json(recorded())
+    for wrong in (b'"verdict": "met"', b'"verdict": "law"', b'"verdict": "not compared"'):
+        (tmp_path / STORED.name).write_bytes(content.replace(b'"verdict": "not met"', wrong, 1))
+        with pytest.raises(ValueError, match=r"not a table of measured quantities: .*: run phase-resonance"):
+            STORED.load(tmp_path)
