@@ -91,7 +91,12 @@ def test_expected_exponents_are_counted_and_the_first_that_is_not_met_is_named()
         return trend(scene, body, "small, exact", SCALES, sizes, 1e-3 * sizes, expected)
 
     noise = trend("d", 1, "small, exact", SCALES, _power(2.0, 1e-3), np.ones((1, 4)), 2.0)
-    met, missed, free, other = told("a", 1, 2.0, 2.0), told("b", 2, 1.0, 2.0), told("c", 1, 1.0, None), told("e", 1, 3.0, 1.0)
+    met, missed, free, other = (
+        told("a", 1, 2.0, 2.0),
+        told("b", 2, 1.0, 2.0),
+        told("c", 1, 1.0, None),
+        told("e", 1, 3.0, 1.0),
+    )
     assert word_trends([met, free]) == "1 expected exponent: 1 met, 0 not met, 0 not compared"
     counts = "4 expected exponents: 1 met, 2 not met, 1 not compared (first: "
     assert word_trends([met, free, noise, missed, other]) == f"{counts}b, body 2, small, exact, 1.00 ± 0.00 for 2)"

@@ -1,10 +1,15 @@
 """Every number of a table stands below its head: planted rows in which no two numbers are alike, read back."""
 
+import io
 import math
+import re
 from html.parser import HTMLParser
 from types import SimpleNamespace
 from typing import Any
 
+from rich.console import Console
+
+from comparison.cli.closing import _print_differences
 from comparison.report import page
 from comparison.report.page import _alert_groups, _environment, measured_sentence
 from comparison.report.results import VALIDATED_BRIEFLY
@@ -88,7 +93,19 @@ def test_an_effect_has_mean_error_share_other_order_and_suprema_below_their_head
         "literal suprema", "largest size", "phases",
     )  # fmt: skip
     one, total = tables.rows(0)
-    cells = ("tower", "2", "turning", "−2.1 %", "0.17 %", "28 %", "−3.5 % without geometry", "−1.4 %", "+0.43 %", "4.1 %", "8 × 8")
+    cells = (
+        "tower",
+        "2",
+        "turning",
+        "−2.1 %",
+        "0.17 %",
+        "28 %",
+        "−3.5 % without geometry",
+        "−1.4 %",
+        "+0.43 %",
+        "4.1 %",
+        "8 × 8",
+    )
     assert one == dict(zip(heads, cells, strict=True))
     sums = ("tower", "2", "total", "−7.5 %", "0.23 %", "", "", "", "", "−18 %", "16 × 16")
     assert total == dict(zip(heads, sums, strict=True))
@@ -171,3 +188,18 @@ def test_a_body_is_drawn_where_any_bar_is_seen() -> None:
 
     drawn = [page.is_drawn(bars(*sizes)) for sizes in ((0.009, 0.009), (-0.011, 0.0), (0.0, 0.011), (NAN, NAN))]
     assert drawn == [False, True, True, False]
+
+
+def test_the_table_of_the_terminal_has_mean_spread_and_maximum() -> None:
+    console = Console(file=io.StringIO(), width=120)
+    scene = SimpleNamespace(differences=[ROW])
+    _print_differences(console, SimpleNamespace(phased=True, scenes_with=lambda name: [scene]))  # type: ignore[arg-type]
+    heads, cells = (
+        re.split(r"\s{2,}", line.strip(" │┃"))
+        for line in console.file.getvalue().splitlines()  # type: ignore[attr-defined]
+        if "body" in line.split() or "tower" in line
+    )
+    assert dict(zip(heads, cells, strict=True)) == {
+        "scene": "tower", "body": "2", "difference": "like for like", "mean": "−2.1 %", "std. dev.": "5.2 %",
+        "maximum": "4.1 %", "not ok": "7",
+    }  # fmt: skip
