@@ -15,10 +15,30 @@ WATERFALL = ("tests/comparison/surfaces/test_waterfall.py",)
 SAMPLING = ("tests/comparison/surfaces/test_sampling.py",)
 BUDGET = ("tests/comparison/surfaces/test_budget.py",)
 NUMBERS = ("tests/comparison/report/test_distinct_numbers.py",)
-ALERTS = tuple(f"tests/comparison/surfaces/test_alerts.py::{name}" for name in ("test_a_far_motion_is_told_with_its_model_share_and_base", "test_a_gap_is_told_with_its_counts_and_outcomes"))
-BENCHMARKS = ("tests/comparison/evidence/test_benchmarks.py::test_the_largest_error_names_its_side_and_is_the_largest_share_not_the_largest_number",)
-WORST = tuple(f"tests/comparison/analyses/test_worst_phases_in_a_study.py::{name}" for name in ("test_a_largest_value_has_the_reading_of_its_model_or_both_without_dry_friction", "test_what_a_largest_value_is_stands_beside_it"))
-TRENDS = tuple(f"tests/comparison/evidence/test_trends.py::{name}" for name in ("test_expected_exponents_are_counted_and_the_first_that_is_not_met_is_named", "test_an_exponent_agrees_within_the_larger_of_its_uncertainty_and_what_is_not_asymptotic"))
+ALERTS = tuple(
+    f"tests/comparison/surfaces/test_alerts.py::{name}"
+    for name in (
+        "test_a_far_motion_is_told_with_its_model_share_and_base",
+        "test_a_gap_is_told_with_its_counts_and_outcomes",
+    )
+)
+BENCHMARKS = (
+    "tests/comparison/evidence/test_benchmarks.py::test_the_largest_error_names_its_side_and_is_the_largest_share_not_the_largest_number",
+)
+WORST = tuple(
+    f"tests/comparison/analyses/test_worst_phases_in_a_study.py::{name}"
+    for name in (
+        "test_a_largest_value_has_the_reading_of_its_model_or_both_without_dry_friction",
+        "test_what_a_largest_value_is_stands_beside_it",
+    )
+)
+TRENDS = tuple(
+    f"tests/comparison/evidence/test_trends.py::{name}"
+    for name in (
+        "test_expected_exponents_are_counted_and_the_first_that_is_not_met_is_named",
+        "test_an_exponent_agrees_within_the_larger_of_its_uncertainty_and_what_is_not_asymptotic",
+    )
+)
 TABLES = ("tests/comparison/report/test_tables_of_sections.py",)
 LAWS = ("tests/reference/problem/test_readings.py",)
 MEASURED = ("tests/comparison/evidence/test_validation_statements.py",)

@@ -11,7 +11,7 @@ from rich.console import Console
 
 from comparison.cli.closing import _print_differences
 from comparison.report import page
-from comparison.report.page import _alert_groups, _environment, measured_sentence
+from comparison.report.page import _alert_groups, _environment, word_measurements
 from comparison.report.results import VALIDATED_BRIEFLY
 from comparison.report.scene_result import ModelOutcome
 from comparison.report.summary_text import summary_text
@@ -176,8 +176,8 @@ def test_alerts_of_a_kind_are_counted_together_and_never_across_kinds() -> None:
 
 
 def test_what_was_measured_is_said_with_what_the_study_adds() -> None:
-    assert measured_sentence(SimpleNamespace(clauses=[])) == VALIDATED_BRIEFLY  # type: ignore[arg-type]
-    assert measured_sentence(SimpleNamespace(clauses=["one", "two"])) == f"{VALIDATED_BRIEFLY}; one; two"  # type: ignore[arg-type]
+    assert word_measurements(SimpleNamespace(clauses=[])) == VALIDATED_BRIEFLY  # type: ignore[arg-type]
+    assert word_measurements(SimpleNamespace(clauses=["one", "two"])) == f"{VALIDATED_BRIEFLY}; one; two"  # type: ignore[arg-type]
 
 
 def test_a_body_is_drawn_where_any_bar_is_seen() -> None:
