@@ -56,6 +56,20 @@ def test_what_is_validated_follows_the_record(planted: str) -> None:
     assert said in "\n".join(statements.readme_rows(table))
 
 
+def test_both_sides_are_worded_equations_first() -> None:
+    def both(equations: float, engine: float) -> str:
+        sides = {
+            side: Comparison(1.0 + error, error, 0.0, 0.1, judge(error, 0.1))
+            for side, error in ((EQUATIONS, equations), (ENGINE, engine))
+        }
+        return Quantity("frame", "half range", "mm", "predicted", 1.0, 0.1, 0.0, "", sides).word_both()
+
+    assert both(0.2, -0.3) == "not met (by +20 % / −30 %)"
+    assert both(0.2, 0.05) == "not met (by +20 %) / met"
+    assert both(0.05, -0.3) == "met / not met (by −30 %)"
+    assert both(0.05, 0.01) == "met"
+
+
 def test_the_runs_of_the_fit_are_judged_as_well() -> None:
     words = statements.word_calibrated
     assert words(recorded()).endswith("fitted to: at 250 g not met (by +2.6 %), at 450 g not met (by +4.2 %)")
