@@ -1,5 +1,6 @@
 """Sentences about measured motions follow their record: each contradiction planted into it changes what is said."""
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -137,6 +138,15 @@ def test_a_half_period_that_is_too_long_is_not_called_too_short() -> None:
     for sides in ((EQUATIONS,), (ENGINE,)):
         long = changed("pendulum, large angles", "half period at 1.25 rad", of_error(-1.0), sides)
         assert words(long).endswith("at 2 of 3 large angles")
+
+
+def test_the_facts_have_the_residuals_of_their_runs() -> None:
+    ranges = {each.experiment: each.measured for each in recorded().quantities if each.name == "half range"}
+    facts = "\n".join(recorded().facts)
+    for each in recorded().residuals:
+        found = re.search(rf"^{each.experiment}: .* and by ([\d.]+) mm with", facts, re.MULTILINE)
+        assert found
+        assert found[1] == f"{each.share * ranges[each.experiment]:.3f}", each.experiment
 
 
 def test_no_building_is_in_the_record() -> None:
