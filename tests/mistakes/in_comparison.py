@@ -435,7 +435,7 @@ MISTAKES = (
     Mistake(EVIDENCE + "extremes/analysis.py", "replies if other not in NUMERICS), status)", "replies), status)",
             "A finer run without an answer contradicts.", (EVIDENT + "extremes.py::test_every_kind_of_answer_has_its_verdict",)),
     Mistake(EVIDENCE + "tradeoff/feature.py", "max(entry.most[body] or 0.0, 1e-16)", "max(entry.median[body] or 0.0, 1e-16)",
-            "The line of 95 % is the median.", (RECORDED,)),
+            "The line of 95 % is the median.", (TESTS + "report/test_page_plots.py::test_no_panel_has_more_curves_than_can_be_told_apart",)),
     Mistake(EVIDENCE + "tradeoff/growth.py", "larger = slice(-max(3, (len(x) + 1) // 2), None)", "larger = slice(None)",
             "The slope is that of all values.", (EVIDENT + "tradeoff.py::test_a_known_slope_is_found_in_the_larger_half",)),
     Mistake(EVIDENCE + "validation/table.py", "math.hypot(errors[k], inputs[k], data.uncertainty[k])",
@@ -592,7 +592,7 @@ MISTAKES = (
             "Supremum and resolved peak have each other's names.", (EVIDENT + "trends.py::test_a_geometric_step_has_the_exponent_two",)),
     # scripts of the page
     Mistake(REPORT + "templates/plot.js", "down = shown[i]; });", "down = down || shown[i]; });",
-            "A line is drawn across what is not known.", (RECORDED,)),
+            "A line is drawn across what is not known.", (TESTS + "report/test_page_in_a_browser.py::test_a_line_has_a_gap_where_nothing_is_known",)),
     Mistake(REPORT + "templates/viewer.js", "row.map(value => known(value) ? 100 * value : null)",
             "row.map(value => known(value) ? value : null)", "Errors in percent are shares.", (RECORDED,)),
     Mistake(REPORT + "templates/motions.js", "MM, i => `body ${i + 2}`]", "MM, i => `body ${i + 1}`]",
