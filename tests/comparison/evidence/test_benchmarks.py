@@ -208,7 +208,7 @@ def test_a_number_that_is_off_or_lacking_is_an_exit_code(number, code, said, mon
 
 def test_both_laws_of_friction_and_the_engine_are_asked(monkeypatch):
     asked = []
-    monkeypatch.setattr(analysis, "imported", lambda path: lambda *given, **settings: asked.append((path, settings)))
+    monkeypatch.setattr(analysis, "import_function", lambda path: lambda *given, **settings: asked.append((path, settings)))
     for side in (EQUATIONS, SMOOTHED, ENGINE):
         with pytest.raises(AttributeError):  # None is no motion
             solve((BY_NAME["sdnd100"], side))

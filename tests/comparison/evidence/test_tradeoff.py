@@ -161,7 +161,7 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
     assert values["mu"][:, 0, 0].values == pytest.approx([1.001, 1.01])
     assert (values["reference_solution"] == 1.0).all()
     assert values["error_estimate"][0].values == pytest.approx(np.full((3, 2), 1.001e-3))
-    monkeypatch.setattr(analysis, "imported", lambda path: pytest.fail("it was measured again"))
+    monkeypatch.setattr(analysis, "import_function", lambda path: pytest.fail("it was measured again"))
     assert command.main(words, ThreadPoolExecutor) == 0
     (again,) = load(tmp_path / "out")
     assert (again.entries, again.run["stored_before"]) == (first.entries, 9)
