@@ -75,7 +75,7 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
             ("v_reg", 0.1, (0.0, 0.0)),
         )
     ]
-    found = analysis._answered(QUESTIONS[0], Measured(mu, share * mu, 6.0, np.nan), entries)
+    found = analysis._count_answers(QUESTIONS[0], Measured(mu, share * mu, 6.0, np.nan), entries)
     assert (found.points, found.error) == (3, pytest.approx(0.03))
     assert found.reference_solution == "the reference at a tolerance of 1e-10, 2 s per point"
     assert found.checks == [

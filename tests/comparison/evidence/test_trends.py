@@ -248,6 +248,6 @@ def test_the_error_of_a_constant_step_covers_it(monkeypatch: pytest.MonkeyPatch,
 
     monkeypatch.setattr(convergence, "_at_constant_step", stepped)
     monkeypatch.setattr(reference, "amplification", _regularized(60.0))
-    sizes, errors = convergence._stiffened(load_scene("fig3-I"))
+    sizes, errors = convergence._stiffen(load_scene("fig3-I"))
     assert (np.abs(sizes) <= errors).all()
     assert (errors <= 5.0 * np.abs(sizes)).all()
