@@ -165,5 +165,5 @@ def leave_beside(place: Path, files: Mapping[str, bytes], *scenes: str) -> None:
     for name in scenes:
         trade = MeasuredTrade(known_trade(name), xr.Dataset({"mu": ("point", [1.0])}))
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(tradeoff, "measured_trades", lambda *rest, trade=trade: [trade])
+            patch.setattr(tradeoff, "measure_trades", lambda *rest, trade=trade: [trade])
             assert tradeoff.main([name, "--out", str(place)]) == 0
