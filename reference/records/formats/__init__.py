@@ -38,7 +38,10 @@ OPTIONS = ("file", *plain_text.OPTIONS)  # keys of the table of a file
 def recognize_format(text: str, suffix: str = "") -> Reader | None:
     """Return the reader of a text by its first lines, else by the suffix of its file; None for a plain text."""
     head = text[: 2**16].splitlines()[:MAX_HEADER_LINES]
-    return next((reader for reader in READERS if reader.recognizes(head)), SUFFIXES.get(suffix.lower()))
+    known = next((reader for reader in READERS if reader.recognizes(head)), None)
+    if known is None and not plain_text.begins_with_numbers(head):
+        return SUFFIXES.get(suffix.lower())
+    return known
 
 
 def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = None) -> Reading:

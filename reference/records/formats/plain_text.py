@@ -44,6 +44,7 @@ NAMED_STEP = re.compile(
     r"|(?P<rate>[0-9]+(?:\.[0-9]*)?) ?(?:hz|sps)\b",
     re.IGNORECASE,
 )
+NO_RECORD = re.compile(r"\bspectr|\bfourier\b", re.IGNORECASE)
 COUNT_AND_STEP = re.compile(r"\s*([0-9]+)[\s,]+([0-9]*\.[0-9]+(?:e-?[0-9]+)?)\s*", re.IGNORECASE)
 
 
@@ -86,6 +87,8 @@ def propose_line(text: str, name: str) -> str:
     if start is None:
         return "it has no lines of numbers: it is no record"
     header = "\n".join(line[:MAX_LINE] for line in lines[:start])
+    if NO_RECORD.search(header):
+        return "its header names spectra: it is no record"
     rows = [cells for line in lines[start : start + 50] if (cells := _loose_cells(line))]
     time = _even_step(rows)
     step, unit = _stated_step(header), NAMED_UNIT.search(header)
@@ -192,6 +195,12 @@ def _even_step(rows: Sequence[Sequence[float]]) -> float | None:
     if steps.min() <= 0.0 or np.ptp(steps) > max(EVEN * steps.mean(), 1e-5):
         return None
     return float(f"{steps.mean():.6g}")
+
+
+def begins_with_numbers(head: Sequence[str]) -> bool:
+    """Whether the first line of a text that is not blank has numbers alone."""
+    first = next((line for line in head if line.strip()), "")
+    return _loose_cells(first) is not None
 
 
 def has_options(table: Mapping[str, Any]) -> bool:
