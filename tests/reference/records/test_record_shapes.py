@@ -213,7 +213,8 @@ REFUSED = [  # name, text, options, and words of the line
         {},
         "line 3: 'VELOCITY TIME SERIES IN UNITS OF CM/S': is no acceleration: take the .AT2 file beside it",
     ),
-    ("a.v3", "Response spectra of an accelerogram\n" + ONE, {}, "its header names spectra: it is no record"),
+    ("a.txt", "Response spectra of an accelerogram\n" + ONE, {}, "its header names spectra: it is no record"),
+    ("a.V1c", "counts\n" + ONE, {}, "a file of a network that is not read as it is: docs/guide/networks.md converts"),
     ("a.txt", "0.1\nx\n", {"step": 0.01, "unit": "g"}, "line 2: 'x': must be a number"),
     (
         "a.txt",
