@@ -240,6 +240,12 @@ REFUSED = [  # name, text, options, and words of the line
         {"step": 0.01, "unit": "g"},
         "the first of them rises evenly as a time does: state the column",
     ),
+    (
+        "a.txt",
+        "1 2 3\n4 0 6\n",
+        {"step": 0.01, "unit": "g"},
+        "line 1: 3 values a line: state column, from 1; column = 0",
+    ),
     ("a.txt", ONE, {"step": 0.01, "unit": "g", "column": 2}, "line 1: 1 values: column = 2: must have as many"),
     ("a.txt", ONE, {"step": 0.01, "unit": "furlong"}, "unit = 'furlong': must be one of m/s^2, g, gal, cm/s^2, mm/s^2"),
     ("a.txt", ONE, {"step": -1.0, "unit": "g"}, "step = -1.0: must be a number of seconds"),
@@ -257,6 +263,14 @@ def test_what_cannot_be_read_is_refused_with_line_text_and_what_to_write(name, t
     line = str(refusal(read, text, name, **options, kind=RecordError))
     assert said in line
     assert "\n" not in line
+
+
+def test_columns_side_by_side_are_taken_one_by_one_or_in_their_order():
+    text = "1 2 3\n4 0 6\n"
+    for column, values in ((0, [1, 2, 3, 4, 0, 6]), (1, [1, 4]), (2, [2, 0]), (3, [3, 6])):
+        samples, _ = read(text, step=0.01, unit="m/s^2", column=column)
+        assert samples[:, 1].tolist() == values
+    assert 'unit = "g", column = 1}' in str(refusal(read, text, kind=RecordError))
 
 
 def test_a_time_that_contradicts_the_stated_step_is_noticed():
