@@ -7,6 +7,7 @@ file reads it. A new format is one file beside this one and its line in the tabl
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -32,13 +33,17 @@ READERS = (
     Reader(csv_table.FORMAT, csv_table.recognizes_csv, csv_table.read_csv),
 )
 SUFFIXES = {".at2": READERS[0], ".csv": READERS[-1]}  # tell the format where the content is of none
+CONVERTED = re.compile(r"\.(?:v[0-3][ac]?|raw|smc|mseed|sac|evt|kmi)", re.IGNORECASE)  # suffixes of files of networks
 OPTIONS = ("file", *plain_text.OPTIONS)  # keys of the table of a file
 
 
 def recognize_format(text: str, suffix: str = "") -> Reader | None:
     """Return the reader of a text by its first lines, else by the suffix of its file; None for a plain text."""
     head = text[: 2**16].splitlines()[:MAX_HEADER_LINES]
-    return next((reader for reader in READERS if reader.recognizes(head)), SUFFIXES.get(suffix.lower()))
+    known = next((reader for reader in READERS if reader.recognizes(head)), None)
+    if known is None and not plain_text.begins_with_numbers(head):
+        return SUFFIXES.get(suffix.lower())
+    return known
 
 
 def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = None) -> Reading:
@@ -52,6 +57,8 @@ def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = N
     if plain_text.has_options(given):
         return plain_text.read_plain_text(text, name, **given)
     reader = recognize_format(text, name[name.rfind(".") :] if "." in name else "")
+    if CONVERTED.fullmatch(name[name.rfind(".") :]) and (reader is None or reader.name == csv_table.FORMAT):
+        raise RecordError("a file of a network that is not read as it is: docs/guide/networks.md converts it to CSV")
     if reader is None:
         return plain_text.read_plain_text(text, name, **given)
     if given and reader.read is not csv_table.read_csv:

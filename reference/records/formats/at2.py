@@ -17,6 +17,7 @@ FORMAT = "PEER .AT2"
 MAX_HEADER_LINES = 20
 MAX_COUNT_DIGITS = 9  # of NPTS
 SECONDS = re.compile(r"S(?:EC)?$", re.IGNORECASE)  # glued to DT
+NO_ACCELERATION = re.compile(r"\b(?:VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
 UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)
 UNIT_OF_G = re.compile(r"UNITS ?(?:OF|ARE|:|=)? ?(?:G|\(G\)|\[G\]) ?(?:\.(?: .*)?)?", re.IGNORECASE)
 ACCELERATION_LINE = re.compile(r"\bACC(?:EL\w*)?\b", re.IGNORECASE)
@@ -61,6 +62,8 @@ def _check_unit(header: list[str], proposal: str) -> None:
     rule = f"must say 'IN UNITS OF G'; in another unit write record = {proposal}"
     for number, line in found:
         at = UNIT_LINE.search(line)
+        if NO_ACCELERATION.search(line):
+            raise RecordError(f"line {number}: {brief(line)}: is no acceleration: take the .AT2 file beside it")
         if at is None or not UNIT_OF_G.fullmatch(line[at.start() :]):
             raise RecordError(f"line {number}: the header names no unit that is known: {brief(line)}: {rule}")
     named = [(number, line) for number, line in enumerate(header, 1) if ACCELERATION_LINE.search(line)]

@@ -16,17 +16,18 @@ from functools import lru_cache
 import numpy as np
 
 from reference.records.directions import Direction, assign_axes, parse_direction
-from reference.records.numerals import MAX_CELL, MAX_LINE, UNIT_NAMES, parse_number, unit_factor
+from reference.records.numerals import MAX_CELL, MAX_LINE, UNIT_NAMES, parse_number, quote_name, unit_factor
 from reference.records.samples import AXES, Reading, RecordError
 from reference.support.arguments import brief
 
 FORMAT = "CSV"
 HEADER = "a header such as time [s], ax [m/s^2], ay [m/s^2]"
 MAX_PREAMBLE = 20  # lines above the header
-TIMES = {"time", "times", "t", "sec", "seconds", "zeit", "temps", "tempo", "tiempo", "時間", "時刻"}
+TIMES = {"time", "times", "t", "sec", "seconds", "zeit", "temps", "tempo", "tiempo", "zaman", "時間", "時刻"}
 SECONDS = {"", "s", "sec", "secs", "second", "seconds", "秒"}
 ACCELERATIONS = {"a", "acc", "accel", "acceleration", "accelerations", "accelerogram", "加速度", "ground", "motion"}
-ACCELERATIONS |= {"component", "comp", "dir", "direction"}
+ACCELERATIONS |= {"component", "comp", "dir", "direction", "ag", "beschleunigung", "accélération", "accelerazione"}
+ACCELERATIONS |= {"aceleración", "aceleracion", "ivme"}
 FUSED = re.compile(r"(?:acceleration|accel|acc|a)(x|y|z|ns|ew|ud|h1|h2|v)", re.IGNORECASE)
 BRACKETS = re.compile(r"(.*?) ?[\[(]([^\[(\])]*(?:\([^()]*\))?)[\])] ?(.*)")
 DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
@@ -54,6 +55,8 @@ def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Read
     lines = ((number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip())
     rows = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
     separator, rows = _separator_line(rows)
+    while rows and not rows[-1][1].strip(",;\t "):  # a spreadsheet leaves separators behind
+        rows.pop()
     if not rows:
         raise RecordError(f"empty: must have {HEADER}, and samples")
     found = _header_row(rows, separator)
@@ -62,7 +65,7 @@ def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Read
     cells, below = _cells(head, header, separator), rows[top + 1 :]
     if below and (units := _units_row(_cells(*below[0], separator), cells)):
         cells, below = units, below[1:]
-    columns = _columns(head, cells, unit)
+    columns = _columns(head, cells, unit, name)
     notes = [f"{top} lines above the header are ignored"] if top else []
     if others := [brief(column.text) for column in columns if column.kind == "other"]:
         notes.append(f"columns that are not needed: {', '.join(others)}")
@@ -135,7 +138,7 @@ def _units_row(cells: list[str], header: list[str]) -> list[str] | None:
     return [f"{name} [{unit}]" if unit else name for name, unit in zip(header, units)] + header[len(units) :]
 
 
-def _columns(line: int, cells: list[str], unit: str | None) -> list[Column]:
+def _columns(line: int, cells: list[str], unit: str | None, name: str) -> list[Column]:
     """The columns of the header. Nothing is quoted where none is as it must be: that is no record. RecordError."""
     columns = []
     for place, cell in enumerate(cells):
@@ -149,10 +152,10 @@ def _columns(line: int, cells: list[str], unit: str | None) -> list[Column]:
         )
     if not times or not usable:
         raise RecordError(f"line {line}: must be {HEADER}")
-    return [_with_unit(line, column, unit) for column in columns]
+    return [_with_unit(line, column, unit, name) for column in columns]
 
 
-def _with_unit(line: int, column: Column, unit: str | None) -> Column:
+def _with_unit(line: int, column: Column, unit: str | None, name: str) -> Column:
     """The column with its unit checked. Raises RecordError."""
     cell, (_, stated) = column.text, _name_and_unit(column.text)
     if column.kind == "time" and stated.lower() not in SECONDS:
@@ -171,8 +174,11 @@ def _with_unit(line: int, column: Column, unit: str | None) -> Column:
         raise RecordError(f"line {line}: column {brief(cell)}: the scene says unit = {brief(unit)}: remove one of them")
     if factor is None:
         quoted = f"unknown unit {brief(stated)}" if stated else "no unit"
-        allowed = f"write {shown} [m/s^2], {shown} [g] or {shown} [cm/s^2], or state unit in the scene"
-        raise RecordError(f"line {line}: column {brief(cell)}: {quoted}: {allowed}; units are {UNIT_NAMES}")
+        if stated:
+            rule = f"write {shown} [m/s^2], {shown} [g] or {shown} [cm/s^2]; units are {UNIT_NAMES}"
+        else:
+            rule = f'write {shown} [g], or record = {{file = {quote_name(name)}, unit = "g"}}; units are {UNIT_NAMES}'
+        raise RecordError(f"line {line}: column {brief(cell)}: {quoted}: {rule}")
     return Column(column.place, cell, column.kind, column.word, factor)
 
 

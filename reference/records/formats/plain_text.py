@@ -33,6 +33,8 @@ OPTIONS = ("step", "unit", "skip", "column")
 MAX_SKIP = 10_000  # lines
 MAX_COLUMN = 100
 EVEN = 0.01  # relative, of the steps of a column that is a time
+MOST_COLUMNS = 4  # values a line that may be a time and three directions as well as a run of values
+FIRST_ROWS = 50  # lines of numbers that a proposal looks at
 FEW = 3  # rows at least that tell a column of times
 NAMED_UNIT = re.compile(
     r"\b(?:[cm]?m|in|ft) ?/ ?s(?:ec)?(?: ?/ ?s(?:ec)?|\^?\*{0,2}2)|\bgals?\b|[(\[]g[)\]]|(?<=\bin )g\b|(?<=\bof )g\b",
@@ -44,6 +46,7 @@ NAMED_STEP = re.compile(
     r"|(?P<rate>[0-9]+(?:\.[0-9]*)?) ?(?:hz|sps)\b",
     re.IGNORECASE,
 )
+NO_RECORD = re.compile(r"\bspectr|\bfourier\b", re.IGNORECASE)
 COUNT_AND_STEP = re.compile(r"\s*([0-9]+)[\s,]+([0-9]*\.[0-9]+(?:e-?[0-9]+)?)\s*", re.IGNORECASE)
 
 
@@ -52,7 +55,7 @@ def read_plain_text(
     text: str, name: str, step: Any = None, unit: Any = None, skip: Any = 0, column: Any = None
 ) -> Reading:
     """
-    Return the values of a text behind `skip` lines: all in their order, or those of one column, from 1.
+    Return the values of a text behind `skip` lines: all in their order (`column` 0), or those of one column, from 1.
 
     step: s. unit: one of `UNIT_NAMES`. Raises RecordError, with the line to write where one of them is missing.
     """
@@ -64,14 +67,14 @@ def read_plain_text(
         raise RecordError(f"step = {brief(step)}: must be a number of seconds, at least {MIN_INTERVAL:g}")
     if factor is None:
         raise RecordError(f"unit = {brief(unit)}: must be one of {UNIT_NAMES}")
-    for key, value, lowest, highest in (("skip", skip, 0, MAX_SKIP), ("column", column, 1, MAX_COLUMN)):
+    for key, value, lowest, highest in (("skip", skip, 0, MAX_SKIP), ("column", column, 0, MAX_COLUMN)):
         whole = isinstance(value, int) and not isinstance(value, bool) and lowest <= value <= highest
         if not whole and not (key == "column" and value is None):
             raise RecordError(f"{key} = {brief(value)}: must be a whole number from {lowest} to {highest}")
     if skip >= len(lines):
         raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: {propose_line(text, name)}")
     rows, notes = _rows(lines, skip, text, name)
-    values = _values(rows, column, text, name)
+    values = _values(rows, column, text, name, any(map(COUNT_AND_STEP.fullmatch, lines[:skip])))
     _check_count(lines[:skip], len(values))
     seen = _even_step([row for _, row in rows]) if column is not None and column > 1 else None
     if seen is not None and abs(seen - spacing) > EVEN * spacing:
@@ -86,14 +89,21 @@ def propose_line(text: str, name: str) -> str:
     if start is None:
         return "it has no lines of numbers: it is no record"
     header = "\n".join(line[:MAX_LINE] for line in lines[:start])
-    rows = [cells for line in lines[start : start + 50] if (cells := _loose_cells(line))]
+    if NO_RECORD.search(header):
+        return "its header names spectra: it is no record"
+    body = [line[:MAX_LINE] for line in lines[start : start + FIRST_ROWS]]
+    if "." not in "".join(body):  # decimal commas
+        body = [line.replace(",", ".") for line in body]
+    rows = [cells for line in body if (cells := _loose_cells(line))]
     time = _even_step(rows)
     step, unit = _stated_step(header), NAMED_UNIT.search(header)
     known = step if step is not None else time
     stated = unit[0].strip("()[]") if unit else None
     parts = [f"file = {quote_name(name)}", f"step = {0.01 if known is None else known:g}", f'unit = "{stated or "g"}"']
     parts += [f"skip = {start}"] if start else []
-    parts += ["column = 2"] if time is not None else []
+    side_by_side = len(rows) > 1 and len({*map(len, rows)}) == 1 and 1 < len(rows[0]) <= MOST_COLUMNS
+    alone = side_by_side and not any(map(COUNT_AND_STEP.fullmatch, lines[:start]))
+    parts += ["column = 2"] if time is not None else ["column = 1"] if alone else []
     missing = [word for word, value in (("step", known), ("unit", stated)) if value is None]
     guess = f", with the {' and the '.join(missing)} of your source, which the file does not state" if missing else ""
     return f"write record = {{{', '.join(parts)}}}{guess}"
@@ -156,17 +166,23 @@ def _rows(lines: Sequence[str], skip: int, text: str, name: str) -> tuple[list[t
     return rows, notes + (["commas are read as decimal commas"] if commas else [])
 
 
-def _values(rows: Sequence[tuple[int, list[float]]], column: int | None, text: str, name: str) -> list[float]:
+def _values(
+    rows: Sequence[tuple[int, list[float]]], column: int | None, text: str, name: str, counted: bool
+) -> list[float]:
     """The values of a column, or all in their order where nothing speaks against it. Raises RecordError."""
-    if column is not None:
+    if column:
         for number, row in rows:
             if len(row) < column:
                 raise RecordError(f"line {number}: {len(row)} values: column = {column}: must have as many")
         return [row[column - 1] for _, row in rows]
     widths = [len(row) for _, row in rows]
-    if len(set(widths)) == 1 and widths[0] > 1 and _even_step([row for _, row in rows]) is not None:
+    timed = len(set(widths)) == 1 and widths[0] > 1 and _even_step([row for _, row in rows]) is not None
+    if column is None and timed:
         rule = "the first of them rises evenly as a time does: state the column"
         raise RecordError(f"line {rows[0][0]}: {widths[0]} values a line, {rule}: {propose_line(text, name)}")
+    if column is None and not counted and len(rows) > 1 and len(set(widths)) == 1 and 1 < widths[0] <= MOST_COLUMNS:
+        rule = f"{widths[0]} values a line: state column, from 1; column = 0 takes all of them in their order"
+        raise RecordError(f"line {rows[0][0]}: {rule}: {propose_line(text, name)}")
     other = widths[min(1, len(widths) - 1)] if widths else 0
     for (number, _), width in zip(rows[:-1], widths):
         if width != other:
@@ -192,6 +208,12 @@ def _even_step(rows: Sequence[Sequence[float]]) -> float | None:
     if steps.min() <= 0.0 or np.ptp(steps) > max(EVEN * steps.mean(), 1e-5):
         return None
     return float(f"{steps.mean():.6g}")
+
+
+def begins_with_numbers(head: Sequence[str]) -> bool:
+    """Whether the first line of a text that is not blank has numbers alone."""
+    first = next((line for line in head if line.strip()), "")
+    return _loose_cells(first) is not None
 
 
 def has_options(table: Mapping[str, Any]) -> bool:

@@ -78,6 +78,8 @@ CSV = {  # texts of the four values, their unit in m/s^2, and what is noticed
     "unit in words": ("Time in s;Acceleration in g\n" + rows(";"), GRAVITY, ""),
     "unit behind an underscore": ("time_s,acc_g\n" + rows(), GRAVITY, ""),
     "units in a line of their own": ("Time,Acc\n[s],[gal]\n" + rows(), 0.01, ""),
+    "lines of separators behind": ("time [s],ax [g]\n" + rows() + ",\n,,\n", GRAVITY, ""),
+    "words of other languages": ("Zeit [s];Beschleunigung [m/s²]\n" + rows(";", ","), 1.0, ""),
     "separators at the end": ("time [s],ax [g],,\n" + rows(more=",,"), GRAVITY, ""),
     "lines above": ("Invented 2000\nNowhere\ntime [s],ax [g]\n" + rows(), GRAVITY, "2 lines above the header"),
     "four columns": (
@@ -190,10 +192,29 @@ REFUSED = [  # name, text, options, and words of the line
     ),
     ("a.csv", "time [s];ax [g]\n0,1;1\n0.2;1\n", {}, "decimal commas (line 2) and decimal points (line 3): take one"),
     ("a.csv", "time [s],ax [g]\n0.00,1\n0.00,2\n0.01,1\n", {}, "where times have too few digits write {file = ..."),
-    ("a.csv", "Time,NS,EW\n0,1,2\n1,2,3\n", {}, "line 1: column 'NS': no unit: write NS [m/s^2], NS [g]"),
+    (
+        "a.csv",
+        "Time,NS,EW\n0,1,2\n1,2,3\n",
+        {},
+        'line 1: column \'NS\': no unit: write NS [g], or record = {file = "a.csv", unit = "g"}; units are m/s^2, g',
+    ),
     ("a.csv", "time [s],Velocity [m/s]\n0,1\n1,2\n", {}, "line 1: must be a header such as time [s], ax [m/s^2]"),
     ("a.csv", "time [s],ax [g],X [g]\n0,1,2\n1,2,3\n", {}, "two have one direction"),
     ("a.csv", "NS [g],EW [g]\n0,1\n1,2\n", {}, "without a column of the time write record = {file = "),
+    (
+        "a.csv",
+        "0.00,0.1\n0.01,0.2\n0.02,0.1\n",
+        {},
+        'write record = {file = "a.csv", step = 0.01, unit = "g", column = 2}',
+    ),
+    (
+        "a.VT2",
+        (PEER + "VELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 5, DT= .0100 SEC\n" + FIELDS),
+        {},
+        "line 3: 'VELOCITY TIME SERIES IN UNITS OF CM/S': is no acceleration: take the .AT2 file beside it",
+    ),
+    ("a.txt", "Response spectra of an accelerogram\n" + ONE, {}, "its header names spectra: it is no record"),
+    ("a.V1c", "counts\n" + ONE, {}, "a file of a network that is not read as it is: docs/guide/networks.md converts"),
     ("a.txt", "0.1\nx\n", {"step": 0.01, "unit": "g"}, "line 2: 'x': must be a number"),
     (
         "a.txt",
@@ -219,6 +240,12 @@ REFUSED = [  # name, text, options, and words of the line
         {"step": 0.01, "unit": "g"},
         "the first of them rises evenly as a time does: state the column",
     ),
+    (
+        "a.txt",
+        "1 2 3\n4 0 6\n",
+        {"step": 0.01, "unit": "g"},
+        "line 1: 3 values a line: state column, from 1; column = 0",
+    ),
     ("a.txt", ONE, {"step": 0.01, "unit": "g", "column": 2}, "line 1: 1 values: column = 2: must have as many"),
     ("a.txt", ONE, {"step": 0.01, "unit": "furlong"}, "unit = 'furlong': must be one of m/s^2, g, gal, cm/s^2, mm/s^2"),
     ("a.txt", ONE, {"step": -1.0, "unit": "g"}, "step = -1.0: must be a number of seconds"),
@@ -236,6 +263,14 @@ def test_what_cannot_be_read_is_refused_with_line_text_and_what_to_write(name, t
     line = str(refusal(read, text, name, **options, kind=RecordError))
     assert said in line
     assert "\n" not in line
+
+
+def test_columns_side_by_side_are_taken_one_by_one_or_in_their_order():
+    text = "1 2 3\n4 0 6\n"
+    for column, values in ((0, [1, 2, 3, 4, 0, 6]), (1, [1, 4]), (2, [2, 0]), (3, [3, 6])):
+        samples, _ = read(text, step=0.01, unit="m/s^2", column=column)
+        assert samples[:, 1].tolist() == values
+    assert 'unit = "g", column = 1}' in str(refusal(read, text, kind=RecordError))
 
 
 def test_a_time_that_contradicts_the_stated_step_is_noticed():
