@@ -25,6 +25,7 @@ from pydantic import TypeAdapter
 
 from comparison.evidence.claims.checks import MET
 from comparison.evidence.claims.evidence import CaseInReading, gather_evidence
+from comparison.evidence.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE
 from comparison.evidence.claims.readings import CASES, READINGS, PeakReading, effective_reading
 from comparison.evidence.claims.table import GRID, Claims, ClaimTable, claims_line
 from comparison.evidence.forced_ratios import forced_ratios
@@ -103,6 +104,7 @@ def render_page(record: dict[str, Any]) -> str:
         line=claims_line(table),
         grids_line=grids_line(record["met_by_grid"]),
         readings=READINGS,
+        shares=(LEAST_SHARE, MOST_SHARE),
         ratios=ratios,
     )
 

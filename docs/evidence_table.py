@@ -178,9 +178,16 @@ def limits() -> str:
     return "\n".join(f"- {text[0].upper()}{text[1:]}." for text in sentences)
 
 
+def findings() -> str:
+    """Return what the errors of several quantities have in common."""
+    table = recorded()
+    words = (statements.word_farther_off, statements.word_last_swings, statements.word_large_angles)
+    return "\n".join(f"- {text[0].upper()}{text[1:]}." for text in (word(table) for word in words))
+
+
 BLOCKS: dict[Path, Sequence[Callable[[], str]]] = {
     DOCS / "evidence.md": (evidence, limits),
-    DOCS / "validation.md": (limits, counts, quantities, explanations, facts),
+    DOCS / "validation.md": (limits, counts, quantities, explanations, findings, facts),
 }
 
 

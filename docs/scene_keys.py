@@ -12,7 +12,7 @@ from reference.problem.ranges import MAX_CYCLES
 from reference.support.arguments import Range
 
 PAGE = Path(__file__).with_name("scene.md")
-SET_BY_THE_READER = {"name", "samples"}  # fields of the models that are no keys of a file
+SET_BY_THE_READER = {"name", "origin", "samples"}  # fields of the models that are no keys of a file
 NESTED = {"isolator", "bodies", "excitation", "acceptance", "analyses", "measured"}
 TABLES = (  # heading, model in the schema, dotted name, introduction
     ("At the top of the file", "", "", ""),
@@ -84,8 +84,8 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
 INTRODUCTION = f"""# The scene file
 
 A scene is a TOML file in UTF-8 of at most 4 MiB. The stem of the file name is its name. `reference/problem/scenes` has
-the paper's four cases and `reference/records/examples` two recorded motions. The error for an unknown key names the
-nearest valid keys. The error for a wrong value gives file, key, value and rule in one line.
+the paper's four cases and `reference/records/examples` two recorded motions. The error for an unknown key says what
+it is called here. All wrong keys and values of a file come in one line, in the order of the file, with value and rule.
 
 Every optional key is off by default. "All" models are the paper's equations and the two engine models, translational
 and spatial. The spatial model requires all of its own keys except `support_stiffness`, `support_damping`,

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from reference.records.formats import Array
+from reference.records.samples import Array
 from reference.support.constants import GRAVITY
 
 PER_LINE = 5  # values in a line of an .AT2 file

@@ -14,6 +14,7 @@ factor_for_spectrum  factor of a ground motion for a target spectrum
 response_spectrum  pseudo-accelerations of a ground motion
 modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
 damped_modes    complex modes and damping ratios of the chain with the dampers of its links
+describe_record  what was read of a recorded motion, with warnings
 load_scene      a scene from a built-in name or a TOML file
 load_family     all scenes of a file in which values run
 builtin_scenes  names of the paper's own cases
@@ -85,6 +86,7 @@ from reference.problem import (
     State,
     Trajectory,
     builtin_scenes,
+    describe_record,
     example_scenes,
     load_family,
     load_scene,
@@ -132,6 +134,7 @@ __all__ = [
     "builtin_scenes",
     "damped_modes",
     "demands",
+    "describe_record",
     "effective_isolator",
     "example_scenes",
     "factor_for_spectrum",

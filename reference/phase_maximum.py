@@ -25,7 +25,7 @@ from reference.problem import Scene, checked_phases
 from reference.problem.readings import describe_law, reading_of
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene
-from reference.problem.symmetry import allowed_half_turns, distinct_pairs
+from reference.problem.symmetry import distinct_pairs, find_half_turns
 from reference.support.arguments import check_choice
 from reference.surface import amplification
 
@@ -145,7 +145,7 @@ def worst_phases(
     ]
     if not searches:
         raise ValueError(f"scene {scene.name}: no phase pair has an answer; amplification says why")
-    shifts: Array = np.pi * allowed_half_turns(scene).astype(float)
+    shifts: Array = np.pi * find_half_turns(scene).astype(float)
     for _ in range(MAX_ROUNDS):
         highest = max(search.value for search in searches)
         active = [search for search in searches if search.may_reach(highest)]

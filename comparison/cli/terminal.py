@@ -1,6 +1,7 @@
 """What the terminal says before a run: what would be computed, and roughly how long it would take."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
+from dataclasses import replace
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -17,8 +18,10 @@ from comparison.study.models import models_of, why_not_spatial
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
-from reference.problem import Scene
+from reference.problem import Scene, describe_record
 from reference.problem.plausibility import implausible_values
+from reference.problem.tables import Record
+from reference.records.description import RecordDescription
 
 NAMES = 4  # names of a list that the terminal shows
 
@@ -86,8 +89,23 @@ def print_implausible_values(console: Console, scenes: Sequence[Scene]) -> None:
         console.print(f"Warning: {name}: {line}", soft_wrap=True, markup=False)
 
 
+def print_records(console: Console, scenes: Sequence[Scene]) -> None:
+    """Say once of every recorded motion what was read."""
+    read: dict[Hashable, RecordDescription] = {}
+    for scene in scenes:
+        if isinstance(record := scene.excitation, Record):
+            what = record.files, tuple(record.origin), record.detrend
+            if what not in read:
+                read[what] = describe_record(scene)
+            elif record.scale != read[what].scale:  # a study of many factors
+                read[what] = replace(read[what], scale=1.0)
+    for one in read.values():
+        console.print(str(one), soft_wrap=True, markup=False, highlight=False)
+
+
 def print_models_left_out(console: Console, study: Study) -> None:
     """A line for every scene with hardly meant values, or that states only a part of what a model needs."""
+    print_records(console, study.scenes)
     print_implausible_values(console, study.scenes)
     for scene in study.scenes:
         if reason := why_not_spatial(scene):

@@ -26,10 +26,10 @@ from reference.problem import SceneError
 from reference.support.files import (
     NEW,
     TEMPORARY,
-    abandoned_staging,
     clear_staging,
+    find_abandoned_staging,
     hold_lock,
-    numbered_names,
+    iterate_names,
     read_file,
     staging_directory,
     write_atomically,
@@ -162,7 +162,7 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
 
 def clear_dead(out: Path) -> None:
     """Remove the unfinished reports that killed runs left beside `out`."""
-    for staging_folder in abandoned_staging(out.resolve()):
+    for staging_folder in find_abandoned_staging(out.resolve()):
         clear_staging(staging_folder)
 
 
@@ -258,7 +258,7 @@ def _install_report(new: Path, place: Path, say: Callable[[str], None]) -> Path:
         if not is_folder
     }
     why = _in_the_way(place)
-    there = next(name for name in numbered_names(place) if not os.path.lexists(name)) if why else place
+    there = next(name for name in iterate_names(place) if not os.path.lexists(name)) if why else place
     there.mkdir(exist_ok=True)
     old = read_manifest(there)
     kept = {name: own for name, own in old.items() if own.command != REPORT and name not in mine}

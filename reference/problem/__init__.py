@@ -42,6 +42,7 @@ from reference.problem.families import Family, load_family
 from reference.problem.friction import DryFriction
 from reference.problem.outcome import ADVICE, Outcome
 from reference.problem.phases import checked_phase, checked_phases, flat_phases, phase_axis, phase_grid
+from reference.problem.recorded import describe_record
 from reference.problem.reductions import (
     Reduction,
     half_turn,
@@ -78,6 +79,7 @@ __all__ = [
     "builtin_scenes",
     "checked_phase",
     "checked_phases",
+    "describe_record",
     "example_scenes",
     "exponents",
     "flat_phases",

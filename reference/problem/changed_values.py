@@ -7,8 +7,9 @@ from numbers import Real
 from pathlib import Path
 from typing import Any
 
-from reference.records.formats import AXES
-from reference.records.loading import SUITE
+from reference.records.formats import OPTIONS
+from reference.records.loading import SET_BY_THE_READER, SUITE
+from reference.records.samples import AXES
 from reference.support.arguments import as_float, brief
 from reference.support.scene_error import SceneError, keys_of, unknown_key
 
@@ -37,7 +38,10 @@ def short_key(key: str) -> str:
 
 def text_of_table(table: Mapping[str, Any]) -> str:
     """Return the files of one record, or the numbers of a table with their keys, as one text."""
-    return "+".join(Path(part).stem if isinstance(part, str) else f"{key}={part:.12g}" for key, part in table.items())
+    if isinstance(table.get("file"), str):
+        return Path(table["file"]).stem
+    parts = [(key, part.get("file") if isinstance(part, dict) else part) for key, part in table.items()]
+    return "+".join(Path(part).stem if isinstance(part, str) else f"{key}={part:.12g}" for key, part in parts)
 
 
 def change_of(key: str, before: Any, value: Any) -> str:
@@ -96,7 +100,8 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
     index = _index_of(scene, place, parts, len(parts) - 1, value, keys)
     if key == "excitation.record":
         place["record"] = value
-        place.pop("samples", None)  # the samples of the record before
+        for name in SET_BY_THE_READER:  # those of the record before
+            place.pop(name, None)
     elif value is not None:
         place[index] = value
     elif isinstance(place, dict):
@@ -111,7 +116,7 @@ def _put_in_record(scene: str, data: dict[str, Any], key: str, value: Any) -> tu
     record = data["excitation"].get("record") if isinstance(data.get("excitation"), dict) else None
     if table != "excitation.record" or not isinstance(record, dict):
         return key, value
-    own: Sequence[str] = SUITE if "suite" in record else AXES
+    own: Sequence[str] = SUITE if "suite" in record else OPTIONS if "file" in record else AXES
     if last not in own:
         raise unknown_key(scene, key, value, own)
     return table, {name: part for name, part in {**record, last: value}.items() if part is not None}

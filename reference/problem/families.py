@@ -255,9 +255,9 @@ def _expand_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
     if not (isinstance(record, dict) and "suite" in record and record.get("motion") == ALL_MOTIONS):
         return data
     try:
-        motions = suite_motions(record["suite"], Path(label).parent)
+        motions = suite_motions(record["suite"], Path(label).parent, record.get("components"))
     except SuiteError as error:
-        raise SceneError(label, f"excitation.record.{error.key}", record["suite"], error.rule) from None
+        raise SceneError(label, f"excitation.record.{error.key}", record.get(error.key), error.rule) from None
     if len(motions) > MAX_SCENES:
         rule = f"{len(motions)} motions: a family has at most {MAX_SCENES} scenes: take a part of the suite"
         raise SceneError(label, "excitation.record.suite", record["suite"], rule)
@@ -267,7 +267,8 @@ def _expand_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
 def _motion_names(data: dict[str, Any], label: str) -> dict[int, str]:
     """Return names of the motions of a suite by number; none without a suite."""
     try:
-        return motion_names(data["excitation"]["record"]["suite"], Path(label).parent)
+        record = data["excitation"]["record"]
+        return motion_names(record["suite"], Path(label).parent, record.get("components"))
     except (KeyError, TypeError, SuiteError):
         return {}
 
@@ -304,7 +305,9 @@ def _check_listed_values(label: str, key: str, values: Any) -> Sequence[Value | 
 
 
 def _is_files(value: Any) -> bool:
-    return isinstance(value, dict) and len(value) > 0 and all(isinstance(name, str) for name in value.values())
+    files = value if isinstance(value, dict) and "file" not in value else {"": value}
+    named = (name.get("file") if isinstance(name, dict) else name for name in files.values())
+    return isinstance(value, dict) and len(value) > 0 and all(isinstance(name, str) for name in named)
 
 
 def _is_table(value: Any) -> bool:

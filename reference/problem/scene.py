@@ -26,6 +26,7 @@ from reference.problem.supports import on_one_line, ring_places, static_shares
 from reference.problem.tables import LINKS, Bars, Body, Excitation, Isolator, Record, kind_of_excitation
 from reference.problem.validation import EXCITATIONS, FRICTIONS, first_scene_error
 from reference.records.loading import with_samples
+from reference.records.samples import take_zero_line
 from reference.support.arguments import Range, as_float, takes
 from reference.support.constants import GRAVITY
 from reference.support.html_table import html_table
@@ -423,6 +424,8 @@ class Scene(Table):
         if not isinstance(self.excitation, Record):
             return np.zeros((0, 4))
         knots = np.array(self.excitation.samples)
+        if self.excitation.detrend is not None:
+            take_zero_line(knots, self.excitation.detrend)
         with np.errstate(over="ignore"):  # refused by validation
             knots[:, 1:] *= self.excitation.scale
         if knots[-1, 1:].any():
@@ -509,7 +512,7 @@ class Scene(Table):
     def _digest(self) -> str:
         content = self.model_dump_json(
             exclude=dict.fromkeys(("title", "name", "acceptance", "analyses", "measured"), True)
-            | {"excitation": {"record": True}},
+            | {"excitation": {"record": True, "origin": True}},
             exclude_none=True,  # a key that is not given changes no result
         )
         return hashlib.sha256(content.encode()).hexdigest()[:16]
@@ -541,8 +544,8 @@ KEYS: dict[str, tuple[str, ...]] = {
     "analyses": tuple(Analyses.model_fields),
     "measured": tuple(Measured.model_fields),
     **{f"acceptance.{pair}": tuple(Limits.model_fields) for pair in ("like_for_like", "total", "translational", "*")},
-    "excitation": (*Excitation.model_fields, "record"),
+    "excitation": (*Excitation.model_fields, "record", "detrend"),
     f"excitation.{EXCITATIONS[0]}": tuple(Excitation.model_fields),
-    f"excitation.{EXCITATIONS[1]}": ("record", "scale"),
+    f"excitation.{EXCITATIONS[1]}": ("record", "scale", "detrend"),
 }
 """Keys of every table by its name, with the kind of the excitation where that is known."""

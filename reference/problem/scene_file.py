@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from reference.problem.scene import KEYS, Scene
 from reference.problem.validation import first_scene_error
-from reference.records.loading import EXAMPLES, with_samples
+from reference.records.loading import EXAMPLES, OF_TWO_FREQUENCIES, SET_BY_THE_READER, with_samples
 from reference.support.arguments import takes
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError
@@ -21,6 +21,8 @@ from reference.support.scene_error import SceneError
 RANGE, VALUES = {"range", "steps"}, {"values"}  # keys of an inline table whose value runs
 LARGEST = 2**22  # bytes of a scene file
 MAX_NESTING = 10  # tables and lists within one another in a scene file
+OF_RECORDS = (*OF_TWO_FREQUENCIES, *SET_BY_THE_READER)  # keys whose places the reader of records checks
+AT_REST = {"record": "", "samples": [[0.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]]}  # in place of one that was not read
 KEY = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')"""
 # A key of that many parts is nested too deep, and the parser's work grows as the square of their number.
 LONG_KEY = re.compile(rf"(?<![\w-]){KEY}(?:[ \t]*+\.[ \t]*+{KEY}){{{2 * MAX_NESTING}}}", re.ASCII)
@@ -171,10 +173,20 @@ def scene_tables(text: bytes, label: str) -> dict[str, Any]:
 
 def make_scene(data: dict[str, Any], label: str, name: str) -> Scene:
     """Make the scene of tables, with its record read; `label` names it in errors. Raises SceneError."""
+    unread = None
     try:
-        return Scene.model_validate({**with_samples(data, label), "name": name})
+        tables = with_samples(data, label)
+    except SceneError as error:  # found with whatever else is wrong
+        others = {key: value for key, value in data["excitation"].items() if key not in OF_RECORDS}
+        tables = {"duration": 1.0, **data, "excitation": {**others, **AT_REST}}
+        unread = error
+    try:
+        scene = Scene.model_validate({**tables, "name": name})
     except ValidationError as error:
-        raise first_scene_error(label, error, KEYS) from None
+        raise first_scene_error(label, error, KEYS, data, unread) from None
+    if unread is not None:
+        raise unread
+    return scene
 
 
 def running_values(path: tuple[str | int, ...], value: Any) -> Iterator[tuple[tuple[str | int, ...], dict[str, Any]]]:

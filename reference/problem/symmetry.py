@@ -19,7 +19,7 @@ from reference.problem.scene import Scene
 Array = NDArray[np.float64]
 
 
-def allowed_half_turns(scene: Scene) -> NDArray[np.intp]:
+def find_half_turns(scene: Scene) -> NDArray[np.intp]:
     """Return the half turns that shift both phases without a change of mu, (K, 2); the first is no shift."""
     turns = np.array([[0, 0], [1, 1], [0, 1], [1, 0]], dtype=np.intp)
     return turns if own_axes(scene) else turns[: 2 if half_turn(scene) else 1]
@@ -28,7 +28,7 @@ def allowed_half_turns(scene: Scene) -> NDArray[np.intp]:
 def indices_of_solved_pairs(scene: Scene, grid: int) -> NDArray[np.intp]:
     """Return the index of the pair solved for every pair 2 pi k / grid, (grid^2,), alpha2 running fastest."""
     steps = np.stack(np.divmod(np.arange(grid**2), grid), axis=-1)
-    shifts = allowed_half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
+    shifts = find_half_turns(scene)[: 1 if grid % 2 else None] * (grid // 2)
     images = (steps[:, None] + shifts) % grid
     images[..., unused_harmonics(scene)] = 0
     first: NDArray[np.intp] = (grid * images[..., 0] + images[..., 1]).min(axis=1)

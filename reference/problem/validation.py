@@ -1,18 +1,25 @@
-"""The first error that pydantic finds in a scene, in the words of the scene file."""
+"""The errors that pydantic finds in a scene, in the words and in the order of the scene file."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
-from reference.support.scene_error import MisfitError, SceneError, keys_of, unknown_key
+from reference.support.scene_error import ONE_SURFACE, MisfitError, SceneError, keys_of, unknown_key
 
 # Forms of a table or key with several: pydantic puts the one that was meant into the place of an error
 EXCITATIONS = ("two frequencies", "recorded motion")
 SUPPORTS = ("number of supports", "positions of supports")
 FRICTIONS = ("constant friction", "velocity-dependent friction")
 ALONG_AXES = {"stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s"}  # form of the keys of a link
+LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # of pendulums with several surfaces
+MISSING = {
+    "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"'
+}
 DAMPINGS = ("damping ratio", "damping coefficients")
 
 
@@ -24,11 +31,51 @@ class PlacedError(ValueError):
         super().__init__(rule)
 
 
-def first_scene_error(file: str, invalid: ValidationError, keys: Mapping[str, Sequence[str]]) -> SceneError:
-    """Return the first error that pydantic reports, in the words of the scene file. keys: by name of the table."""
-    errors = invalid.errors(include_url=False)
+def first_scene_error(
+    file: str,
+    invalid: ValidationError,
+    keys: Mapping[str, Sequence[str]],
+    tables: Mapping[str, Any] | None = None,
+    unread: SceneError | None = None,
+) -> SceneError:
+    """
+    Return the first error of a scene, with the others behind it, in the words of the scene file.
+
+    keys: of every table, by its name. tables: of the file, for the order; pydantic's order without. unread: the error
+    of a record that could not be read, which pydantic does not know.
+    """
+    found = invalid.errors(include_url=False)
+    unknown = {error["loc"][:-1] for error in found if error["type"] == "extra_forbidden"}
     # a misspelt key is unknown and its right name is missing: the first says more
-    error = next((error for error in errors if error["type"] == "extra_forbidden"), errors[0])
+    said = [error for error in found if not (error["type"] == "missing" and error["loc"][:-1] in unknown)]
+    without_loading = any(error["type"] == "missing" and error["loc"] == ("excitation",) for error in said)
+    if without_loading:  # a record would bring its duration along
+        said = [error for error in said if error["type"] != "missing" or error["loc"] != ("duration",)]
+    errors = [_said_of(file, error, keys) for error in said] + ([unread] if unread else [])
+    errors = list({(error.key, error.rule): error for error in errors}.values())
+    if tables is not None:
+        errors.sort(key=lambda error: _place_in(tables, error.key))
+    first, *others = errors
+    return SceneError(file, first.key, first.value, first.rule, others)
+
+
+def _place_in(tables: Any, key: str) -> list[int]:
+    """Where in the file a dotted key stands, for the order of errors; behind everything where it does not."""
+    place = []
+    for part in key.split("."):
+        if isinstance(tables, Mapping) and part in tables:
+            place.append(list(tables).index(part))
+            tables = tables[part]
+        elif isinstance(tables, list) and part.isdecimal() and int(part) < len(tables):
+            place.append(int(part))
+            tables = tables[int(part)]
+        else:
+            return [*place, sys.maxsize]
+    return place
+
+
+def _said_of(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]]) -> SceneError:
+    """One error of pydantic in the words of the scene file."""
     misfit = error.get("ctx", {}).get("error")
     if isinstance(misfit, MisfitError):
         return SceneError(file, misfit.key, misfit.value, misfit.rule)
@@ -41,8 +88,10 @@ def first_scene_error(file: str, invalid: ValidationError, keys: Mapping[str, Se
         table = ".".join(str(part) for part in error["loc"][:-1] if not isinstance(part, int))
         return unknown_key(file, key, error["input"], keys_of(table, keys))
     if error["type"] == "missing":
-        return SceneError(file, key, None, "this key is required")
+        return SceneError(file, key, None, MISSING.get(key, "this key is required"))
     rule = error["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
     if error["type"] == "list_type" and (form := ALONG_AXES.get(str(place[-1]))):
         rule = f"must be {form}"
+    if key in LISTS_OF_SURFACES and isinstance(error["input"], list):
+        rule = f"must be a number: {ONE_SURFACE}"
     return SceneError(file, key, error["input"], rule)

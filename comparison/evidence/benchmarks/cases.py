@@ -19,7 +19,8 @@ from comparison.evidence.benchmarks.table import Row
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, SceneError, Trajectory, load_scene
 from reference.problem.readings import DEFAULT_V_REG
-from reference.records.formats import LARGEST, RecordError, read_csv_samples
+from reference.records.formats import read_csv_samples
+from reference.records.samples import LARGEST, RecordError
 from reference.support.files import read_file
 
 SCENES = resources.files("comparison.evidence.benchmarks") / "scenes"

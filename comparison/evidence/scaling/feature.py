@@ -1,6 +1,8 @@
 """Scaling test: in the report."""
 
-from comparison.evidence.scaling.analysis import Scaling
+from fractions import Fraction
+
+from comparison.evidence.scaling.analysis import SCALES, Scaling
 from comparison.evidence.trend_panels import trend_panels
 from comparison.evidence.trends import Trend, word_trends
 from comparison.report.feature import Feature, ResultField
@@ -18,7 +20,7 @@ FEATURE = Feature(
     section=Section(
         "Scaling test",
         "phase-resonance run makes it, of scenes with phases and without heated friction",
-        lambda report: {"trend_panels": trend_panels},
+        lambda report: {"trend_panels": trend_panels, "scales": list(map(Fraction, SCALES))},
         verdict=lambda results: word_trends(FOUND.of(results)),
         verifies=True,
     ),

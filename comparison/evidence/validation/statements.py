@@ -1,6 +1,7 @@
 """What the measured motions say, in sentences: each is worded here from a table, and nowhere else."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation.frame import LOADED
@@ -106,6 +107,38 @@ def word_motions(table: Validation, loaded: bool) -> str:
     rows = [each for each in table.residuals if each.use == "predicted" and each.experiment.endswith(LOADED) == loaded]
     sizes = [f"{percent(each.share)} at {each.experiment.removeprefix(FRAME).removesuffix(LOADED)}" for each in rows]
     return f"whole motion off by {', '.join(sizes)} (rms over the half range)"
+
+
+def word_farther_off(table: Validation) -> str:
+    """Return in how many predicted runs of the frame the whole motion is farther off than its relative quantities."""
+    runs = [each for each in table.residuals if each.use == "predicted"]
+    farther = 0
+    for run in runs:
+        rows = [each for each in table.quantities if each.experiment == run.experiment and each.base]
+        farther += all(run.share > abs(each.sides[worse_side(each)].error or 0.0) / each.measured for each in rows)
+    quantities = "half range and rms about the mean, which are means of both directions"
+    return f"the whole motion is farther off than {quantities}, in {farther} of {len(runs)} predicted runs"
+
+
+def word_last_swings(table: Validation) -> str:
+    """Return how much amplitude each half swing after those of the fit loses, measured and computed."""
+    points = [each for each in table.quantities if each.name.startswith("turning point ")]
+    last = points[[each.use for each in points].index("predicted") - 1 :]
+    measured, computed = (
+        ", ".join(f"{before - after:.2g}" for before, after in pairwise(values))
+        for values in ([each.measured for each in last], [each.sides[EQUATIONS].value or 0.0 for each in last])
+    )
+    names = (
+        f"half swings {last[1].name.removeprefix('turning point ')} to {last[-1].name.removeprefix('turning point ')}"
+    )
+    return f"{names} of the pendulum lose {measured} {last[0].unit} by the measurement and {computed} by the equations"
+
+
+def word_large_angles(table: Validation) -> str:
+    """Return at how many of the large angles both sides give a half period that is too short."""
+    rows = [each for each in table.quantities if each.name.startswith("half period at ")]
+    short = sum(all((each.sides[side].error or 0.0) < 0.0 for side in BOTH) for each in rows)
+    return f"the computed half period is too short at {short} of {len(rows)} large angles"
 
 
 def verdict_line(table: Validation) -> str:

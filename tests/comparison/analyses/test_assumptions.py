@@ -394,6 +394,12 @@ def test_what_shortening_changes_is_said() -> None:
     loaded = [cell(variation, size, size, 1e-3) for variation, size in zip(UNDER_LOAD, (-0.1, -0.082))]
     (line,) = assumption_lines(found_of(loaded), FIRST)
     assert line.endswith("change mu_1 by up to 2 ± 0.1 %, mu_2 by up to 0 ± 0 %")
+    softened, shortened = (
+        AssumptionCell("fig3-I", each, ((0.0, 0.0),) * 3, ((0.0, 0.0),) * 3, ("ok",) * 3) for each in UNDER_LOAD
+    )
+    changes, errors = ((0.001, -0.02), (-0.06, 0.01), (0.02, 0.0)), ((1e-3, 0.0), (2e-3, 4e-3), (0.0, 0.0))
+    (line,) = assumption_lines(found_of([softened, replace(shortened, change=changes, uncertainty=errors)]), FIRST)
+    assert line.endswith("change mu_1 by up to 6 ± 0.2 %, mu_2 by up to 2 ± 0.4 %"), "the largest of all phase pairs"
     nothing = [loaded[0], cell(UNDER_LOAD[1], float("nan"))]
     assert assumption_lines(found_of(nothing), FIRST)[-1].startswith("no value says")
 

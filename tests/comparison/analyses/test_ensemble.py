@@ -203,7 +203,7 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
         ((*SUITE, "--model", "spatial"), "", "--model translational"),
         (("mine.toml", *SUITE), "", "two files have this name"),
         ((*SUITE, "--periods", "0.2", "1"), "", "needs --target"),
-        ((*SUITE, "--target", "code.csv"), f"{HEAD.replace('[g]', '[ft/s^2]')}0.1, 1\n1, 1", NO_SPECTRUM),
+        ((*SUITE, "--target", "code.csv"), f"{HEAD.replace('[g]', '[yd/s^2]')}0.1, 1\n1, 1", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv"), f"{HEAD}1, 1\n0.1, 1", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv"), f"{HEAD}0.1, 1\n1, 0", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv", "--periods", "0.05", "1"), f"{HEAD}0.1, 1\n1, 1", "--periods = "),
@@ -272,7 +272,7 @@ def test_the_plan_says_how_files_of_peer_are_paired(folder: Path, capsys: pytest
         Path(f"peer/{name}.AT2").write_text(f"PEER\nX\nIN UNITS OF G\nNPTS= 40, DT= .05 SEC\n{'0.1 ' * 40}\n")
     assert run("mine.toml", "--suite", "peer", "--scales", "0.5", "1", "2", "--engine", "1", "--plan") == 0
     said = capsys.readouterr().out
-    assert "2 motions of .AT2 files paired by name, 1 with a vertical one: x = RSN1_A_B_H1.AT2, y = RSN1_A_B_H2" in said
+    assert "2 motions, paired by name, 1 with a vertical one: x = RSN1_A_B_H1.AT2, y = RSN1_A_B_H2" in said
     assert "4 motions by the equations, 1 by the engine" in said
     assert "The motions last 1.95 to 1.95 s. Nothing was computed." in said
     assert not list(Path().glob("out*"))

@@ -72,7 +72,7 @@ def test_a_motion_that_ends_early_has_no_peaks_and_says_why():
 
 def test_both_functions_of_a_model_have_its_tolerance_and_law(monkeypatch):
     asked = []
-    monkeypatch.setattr(analysis, "imported", lambda path: lambda *given, **settings: asked.append(settings))
+    monkeypatch.setattr(analysis, "import_function", lambda path: lambda *given, **settings: asked.append(settings))
     for quantity in ("mu", "drift"):
         with pytest.raises((AttributeError, TypeError)):  # None is no answer
             analysis.peaks_at((PLAIN, REGULARIZED, 1e-4, (0.0, 0.0), ((quantity, 2),)))

@@ -1,6 +1,7 @@
 """The worst phases in a study: what is searched, what the engine has there, and what a failed search leaves."""
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import xarray as xr
 
 import reference
 from comparison.analyses.worst_phases import analysis
-from comparison.analyses.worst_phases.feature import _kind
+from comparison.analyses.worst_phases.feature import _kind, _reading
 from comparison.runner.task import result_without_value
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, SPATIAL, TRANSLATIONAL
@@ -79,6 +80,18 @@ def test_the_engine_is_asked_where_its_ratio_says(monkeypatch: pytest.MonkeyPatc
     assert beside.phases == pytest.approx((1.005, 2.002), abs=1e-4)  # 1e-3 of slope over 2 of curvature
 
 
+def test_a_largest_value_has_the_reading_of_its_model_or_both_without_dry_friction() -> None:
+    report = SimpleNamespace(study=study_of(SHORT, reference.load_scene("fig4-viscous")))
+    for scene, model, quantity, reading in (
+        (SHORT.name, "small", "amplification", "literal supremum"),
+        (SHORT.name, "small-resolved", "amplification", "as integrated"),
+        (SHORT.name, "spatial", "amplification", "as integrated"),
+        ("fig4-viscous", "exact", "amplification", "both readings"),
+        (SHORT.name, "small", "displacement", ""),
+    ):
+        assert _reading(report, analysis.Worst(scene, model, quantity, 1)) == reading  # type: ignore[arg-type]
+
+
 def test_what_a_largest_value_is_stands_beside_it() -> None:
     beside = "beside the worst phases of the equations"
     for known, words in (
@@ -87,6 +100,9 @@ def test_what_a_largest_value_is_stands_beside_it() -> None:
         ({"kind": "nearby"}, f"{beside}, at which it has none"),
         ({"kind": "grid", "value": 1.5}, "at a phase pair of its grid"),
         ({"reason": "step limit"}, "step limit"),
+        ({"kind": "kink"}, "on an edge of the surface"),
+        ({"kind": "smooth"}, "on a smooth maximum"),
+        ({"kind": "jump", "side": (-0.25, 0.968)}, "beside a jump, approached from (-0.25, +0.97)"),
     ):
         assert _kind(analysis.Worst("fig3-I", "exact", "amplification", 1, **known)) == words  # type: ignore[arg-type]
 

@@ -177,6 +177,24 @@ def test_every_number_stands_under_its_side(capsys):
     )
 
 
+def test_the_largest_error_names_its_side_and_is_the_largest_share_not_the_largest_number():
+    (known,) = known_benchmarks().benchmarks
+    (row,) = known.rows[:1]
+    met = Number(row.published, 1e-6, MET)
+
+    def off(share, published):
+        return Number(published * (1.0 + share), 1e-9, NOT_MET)
+
+    force = replace(row, quantity="force", published=2e4, uncertainty=1.0, numbers={})
+    one = replace(row, numbers={EQUATIONS: off(-0.05, row.published), SMOOTHED: met, ENGINE: met})
+    numbers = {EQUATIONS: Number(2e4, 1.0, MET), SMOOTHED: off(0.5, 2e4), ENGINE: off(0.02, 2e4)}
+    line = verdict_line(Benchmarks([replace(known, rows=[replace(force, numbers=numbers), one])], {}))
+    assert "2 met, 2 not met (largest: frame, isolation period, equations, −5 %), 0 not compared" in line
+    numbers = {**numbers, ENGINE: off(0.2, 2e4)}
+    line = verdict_line(Benchmarks([replace(known, rows=[replace(force, numbers=numbers), one])], {}))
+    assert "(largest: frame, force, engine, +20 %)" in line
+
+
 @pytest.mark.parametrize(
     ("number", "code", "said"),
     [
@@ -208,7 +226,9 @@ def test_a_number_that_is_off_or_lacking_is_an_exit_code(number, code, said, mon
 
 def test_both_laws_of_friction_and_the_engine_are_asked(monkeypatch):
     asked = []
-    monkeypatch.setattr(analysis, "imported", lambda path: lambda *given, **settings: asked.append((path, settings)))
+    monkeypatch.setattr(
+        analysis, "import_function", lambda path: lambda *given, **settings: asked.append((path, settings))
+    )
     for side in (EQUATIONS, SMOOTHED, ENGINE):
         with pytest.raises(AttributeError):  # None is no motion
             solve((BY_NAME["sdnd100"], side))

@@ -174,7 +174,7 @@ def test_levels_begin_at_the_stated_stiffness_and_step(monkeypatch: pytest.Monke
 
 def test_the_engine_does_the_work_that_a_row_allows(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Any] = []
-    monkeypatch.setattr(analysis, "imported", lambda path: lambda *given, **settings: asked.append(settings))
+    monkeypatch.setattr(analysis, "import_function", lambda path: lambda *given, **settings: asked.append(settings))
     column = replace(fake("honest"), settings={"max_work": 6e5})
     analysis.solve_cell(analysis.Cell(replace(PLAIN, max_work=123.0), column))
     assert asked == [{"max_work": 123.0, "tolerance": 1e-3}]

@@ -75,7 +75,7 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
             ("v_reg", 0.1, (0.0, 0.0)),
         )
     ]
-    found = analysis._answered(QUESTIONS[0], Measured(mu, share * mu, 6.0, np.nan), entries)
+    found = analysis._count_answers(QUESTIONS[0], Measured(mu, share * mu, 6.0, np.nan), entries)
     assert (found.points, found.error) == (3, pytest.approx(0.03))
     assert found.reference_solution == "the reference at a tolerance of 1e-10, 2 s per point"
     assert found.checks == [
@@ -161,7 +161,7 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
     assert values["mu"][:, 0, 0].values == pytest.approx([1.001, 1.01])
     assert (values["reference_solution"] == 1.0).all()
     assert values["error_estimate"][0].values == pytest.approx(np.full((3, 2), 1.001e-3))
-    monkeypatch.setattr(analysis, "imported", lambda path: pytest.fail("it was measured again"))
+    monkeypatch.setattr(analysis, "import_function", lambda path: pytest.fail("it was measured again"))
     assert command.main(words, ThreadPoolExecutor) == 0
     (again,) = load(tmp_path / "out")
     assert (again.entries, again.run["stored_before"]) == (first.entries, 9)

@@ -12,7 +12,7 @@ import reference
 from comparison.evidence.convergence import analysis as convergence
 from comparison.evidence.convergence.analysis import LIMITS, PENETRATIONS, Convergence, limit_trends
 from comparison.evidence.scaling.analysis import PRINTED, STEP, Scaling, scale_scene
-from comparison.evidence.trends import Trend, fit_slope, trend
+from comparison.evidence.trends import Trend, fit_slope, trend, word_trends
 from comparison.study.shorten import shorten
 from comparison.study.study import Study
 from reference import trajectory
@@ -83,6 +83,37 @@ def test_values_within_their_error_bars_are_not_fitted() -> None:
 )
 def test_the_verdict_says_what_the_fit_allows(sizes: Array, expected: float | None, says: str) -> None:
     assert trend("s", 1, "w", SCALES, sizes, 1e-6 * np.abs(sizes), expected).verdict == says
+
+
+def test_expected_exponents_are_counted_and_the_first_that_is_not_met_is_named() -> None:
+    def told(scene: str, body: int, exponent: float, expected: float | None) -> Trend:
+        sizes = _power(exponent, 1e-2)
+        return trend(scene, body, "small, exact", SCALES, sizes, 1e-3 * sizes, expected)
+
+    noise = trend("d", 1, "small, exact", SCALES, _power(2.0, 1e-3), np.ones((1, 4)), 2.0)
+    met, missed, free, other = (
+        told("a", 1, 2.0, 2.0),
+        told("b", 2, 1.0, 2.0),
+        told("c", 1, 1.0, None),
+        told("e", 1, 3.0, 1.0),
+    )
+    assert word_trends([met, free]) == "1 expected exponent: 1 met, 0 not met, 0 not compared"
+    counts = "4 expected exponents: 1 met, 2 not met, 1 not compared (first: "
+    assert word_trends([met, free, noise, missed, other]) == f"{counts}b, body 2, small, exact, 1.00 ± 0.00 for 2)"
+    assert word_trends([other, missed, noise, met]) == f"{counts}e, body 1, small, exact, 3.00 ± 0.00 for 1)"
+
+
+@pytest.mark.parametrize(("off", "noise", "says"), [
+    (0.14, 1e-4, "like the power 2"), (0.16, 1e-4, "not like the power 2"), (-0.16, 1e-4, "not like the power 2"),
+    (0.16, 0.14, "like the power 2"), (0.30, 0.14, "not like the power 2"),
+])  # fmt: skip
+def test_an_exponent_agrees_within_the_larger_of_its_uncertainty_and_what_is_not_asymptotic(
+    off: float, noise: float, says: str
+) -> None:
+    sizes = _power(2.0 + off, 1e-2)
+    found = trend("s", 1, "w", SCALES, sizes, noise * np.abs(sizes), 2.0)
+    assert found.uncertainty == pytest.approx(2.0 * noise / (np.sqrt(5.0) * np.log(2.0)), rel=1e-6)
+    assert found.verdict == says
 
 
 def test_medians_are_of_the_absolute_size_of_what_is_known() -> None:
@@ -248,6 +279,6 @@ def test_the_error_of_a_constant_step_covers_it(monkeypatch: pytest.MonkeyPatch,
 
     monkeypatch.setattr(convergence, "_at_constant_step", stepped)
     monkeypatch.setattr(reference, "amplification", _regularized(60.0))
-    sizes, errors = convergence._stiffened(load_scene("fig3-I"))
+    sizes, errors = convergence._stiffen(load_scene("fig3-I"))
     assert (np.abs(sizes) <= errors).all()
     assert (errors <= 5.0 * np.abs(sizes)).all()

@@ -1,5 +1,6 @@
 """Sentences about measured motions follow their record: each contradiction planted into it changes what is said."""
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -56,6 +57,20 @@ def test_what_is_validated_follows_the_record(planted: str) -> None:
     assert said in "\n".join(statements.readme_rows(table))
 
 
+def test_both_sides_are_worded_equations_first() -> None:
+    def both(equations: float, engine: float) -> str:
+        sides = {
+            side: Comparison(1.0 + error, error, 0.0, 0.1, judge(error, 0.1))
+            for side, error in ((EQUATIONS, equations), (ENGINE, engine))
+        }
+        return Quantity("frame", "half range", "mm", "predicted", 1.0, 0.1, 0.0, "", sides).word_both()
+
+    assert both(0.2, -0.3) == "not met (by +20 % / −30 %)"
+    assert both(0.2, 0.05) == "not met (by +20 %) / met"
+    assert both(0.05, -0.3) == "met / not met (by −30 %)"
+    assert both(0.05, 0.01) == "met"
+
+
 def test_the_runs_of_the_fit_are_judged_as_well() -> None:
     words = statements.word_calibrated
     assert words(recorded()).endswith("fitted to: at 250 g not met (by +2.6 %), at 450 g not met (by +4.2 %)")
@@ -103,6 +118,55 @@ def test_the_predictions_of_the_pendulum_are_counted() -> None:
     assert words(one) == "1 of the 7 predicted values of the pendulum is met"
     half = changed("pendulum, decay", "turning point 11", of_error(0.1), (EQUATIONS,))
     assert words(half) == words(recorded()), "met by one side alone"
+
+
+def test_a_run_whose_motion_is_as_close_as_its_quantities_is_not_counted() -> None:
+    words = statements.word_farther_off
+    assert words(recorded()).endswith("in 5 of 5 predicted runs")
+    closer = [replace(each, share=0.12) if each.experiment == "frame, 550 g" else each for each in recorded().residuals]
+    assert words(replace(recorded(), residuals=closer)).endswith("in 4 of 5 predicted runs"), "rms is off by 13 %"
+    off = changed("frame, 350 g" + LOADED, "rms about the mean", of_error(-4.0), (ENGINE,))
+    assert words(off).endswith("in 4 of 5 predicted runs"), "one side, below"
+
+
+def test_the_last_swings_lose_what_their_turning_points_say() -> None:
+    assert statements.word_last_swings(recorded()) == (
+        "half swings 11 to 13 of the pendulum lose 4.4, 5.2, 2.3 mrad by the measurement and 5.1, 5.1, 5.1 by the "
+        "equations"
+    )
+    rows = [
+        replace(each, measured=each.measured - 1.0) if each.name == "turning point 12" else each
+        for each in recorded().quantities
+    ]
+    other = statements.word_last_swings(replace(recorded(), quantities=rows))
+    assert "lose 4.4, 6.2, 1.3 mrad by the measurement and 5.1, 5.1, 5.1 by" in other
+    moved = changed(
+        "pendulum, decay", "turning point 12", lambda found: replace(found, value=(found.value or 0.0) + 1.0)
+    )
+    assert "2.3 mrad by the measurement and 5.1, 4.1, 6.1 by" in statements.word_last_swings(moved)
+
+
+def test_a_half_period_that_is_too_long_is_not_called_too_short() -> None:
+    words = statements.word_large_angles
+    assert words(recorded()) == "the computed half period is too short at 3 of 3 large angles"
+    for sides in ((EQUATIONS,), (ENGINE,)):
+        long = changed("pendulum, large angles", "half period at 1.25 rad", of_error(-1.0), sides)
+        assert words(long).endswith("at 2 of 3 large angles")
+
+
+def test_the_facts_have_the_residuals_of_their_runs() -> None:
+    ranges = {each.experiment: each.measured for each in recorded().quantities if each.name == "half range"}
+    facts = "\n".join(recorded().facts)
+    for each in recorded().residuals:
+        found = re.search(rf"^{each.experiment}: .* and by ([\d.]+) mm with", facts, re.MULTILINE)
+        assert found
+        assert found[1] == f"{each.share * ranges[each.experiment]:.3f}", each.experiment
+
+
+def test_no_building_is_in_the_record() -> None:
+    """That none has been compared is said on pages and in every report."""
+    begin = (statements.FRAME, statements.PENDULUM)
+    assert all(each.experiment.startswith(begin) for each in recorded().quantities)
 
 
 def test_counts_and_the_largest_error_are_those_of_the_record() -> None:

@@ -47,6 +47,14 @@ def test_ticks_tell_as_many_digits_as_their_distance_asks_for(visit: Visit) -> N
         assert [text for _, text in visit.page.evaluate(f"ticksOf({{}}, [{low}, {high}], 3)")] == texts
 
 
+def test_a_line_has_a_gap_where_nothing_is_known(visit: Visit) -> None:
+    """Each part begins with a move."""
+    spec = "{x: {}, y: {}, series: [{x: [0, 1, 2, 3, 4], y: [1, 2, null, 3, 4]}]}"
+    drawn = f"(box => {{ drawPlot(box, {spec}); return box.querySelector('g path').getAttribute('d'); }})"
+    path = visit.page.evaluate(f"{drawn}(document.createElement('div'))")
+    assert (path.count("M"), path.count("L")) == (2, 2)
+
+
 @pytest.mark.parametrize("width", [PHONE, DESKTOP])
 def test_no_two_texts_overlap_and_all_fits_the_window(width: int, browser: Browser, finished: Path) -> None:
     for name, bars in (("index.html", "mean"), ("index.html", "largest"), ("verification.html", "")):

@@ -45,6 +45,8 @@ def test_no_panel_has_more_curves_than_can_be_told_apart() -> None:
     many = [_entry(f"method {number}", 0.1, 1e-3) for number in range(9)]
     panels = tradeoff_panels(replace(TRADE, entries=many))
     assert [len(panel["plot"]["series"]) for panel in panels] == [MAX_CURVES] * 2, "the platform and the last body"
+    lines = [line for each in panels for line in each["plot"]["series"]]
+    assert all(line["y"] == [1e-3] for line in lines), "what 95 % of the points meet"
     assert panels[1]["plot"]["bands"] == [{"from": 1e-30, "to": QUESTION.error}], "below the reference's own error"
 
 

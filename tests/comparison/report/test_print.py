@@ -53,8 +53,9 @@ def as_printed(page: Page) -> Page:
     """The page as wide as the paper, as it is prepared for print."""
     width, height = ((side - 2.0 * MARGIN) / DOT for side in A4)
     page.set_viewport_size({"width": math.floor(width), "height": math.floor(height)})
-    page.emulate_media(media="print")
     page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert page.evaluate("variable('--ink')") == "#1b1f24", "drawn in what the paper has, before the paper is there"
+    page.emulate_media(media="print")
     until(page, "[...document.querySelectorAll('[data-plot]')].every(box => box.querySelector('svg'))")
     return page
 
@@ -139,7 +140,6 @@ def test_paper_is_light_and_unfolded_and_has_every_surface_sharp(
     browser: Browser, finished: Path, scheme: Scheme
 ) -> None:
     page = as_printed(opened(browser, finished / "index.html", LAPTOP, scheme).page)
-    assert page.evaluate("variable('--ink')") == "#1b1f24"
     assert page.locator("button:not(.sort):visible, select:visible, nav:visible, input:visible").count() == 0
     assert page.locator("details:not([open])").count() == 0
     surfaces = page.evaluate("""[...document.querySelectorAll('canvas.surface')].filter(each => each.checkVisibility())

@@ -3,6 +3,7 @@
 import doctest
 import json
 import math
+import re
 import shutil
 import subprocess
 import sys
@@ -47,6 +48,14 @@ def test_every_file_says_how_long_the_study_took_and_how_it_was_made(finished: P
         assert run["command"].startswith("python -m comparison.run fig3-I fig4-viscous --grid 4 --jobs 2")
         assert surfaces.attrs["exudyn"] == run["provenance"]["exudyn"]
         assert surfaces.attrs["tolerance"] == 1e-3
+
+
+def test_the_page_has_the_processor_time_of_every_part(finished: Path) -> None:
+    parts, page = summary_of(finished)["run"]["parts"], (finished / "index.html").read_text(encoding="utf-8")
+    said = re.search(r"Beside the surfaces, processor time in s[^:]*:(.*?)\.\s*</p>", page, re.DOTALL)
+    assert said
+    assert " ".join(said[1].split()) == ", ".join(f"{name} {part['seconds']:.1f}" for name, part in parts.items())
+    assert len({part["seconds"] for part in parts.values()}) > 1
 
 
 MODULES = [

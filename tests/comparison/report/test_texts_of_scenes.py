@@ -86,7 +86,7 @@ def test_a_page_of_records_says_nothing_of_phases(command: Callable[..., Run]) -
     page = page_of(run.report)
     top = page[page.index("<h1>") : page.index("</nav")]
     assert "initial phases" not in top
-    assert " (spatial) from them (synthetic-pair, " in top
+    assert " under the record (synthetic-pair, " in top
     assert "Amplification and motions" in top
     summary = (run.report / "summary.md").read_text(encoding="utf-8")
     assert "1 scene, one value under each recorded motion" in summary
@@ -105,6 +105,7 @@ NAN = float("nan")
         (symbols, "dPhi_1/dz_i", "dΦ<sub>1</sub>/dz<sub>i</sub>"),
         (symbols, "the maximum of x < y", "the maximum of x &lt; y"),
         *((percent, *pair) for pair in ((0.123, "12 %"), (0.0123, "1.2 %"), (1e-6, "0.0001 %"))),
+        *((percent, *pair) for pair in ((0.996, "100 %"), (1.37, "137 %"), (0.0996, "10 %"), (-0.137, "−14 %"))),
         *((percent, *pair) for pair in ((0.0, "0 %"), (5e-9, "< 0.0001 %"), (-5e-9, "< 0.0001 %"), (NAN, "none"))),
         *((signed, *pair) for pair in ((0.123, "+12 %"), (-0.0123, "−1.2 %"), (0.0, "0 %"), (-5e-9, "< 0.0001 %"))),
         *((scientific, *pair) for pair in ((1.234e-5, "1.2e-05"), (NAN, "none"))),

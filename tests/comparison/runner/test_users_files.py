@@ -187,7 +187,7 @@ EXTREMES = ["--rows", "amplitude", "--models", "small", "--jobs", "1"]
 def test_extremes_replace_no_file_of_the_user(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(extremes, "judged_matrix", lambda *rest: pytest.fail("it was computed"))
+    monkeypatch.setattr(extremes, "judge_matrix", lambda *rest: pytest.fail("it was computed"))
     for name in ("extremes.json", MANIFEST):
         file = mine(tmp_path / "before" / name)
         assert extremes.main([*EXTREMES, "--out", str(file.parent)]) == 2
@@ -195,7 +195,7 @@ def test_extremes_replace_no_file_of_the_user(
         assert is_mine(file)
         file.unlink()
     files = [tmp_path / "meanwhile" / name for name in ("extremes.json", "extremes.part")]
-    monkeypatch.setattr(extremes, "judged_matrix", lambda *rest: [*map(mine, files)] and FOUND)
+    monkeypatch.setattr(extremes, "judge_matrix", lambda *rest: [*map(mine, files)] and FOUND)
     extremes.main([*EXTREMES, "--out", str(tmp_path / "meanwhile")])
     assert all(map(is_mine, files))
     assert "extremes-2.json" in {entry.name for entry in (tmp_path / "meanwhile").iterdir()}

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from comparison.surfaces.acceptance import Breach, Limit
+from comparison.surfaces.acceptance import Breach, Limit, _beyond
 from comparison.surfaces.differences import Difference, GridMean
 from comparison.surfaces.statements import (
     word_breach,
@@ -121,3 +121,11 @@ def test_of_many_scenes_without_limits_some_are_named() -> None:
     many = {f"s{number}": ["total"] for number in range(6)}
     assert word_unchecked(many).endswith(": total of s0, s1, s2, s3 and 2 more")
     assert word_unchecked({key: many[key] for key in ("s0", "s1", "s2", "s3")}).endswith(": total of s0, s1, s2, s3")
+
+
+def test_a_value_that_is_missing_is_within_no_limit() -> None:
+    assert _beyond([(1, 0.3, None), (2, 0.2, None), (3, NAN, None)], 0.2) == (
+        Breach(1, 0.3),
+        Breach(3, NAN, "no phase pair to compare"),
+    ), "what equals its limit holds it"
+    assert [(each.found, each.largest) for each in _beyond([(1, 3.0, ROW)], 2.0)] == [(3.0, -0.041)]

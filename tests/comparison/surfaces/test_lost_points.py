@@ -114,7 +114,7 @@ def test_a_wrong_limit_is_one_line_with_the_nearest_key(
 
 def test_a_motion_is_asked_for_with_the_equations_and_friction_of_its_model(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[dict[str, object]] = []
-    monkeypatch.setattr(motions, "imported", lambda path: lambda *motion, **settings: asked.append(settings))
+    monkeypatch.setattr(motions, "import_function", lambda path: lambda *motion, **settings: asked.append(settings))
     place = motions.Place("fig3-I", 0, 0, "")
     for model in MODEL_HIERARCHY[:6]:
         compute_motion((load_scene("fig3-I"), model, 1e-3, place, (0.0, 0.0)))

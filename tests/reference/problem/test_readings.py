@@ -76,3 +76,12 @@ def test_the_largest_value_over_the_phases_says_its_reading_except_of_a_displace
         )
         assert worst.reading == reading
         assert worst.law.startswith("set-valued Coulomb friction; ")
+
+
+def test_a_regularized_law_says_the_largest_change_between_its_two_speeds() -> None:
+    changes = np.array([[0.011, -0.032], [np.nan, 0.004]]), np.array([0.0012, -0.00056])
+    said = describe_law(FIG3, 2e-3, effect=changes)
+    assert said == (
+        "regularized below v_reg = 0.002 m/s: the error leaves out what this changes against set-valued friction; "
+        "from there to v_reg = 0.0002 m/s mu changes by up to 0.032 and the displacement by up to 0.0012 m"
+    )

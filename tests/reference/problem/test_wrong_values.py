@@ -32,7 +32,7 @@ def bars(**changes: object) -> dict[str, Any]:
 
 # values of fig3-I by key, the key that the line names, and words of its rule
 WRONG: list[tuple[dict[str, Any], str, str]] = [
-    ({"isolator.frictoin": 0.1}, "isolator.frictoin", "unknown key; did you mean friction or"),
+    ({"isolator.frictoin": 0.1}, "isolator.frictoin", "unknown key; did you mean friction?"),
     ({"isolator.bearings": 12}, "isolator.bearings", "unknown key; did you mean supports?"),
     ({"bodies.1.colour": 0.1}, "bodies.1.colour", "unknown key; the keys here are mass, period, stiffness"),
     ({"acceptance.maximun": 0.1}, "acceptance.maximun", "unknown key; did you mean maximum?"),

@@ -12,10 +12,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reference.problem import GRAVITY
-from reference.records.formats import RecordError, read_at2_samples, read_csv_samples
+from reference.records.formats import read_csv_samples
+from reference.records.formats.at2 import read_at2
+from reference.records.samples import RecordError, join_directions
 
 finite = st.floats(-1e3, 1e3)
 PLAIN = "time [s],ax [g]\n0,0.1\n0.01,0.2\n"
+
+
+def read_at2_samples(texts):
+    return join_directions({axis: read_at2(text) for axis, text in texts.items()})
 
 
 def at2(values, step=0.01, count=None, unit="UNITS OF G", sizes="NPTS= {:6d}, DT= {:g} SEC,") -> str:
@@ -55,7 +61,9 @@ def test_at2_reads_what_was_written_under_either_header(values, step, old):
 
 
 UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "G": GRAVITY}
-UNITS |= {"cm/s^2": 0.01, "cm/s2": 0.01, "cm/s²": 0.01, "gal": 0.01, "Gal": 0.01}
+UNITS |= {"cm/s^2": 0.01, "cm/s2": 0.01, "cm/s²": 0.01, "gal": 0.01, "Gal": 0.01, "cm/s/s": 0.01, "cm/sec/sec": 0.01}
+UNITS |= {"mm/s^2": 0.001, "mm/s2": 0.001, "in/s^2": 0.0254, "inch/sec2": 0.0254, "ft/s/s": 0.3048, "cm/sec**2": 0.01}
+UNITS |= {"m s-2": 1.0, "m/sec^2": 1.0, "M/S2": 1.0}
 
 
 def test_units_become_si():
@@ -93,7 +101,7 @@ NO_CSV = [
     ("time [s],ax [g]\n", "0 samples"),
     ("time [s],ax [g]\n0,1\n", "1 samples"),
     (PLAIN.replace(" [g]", ""), "no unit"),
-    (PLAIN.replace("[g]", "[ft/s^2]"), "unknown unit 'ft/s^2'"),
+    (PLAIN.replace("[g]", "[yd/s^2]"), "unknown unit 'yd/s^2'"),
     (PLAIN.replace("[s]", "[ms]"), "unknown unit 'ms'"),
     (PLAIN.replace("ax", "vx"), "column 'vx [g]'"),
     (PLAIN.replace("time [s]", "ay [g]"), "must have time"),
@@ -119,7 +127,7 @@ NO_AT2 = [
     ({"x": at2([1.0, 2.0]), "y": at2([1.0, 2.0], step=0.0101)}, "DT = 0.01 s along x and 0.0101 s along y"),
     ({"x": at2([1.0, 2.0], sizes="NPTS= {}, DT= 0.x{} SEC,")}, "line 4: '0.x0.01': must be a number"),
     ({"x": at2([1.0])}, "1 samples"),
-    ({"x": at2([1.0, 2.0]) + " " + 32_000 * "9" + "x"}, "x: line 5: '9999"),
+    ({"x": at2([1.0, 2.0]) + " " + 32_000 * "9" + "x"}, "line 5: '9999"),
     ({"x": at2([1.0, 2.0], unit="UNITS" + 32_000 * " " + "x")}, "names no unit"),
     ({"x": at2([1.0, 2.0], sizes="NPTS=" + 16_000 * "NPTS=" + ", D")}, "must have a line 'NPTS"),
 ]

@@ -69,8 +69,8 @@ def test_files_of_no_suite_are_one_line(folder):
     (folder / "bad" / "b.csv").write_text("time [s],ax [g]\n0,one\n1,0\n")
     for suite, rule in {
         "lone": "'RSN1' has 1 horizontal and 0 vertical components: must have 2, and 0 or 1",
-        "unnamed": "'first_of_two.AT2': must end in H1, H2, an azimuth as 090, or -UP or -V",
-        "mixed": "has CSV and .AT2 files: take one kind",
+        "unnamed": "'first_of_two.AT2': no direction at the end of the name. Tried H1 H2 V, azimuths as 090, E N Z",
+        "mixed": "has CSV and .AT2 files: 'a.csv' holds whole motions, 'RSN1_H1.AT2' a component: take one kind",
         "suite": "'a.CSV' and 'a.csv' have one name: rename one of them",
         "bad": "b.csv: line 2: 'one': must be a number",
     }.items():

@@ -1,0 +1,158 @@
+"""What was read of a recorded motion: size, peaks, zero line, and warnings where a record is hardly meant so."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from reference.records.samples import AXES, Array
+from reference.support.constants import GRAVITY
+
+LARGEST_PEAK, SMALLEST_PEAK = 3.0, 0.001  # g
+UNEVEN = 0.01  # relative, of the steps of a column of times
+FEW_SAMPLES = 100  # of which no zero line is judged
+SHARE_OF_PEAK_VELOCITY = 0.2  # with which a record may end: at most 0.07 in 286 public records
+CLIPPED = 4  # equal samples in a row at the largest size
+FLAT = 1e-9  # relative, of samples that are equal
+
+
+@dataclass(frozen=True)
+class DirectionRead:
+    """
+    One direction of a record as read, without scale and detrend.
+
+    Attributes
+    ----------
+    axis : str
+        "x", "y" or "z".
+    peak : float
+        Largest size of the acceleration, m/s^2.
+    mean : float
+        Mean acceleration, m/s^2: the zero line.
+    final_velocity : float
+        Velocity at the last sample, integrated from rest, m/s.
+    final_displacement : float
+        Displacement at the last sample, integrated from rest, m.
+    """
+
+    axis: str
+    peak: float
+    mean: float
+    final_velocity: float
+    final_displacement: float
+
+    @property
+    def mean_over_peak(self) -> float:
+        """The mean over the peak; 0 of a direction at rest."""
+        return self.mean / self.peak if self.peak > 0.0 else 0.0
+
+
+@dataclass(frozen=True)
+class RecordDescription:
+    """
+    What was read of a recorded motion.
+
+    Attributes
+    ----------
+    title : str
+        Its files, or suite and number.
+    origin : tuple of str
+        A line for every file with its format, and for everything that was ignored or repaired in it.
+    samples : int
+        Number of samples.
+    step : float
+        Median time from sample to sample, s.
+    duration : float
+        Time from the first to the last sample, s.
+    directions : tuple of DirectionRead
+        The recorded directions.
+    scale : float
+        Factor with which the scene takes them.
+    detrend : str or None
+        What the scene takes off every direction, "mean" or "linear".
+    warnings : tuple of str
+        What is hardly meant, one sentence each.
+    """
+
+    title: str
+    origin: tuple[str, ...]
+    samples: int
+    step: float
+    duration: float
+    directions: tuple[DirectionRead, ...]
+    scale: float
+    detrend: str | None
+    warnings: tuple[str, ...]
+
+    @property
+    def lines(self) -> list[str]:
+        """The description as lines of text."""
+        taken = f", times {self.scale:g}" if self.scale != 1.0 else ""
+        taken += f', detrend = "{self.detrend}"' if self.detrend else ""
+        head = f"Record {self.title}: {self.samples} samples, step {self.step:.6g} s, {self.duration:.6g} s{taken}"
+        along = {line[0]: line[3:] for line in self.origin if line[1:3] == ": " and line[0] in AXES}
+        return [
+            head,
+            *(f"  {line}" for line in self.origin if line[3:] not in along.values()),
+            *(
+                f"  {one.axis}: {f'{along[one.axis]}: ' if one.axis in along else ''}peak {one.peak:.4g} m/s^2 = "
+                f"{one.peak / GRAVITY:.4g} g, mean/peak {one.mean_over_peak:+.2g}, final velocity "
+                f"{one.final_velocity:+.2g} m/s, final displacement {one.final_displacement:+.2g} m"
+                for one in self.directions
+            ),
+            *(f"  Warning: {line}" for line in self.warnings),
+        ]
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+
+def describe_samples(
+    title: str, origin: Sequence[str], samples: Array, scale: float = 1.0, detrend: str | None = None
+) -> RecordDescription:
+    """Return what is said of samples (K, 4), s and m/s^2, as read; scale and detrend: what the scene does with them."""
+    time, steps = samples[:, 0], np.diff(samples[:, 0])
+    step = float(np.median(steps))
+    read, warnings = [], []
+    with np.errstate(over="ignore", invalid="ignore"):
+        for axis, values in zip(AXES, samples[:, 1:].T):
+            if values.any():
+                velocity = np.concatenate([[0.0], np.cumsum(0.5 * steps * (values[1:] + values[:-1]))])
+                gains = steps * (velocity[:-1] + steps * (2.0 * values[:-1] + values[1:]) / 6.0)
+                peak, mean = float(np.abs(values).max()), float(values.mean())
+                read.append(DirectionRead(axis, peak, mean, float(velocity[-1]), float(gains.sum())))
+                warnings += _warnings_of(read[-1], values, velocity, time, detrend)
+    largest = max((one.peak for one in read), default=0.0) / GRAVITY
+    if largest > LARGEST_PEAK:
+        warnings.append(f"the peak is {largest:.4g} g, above {LARGEST_PEAK:g} g: is the unit right?")
+    elif largest < SMALLEST_PEAK:
+        warnings.append(f"the peak is {largest:.4g} g, below {SMALLEST_PEAK:g} g: is the unit right?")
+    if np.ptp(steps) > UNEVEN * step:
+        warnings.append(f"the steps are not equal: {steps.min():.4g} to {steps.max():.4g} s")
+    duration = float(time[-1])
+    return RecordDescription(
+        title, tuple(origin), len(samples), step, duration, tuple(read), scale, detrend, tuple(warnings)
+    )
+
+
+def _warnings_of(one: DirectionRead, values: Array, velocity: Array, time: Array, detrend: str | None) -> list[str]:
+    """What of one direction is hardly meant."""
+    warnings = []
+    # Velocity less its chord is what remains when the mean is taken off. Noise, a walk from rest, ends about as far
+    # from zero as it strays from the chord; a zero line that was left in ends far beyond: its velocity grows with time.
+    strayed = float(np.abs(velocity - velocity[-1] * time / time[-1]).max())
+    drifts = abs(one.final_velocity) > SHARE_OF_PEAK_VELOCITY * strayed
+    if drifts and len(values) >= FEW_SAMPLES and detrend is None:
+        warnings.append(
+            f"{one.axis} ends at {one.final_velocity:+.3g} m/s with a mean of {one.mean:+.3g} m/s^2 "
+            f"({100.0 * abs(one.mean_over_peak):.2g} % of its peak): a zero line left in? "
+            'detrend = "mean" or "linear" in [excitation] takes it off'
+        )
+    at_limit = np.abs(values) >= one.peak * (1.0 - FLAT)
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], at_limit.astype(int), [0]])))
+    longest = int((ends[1::2] - ends[::2]).max(initial=0))
+    if longest >= CLIPPED:
+        warnings.append(f"{one.axis} stays at its peak of {one.peak:.4g} m/s^2 for {longest} samples: clipped?")
+    return warnings

@@ -1,0 +1,90 @@
+"""
+Directions as files and columns are named: one table of spellings.
+
+East and along are x, north and across are y, up is z. Two azimuths are x and y in the order of their angles.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+HORIZONTAL, VERTICAL = "xy", "z"
+SPELLINGS = {
+    "x": ("H1", "E", "W", "EW", "E-W", "WE", "EAST", "L", "LN", "LONG", "L1", "FN", "X", "HN1", "BH1", "HH1"),
+    "y": ("H2", "N", "S", "NS", "N-S", "SN", "NORTH", "T", "TR", "TRAN", "TRANS", "T1", "FP", "Y", "HN2", "BH2", "HH2"),
+    "z": ("V", "UP", "UD", "U-D", "U", "DN", "DOWN", "DWN", "VER", "VERT", "VERTICAL", "Z", "HN3", "BH3", "HH3"),
+}
+CHANNEL_BANDS = ("BH", "BN", "EH", "EN", "HG", "HH", "HL", "HN")  # of SEED codes, in front of E, N, Z
+AXIS_OF = {word: axis for axis, words in SPELLINGS.items() for word in words}
+AXIS_OF |= {f"{band}{end}": axis for band in CHANNEL_BANDS for end, axis in zip("ENZ", "xyz")}
+LONGEST_WORD = max(map(len, AXIS_OF))
+INSIDE = re.compile(
+    rf"(?P<base>.+[._-])(?P<word>(?:{'|'.join(CHANNEL_BANDS)})[ENZ123])(?P<rest>[._-].+)", re.IGNORECASE
+)
+SUFFIX = re.compile(r"(?P<word>EW|NS|UD)(?P<rest>[12]?)", re.IGNORECASE)
+ACROSS = 75.0, 105.0  # degrees between the azimuths of two horizontal components: few instruments stand askew
+TRIED = "H1 H2 V, azimuths as 090, E N Z, EW NS UD, L T V, LN TR, L1 T1, FN FP, UP DWN, HNE HNN HNZ, N18E S72E, X Y Z"
+
+
+@dataclass(frozen=True)
+class Direction:
+    """A spelling of a direction: its axis, "" for an azimuth, which has its angle, degrees."""
+
+    word: str
+    axis: str
+    azimuth: float | None = None
+
+
+def parse_direction(word: str) -> Direction | None:
+    """Return the direction that a word names; None for any other word."""
+    upper = word.upper()
+    if upper in AXIS_OF:
+        return Direction(word, AXIS_OF[upper])
+    if re.fullmatch(r"[0-3][0-9]{2}", upper) and int(upper) <= 360:
+        return Direction(word, "", float(upper))
+    quadrant = re.fullmatch(r"([NS])([0-9]{1,2})([EW])", upper)
+    if quadrant is None or int(quadrant[2]) > 90:
+        return None
+    north, angle, east = quadrant[1] == "N", float(quadrant[2]), quadrant[3] == "E"
+    turned = angle if north == east else -angle
+    return Direction(word, "", (turned if north else 180.0 + turned) % 360.0)
+
+
+def split_name(stem: str, suffix: str = "") -> list[tuple[str, Direction]]:
+    """Return what a file's name may be taken for: the name of its motion and its direction, every reading of it."""
+    found = []
+    for length in range(min(LONGEST_WORD, len(stem) - 1), 0, -1):  # a longer word first: DWN before N
+        direction, base = parse_direction(stem[-length:]), stem[:-length].rstrip("-_. ")
+        if direction is not None and base:
+            found.append((base, direction))
+    if (inside := INSIDE.fullmatch(stem)) and (direction := parse_direction(inside["word"])):
+        found.append((inside["base"].rstrip("-_. ") + inside["rest"], direction))
+    if (ending := SUFFIX.fullmatch(suffix.lstrip("."))) and (direction := parse_direction(ending["word"])):
+        found.insert(0, (f"{stem}{'-' if ending['rest'] else ''}{ending['rest']}", direction))
+    return found
+
+
+def assign_axes(directions: Sequence[Direction]) -> Mapping[str, int] | None:
+    """
+    Return which of the directions of one motion is x, which y and which z; None where that cannot be told.
+
+    Two horizontal ones, x before y by the table, or by their angles, and none or one that is vertical.
+    """
+    level = [number for number, one in enumerate(directions) if one.axis != VERTICAL]
+    upright = [number for number, one in enumerate(directions) if one.axis == VERTICAL]
+    if len(level) != 2 or len(upright) > 1:
+        return None
+    first, second = sorted(level, key=lambda number: (directions[number].axis, directions[number].word.upper()))
+    one, other = directions[first], directions[second]
+    if one.azimuth is not None and other.azimuth is not None:
+        apart = abs(one.azimuth - other.azimuth) % 180.0
+        if not ACROSS[0] <= apart <= ACROSS[1]:
+            return None
+        first, second = sorted(level, key=lambda number: (directions[number].azimuth, directions[number].word))
+    elif one.axis == other.axis:
+        return None
+    elif "" in (one.axis, other.axis):  # an azimuth beside a word
+        first, second = sorted(level, key=lambda number: directions[number].word.upper())
+    return dict(zip("xyz", (first, second, *upright)))

@@ -1,0 +1,78 @@
+"""COSMOS and CSMIP V2 with one channel: the block of accelerations, in Fortran fields of the width that it states."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from reference.records.numerals import parse_number, unit_factor
+from reference.records.samples import Reading, RecordError, evenly_spaced
+from reference.support.arguments import brief
+
+FORMAT = "COSMOS V2"
+BLOCK = re.compile(
+    r"\s*(?P<count>[0-9]{1,9}) acceleration pts,.*units ?= ?(?P<unit>[^,(]+)"
+    r".*format ?= ?\([0-9]+[fe](?P<width>[0-9]{1,3})\.",
+    re.IGNORECASE,
+)
+OLD_BLOCK = re.compile(
+    r"\s*(?P<count>[0-9]{1,9}) points of accel data equally spaced at\s+(?P<step>[0-9.]+) sec, in (?P<unit>[^\s.(]+)",
+    re.IGNORECASE,
+)
+OLD_WIDTH = 10  # letters of a field of CSMIP's 8F10.3
+REAL_HEADER = re.compile(
+    r"\s*([0-9]{1,9}) Real-header values follow on +([0-9]{1,9}) lines, Format ?= ?\([0-9]+[FE]([0-9]{1,3})\.",
+    re.IGNORECASE,
+)
+STEP_AT = 33  # of the real header: sampling interval, s
+
+
+def recognizes_cosmos(head: Sequence[str]) -> bool:
+    """Whether the first lines have a block of accelerations."""
+    return any(BLOCK.match(line) or OLD_BLOCK.match(line) for line in head)
+
+
+@lru_cache(maxsize=32)
+def read_cosmos(text: str, name: str = "file.V2") -> Reading:
+    """Return what such a file holds. Raises RecordError."""
+    lines = text.splitlines()
+    blocks = [(at, found) for at, line in enumerate(lines) if (found := BLOCK.match(line) or OLD_BLOCK.match(line))]
+    if len(blocks) != 1:
+        rule = "must be one: take the channels apart, see the page Records of national networks"
+        raise RecordError(f"{len(blocks)} channels of acceleration: {rule}")
+    at, block = blocks[0]
+    factor = unit_factor(block["unit"])
+    if factor is None:
+        raise RecordError(f"line {at + 1}: {brief(block['unit'])}: must be the unit of an acceleration, as cm/sec2")
+    width = int(block.groupdict().get("width") or OLD_WIDTH)
+    values: list[float] = []
+    for number, line in enumerate(lines[at + 1 :], at + 2):
+        if len(values) >= int(block["count"]):
+            break
+        values += _fixed_fields(number, line, width)
+    if len(values) != int(block["count"]):
+        raise RecordError(f"{len(values)} values: line {at + 1} says {block['count']}")
+    step = block.groupdict().get("step")
+    spacing = _header_step(lines) if step is None else parse_number(at + 1, step)
+    return evenly_spaced(FORMAT, spacing, factor * np.array(values))
+
+
+def _header_step(lines: Sequence[str]) -> float:
+    """The sampling interval of the real header, s. Raises RecordError."""
+    for at, line in enumerate(lines):
+        if found := REAL_HEADER.match(line):
+            rows = lines[at + 1 : at + 1 + int(found[2])]
+            values = [
+                value for number, row in enumerate(rows, at + 2) for value in _fixed_fields(number, row, int(found[3]))
+            ]
+            if len(values) > STEP_AT:
+                return values[STEP_AT]
+    raise RecordError("no real header with the sampling interval, 'Real-header values follow on'")
+
+
+def _fixed_fields(number: int, line: str, width: int) -> list[float]:
+    cells = [line[at : at + width].strip() for at in range(0, len(line.rstrip()), max(width, 1))]
+    return [parse_number(number, cell) for cell in cells if cell]

@@ -1,0 +1,278 @@
+"""
+Tables with a header: CSV with commas, semicolons or tabs, of spreadsheets, programs and people.
+
+One column is the time, s, others are accelerations with their unit and direction. Other columns are ignored and named.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from reference.records.directions import Direction, assign_axes, parse_direction
+from reference.records.numerals import MAX_CELL, MAX_LINE, UNIT_NAMES, parse_number, quote_name, unit_factor
+from reference.records.samples import AXES, Reading, RecordError
+from reference.support.arguments import brief
+
+FORMAT = "CSV"
+HEADER = "a header such as time [s], ax [m/s^2], ay [m/s^2]"
+MAX_PREAMBLE = 20  # lines above the header
+TIMES = {"time", "times", "t", "sec", "seconds", "zeit", "temps", "tempo", "tiempo", "zaman", "時間", "時刻"}
+SECONDS = {"", "s", "sec", "secs", "second", "seconds", "秒"}
+ACCELERATIONS = {"a", "acc", "accel", "acceleration", "accelerations", "accelerogram", "加速度", "ground", "motion"}
+ACCELERATIONS |= {"component", "comp", "dir", "direction", "ag", "beschleunigung", "accélération", "accelerazione"}
+ACCELERATIONS |= {"aceleración", "aceleracion", "ivme"}
+FUSED = re.compile(r"(?:acceleration|accel|acc|a)(x|y|z|ns|ew|ud|h1|h2|v)", re.IGNORECASE)
+BRACKETS = re.compile(r"(.*?) ?[\[(]([^\[(\])]*(?:\([^()]*\))?)[\])] ?(.*)")
+DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
+
+
+@dataclass(frozen=True)
+class Column:
+    """A cell of the header: its place, what it is, "time", "acceleration" or "other", direction and unit."""
+
+    place: int
+    text: str
+    kind: str
+    word: str = ""
+    factor: float = 1.0
+
+
+def recognizes_csv(head: Sequence[str]) -> bool:
+    """Whether one of the first lines is a header with a time and an acceleration."""
+    return _header_row([(number, line) for number, line in enumerate(head, 1) if line.strip()], None) is not None
+
+
+@lru_cache(maxsize=32)  # of a family whose other keys run
+def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Reading:
+    """Return what a table holds; unit: of columns whose header names none. Raises RecordError."""
+    lines = ((number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip())
+    rows = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
+    separator, rows = _separator_line(rows)
+    while rows and not rows[-1][1].strip(",;\t "):  # a spreadsheet leaves separators behind
+        rows.pop()
+    if not rows:
+        raise RecordError(f"empty: must have {HEADER}, and samples")
+    found = _header_row(rows, separator)
+    top, separator = (0, separator or _guess_separator(rows[0][1])) if found is None else found
+    head, header = rows[top]
+    cells, below = _cells(head, header, separator), rows[top + 1 :]
+    if below and (units := _units_row(_cells(*below[0], separator), cells)):
+        cells, below = units, below[1:]
+    columns = _columns(head, cells, unit, name)
+    notes = [f"{top} lines above the header are ignored"] if top else []
+    if others := [brief(column.text) for column in columns if column.kind == "other"]:
+        notes.append(f"columns that are not needed: {', '.join(others)}")
+    directions = _directions(head, [column for column in columns if column.kind == "acceleration"])
+    table = _table(below, columns, separator)
+    clock = next(column.place for column in columns if column.kind == "time")
+    time = table[:, [column.place for column in columns].index(clock)] if len(table) else np.zeros(0)
+    _check_rising(below, time)
+    values = {
+        axis: column.factor * table[:, [one.place for one in columns].index(column.place)]
+        for axis, column in directions.items()
+    }
+    names = {axis: column.word for axis, column in directions.items() if column.word}
+    return Reading(FORMAT, time, values, names, notes=tuple(notes))
+
+
+def _separator_line(rows: list[tuple[int, str]]) -> tuple[str | None, list[tuple[int, str]]]:
+    """The separator that a first line `sep=;` states, and the other lines."""
+    if rows and (match := re.fullmatch(r'"?sep=(.)"?', rows[0][1].strip("\r\n \ufeff"), re.IGNORECASE)):
+        return match[1], rows[1:]
+    if rows and rows[0][1].rstrip("\r\n").lower() in ("sep=\t", '"sep=\t"'):
+        return "\t", rows[1:]
+    return None, rows
+
+
+def _guess_separator(line: str) -> str:
+    """The separator of a header: the first of tab, semicolon and comma that it has, or blanks."""
+    return next((mark for mark in "\t;," if mark in line), " ")
+
+
+def _header_row(rows: Sequence[tuple[int, str]], separator: str | None) -> tuple[int, str] | None:
+    """Which of the first lines names a time and an acceleration, and its separator; None where none does."""
+    for row, (number, line) in enumerate(rows[:MAX_PREAMBLE]):
+        if len(line) > MAX_LINE or line.lstrip().startswith("#"):
+            continue
+        mark = separator or _guess_separator(line)
+        try:
+            kinds = [_column(place, cell).kind for place, cell in enumerate(_cells(number, line, mark))]
+        except RecordError:
+            continue
+        below = rows[row + 1][1].split() if row + 1 < len(rows) else kinds
+        if "time" in kinds and "acceleration" in kinds and (mark != " " or len(below) == len(kinds)):
+            return row, mark  # a line of words is a header only above as many values
+    return None
+
+
+def _cells(number: int, line: str, separator: str) -> list[str]:
+    if len(line) > MAX_LINE:
+        raise RecordError(f"line {number}: {len(line)} letters: must be at most {MAX_LINE}")
+    if separator == " ":
+        return re.findall(r"[^\s\[(]+(?: ?[\[(][^\])]*[\])])?|[\[(][^\])]*[\])]", line)
+    try:
+        cells = [cell.strip() for cell in next(csv.reader(io.StringIO(line), delimiter=separator))]
+    except (csv.Error, StopIteration) as error:
+        raise RecordError(f"line {number}: {error}") from None
+    while len(cells) > 1 and not cells[-1]:  # a spreadsheet leaves separators behind
+        cells.pop()
+    return cells
+
+
+def _units_row(cells: list[str], header: list[str]) -> list[str] | None:
+    """The header with the units of the line below it, where that line has nothing else; None otherwise."""
+    units = [cell.strip(" []()") for cell in cells]
+    if len(cells) > len(header) or not any(map(str.isalpha, "".join(units))):
+        return None
+    if any(re.fullmatch(r"[+-]?[\d.,]+(?:e[+-]?\d+)?|[+-]?(?:nan|inf\w*)", unit, re.IGNORECASE) for unit in units):
+        return None
+    if not any(unit_factor(unit) for unit in units):
+        return None
+    return [f"{name} [{unit}]" if unit else name for name, unit in zip(header, units)] + header[len(units) :]
+
+
+def _columns(line: int, cells: list[str], unit: str | None, name: str) -> list[Column]:
+    """The columns of the header. Nothing is quoted where none is as it must be: that is no record. RecordError."""
+    columns = []
+    for place, cell in enumerate(cells):
+        columns.append(_column(place, cell))
+    times = [column for column in columns if column.kind == "time"]
+    usable = [column for column in columns if column.kind in ("acceleration", "wrong")]
+    if not times and usable and len(usable) == len(columns) and any(column.kind == "acceleration" for column in usable):
+        raise RecordError(
+            f"line {line}: {brief(' '.join(cells))}: must have time and at least one of ax, ay, az; without a "
+            'column of the time write record = {file = "...", step = 0.01, unit = "g", skip = 1, column = 1}'
+        )
+    if not times or not usable:
+        raise RecordError(f"line {line}: must be {HEADER}")
+    return [_with_unit(line, column, unit, name) for column in columns]
+
+
+def _with_unit(line: int, column: Column, unit: str | None, name: str) -> Column:
+    """The column with its unit checked. Raises RecordError."""
+    cell, (_, stated) = column.text, _name_and_unit(column.text)
+    if column.kind == "time" and stated.lower() not in SECONDS:
+        raise RecordError(f"line {line}: column {brief(cell)}: unknown unit {brief(stated)}: write time [s]")
+    if column.kind == "wrong":
+        allowed = "must be one of time, ax, ay, az with its unit"
+        raise RecordError(f"line {line}: column {brief(cell)}: {allowed}")
+    if column.kind != "acceleration":
+        return column
+    factor, shown = unit_factor(stated), column.word or "acceleration"
+    if factor is None and not stated and unit is not None:
+        factor = unit_factor(unit)
+        if factor is None:
+            raise RecordError(f"unit = {brief(unit)}: unknown unit: must be one of {UNIT_NAMES}")
+    elif unit is not None and factor is not None and unit_factor(unit) != factor:
+        raise RecordError(f"line {line}: column {brief(cell)}: the scene says unit = {brief(unit)}: remove one of them")
+    if factor is None:
+        quoted = f"unknown unit {brief(stated)}" if stated else "no unit"
+        if stated:
+            rule = f"write {shown} [m/s^2], {shown} [g] or {shown} [cm/s^2]; units are {UNIT_NAMES}"
+        else:
+            rule = f'write {shown} [g], or record = {{file = {quote_name(name)}, unit = "g"}}; units are {UNIT_NAMES}'
+        raise RecordError(f"line {line}: column {brief(cell)}: {quoted}: {rule}")
+    return Column(column.place, cell, column.kind, column.word, factor)
+
+
+def _name_and_unit(cell: str) -> tuple[str, str]:
+    """A cell of the header as name and unit: 'ax [g]', 'NS(gal)', 'Acceleration in g', 'Acc, m/s2', 'acc_g'."""
+    text = " ".join(cell.split())
+    if match := BRACKETS.fullmatch(text):
+        unit = match[2].strip()
+        unit = unit.partition("(")[0].strip() if unit_factor(unit) is None else unit
+        return f"{match[1]} {match[3]}".strip(), unit
+    for match in re.finditer(r"[ ,_/]+(?:in )?", text):
+        name, unit = text[: match.start()], text[match.end() :]
+        if name and (unit_factor(unit) is not None or (name.lower() in TIMES and unit.lower() in SECONDS)):
+            return name, unit
+    return text, ""
+
+
+def _column(place: int, cell: str) -> Column:
+    """What a cell of the header is; "wrong" is one with the unit of an acceleration that names none."""
+    name, unit = _name_and_unit(cell)
+    words = [word for word in re.split(r"[\s_.:/]+", name.lower()) if word]
+    if words and all(word in TIMES for word in words):
+        return Column(place, cell, "time")
+    rest = [word for word in words if word not in ACCELERATIONS]
+    told = bool(words) and len(rest) < len(words)
+    if words and not rest:
+        return Column(place, cell, "acceleration")
+    if len(rest) == 1:
+        fused = FUSED.fullmatch(rest[0])
+        word = fused[1] if fused else rest[0]
+        if parse_direction(word) is not None and (fused or told or unit or not word.isdigit()):
+            if unit and unit_factor(unit) is None and not fused and not told:
+                return Column(place, cell, "other")  # N [counts], v [m/s]
+            return Column(place, cell, "acceleration", name if fused else word.upper() if len(word) < 4 else word)
+    return Column(place, cell, "wrong" if unit_factor(unit) is not None else "other")
+
+
+def _directions(line: int, columns: Sequence[Column]) -> dict[str, Column]:
+    """The columns by axis, or one under "" that names no direction. Raises RecordError."""
+    for column in columns:
+        if sum(one.word.lower() == column.word.lower() for one in columns) > 1:
+            name = column.word or "of the acceleration"
+            raise RecordError(f"line {line}: column {name} is there twice")
+    if len(columns) == 1 and not columns[0].word:
+        return {"": columns[0]}
+    words = [FUSED.fullmatch(column.word) for column in columns]
+    told = [parse_direction(word[1] if word else column.word) for word, column in zip(words, columns)]
+    known: list[Direction] = [one for one in told if one is not None]
+    axes = {one.axis: column for one, column in zip(known, columns)}
+    if len(known) == len(columns) == len(axes) and set(axes) <= set(AXES):
+        return {axis: axes[axis] for axis in AXES if axis in axes}
+    if len(columns) == 1:
+        return {"": columns[0]}  # an azimuth alone
+    places = assign_axes(known) if len(known) == len(columns) else None
+    if places is None:
+        listed = ", ".join(brief(column.text) for column in columns)
+        raise RecordError(
+            f"line {line}: columns {listed}: two have one direction, or none is told: name them ax, ay, az"
+        )
+    return {axis: columns[number] for axis, number in places.items()}
+
+
+def _table(rows: Sequence[tuple[int, str]], columns: Sequence[Column], separator: str) -> np.ndarray:
+    """The values of the needed columns, (K, len(columns)). Raises RecordError."""
+    needed = [(at, column.place) for at, column in enumerate(columns) if column.kind != "other"]
+    table, commas, points = np.zeros((len(rows), len(columns))), 0, 0
+    for row, (number, line) in enumerate(rows):
+        cells = line.split() if separator == " " else _cells(number, line, separator)
+        if len(cells) == 1 and not cells[0]:
+            raise RecordError(f"line {number}: only separators: remove it")
+        if len(cells) != len(columns):
+            hint = ""
+            if separator == "," and len(cells) == 2 * len(columns):
+                hint = "; decimal commas need another separator: a semicolon or a tab"
+            raise RecordError(f"line {number}: {len(cells)} values: the header names {len(columns)} columns{hint}")
+        for at, place in needed:
+            cell = cells[place]
+            if "," in cell and len(cell) <= MAX_CELL and DECIMAL_COMMA.fullmatch(cell):
+                cell, commas = cell.replace(",", "."), number
+            elif "." in cell:
+                points = number
+            table[row, at] = parse_number(number, cell)
+        if commas and points:
+            raise RecordError(
+                f"line {number}: decimal commas (line {commas}) and decimal points (line {points}): take one"
+            )
+    return table
+
+
+def _check_rising(rows: Sequence[tuple[int, str]], time: np.ndarray) -> None:
+    """Raise RecordError where a time is not later than the one before."""
+    if len(time) > 1 and not (steps := np.diff(time) > 0.0).all():
+        row = int(np.argmin(steps)) + 1
+        late = f"line {rows[row][0]}: time {time[row]:g} s after {time[row - 1]:g} s: must rise"
+        if time[row] == time[row - 1]:
+            late += "; where times have too few digits write {file = ..., step = ..., unit = ..., skip = 1, column = 2}"
+        raise RecordError(late)

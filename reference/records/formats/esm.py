@@ -1,0 +1,40 @@
+"""ESM .ASC: one direction, one value a line, under lines such as SAMPLING_INTERVAL_S: 0.005."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from reference.records.directions import parse_direction
+from reference.records.numerals import parse_number, read_values, unit_factor
+from reference.records.samples import Reading, RecordError, evenly_spaced
+from reference.support.arguments import brief
+
+FORMAT = "ESM .ASC"
+ENTRY = re.compile(r"([A-Z][A-Z0-9_/^\[\]]*): ?(.*)")
+
+
+def recognizes_esm(head: Sequence[str]) -> bool:
+    """Whether one of the first lines states the sampling interval of ESM."""
+    return any(line.startswith("SAMPLING_INTERVAL_S:") for line in head)
+
+
+@lru_cache(maxsize=64)
+def read_esm(text: str, name: str = "file.ASC") -> Reading:
+    """Return what such a file holds. Raises RecordError."""
+    lines = text.splitlines()
+    size = next((at for at, line in enumerate(lines) if not ENTRY.fullmatch(line.strip())), len(lines))
+    stated = {match[1]: match[2] for line in lines[:size] if (match := ENTRY.fullmatch(line.strip()))}
+    step, count, unit = (stated.get(key, "").strip() for key in ("SAMPLING_INTERVAL_S", "NDATA", "UNITS"))
+    factor = unit_factor(unit)
+    if factor is None:
+        raise RecordError(f"UNITS: {brief(unit)}: must be that of an acceleration, as cm/s^2")
+    if not (count.isascii() and count.isdecimal() and len(count) < 10):
+        raise RecordError(f"NDATA: {brief(count)}: must be a whole number")
+    values, notes = read_values(lines[size:], size + 1, int(count), f"NDATA: {count}")
+    direction = parse_direction(stated.get("STREAM", "").strip())
+    axis, names = (direction.axis, {direction.axis: direction.word}) if direction and direction.axis else ("", {})
+    return evenly_spaced(FORMAT, parse_number(1, step), factor * np.array(values), axis, names=names, notes=notes)

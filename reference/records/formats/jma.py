@@ -1,0 +1,55 @@
+"""Strong-motion CSV of the Japan Meteorological Agency: sampling rate and unit above the columns NS, EW, UD."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from reference.records.directions import parse_direction
+from reference.records.numerals import MAX_HEADER_LINES, parse_number, unit_factor
+from reference.records.samples import Reading, RecordError
+from reference.support.arguments import brief
+
+FORMAT = "JMA CSV"
+RATE = re.compile(r"\s*SAMPLING RATE\s*[=:,]\s*([0-9.]+)\s*Hz", re.IGNORECASE)
+UNIT = re.compile(r"\s*UNIT\s*[=:,]\s*([^\s(,]+)", re.IGNORECASE)
+
+
+def recognizes_jma(head: Sequence[str]) -> bool:
+    """Whether the first lines state a sampling rate and a unit."""
+    return any(map(RATE.match, head)) and any(map(UNIT.match, head))
+
+
+@lru_cache(maxsize=32)
+def read_jma(text: str, name: str = "file.csv") -> Reading:
+    """Return what such a file holds. Raises RecordError."""
+    lines = text.splitlines()
+    rate = next(match for line in lines if (match := RATE.match(line)))
+    unit = next(match for line in lines if (match := UNIT.match(line)))
+    factor, sampling = unit_factor(unit[1]), parse_number(1, rate[1])
+    if factor is None or sampling <= 0.0:
+        raise RecordError(f"UNIT = {brief(unit[1])}, SAMPLING RATE = {rate[1]} Hz: must be gal, and greater than 0")
+    heads = [[word.strip() for word in line.split(",")] for line in lines[:MAX_HEADER_LINES]]
+    top = next((at for at, words in enumerate(heads) if len(words) > 1 and all(map(_axis, words))), None)
+    if top is None:
+        raise RecordError("the header must have a line 'NS,EW,UD'")
+    words = heads[top]
+    rows = [(at, line.split(",")) for at, line in enumerate(lines[top + 1 :], top + 2) if line.strip(" ,")]
+    for at, cells in rows:
+        if len(cells) < len(words) or any(cell.strip() for cell in cells[len(words) :]):
+            raise RecordError(f"line {at}: {len(cells)} values: the header names {len(words)} columns")
+    table = np.array([[parse_number(at, cell.strip()) for cell in cells[: len(words)]] for at, cells in rows])
+    table = table.reshape(-1, len(words))
+    columns = {_axis(word): factor * table[:, at] for at, word in enumerate(words)}
+    names = {_axis(word): word for word in words}
+    step = 1.0 / sampling
+    return Reading(FORMAT, step * np.arange(len(table), dtype=float), columns, names, step=step)
+
+
+def _axis(word: str) -> str:
+    """The axis of a direction such as NS; "" of any other word."""
+    direction = parse_direction(word)
+    return "" if direction is None else direction.axis

@@ -1,0 +1,221 @@
+"""
+Plain text: numbers whose step, unit, header and column the scene states, `{file = "a.acc", step = 0.01, unit = "g"}`.
+
+Without these a file is refused, and the line to write is proposed with what its header says.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from reference.records.numerals import (
+    GLUED,
+    MAX_HEADER_LINES,
+    MAX_LINE,
+    NUMBER,
+    UNIT_NAMES,
+    holds_numbers,
+    parse_fields,
+    parse_plain_lines,
+    quote_name,
+    unit_factor,
+)
+from reference.records.samples import MIN_INTERVAL, Array, Reading, RecordError, evenly_spaced
+from reference.support.arguments import as_float, brief
+
+FORMAT = "plain text"
+OPTIONS = ("step", "unit", "skip", "column")
+MAX_SKIP = 10_000  # lines
+MAX_COLUMN = 100
+EVEN = 0.01  # relative, of the steps of a column that is a time
+MOST_COLUMNS = 4  # values a line that may be a time and three directions as well as a run of values
+FIRST_ROWS = 50  # lines of numbers that a proposal looks at
+FEW = 3  # rows at least that tell a column of times
+NAMED_UNIT = re.compile(
+    r"\b(?:[cm]?m|in|ft) ?/ ?s(?:ec)?(?: ?/ ?s(?:ec)?|\^?\*{0,2}2)|\bgals?\b|[(\[]g[)\]]|(?<=\bin )g\b|(?<=\bof )g\b",
+    re.IGNORECASE,
+)
+NAMED_STEP = re.compile(
+    r"(?:\bd_?t\b|\bdelta ?t\b|\bstep\b|\binterval\b|\bspacing(?: of)?)[^0-9.,;]{0,20}"
+    r"(?P<step>[0-9]*\.?[0-9]+(?:e-?[0-9]+)?)"
+    r"|(?P<rate>[0-9]+(?:\.[0-9]*)?) ?(?:hz|sps)\b",
+    re.IGNORECASE,
+)
+NO_RECORD = re.compile(r"\bspectr|\bfourier\b", re.IGNORECASE)
+COUNT_AND_STEP = re.compile(r"\s*([0-9]+)[\s,]+([0-9]*\.[0-9]+(?:e-?[0-9]+)?)\s*", re.IGNORECASE)
+
+
+@lru_cache(maxsize=64)
+def read_plain_text(
+    text: str, name: str, step: Any = None, unit: Any = None, skip: Any = 0, column: Any = None
+) -> Reading:
+    """
+    Return the values of a text behind `skip` lines: all in their order (`column` 0), or those of one column, from 1.
+
+    step: s. unit: one of `UNIT_NAMES`. Raises RecordError, with the line to write where one of them is missing.
+    """
+    lines = text.splitlines()
+    if step is None or unit is None:
+        raise RecordError(f"plain text needs step and unit: {propose_line(text, name)}")
+    spacing, factor = as_float(step), unit_factor(unit) if isinstance(unit, str) else None
+    if not MIN_INTERVAL <= spacing < np.inf:
+        raise RecordError(f"step = {brief(step)}: must be a number of seconds, at least {MIN_INTERVAL:g}")
+    if factor is None:
+        raise RecordError(f"unit = {brief(unit)}: must be one of {UNIT_NAMES}")
+    for key, value, lowest, highest in (("skip", skip, 0, MAX_SKIP), ("column", column, 0, MAX_COLUMN)):
+        whole = isinstance(value, int) and not isinstance(value, bool) and lowest <= value <= highest
+        if not whole and not (key == "column" and value is None):
+            raise RecordError(f"{key} = {brief(value)}: must be a whole number from {lowest} to {highest}")
+    if skip >= len(lines):
+        raise RecordError(f"skip = {skip}: the file has {len(lines)} lines: {propose_line(text, name)}")
+    rows, notes = _rows(lines, skip, text, name)
+    values = _values(rows, column, text, name, any(map(COUNT_AND_STEP.fullmatch, lines[:skip])))
+    _check_count(lines[:skip], len(values))
+    seen = _even_step([row for _, row in rows]) if column is not None and column > 1 else None
+    if seen is not None and abs(seen - spacing) > EVEN * spacing:
+        notes.append(f"the first column rises by {seen:g}, and the scene says step = {spacing:g} s: one is wrong")
+    return evenly_spaced(FORMAT, spacing, factor * np.array(values), notes=tuple(notes))
+
+
+def propose_line(text: str, name: str) -> str:
+    """Return what to write for a plain text, with what its header states of step and unit; "" for no numbers."""
+    lines = text.splitlines()
+    start = _first_data_line(lines)
+    if start is None:
+        return "it has no lines of numbers: it is no record"
+    header = "\n".join(line[:MAX_LINE] for line in lines[:start])
+    if NO_RECORD.search(header):
+        return "its header names spectra: it is no record"
+    body = [line[:MAX_LINE] for line in lines[start : start + FIRST_ROWS]]
+    if "." not in "".join(body):  # decimal commas
+        body = [line.replace(",", ".") for line in body]
+    rows = [cells for line in body if (cells := _loose_cells(line))]
+    time = _even_step(rows)
+    step, unit = _stated_step(header), NAMED_UNIT.search(header)
+    known = step if step is not None else time
+    stated = unit[0].strip("()[]") if unit else None
+    parts = [f"file = {quote_name(name)}", f"step = {0.01 if known is None else known:g}", f'unit = "{stated or "g"}"']
+    parts += [f"skip = {start}"] if start else []
+    side_by_side = len(rows) > 1 and len({*map(len, rows)}) == 1 and 1 < len(rows[0]) <= MOST_COLUMNS
+    alone = side_by_side and not any(map(COUNT_AND_STEP.fullmatch, lines[:start]))
+    parts += ["column = 2"] if time is not None else ["column = 1"] if alone else []
+    missing = [word for word, value in (("step", known), ("unit", stated)) if value is None]
+    guess = f", with the {' and the '.join(missing)} of your source, which the file does not state" if missing else ""
+    return f"write record = {{{', '.join(parts)}}}{guess}"
+
+
+def _first_data_line(lines: Sequence[str]) -> int | None:
+    """The first line, from 0, from which on lines have numbers alone; a line of count and step is a header."""
+    for number, line in enumerate(lines[:MAX_HEADER_LINES]):
+        if _loose_cells(line) and not (COUNT_AND_STEP.fullmatch(line) and _counts(lines, number)):
+            return number
+    return None
+
+
+def _counts(lines: Sequence[str], number: int) -> bool:
+    """Whether a line 'count step' states how many values are behind it."""
+    stated = COUNT_AND_STEP.fullmatch(lines[number][:MAX_LINE])
+    behind = sum(len(line.split()) for line in lines[number + 1 :])
+    return stated is not None and len(stated[1]) < 10 and int(stated[1]) == behind
+
+
+def _loose_cells(line: str) -> list[float] | None:
+    """The numbers of a line that has nothing else; None otherwise."""
+    cells = re.split(r"[\s;,]+", line[:MAX_LINE].strip())
+    if not all(cells) or not all(NUMBER.fullmatch(cell) or "".join(GLUED.findall(cell)) == cell for cell in cells):
+        return None
+    try:
+        return parse_fields(0, " ".join(cells))
+    except RecordError:
+        return None
+
+
+def _stated_step(header: str) -> float | None:
+    """The step, s, that a header states."""
+    for line in header.splitlines():
+        if match := COUNT_AND_STEP.fullmatch(line):
+            return as_float(float(match[2])) or None
+        if match := NAMED_STEP.search(line):
+            value = float(match["step"] or match["rate"])
+            return None if value <= 0.0 else value if match["step"] else 1.0 / value
+    return None
+
+
+def _rows(lines: Sequence[str], skip: int, text: str, name: str) -> tuple[list[tuple[int, list[float]]], list[str]]:
+    """The numbers of every line behind the header with its number, and notes. Raises RecordError."""
+    data = [(number, line) for number, line in enumerate(lines[skip:], skip + 1) if line.strip()]
+    joined = "".join(line for _, line in data)
+    commas = "," in joined and "." not in joined
+    rows, glued = [], False
+    for number, line in data:
+        plain = re.sub(r"(?<=[0-9]),(?=[0-9])", ".", line) if commas else line.replace(",", " ")
+        plain = plain.replace(";", " ")
+        values = parse_plain_lines([plain])
+        if values is None:
+            if number == skip + 1 and not holds_numbers(line):
+                raise RecordError(f"line {number}: {brief(line.strip())}: must be numbers: {propose_line(text, name)}")
+            values = parse_fields(number, plain)
+            glued = glued or len(values) > len(plain.split())
+        rows.append((number, values))
+    notes = ["numbers without a blank between them are taken apart"] if glued else []
+    return rows, notes + (["commas are read as decimal commas"] if commas else [])
+
+
+def _values(
+    rows: Sequence[tuple[int, list[float]]], column: int | None, text: str, name: str, counted: bool
+) -> list[float]:
+    """The values of a column, or all in their order where nothing speaks against it. Raises RecordError."""
+    if column:
+        for number, row in rows:
+            if len(row) < column:
+                raise RecordError(f"line {number}: {len(row)} values: column = {column}: must have as many")
+        return [row[column - 1] for _, row in rows]
+    widths = [len(row) for _, row in rows]
+    timed = len(set(widths)) == 1 and widths[0] > 1 and _even_step([row for _, row in rows]) is not None
+    if column is None and timed:
+        rule = "the first of them rises evenly as a time does: state the column"
+        raise RecordError(f"line {rows[0][0]}: {widths[0]} values a line, {rule}: {propose_line(text, name)}")
+    if column is None and not counted and len(rows) > 1 and len(set(widths)) == 1 and 1 < widths[0] <= MOST_COLUMNS:
+        rule = f"{widths[0]} values a line: state column, from 1; column = 0 takes all of them in their order"
+        raise RecordError(f"line {rows[0][0]}: {rule}: {propose_line(text, name)}")
+    other = widths[min(1, len(widths) - 1)] if widths else 0
+    for (number, _), width in zip(rows[:-1], widths):
+        if width != other:
+            rule = f"{width} values, {other} in other lines: a header, or a broken line"
+            raise RecordError(f"line {number}: {rule}: {propose_line(text, name)}")
+    return [value for _, row in rows for value in row]
+
+
+def _check_count(header: Sequence[str], count: int) -> None:
+    """Raise RecordError where a skipped line 'count step' states another number of values."""
+    for number, line in enumerate(header, 1):
+        stated = COUNT_AND_STEP.fullmatch(line[:MAX_LINE])
+        if stated and int(stated[1][:9]) != count:
+            rule = "leave column out to take all values of a line, or take the missing ones from the source"
+            raise RecordError(f"{count} values: line {number} states {stated[1]}: {rule}")
+
+
+def _even_step(rows: Sequence[Sequence[float]]) -> float | None:
+    """The step of the first column where it rises evenly beside others, as a time does; None otherwise."""
+    if len(rows) < FEW or min(map(len, rows)) < 2:
+        return None
+    steps: Array = np.diff([row[0] for row in rows])
+    if steps.min() <= 0.0 or np.ptp(steps) > max(EVEN * steps.mean(), 1e-5):
+        return None
+    return float(f"{steps.mean():.6g}")
+
+
+def begins_with_numbers(head: Sequence[str]) -> bool:
+    """Whether the first line of a text that is not blank has numbers alone."""
+    first = next((line for line in head if line.strip()), "")
+    return _loose_cells(first) is not None
+
+
+def has_options(table: Mapping[str, Any]) -> bool:
+    """Whether the table of a file states what only a plain text needs."""
+    return any(key in table for key in ("step", "skip", "column"))

@@ -1,0 +1,143 @@
+"""Texts, units and numbers of record files: what is read alike in every format."""
+
+from __future__ import annotations
+
+import codecs
+import json
+import re
+from collections.abc import Iterable, Sequence
+
+from reference.records.samples import MAX_ACCELERATION, RecordError
+from reference.support.arguments import brief
+from reference.support.constants import GRAVITY
+
+MAX_LINE, MAX_CELL = 1000, 100  # letters of a line that is looked at as a whole, and of a number
+MAX_HEADER_LINES = 100  # lines of which a header is sought in the first
+UNITS = {"m/s^2": 1.0, "m/s2": 1.0, "m/s²": 1.0, "m/s/s": 1.0, "g": GRAVITY, "cm/s^2": 0.01, "cm/s2": 0.01}
+UNITS |= {"cm/s²": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254, "ft/s^2": 0.3048}
+UNIT_NAMES = "m/s^2, g, gal, cm/s^2, mm/s^2, in/s^2 or ft/s^2"
+SPELLED_UNIT = re.compile(
+    r"(m|cm|mm|in|inch|inches|ft|feet)[ .*]?(?:/ ?\(?s(?:ec)?(?:\^?2|²| ?/ ?s(?:ec)?)\)?| ?s\^?-2)"
+)
+NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[ed][+-]?[0-9]+)?", re.IGNORECASE | re.ASCII)
+GLUED = re.compile(r"[+-]?(?:[0-9]+\.[0-9]*|\.[0-9]+)(?:[ed][+-]?[0-9]{1,3})?", re.IGNORECASE | re.ASCII)
+NOT_FINITE = re.compile(r"[+-]?(?:nan|inf|infinity)", re.IGNORECASE | re.ASCII)
+WORD = re.compile(r"[^\W\d_]{2,}")  # letters in a row: a line with them is no line of numbers
+PLAIN = {*"0123456789+-.eE \t"}
+
+
+def decode_text(content: bytes) -> str:
+    """
+    Return the text of a file: UTF-8, UTF-16, or single bytes where it is neither. Raises RecordError.
+
+    Only letters of ASCII carry a meaning, and the sign for a square, so that single bytes may be read as Latin 1.
+    """
+    try:
+        if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            return content.decode("utf-16")
+        if content[1:2] == b"\0" or content[:1] == b"\0":
+            return content.decode("utf-16-le" if content[1:2] == b"\0" else "utf-16-be")
+    except UnicodeDecodeError:
+        raise RecordError("must be text in UTF-8") from None
+    if b"\0" in content:
+        raise RecordError("must be text in UTF-8")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")
+
+
+def quote_name(name: str) -> str:
+    """Return the name of a file as a text of a scene file."""
+    plain = name.isprintable() and not {'"', "\\"} & set(name)
+    return f'"{name}"' if plain else json.dumps(name)
+
+
+def unit_factor(unit: str) -> float | None:
+    """Return the factor to m/s^2 of a unit in any common spelling; None for an unknown one."""
+    text = " ".join(unit.lower().replace("**", "^").split()).strip(" .")
+    if text in UNITS:
+        return UNITS[text]
+    match = SPELLED_UNIT.fullmatch(text)
+    if match is None:
+        return {"g's": GRAVITY, "gals": 0.01}.get(text)
+    length = {"inch": "in", "inches": "in", "feet": "ft"}.get(match[1], match[1])
+    return UNITS[f"{length}/s^2"]
+
+
+def parse_number(line: int, cell: str) -> float:
+    """Return a number of a line of a file. Raises RecordError."""
+    if NOT_FINITE.fullmatch(cell):
+        raise RecordError(f"line {line}: {cell}: must be finite")
+    if "**" in cell:
+        lost = "a Fortran field that has overflowed, its value is lost: take the record from its source"
+        raise RecordError(f"line {line}: {brief(cell)}: {lost}")
+    if len(cell) > MAX_CELL or not NUMBER.fullmatch(cell):
+        raise RecordError(f"line {line}: {brief(cell)}: must be a number of at most {MAX_CELL} letters")
+    value = float(cell.lower().replace("d", "e"))
+    if abs(value) > MAX_ACCELERATION:
+        raise RecordError(f"line {line}: {brief(cell)}: must be finite, at most {MAX_ACCELERATION:g} in size")
+    return value
+
+
+def parse_fields(line: int, text: str) -> list[float]:
+    """
+    Return the numbers of a line of Fortran fields, apart also where no blank is between them. Raises RecordError.
+
+    Two numbers without a blank are told apart by the sign of the second, where both have a decimal point.
+    """
+    values = []
+    for cell in text.split():
+        parts = [] if NUMBER.fullmatch(cell) or len(cell) > MAX_LINE else GLUED.findall(cell)
+        signed = all(part[0] in "+-" for part in parts[1:])
+        if len(parts) > 1 and signed and "".join(parts) == cell:
+            values += [parse_number(line, part) for part in parts]
+        else:
+            values.append(parse_number(line, cell))
+    return values
+
+
+def parse_plain_lines(lines: Iterable[str]) -> list[float] | None:
+    """Return the numbers of lines that have nothing else, as most files do; None where each must be looked at."""
+    text = " ".join(lines)
+    cells = text.split()
+    if not set(text) <= PLAIN or max(map(len, cells), default=0) > MAX_CELL:
+        return None
+    try:
+        values = list(map(float, cells))
+    except ValueError:
+        return None
+    return values if max(map(abs, values), default=0.0) <= MAX_ACCELERATION else None
+
+
+def holds_numbers(line: str) -> bool:
+    """Whether a line is one of data: not blank and without a word, which `nan` and `inf` are not."""
+    return bool(line.strip()) and not any(not NOT_FINITE.fullmatch(word) for word in WORD.findall(line[:MAX_LINE]))
+
+
+def read_values(lines: Sequence[str], first: int, count: int, stated: str) -> tuple[list[float], tuple[str, ...]]:
+    """
+    Return exactly `count` numbers of the lines, which begin with line number `first`, and notes. Raises RecordError.
+
+    stated: what the header says of the count. Lines with words behind the last value are no data.
+    """
+    values = parse_plain_lines(lines)
+    if values is not None and len(values) == count:
+        return values, ()
+    values, notes, beyond = [], [], 0
+    for number, line in enumerate(lines, first):
+        if len(values) >= count and not holds_numbers(line):
+            if line.strip():
+                notes.append(f"the lines behind the {count} values are ignored")
+                break
+            continue
+        fields = parse_fields(number, line)
+        if len(fields) > len(line.split()):
+            notes.append("numbers without a blank between them are taken apart")
+        values += fields
+        if len(values) > count and not beyond:
+            beyond = number
+    if len(values) != count:
+        place = f"line {beyond}: " if beyond else ""
+        raise RecordError(f"{place}{len(values)} values: the header says {stated}")
+    return values, tuple(dict.fromkeys(notes))

@@ -1,0 +1,162 @@
+"""
+What a file of a recorded motion holds, and the samples that one or several of them make: (K, 4), time from the first
+sample on, s, and acceleration along x, y, z, m/s^2, zero along a direction that was not recorded.
+
+`problem/excitation.py` defines the motion between samples.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from reference.support.arguments import check_array
+from reference.support.scene_error import one_line
+
+Array = NDArray[np.float64]
+
+AXES = ("x", "y", "z")
+LARGEST = 2**24  # bytes of a file: half an hour at 200 Hz along three directions
+MAX_ACCELERATION = 1e300  # finite in any unit
+MIN_INTERVAL = 1e-9  # s, between samples
+ACCELERATIONS = "(K,) along x, (K, 2) along x and y or (K, 3), m/s^2"
+STEP_MISMATCH = 1e-6  # relative: DT is printed with four to six digits
+TIME_MISMATCH = 0.01  # of a step, between the instants of two files
+
+
+class RecordError(ValueError):
+    """A file that is no record: one line with the place in it, what stands there, and the rule."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """
+    What one file holds.
+
+    format: name of its format. time: (K,), s, as the file has it. directions: accelerations (K,), m/s^2, by axis, or
+    under "" where the file does not say along which. names: what the file calls them. step: s, where the file states
+    one in place of times. notes: what was ignored or repaired, one sentence each.
+    """
+
+    format: str
+    time: Array
+    directions: Mapping[str, Array]
+    names: Mapping[str, str] = field(default_factory=dict)
+    step: float | None = None
+    notes: tuple[str, ...] = ()
+
+
+def evenly_spaced(format: str, step: float, values: Array, axis: str = "", **others: Any) -> Reading:
+    """Return the reading of a file that states its step, s, and has one direction, m/s^2. Raises RecordError."""
+    if not step >= MIN_INTERVAL:
+        raise RecordError(f"step = {step:g} s: must be at least {MIN_INTERVAL:g} s")
+    return Reading(format, step * np.arange(len(values), dtype=float), {axis: values}, step=step, **others)
+
+
+def join_directions(readings: Mapping[str, Reading]) -> Array:
+    """
+    Return the samples (K, 4) of files by axis, or of one file under "". Raises RecordError.
+
+    A direction that the only file does not name is x. A file that ends early is at rest from there on.
+    """
+    columns: dict[str, tuple[Reading, Array]] = {}
+    for axis, reading in readings.items():
+        if axis and len(reading.directions) > 1:
+            held = ", ".join(f"{one} = {reading.names.get(one, one)}" for one in reading.directions)
+            raise RecordError(f"{axis}: the file holds several directions ({held}): give it alone, without x, y, z")
+        for own, values in reading.directions.items():
+            columns[axis or own or "x"] = reading, values
+    _check_same_steps({axis: reading for axis, (reading, _) in columns.items()})
+    longest = max((reading for reading, _ in columns.values()), key=lambda reading: len(reading.time))
+    first, _ = next(iter(columns.values()))
+    samples = np.zeros((len(longest.time), 4))
+    samples[:, 0] = longest.time if first.step is None else first.step * np.arange(len(samples))
+    for axis, (_, values) in columns.items():
+        samples[: len(values), 1 + AXES.index(axis)] = values
+    return finish_samples(samples)
+
+
+def _check_same_steps(readings: Mapping[str, Reading]) -> None:
+    """Raise RecordError unless all directions were sampled at the same instants."""
+    for (first, one), (second, other) in pairwise(readings.items()):
+        if one.step is not None and other.step is not None:
+            if abs(one.step - other.step) > STEP_MISMATCH * one.step:
+                raise RecordError(
+                    f"DT = {one.step:g} s along {first} and {other.step:g} s along {second}: must be the same"
+                )
+        elif one is not other:
+            count = min(len(one.time), len(other.time))
+            times = [reading.time[:count] - reading.time[:1].sum() for reading in (one, other)]
+            apart = np.abs(times[0] - times[1]).max(initial=0.0)
+            if count < 2 or apart > TIME_MISMATCH * np.diff(times[0]).min():
+                raise RecordError(f"other instants along {first} than along {second}: must be the same")
+
+
+def samples_of_arrays(time: Any, acceleration: Any) -> Array:
+    """Samples (K, 4) of times (K,), s, and accelerations along x, x and y, or x, y and z, m/s^2. Raises RecordError."""
+    instants = _numbers("time", time, "(K,), s")
+    values = _numbers("acceleration", acceleration, ACCELERATIONS)
+    columns = values[:, None] if values.ndim == 1 else values
+    if instants.ndim != 1:
+        raise RecordError(f"time: shape {instants.shape}: must be (K,), s")
+    if columns.ndim != 2 or len(columns) != len(instants) or not 1 <= columns.shape[1] <= 3:
+        raise RecordError(f"acceleration: shape {values.shape} at {len(instants)} instants: must be {ACCELERATIONS}")
+    samples = np.zeros((len(instants), 4))
+    samples[:, 0], samples[:, 1 : 1 + columns.shape[1]] = instants, columns
+    return finish_samples(samples)
+
+
+def check_samples(samples: Any) -> Array:
+    """Samples (K, 4) that cannot be changed, from what `samples` holds; time counts from the first. RecordError."""
+    array = np.array(_numbers("samples", samples, "(K, 4)"))
+    if array.ndim != 2 or array.shape[1] != 4:
+        raise RecordError(f"samples: shape {array.shape}: must be (K, 4): s and m/s^2 along x, y, z")
+    return finish_samples(array)
+
+
+def _numbers(name: str, values: Any, shape: str) -> Array:
+    try:
+        array = check_array(name, values, f"must be {shape}")
+    except ValueError as error:
+        raise RecordError(str(error)) from None
+    if np.abs(array).max(initial=0.0) > MAX_ACCELERATION:
+        raise RecordError(f"{name}: must be at most {MAX_ACCELERATION:g} in size")
+    return array
+
+
+def finish_samples(samples: Array) -> Array:
+    """Return the samples with the first at 0 s, read-only. Raises RecordError."""
+    if len(samples) < 2:
+        raise RecordError(f"{len(samples)} samples: must have at least 2")
+    samples[:, 0] -= samples[0, 0]
+    shortest = float(np.diff(samples[:, 0]).min())
+    if shortest < MIN_INTERVAL:
+        raise RecordError(f"{shortest:g} s from sample to sample: must be at least {MIN_INTERVAL:g} s")
+    samples.setflags(write=False)
+    return samples
+
+
+def origin_of(files: Mapping[str, tuple[str, Reading]]) -> list[str]:
+    """Return where samples are from: a line for every file, by axis, and one for everything that was noticed in it."""
+    lines = []
+    for axis, (name, reading) in files.items():
+        told = ", ".join(
+            f"{one} = {word}" for one, word in reading.names.items() if word.lower() not in (one, f"a{one}")
+        )
+        along = axis if axis else "x" if list(reading.directions) == [""] else ""
+        lines.append(f"{f'{along}: ' if along else ''}{one_line(name)}, {reading.format}{f', {told}' if told else ''}")
+    return lines + [f"{one_line(name)}: {note}" for name, reading in files.values() for note in reading.notes]
+
+
+def take_zero_line(samples: Array, how: str) -> None:
+    """Take "mean" or "linear", a straight line by least squares, off every recorded direction of samples (K, 4)."""
+    time = samples[:, 0] - samples[:, 0].mean()
+    for values in samples[:, 1:].T:
+        if values.any():
+            slope = float(time @ values / (time @ time)) if how == "linear" else 0.0
+            values -= values.mean() + slope * time

@@ -1,0 +1,205 @@
+"""Every number of a table stands below its head: planted rows in which no two numbers are alike, read back."""
+
+import io
+import math
+import re
+from html.parser import HTMLParser
+from types import SimpleNamespace
+from typing import Any
+
+from rich.console import Console
+
+from comparison.cli.closing import _print_differences
+from comparison.report import page
+from comparison.report.page import _alert_groups, _environment, word_measurements
+from comparison.report.results import VALIDATED_BRIEFLY
+from comparison.report.scene_result import ModelOutcome
+from comparison.report.summary_text import summary_text
+from comparison.surfaces.alerts import Alert
+from comparison.surfaces.differences import Difference, GridMean
+from comparison.surfaces.headline import Effect
+from comparison.surfaces.waterfall import WaterfallBar
+from comparison.surfaces.waterfall_chart import log_scale
+
+NAN = math.nan
+ROW = Difference(
+    scene="tower", body=2, first="small", second="spatial", base="small", median=0.011, percentile95=0.031,
+    maximum=0.041, phases=(math.pi / 2.0, math.pi / 4.0), asked=61, pair="like-for-like", effect="turning",
+    reading="as integrated", mean=-0.021, numerical_error=3e-4, sampling_error=4e-4, spread=0.052, low=-0.041,
+    low_error=1e-3, low_phases=(0.0, 0.0), high=0.013, high_error=2e-3, high_phases=(0.0, 0.0), phases_per_axis=8,
+    independent=59, grids=(GridMean(4, -0.071, 0.091), GridMean(8, -0.081, 0.093)), beyond_error=0.62, resolved=0.73,
+    ratio=3.4, not_ok=7, unanswered=5,
+)  # fmt: skip
+
+
+class Tables(HTMLParser):
+    """The rows of every table by the heads of its columns."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tables: list[list[list[str]]] = []
+        self.inside = False
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: Any) -> None:
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append([])
+        elif tag in ("td", "th"):
+            self.tables[-1][-1].append("")
+            self.inside = True
+
+    def handle_endtag(self, tag: str) -> None:
+        self.inside = self.inside and tag not in ("td", "th")
+
+    def handle_data(self, data: str) -> None:
+        if self.inside:
+            self.tables[-1][-1][-1] += data
+
+    def rows(self, number: int) -> list[dict[str, str]]:
+        heads, *rows = self.tables[number]
+        return [dict(zip(heads, [" ".join(cell.split()) for cell in row])) for row in rows]
+
+
+def tables_of(section: str, **context: Any) -> Tables:
+    titles = {"small": "small equations", "spatial": "spatial engine"}
+    template = _environment().get_template(f"sections/{section}.html.j2")
+    return Tables(template.render({"titles": titles, **context}))
+
+
+def test_a_difference_has_mean_spread_95_percent_and_maximum_below_their_heads() -> None:
+    tables = tables_of("differences", results=SimpleNamespace(phased=True), rows=[ROW], dots=log_scale([0.021, 0.041]))
+    assert tables.rows(0) == [{
+        "scene": "tower", "body": "2", "difference": "like for like", "mean, 95 %, maximum": "", "mean": "−2.1 %",
+        "standard deviation": "5.2 %", "95 %": "3.1 %", "maximum": "4.1 %",
+    }]  # fmt: skip
+    assert tables.rows(1) == [{
+        "scene": "tower", "body": "2", "difference": "like for like", "median size": "1.1 %", "maximum at α₁": "90°",
+        "at α₂": "45°", "beyond uD": "62 %", "largest, uD": "3.4", "phase pairs": "61", "not ok": "7", "no value": "5",
+    }]  # fmt: skip
+
+
+def test_an_effect_has_mean_error_share_other_order_and_suprema_below_their_heads() -> None:
+    effect = Effect("turning", "spatial", -0.021, 0.0017, 0.28, True, -0.035, "without geometry", -0.014, 0.0043)
+    line = SimpleNamespace(
+        body=2, effects=[effect], mean=-0.075, error=0.0023, maximum=-0.18, phases_per_axis=16, spread=0.066
+    )
+    scene = SimpleNamespace(name="tower", headlines=[line], effects=[ROW], differences=[ROW], recorded=False)
+    results = SimpleNamespace(phased=True, scenes_with=lambda name: [scene])
+    tables = tables_of("budget", results=results, grids=[4, 8])
+    heads = (
+        "scene", "body", "effect", "mean, as integrated", "error", "share of the total", "another order", "interaction",
+        "literal suprema", "largest size", "phases",
+    )  # fmt: skip
+    one, total = tables.rows(0)
+    cells = (
+        "tower",
+        "2",
+        "turning",
+        "−2.1 %",
+        "0.17 %",
+        "28 %",
+        "−3.5 % without geometry",
+        "−1.4 %",
+        "+0.43 %",
+        "4.1 %",
+        "8 × 8",
+    )
+    assert one == dict(zip(heads, cells, strict=True))
+    sums = ("tower", "2", "total", "−7.5 %", "0.23 %", "", "", "", "", "−18 %", "16 × 16")
+    assert total == dict(zip(heads, sums, strict=True))
+    coarse = tables.rows(1)[0]
+    assert (coarse["4 × 4"], coarse["8 × 8"], coarse["sampling error"]) == ("−7.1 %", "−8.1 %", "0.04 %")
+    assert (coarse["reading"], coarse["relative to"]) == ("as integrated", "small equations")
+    assert coarse["difference"] == "small equations → spatial engine"
+
+
+def test_an_outcome_has_its_counts_shares_and_cost_per_point_asked_for() -> None:
+    outcome = ModelOutcome(
+        phases_per_axis=8, points=64, computed=40, outcomes={"ok": 60, "rim reached": 4},
+        advice={"rim reached": "lower it"}, cap_share=0.123, travel_share=0.456, cost=32.0,
+    )  # fmt: skip
+    scene = SimpleNamespace(name="tower", models={"spatial": outcome})
+    results = SimpleNamespace(phased=True, scenes=[scene], run=SimpleNamespace(parts={}), faults=[])
+    (row,) = tables_of("outcomes", results=results, limited=True, most_cost=32.0).rows(0)
+    assert row == {
+        "scene": "tower", "model": "spatial engine", "ok": "60", "phase pairs": "64", "displacement, % of ρ": "12.3",
+        "% of the travel": "45.6", "other outcomes, and what to try": "4 × rim reached: lower it",
+        "processor time, s": "32.0", "s per point": "0.5",
+    }  # fmt: skip
+
+
+def markdown(text: str, head: str) -> list[dict[str, str]]:
+    """The rows of the table of summary.md below a heading."""
+    lines = text.partition(f"### {head}\n")[2].splitlines()
+    first = next(number for number, line in enumerate(lines) if line.startswith("| "))
+    heads, _, *rows = ([cell.strip() for cell in line.strip("|").split("|")] for line in lines[first:] if line)
+    return [dict(zip(heads, row)) for row in rows if len(row) == len(heads)]
+
+
+def test_the_tables_of_summary_md_have_their_numbers_below_their_heads() -> None:
+    bars = [WaterfallBar("resolved", -0.021, 0.001, True), WaterfallBar("spatial", 0.033, 0.04, False)]
+    waterfall = SimpleNamespace(body=2, bars=bars, total=WaterfallBar("total", 0.012, 0.001, True))
+    models = [SimpleNamespace(key=key, title=f"{key} title") for key in ("small", "resolved", "spatial")]
+    scene = SimpleNamespace(
+        name="tower", title="A tower", headlines=[], differences=[ROW], waterfalls=[waterfall],
+        models={key: SimpleNamespace(outcomes={"ok": 64}) for key in ("small", "resolved", "spatial")},
+    )  # fmt: skip
+    results = SimpleNamespace(
+        scenes=[scene], phased=[scene], grid=8, gate="All hold.", broken=[], alerts=[], absent={}, faults=[],
+        measurements="nothing was measured", scenes_with=lambda name: [scene], models=models,
+        run=SimpleNamespace(command="run", took="1 s", began="now", provenance={}),
+    )  # fmt: skip
+    text = summary_text(results)  # type: ignore[arg-type]
+    assert markdown(text, "Differences")[0] == {
+        "scene": "tower", "body": "2", "difference": "like for like", "mean": "−2.1 %", "standard deviation": "5.2 %",
+        "95 %": "3.1 %", "maximum": "4.1 %", "at (α₁, α₂)": "(90°, 45°)", "beyond u\\_D": "62 %", "no value": "5 of 61",
+    }  # fmt: skip
+    assert markdown(text, "Causes of the difference")[0] == {
+        "scene": "tower", "body": "2", "resolved title": "−2.1 %", "spatial title": "(+3.3 %)", "total": "+1.2 %",
+    }  # fmt: skip
+
+
+def alert(scene: str, kind: Any, level: Any = "amber", advice: str = "") -> Alert:
+    return Alert(level=level, kind=kind, scene=scene, text=f"text of {scene}", help=advice)
+
+
+def test_alerts_of_a_kind_are_counted_together_and_never_across_kinds() -> None:
+    listed = [alert("a", "limit", "red"), alert("b", "swing"), alert("c", "swing"), alert("d", "swing", advice="other")]
+    found = [(each["level"], each["title"], each["lines"]) for each in _alert_groups(SimpleNamespace(alerts=listed))]  # type: ignore[arg-type]
+    assert found == [
+        ("red", "1 acceptance limit broken", ["a: text of a"]),
+        ("amber", "2 wide swings of the platform", ["b: text of b", "c: text of c"]),
+        ("amber", "1 wide swing of the platform", ["d: text of d"]),
+    ]
+
+
+def test_what_was_measured_is_said_with_what_the_study_adds() -> None:
+    assert word_measurements(SimpleNamespace(clauses=[])) == VALIDATED_BRIEFLY  # type: ignore[arg-type]
+    assert word_measurements(SimpleNamespace(clauses=["one", "two"])) == f"{VALIDATED_BRIEFLY}; one; two"  # type: ignore[arg-type]
+
+
+def test_a_body_is_drawn_where_any_bar_is_seen() -> None:
+    def bars(mean: float, largest: float) -> Any:
+        each = [WaterfallBar("spatial", size, 0.0, True) for size in (mean, largest)]
+        nothing = WaterfallBar("total", 0.0, 0.0, True)
+        return SimpleNamespace(bars=[each[0]], total=nothing, largest=SimpleNamespace(bars=[each[1]], total=nothing))
+
+    drawn = [page.is_drawn(bars(*sizes)) for sizes in ((0.009, 0.009), (-0.011, 0.0), (0.0, 0.011), (NAN, NAN))]
+    assert drawn == [False, True, True, False]
+
+
+def test_the_table_of_the_terminal_has_mean_spread_and_maximum() -> None:
+    console = Console(file=io.StringIO(), width=120)
+    scene = SimpleNamespace(differences=[ROW])
+    _print_differences(console, SimpleNamespace(phased=True, scenes_with=lambda name: [scene]))  # type: ignore[arg-type]
+    heads, cells = (
+        re.split(r"\s{2,}", line.strip(" │┃"))
+        for line in console.file.getvalue().splitlines()  # type: ignore[attr-defined]
+        if "body" in line.split() or "tower" in line
+    )
+    assert dict(zip(heads, cells, strict=True)) == {
+        "scene": "tower", "body": "2", "difference": "like for like", "mean": "−2.1 %", "std. dev.": "5.2 %",
+        "maximum": "4.1 %", "not ok": "7",
+    }  # fmt: skip

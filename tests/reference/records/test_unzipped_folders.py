@@ -1,0 +1,167 @@
+"""Folders of records as they were unzipped: what is a motion, along which directions, and what is left aside."""
+
+import numpy as np
+import pytest
+from chains import refusal, scene_file
+
+from reference.problem import GRAVITY, SceneError, load_family, load_scene
+from reference.records.motion_lists import FILE, motion_list_text
+from reference.records.suites import SuiteError, list_motions
+
+AT2 = "PEER\nInvented\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 3, DT= .0100 SEC\n {:.1f} 0.2 0.0\n"
+
+
+def make_folder(place, *names):
+    place.mkdir()
+    for number, name in enumerate(names, start=1):
+        (place / name).write_text(AT2.format(number))
+    return place
+
+
+def pairs(place, components=None):
+    """Names of the motions, and their files by axis."""
+    listed = list_motions(str(place), place, components)
+    return {motion.name: [file.name for _, file in sorted(motion.files.items())] for motion in listed.motions}
+
+
+SPELLED = {  # of one station: x, y and z, or x and y
+    "H1 H2 V": ("_H1", "_H2", "_V"),
+    "E N Z": ("-E", "-N", "-Z"),
+    "E N Z without separator": ("E", "N", "Z"),
+    "W N V": ("-W", "-N", "-V"),
+    "EW NS UD": ("EW", "NS", "UD"),
+    "EW NS UD, dots": (".EW", ".NS", ".UD"),
+    "L T V": ("--L", "--T", "--V"),
+    "LN TR UP": ("-LN", "-TR", "-UP"),
+    "L1 T1": ("_L1", "_T1"),
+    "FN FP": ("_FN", "_FP"),
+    "X Y Z": ("_X", "_Y", "_Z"),
+    "azimuths and DWN": ("147", "237", "DWN"),
+    "azimuths and UP": ("021", "291", "-UP"),
+    "azimuths 15 degrees askew": ("260", "345", "-UP"),
+    "quadrants": ("_N18E", "_S72E", "_UP"),
+    "channels": (".HNE", ".HNN", ".HNZ"),
+    "numbered channels": ("_HN1", "_HN2", "_HNZ"),
+    "lower case": ("_ew", "_ns", "_ud"),
+    "a station that ends like a direction": ("_MELE", "_MELN"),
+}
+
+
+@pytest.mark.parametrize("spelling", SPELLED)
+def test_directions_are_told_by_every_spelling(tmp_path, spelling):
+    stations = {
+        name: [f"{name}{end}.AT2" for end in SPELLED[spelling]] for name in ("A_H-CP", "B_6506", "RSN7_STATION")
+    }
+    place = make_folder(tmp_path / "suite", *sorted(file for files in stations.values() for file in files))
+    found = pairs(place)
+    assert list(found.values()) == list(stations.values())
+    if "ends like" not in spelling:
+        assert list(found) == list(stations)
+
+
+def test_files_of_networks_are_paired_by_suffix_and_by_channel(tmp_path):
+    place = tmp_path / "suite"
+    place.mkdir()
+    head = "Origin Time  x\nSampling Freq(Hz) 100Hz\nScale Factor      2000(gal)/8388608\n" + "x\n" * 14 + " 1 2\n"
+    for name in ("AOM001.EW", "AOM001.NS", "AOM001.UD", "AOM002.EW1", "AOM002.NS1", "AOM002.EW2", "AOM002.NS2"):
+        (place / name).write_text(head)
+    for letter in "ENZ":
+        text = f"STREAM: HN{letter}\nSAMPLING_INTERVAL_S: 0.01\nNDATA: 2\nUNITS: cm/s^2\n1\n2\n"
+        (place / f"XX.ABC.00.HN{letter}.D.20000101.C.ACC.ASC").write_text(text)
+    found = pairs(place)
+    assert found["AOM001"] == ["AOM001.EW", "AOM001.NS", "AOM001.UD"]
+    assert found["AOM002-1"] == ["AOM002.EW1", "AOM002.NS1"]
+    assert [len(files) for files in found.values()] == [3, 2, 2, 3]
+
+
+def test_what_is_no_record_is_ignored_and_counted(tmp_path):
+    place = make_folder(tmp_path / "suite", "A_H1.AT2", "A_H2.AT2", "A_H1.VT2", "A_H1.DT2", "._A_H1.AT2", ".DS_Store")
+    for name in ("_SearchResults.csv", "readme.txt", "licence.pdf", "picture.png"):
+        (place / name).write_text("words alone")
+    (place / "more").mkdir()
+    listed = list_motions(str(place), place)
+    assert [motion.name for motion in listed.motions] == ["A"]
+    assert listed.ignored == {
+        "hidden files": 2,
+        "velocity or displacement files": 2,
+        "search results": 1,
+        "texts": 2,
+        "other files": 1,
+        "folders": 1,
+    }
+    assert "Ignored: 2 hidden files, 2 velocity" in listed.sentence
+    assert "x = A_H1.AT2, y = A_H2.AT2" in listed.sentence
+
+
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        (("GM001", "GM002"), "'GM001.AT2', 'GM002.AT2': numbers 1, 2 are no azimuths across each other"),
+        (("GM001", "GM002", "GM003", "GM091"), "numbers 1, 2, 3 are no azimuths across each other"),
+        (("EQ_1", "EQ_2", "other"), "'EQ_1.AT2', 'EQ_2.AT2', 'other.AT2': no direction at the end of the name"),
+        (("A000", "B000", "B_V"), "'A' has 1 horizontal and 0 vertical components: must have 2, and 0 or 1"),
+        (("A_H1", "A_H2", "A_V", "A_UP"), "'A' has 2 horizontal and 2 vertical components"),
+        (("A_EW", "A_E", "B_H1", "B_H2", "C_H1"), "'A' has 2 horizontal and 0 vertical components"),
+    ],
+)
+def test_all_names_that_make_no_pair_come_in_one_message(tmp_path, names, said):
+    place = make_folder(tmp_path / "suite", *(f"{name}.AT2" for name in names))
+    line = str(refusal(list_motions, str(place), place, kind=SuiteError))
+    assert said in line
+    assert "Tried H1 H2 V, azimuths as 090, E N Z" in line
+    assert "components = 1" in line
+    assert "\n" not in line
+
+
+def test_single_components_are_plane_motions_where_asked_for(tmp_path):
+    make_folder(tmp_path / "suite", "GM001.AT2", "GM002.AT2", "A_H1.AT2", "A_H2.AT2", "A_UP.AT2")
+    family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all", components = 1}'))
+    assert family.labels == {"excitation.record.motion": ("A_H1", "A_H2", "GM001", "GM002")}
+    peaks = [scene.record[0, 1:].tolist() for scene in family.scenes]
+    assert peaks == [[GRAVITY * number, 0.0, 0.0] for number in (3.0, 4.0, 1.0, 2.0)]
+    for wrong in ("3", '"one"', "true"):
+        record = f'record = {{suite = "suite", motion = 1, components = {wrong}}}'
+        assert refusal(load_scene, scene_file(tmp_path, record), kind=SceneError).key == "excitation.record.components"
+
+
+def test_a_list_of_motions_overrides_names(tmp_path):
+    place = make_folder(tmp_path / "suite", "GM001.AT2", "GM002.AT2", "other.AT2")
+    (place / "whole.csv").write_text("time [s],ax [m/s^2],ay [m/s^2]\n0,1,2\n1,3,4\n")
+    (place / FILE).write_text(
+        "name;x;y;z;factor\nfirst;GM002.AT2;GM001.AT2;;2,5\nsecond;;;other.AT2;\nthird;whole.csv;;;-1\n"
+    )
+    family = load_family(scene_file(tmp_path, 'record = {suite = "suite", motion = "all"}'))
+    assert family.labels == {"excitation.record.motion": ("first", "second", "third")}
+    expected = [[5.0, 2.5, 0.0], [0.0, 0.0, 3.0], [-1.0 / GRAVITY, -2.0 / GRAVITY, 0.0]]
+    for scene, peaks in zip(family.scenes, expected):
+        np.testing.assert_allclose(scene.record[0, 1:], GRAVITY * np.array(peaks), rtol=1e-15)
+    assert "times 2.5, the factor of motions.csv" in family.scenes[0].excitation.origin
+
+
+def test_a_written_list_says_what_was_paired(tmp_path):
+    place = make_folder(tmp_path / "suite", "A_H1.AT2", "A_H2.AT2", "A_UP.AT2", "B000.AT2", "B090.AT2")
+    before = list_motions(str(place), place)
+    (place / FILE).write_text(text := motion_list_text(before.motions))
+    assert text.splitlines()[:2] == ["name,x,y,z,factor", "A,A_H1.AT2,A_H2.AT2,A_UP.AT2,1"]
+    after = list_motions(str(place), place)
+    assert after.motions == before.motions
+    assert "as motions.csv lists them" in after.sentence
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "motions.csv: empty"),
+        ("file,x\na,b\n", "motions.csv: line 1: 'file,x': must have the columns name, x, y, z, factor"),
+        ("name,x\n", "motions.csv: no motions"),
+        ("name,x\na,gone.AT2\n", "motions.csv: line 2: 'gone.AT2': no such file in the folder"),
+        ("name,x\n,A.AT2\n", "motions.csv: line 2: must have a name, and a file"),
+        ("name,x,factor\na,A.AT2,0\n", "motions.csv: line 2: factor = '0': must be a number up to 1e+06, not 0"),
+        ("name,x,factor\na,A.AT2,two\n", "motions.csv: line 2: factor = 'two'"),
+        ("name,x\na,A.AT2\na,A.AT2\n", "motions.csv: line 3: 'a': two motions have one name"),
+    ],
+)
+def test_a_wrong_list_of_motions_is_refused_with_its_line(tmp_path, text, said):
+    place = make_folder(tmp_path / "suite", "A.AT2")
+    (place / FILE).write_text(text)
+    assert said in str(refusal(list_motions, str(place), place, kind=SuiteError))
