@@ -18,8 +18,10 @@ from runs import quick_figures
 
 import comparison.registry
 from comparison.cli.reports import CompleteLevel, Reports
+from comparison.json_file import json_text
 from comparison.registry import FEATURES
 from comparison.report import page, writing
+from comparison.report.panels import draw_panels, panel
 from comparison.report.results import Results
 from comparison.run import main
 from comparison.runner.runner import Runner
@@ -154,3 +156,17 @@ def test_what_raises_in_a_part_costs_that_part_alone(
     assert shown.count('class="section"') >= sections - 1
     for name in {"summary.json", "summary.schema.json"} & there:
         json.loads((folder / name).read_text(encoding="utf-8"))
+
+
+def test_a_logarithmic_panel_without_any_value_is_drawn(tmp_path: Path) -> None:
+    lines = [{"name": name, "x": [0.1, 1.0], "y": [None, None], "low": [None, None], "high": [None, None], "band": True}
+             for name in "ab"]  # fmt: skip
+    axes = {"title": "period, s", "log": True}, {"title": "acceleration, g", "range": [0.0, 1.0]}
+    draw_panels(tmp_path / "panel.png", "no median", [panel("spectrum", "spectrum", *axes, lines)])
+    assert (tmp_path / "panel.png").stat().st_size > 1000
+
+
+def test_what_json_cannot_hold_is_null() -> None:
+    assert json.loads(json_text({"a": float("nan"), "b": [1.5, (float("inf"), {"c": -float("inf")})]})) == {
+        "a": None, "b": [1.5, [None, {"c": None}]],
+    }  # fmt: skip
