@@ -22,8 +22,19 @@ def finite_or_none(value: float) -> float | None:
 
 
 def json_text(content: Mapping[str, Any] | Sequence[Any]) -> str:
-    """Content of a JSON file, a line for every value. Raises ValueError for NaN, which JSON does not have."""
-    return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    """Return the content of a JSON file, a line for every value; NaN and infinity, which JSON lacks, are null."""
+    return json.dumps(replace_unstorable(content), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def replace_unstorable(content: Any) -> Any:
+    """Return the content with None for every number that JSON cannot hold."""
+    if isinstance(content, float):
+        return finite_or_none(content)
+    if isinstance(content, Mapping):
+        return {key: replace_unstorable(value) for key, value in content.items()}
+    if isinstance(content, list | tuple):
+        return [replace_unstorable(value) for value in content]
+    return content
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ replaces what UTF-8 does not know.
 """
 
 import math
+from collections.abc import Sized
 from dataclasses import dataclass, fields, is_dataclass
 from types import MappingProxyType
 from typing import Annotated, Any, Literal, TypeVar, dataclass_transform, get_type_hints
@@ -54,6 +55,17 @@ class UncertainNumber(Part):
     """null without an answer"""
     error: Number
     """estimated absolute error; null where it is not known"""
+
+
+def require(holds: bool, rule: str) -> None:
+    """Raise ValueError with the rule unless it holds: fields of a result that contradict each other are refused."""
+    if not holds:
+        raise ValueError(rule)
+
+
+def require_size(what: str, values: Sized, count: int) -> None:
+    """Raise ValueError unless there are so many values."""
+    require(len(values) == count, f"{what} must be {count} values, not {len(values)}")
 
 
 RESULT = ConfigDict(

@@ -14,6 +14,7 @@ from functools import wraps
 from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
 
+from comparison.runner.attempts import attempt
 from comparison.runner.cache import Cache
 from comparison.runner.processes import cores
 from comparison.runner.task import BATCH, RESULT
@@ -98,6 +99,19 @@ def report_write_errors(folder: Path, option: str = "--out") -> Iterator[None]:
     except OSError as error:
         line = f"command line: {option} = {str(folder)!r}: could not be written: {error}"
         raise EndedEarlyError(3, line) from None
+
+
+def write_and_show(folder: Path, write: Callable[[], list[Path]], show: Callable[[], None]) -> list[Path]:
+    """
+    Write the files of a command, then show on the terminal what they hold; return the paths of the files.
+
+    Files that cannot be written end the command with code 3 after all is shown. What cannot be shown is one line.
+    """
+    try:
+        with report_write_errors(folder):
+            return write()
+    finally:
+        attempt("results", show)
 
 
 def command(main: Callable[Concatenate[Sequence[str], Rest], int]) -> Callable[..., int]:

@@ -4,6 +4,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +14,11 @@ from comparison.cli.arguments import command_line, report_write_errors
 from comparison.cli.options import Options
 from comparison.cli.start import Clock
 from comparison.registry import FEATURES, first_tasks, report_of, select_analyses
+from comparison.report.building import note_lost
 from comparison.report.feature import ResultField
 from comparison.report.results import Results
 from comparison.report.section import Report
+from comparison.runner.attempts import attempt
 from comparison.runner.environment import provenance
 from comparison.runner.output import on_stderr, replace_report
 from comparison.runner.runner import Runner, compiling_task
@@ -127,15 +130,16 @@ class Reports:
             "levels": complete.level.of,
             "provenance": provenance(),
         }
-        found = {
-            analysis.key: analysis.collect(study.selecting(analysis.key), surfaces, runner.results)
-            for analysis in select_analyses(study)
-        }
+        lost: list[str] = []
+        found: dict[str, Any] = {}
+        for analysis in select_analyses(study):
+            collect = partial(analysis.collect, study.selecting(analysis.key), surfaces, runner.results)
+            found[analysis.key] = attempt(f"section {analysis.key}", collect, partial(note_lost, lost))
         fields = [field for feature in FEATURES if feature.key not in study.absent for field in feature.stored]
         found |= {field.name: _load(field, self._options.out) for field in fields}
         families = [family for family in self._options.families if len(family.scenes) > 1]
         faults = _faults(complete.tasks, runner.results)
-        return report_of(study, surfaces, found, faults, run, families=families)
+        return report_of(study, surfaces, found, faults, run, families=families, lost=lost)
 
 
 def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:

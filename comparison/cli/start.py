@@ -14,6 +14,7 @@ import os
 import signal
 import sys
 import time
+import warnings
 from contextlib import suppress
 from difflib import get_close_matches
 from importlib import import_module
@@ -95,6 +96,10 @@ def start(module: str) -> NoReturn:
     """Import a command by its full name, run its `main` and end the process with its exit code."""
     _started.append(Clock.now())
     gc.set_threshold(*COLLECTIONS)
+    _refuse_threads()
+    if not sys.warnoptions:  # of libraries: what a user must know is said in a sentence
+        warnings.simplefilter("ignore")
+        os.environ.setdefault("PYTHONWARNINGS", "ignore")  # in worker processes
     sys.modules["__main__"].__spec__ = __spec__  # what worker processes load again: not the whole command
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
@@ -105,6 +110,15 @@ def start(module: str) -> NoReturn:
         raise SystemExit(3) from None
     import_module("reference.support.command").run_command(main)
     raise AssertionError("run_command ends the process")
+
+
+def _refuse_threads() -> None:
+    """End the process, one line, where Numba would fail while it loads."""
+    threads = os.environ.get("NUMBA_NUM_THREADS")
+    if threads is not None and not (threads.isascii() and threads.isdigit() and int(threads) > 0):
+        rule = "must be a whole number from 1: correct this environment variable, or remove it"
+        print(f"environment: NUMBA_NUM_THREADS = {threads!r}: {rule}", file=sys.stderr)
+        raise SystemExit(2)
 
 
 def main() -> NoReturn:

@@ -1,6 +1,7 @@
 """What a run found, built into the one `Report` that page, files and terminal are made from."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, get_args
 
 import xarray as xr
@@ -9,6 +10,8 @@ from comparison.report.feature import Feature, Findings
 from comparison.report.results import ModelDescription, Results, Run
 from comparison.report.scene_result import ModelOutcome, RecordValue
 from comparison.report.section import Report
+from comparison.runner.attempts import attempt
+from comparison.runner.output import on_stderr
 from comparison.study.models import Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import check_limits, pairs_without_limit
@@ -33,8 +36,18 @@ def build_report(
     features: Sequence[Feature],
     kind: type[Results],
     families: Sequence[Family],
+    lost: Sequence[str],
 ) -> Report:
-    """Everything that a report is made from. found: of the features, by key. kind: with a field for each of them."""
+    """
+    Return everything that a report is made from; a field whose own computation raises is empty, with a line in `lost`.
+
+    found: of the features, by key. kind: with a field for each of them.
+    """
+    lines = [*lost]
+
+    def compute(name: str, *words: Any, function: Callable[..., Any]) -> Any:
+        return attempt(f"section {name}", partial(function, *words), partial(note_lost, lines))
+
     comparisons, lacking = body_comparisons(study, surfaces), unanswered(study, surfaces)
     completed = [
         each for scene in study.scenes for each in completions(study, surfaces, scene, found.get(CompletedSurfaces.key))
@@ -52,11 +65,13 @@ def build_report(
     scenes = []
     for scene in study.scenes:
         of_scene = {name: [row for row in every if row.scene == scene.name] for name, every in parts.items()}
-        more = {field.name: field.compute(findings, scene) for field in fields}
+        more = {field.name: compute(field.name, findings, scene, function=field.compute) or [] for field in fields}
         bodies = [comparison for comparison in comparisons if comparison.scene is scene]
         scenes.append(scene_kind(**_scene(study, surfaces, scene, bodies), **of_scene, **more))
     summaries: dict[str, Any] = {
-        field.name: field.compute(findings, scenes) if field.compute else findings.found.get(field.name)
+        field.name: compute(field.name, findings, scenes, function=field.compute)
+        if field.compute
+        else findings.found.get(field.name)
         for feature in features
         for field in feature.fields
     }
@@ -72,7 +87,14 @@ def build_report(
         faults=[f"{fault.scene}, {fault.text}" for fault in faults],
         **summaries,
     )
-    return Report(study, surfaces, completed, results, found, features)
+    return Report(study, surfaces, completed, results, found, features, lines)
+
+
+def note_lost(lines: list[str], line: str) -> None:
+    """Add a line on a part that could not be made, and say it on standard error, once."""
+    if line not in lines:
+        lines.append(line)
+        on_stderr(line)
 
 
 def _scene(study: Study, surfaces: xr.Dataset, scene: Scene, comparisons: Sequence[BodyComparison]) -> dict[str, Any]:

@@ -2,19 +2,21 @@
 
 import base64
 import hashlib
-from collections.abc import Mapping
-from functools import cache
+from collections.abc import Callable, Mapping
+from functools import cache, partial
 from importlib import resources
 from typing import Any
 
 import jinja2
 from markupsafe import Markup
 
+from comparison.report.building import note_lost
 from comparison.report.glossary import explained, term
 from comparison.report.page_data import pack, page_data
 from comparison.report.results import VALIDATED_BRIEFLY, Results
-from comparison.report.section import Report
+from comparison.report.section import Report, Section
 from comparison.report.surface_sections import models_in_use
+from comparison.runner.attempts import attempt
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.statements import CELLS, word_verdict
 from comparison.surfaces.waterfall import PHASES, Waterfall
@@ -26,17 +28,59 @@ SCRIPTS = ("plot.js", "tables.js", "canvas.js", "viewer.js", "film.js", "motions
 
 
 def pages(report: Report) -> dict[str, str]:
-    """index.html, which answers the question, and verification.html, which verifies the tool, each whole by itself."""
+    """
+    Return index.html, which answers the question, and verification.html, which verifies the tool, each whole by itself.
+
+    A part of a page that raises is one line at its top and, where it is a section, in its place.
+    """
+    lost, nothing = [*report.lost], pack(b"null")
+
+    def part(what: str, act: Callable[[], Any]) -> Any:
+        return attempt(what, act, partial(note_lost, lost))
+
+    packed = {
+        each.key: part(each.key, partial(_pack_numbers, each.packed_data, report))
+        for each in report.features
+        if each.packed_data
+    }
+    answers = {
+        "verdict": part("verdict", partial(word_answer, report.results)) or "",
+        "lead_lines": part("sentences of sections", partial(lead_lines, report)) or [],
+        "alerts": part("alerts", partial(render_alerts, report)) or "",
+        "summary": part("summary", partial(render_summary, report)) or "",
+        "data": part("surfaces", lambda: pack(page_data(report).encode())) or nothing,
+        "packed": {key: numbers or "" for key, numbers in packed.items()},
+    }
+    verification = {"data": nothing, "packed": {}}
+    return {
+        "index.html": _page("report.html.j2", report, False, answers, lost),
+        "verification.html": _page("verification.html.j2", report, True, verification, [*report.lost]),
+    }
+
+
+def _pack_numbers(numbers: Callable[[Report], bytes], report: Report) -> str:
+    return pack(numbers(report))
+
+
+def word_answer(results: Results) -> str:
+    """Return the sentence that answers the question of the study."""
+    return word_verdict([line for scene in results.scenes for line in scene.headlines], word_measurements(results))
+
+
+def render_alerts(report: Report) -> Markup:
+    """Return what to know before trusting a number."""
+    has_engine = any(model.side == "engine" for model in models_in_use(report.study))
+    template = _environment().get_template("sections/alerts.html.j2")
+    return Markup(template.render(alerts=_alert_groups(report.results), has_engine=has_engine))
+
+
+def render_summary(report: Report) -> Markup:
+    """Return the table that answers the question, with the bars behind it."""
     study, results = report.study, report.results
     waterfalls = [each for scene in results.scenes for each in zip(scene.waterfalls, scene.headlines)]
     drawn = [(bars, line) for bars, line in waterfalls if is_drawn(bars)]
-    answers = {
-        "alerts": _alert_groups(results),
-        "has_engine": any(model.side == "engine" for model in models_in_use(study)),
-        "verdict": word_verdict(
-            [line for scene in results.scenes for line in scene.headlines], word_measurements(results)
-        ),
-        "lead_lines": lead_lines(report),
+    context = {
+        "results": results,
         "second_title": "Exudyn" if any(model.side == "engine" for model in models_in_use(study)) else "the last model",
         "cells": CELLS,
         "drawn": drawn,
@@ -47,13 +91,8 @@ def pages(report: Report) -> dict[str, str]:
             "largest": scale_of((each.largest.bars, each.largest.total) for each, _ in drawn),
         },
         "effects": {PHASES: "other phases", **{model.key: model.effect or model.title for model in study.hierarchy}},
-        "data": pack(page_data(report).encode()),
-        "packed": {each.key: pack(each.packed_data(report)) for each in report.features if each.packed_data},
     }
-    return {
-        "index.html": _page("report.html.j2", report, False, answers),
-        "verification.html": _page("verification.html.j2", report, True, {"data": pack(b"null"), "packed": {}}),
-    }
+    return Markup(_environment().get_template("sections/summary.html.j2").render(context))
 
 
 def is_drawn(bars: Waterfall) -> bool:
@@ -80,8 +119,9 @@ def _page(
     report: Report,
     verifies: bool,
     context: Mapping[str, Any],
+    lost: list[str],
 ) -> str:
-    """Return one page with its sections."""
+    """Return one page with its sections; what raises is left out, with a line in `lost`."""
     study, results = report.study, report.results
     templates = resources.files("comparison.report") / "templates"
     style = (templates / "report.css").read_text(encoding="utf-8")
@@ -100,15 +140,36 @@ def _page(
         "has_surfaces": lambda scene: "surfaces" in scene.analyses,
     }
     load = _environment().get_template
-    bodies = [load(section.template).render({**common, **section.context(report)}) for section in shown]
+    parts = []
+    for section in shown:
+        say = partial(note_lost, lost)
+        verdict = attempt(f"verdict of section {section.name}", partial(word_section, section, results), say)
+        body = attempt(f"section {section.name}", partial(_render, section, common, report), say)
+        parts.append((section, lost_line(lost[-1]) if body is None else body, verdict or ""))
     return load(template).render(
         {**common, **context},
         policy=content_policy(script, style),
         style=style,
         script=script,
-        sections=[(section, Markup(body)) for section, body in zip(shown, bodies)],
+        sections=parts,
         absent=absent,
+        lost=[lost_line(line) for line in lost],
     )
+
+
+def word_section(section: Section, results: Results) -> str:
+    """Return the line beside the title of a section, "" for none."""
+    return section.verdict(results) if section.verdict else ""
+
+
+def _render(section: Section, common: Mapping[str, Any], report: Report) -> Markup:
+    """Return what stands below the heading of a section."""
+    return Markup(_environment().get_template(section.template).render({**common, **section.context(report)}))
+
+
+def lost_line(line: str) -> Markup:
+    """Return the line in the place of what could not be shown."""
+    return Markup('<p class="alert amber lost"><strong>Amber:</strong> {}.</p>').format(line)
 
 
 def content_policy(script: str, style: str) -> str:

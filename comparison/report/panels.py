@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import cycle, zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -78,7 +78,8 @@ def _draw(axes: Axes, each: Panel) -> None:
         axes.plot(x, y, ls=style, marker=marker, ms=4.5, lw=line.get("width", 1.4), label=label, **look)
     for name in "xy":
         axis = plot[name]
-        axes.set(**{f"{name}label": mathtext(axis["title"]), f"{name}scale": "log" if axis.get("log") else "linear"})
+        scale = "log" if axis.get("log") and has_positive(plot["series"], name) else "linear"
+        axes.set(**{f"{name}label": mathtext(axis["title"]), f"{name}scale": scale})
         if "ticks" in axis:
             places, names = zip(*axis["ticks"])
             axes.set(**{f"{name}ticks": places, f"{name}ticklabels": [mathtext(text) for text in names]})
@@ -92,3 +93,9 @@ def _draw(axes: Axes, each: Panel) -> None:
     columns = 1 if named <= LEGEND_ROWS else 2
     axes.set_title(mathtext(each["title"]), fontsize=10, pad=6.0 + LEGEND_ROW * -(-named // columns))
     axes.legend(fontsize=7.5, frameon=False, ncols=columns, loc="lower left", bbox_to_anchor=(0.0, 1.0), borderpad=0.0)
+
+
+def has_positive(series: Sequence[Mapping[str, Any]], axis: str) -> bool:
+    """Return whether some point of the series is on a logarithmic axis: without any Matplotlib raises."""
+    points = (pair for line in series for pair in zip(line[axis], line["y"]))
+    return any(place is not None and place > 0.0 and value is not None for place, value in points)

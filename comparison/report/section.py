@@ -23,6 +23,7 @@ class Report:
 
     results: what summary.json holds. surfaces: of every model, with the completed ones. found: what each analysis
     collected, by its key: motions, demands and pictures are not in the results. features: what the report consists of.
+    lost: a line for every part that could not be made.
     """
 
     study: Study
@@ -31,6 +32,7 @@ class Report:
     results: Results
     found: Mapping[str, Any]
     features: Sequence[Feature]
+    lost: Sequence[str] = ()
 
     @property
     def sections(self) -> list[Section]:

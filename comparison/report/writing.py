@@ -3,35 +3,51 @@ Writes the report: index.html and verification.html, which need none of the othe
 summary.json with its schema and summary.md; junit.xml; figures/.
 """
 
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
+from comparison.report.building import note_lost
 from comparison.report.junit import junit
 from comparison.report.page import pages
 from comparison.report.results import schema_json
 from comparison.report.section import Report
 from comparison.report.summary_text import summary_text
+from comparison.runner.attempts import attempt
 from comparison.runner.output import netcdf
 
 
 def write_report(folder: Path, report: Report) -> None:
-    """Write every file of the report into a folder that exists and is empty."""
-    results, surfaces = report.results, report.surfaces
-    for feature in report.features:
-        if feature.dataset:
-            surfaces = feature.dataset(surfaces, report.found.get(feature.key))
-    about = {"command": results.run.command, **results.run.provenance}
-    (folder / "surfaces.nc").write_bytes(netcdf(surfaces.assign_attrs(about)))
-    texts = {
-        "summary.json": results.as_json(),
-        "summary.schema.json": schema_json(type(results)),
-        "summary.md": summary_text(results),
-        "junit.xml": junit(results),
-        **pages(report),
+    """Write every file of the report that can be made into a folder that exists and is empty."""
+    results, lost = report.results, [*report.lost]
+    say = partial(note_lost, lost)
+    contents: dict[str, Callable[[], str | bytes]] = {
+        "surfaces.nc": partial(surfaces_file, report),
+        "summary.json": results.as_json,
+        "summary.schema.json": lambda: schema_json(type(results)),
+        "summary.md": lambda: summary_text(results),
+        "junit.xml": lambda: junit(results),
     }
-    for name, text in texts.items():
-        (folder / name).write_text(text, encoding="utf-8")
+    for name, make in contents.items():
+        content = attempt(name, make, say)
+        if content is not None:
+            (folder / name).write_bytes(content.encode() if isinstance(content, str) else content)
     figures = folder / "figures"
     figures.mkdir()
     for feature in report.features:
-        for name, content in feature.figures(report).items() if feature.figures else ():
-            (figures / name).write_bytes(content)
+        pictures = feature.figures and attempt(f"pictures of {feature.key}", partial(feature.figures, report), say)
+        for name, picture in (pictures or {}).items():
+            (figures / name).write_bytes(picture)
+    for name, text in pages(replace(report, lost=lost)).items():
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+def surfaces_file(report: Report) -> bytes:
+    """Return the content of surfaces.nc."""
+    surfaces = report.surfaces
+    for feature in report.features:
+        if feature.dataset:
+            surfaces = feature.dataset(surfaces, report.found.get(feature.key))
+    run = report.results.run
+    return netcdf(surfaces.assign_attrs({"command": run.command, **run.provenance}))

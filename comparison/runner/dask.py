@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from distributed import Client
 
 CONNECT_TIMEOUT = 10.0  # s for the scheduler to answer
+LONGEST_KNOCK = 12.0  # s for that to end: what accepts a connection and stays silent takes longer
+LONGEST = 200  # letters of what Dask says of that
 PATIENCE = 60.0  # s without any worker, before the run ends
 RECOUNT = 2.0  # s between counts of the workers: some may join, or leave, at any time
 GONE = "the connection to the scheduler was lost"
@@ -52,15 +54,34 @@ def cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]:
         await (await connect(address, timeout=CONNECT_TIMEOUT)).close()
 
     try:
-        asyncio.run(knock())  # a client that reaches nobody leaves threads behind
+        _finish(lambda: asyncio.run(knock()))  # a client that reaches nobody leaves threads behind
         client = Client(address, timeout=CONNECT_TIMEOUT, set_as_default=False)
-    except (OSError, TypeError, ValueError) as error:  # TypeError: TLS without a configuration
-        raise refusal(f"no scheduler answers there: {' '.join(str(error).split())}") from None
+    except MemoryError:  # what Dask takes for the length of a message is text
+        raise refusal("no scheduler answers there: another protocol is spoken: give tcp://HOST:PORT of one") from None
+    except Exception as error:  # whatever Dask makes of what it is told, and of TLS without a configuration
+        raise refusal(f"no scheduler answers there: {' '.join(str(error).split())[:LONGEST]}") from None
     try:
         _same_code(client, models, refusal)
         yield ClusterExecutor(client)
     finally:
         client.close(timeout=1.0)
+
+
+def _finish(call: Call) -> None:
+    """Make a call, and raise what it raises; TimeoutError where it does not end, which costs a thread."""
+    ended: Future[Any] = Future()
+
+    def run() -> None:
+        try:
+            ended.set_result(call())
+        except BaseException as error:
+            ended.set_exception(error)
+
+    threading.Thread(target=run, daemon=True).start()
+    try:
+        ended.result(LONGEST_KNOCK)
+    except TimeoutError:
+        raise TimeoutError(str(ended.exception()) if ended.done() else f"silent for {LONGEST_KNOCK:g} s") from None
 
 
 class ClusterExecutor(Executor):

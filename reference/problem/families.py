@@ -36,7 +36,7 @@ from reference.problem.scene_file import (
 )
 from reference.records.suites import SuiteError, motion_names, suite_motions
 from reference.support.arguments import as_float, takes
-from reference.support.scene_error import SceneError
+from reference.support.scene_error import SceneError, printable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -215,9 +215,9 @@ class _Key:
         self.short = short_key(self.name)
         self.listed = _values_of_key(label, self.name, table)
         self.values: list[Value] = [text_of_table(value) if isinstance(value, dict) else value for value in self.listed]
-        self.texts = _texts_of_values(label, self.name, self.listed)
+        self.texts = [printable(text) for text in _texts_of_values(label, self.name, self.listed)]
         named = path == MOTION and set(self.values) <= set(motions)
-        self.labels = [motions[value] for value in self.values] if named else self.texts
+        self.labels = [printable(motions[value]) for value in self.values] if named else self.texts
 
 
 def _check_combine(label: str, combine: Any, running: Sequence[_Key]) -> None:
@@ -258,6 +258,9 @@ def _expand_motions(data: dict[str, Any], label: str) -> dict[str, Any]:
         motions = suite_motions(record["suite"], Path(label).parent, record.get("components"))
     except SuiteError as error:
         raise SceneError(label, f"excitation.record.{error.key}", record.get(error.key), error.rule) from None
+    if len(motions) > MAX_SCENES:
+        rule = f"{len(motions)} motions: a family has at most {MAX_SCENES} scenes: take a part of the suite"
+        raise SceneError(label, "excitation.record.suite", record["suite"], rule)
     return _replace_value(data, MOTION, {"values": motions})
 
 

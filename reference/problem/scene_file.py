@@ -112,6 +112,7 @@ def scene_text(source: str | Path) -> bytes:
         raise SceneError(label, "scene", label, rule) from None
 
 
+@takes(bytes, "must be the text of a scene file as bytes, TOML in UTF-8")
 def parse_scene(text: bytes, label: str) -> Scene:
     '''
     Return the scene in a text.

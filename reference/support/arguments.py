@@ -105,6 +105,8 @@ def check_array(name: str, values: Any, rule: str, *, finite: bool = True) -> Ar
         array = np.asarray(values)
     except ValueError:  # uneven rows
         array = np.empty(0, dtype=object)
+    except MemoryError:  # what claims to be longer than the memory holds
+        raise ValueError(f"{name}: takes more memory than there is: {rule}") from None
     if array.dtype.kind not in "iuf":
         raise ValueError(f"{name} = {brief(values)}: must be numbers: {rule}")
     array = np.ascontiguousarray(array, dtype=float)

@@ -90,6 +90,11 @@ def one_line(text: str) -> str:
     return text if text.isprintable() else repr(text)
 
 
+def printable(text: str) -> str:
+    """Return a name with every control character, which a terminal would obey, replaced."""
+    return "".join(letter if letter.isprintable() else "\ufffd" for letter in text)
+
+
 def keys_of(table: str, keys: Mapping[str, Sequence[str]]) -> Sequence[str]:
     """Return the keys of a table: under its name, or under "*" where its name is free; none of what is no table."""
     return keys.get(table) or keys.get(f"{table.rpartition('.')[0]}.*", ())

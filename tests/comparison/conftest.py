@@ -35,7 +35,9 @@ def command(tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pyte
         place = tmp_path / "report"
         given = [*words] if "--out" in words else [*words, "--out", str(place)]
         code = main(given, fake_hierarchy() if hierarchy is None else hierarchy, executor)
-        return Run(code, *capfd.readouterr(), place)
+        out, err = capfd.readouterr()
+        assert "could not be shown" not in err, "every part of the report is there"
+        return Run(code, out, err, place)
 
     return run
 

@@ -11,6 +11,7 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -35,9 +36,11 @@ from comparison.cli.arguments import (
     read_number,
     read_whole_number,
     report_write_errors,
+    write_and_show,
 )
 from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.terminal import new_table, print_implausible_values, print_records
+from comparison.runner.attempts import attempt
 from comparison.runner.output import destination, files_written_by, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Display, wide_console
@@ -52,8 +55,9 @@ from reference.records.motion_lists import motion_list_text
 from reference.records.suites import list_motions
 from reference.support.files import write_new
 
+COMMAND = "comparison.ensemble"
 TABLE = "ensemble.csv"
-FORMULA = ("=", "+", "-", "@", "\t", "\r")  # begin formulas in a spreadsheet
+FORMULA = ("=", "+", "-", "@")  # begin formulas in a spreadsheet, behind white space, too
 FILES = (STORED.name, TABLE, PICTURE, "ensemble.pdf")
 MODELS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # what the workers ask
 SUBSET = 2  # motions of every scene that the engine computes, unless the command says otherwise
@@ -97,10 +101,12 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
         result = part.result(points, run)
         files = {STORED.name: STORED.as_json(result), TABLE: table_text(points).encode()}
-        files |= files_written_by(lambda folder: draw_ensemble(folder / PICTURE, result))
+        written = write_and_show(
+            out, partial(publish, out, files, COMMAND), partial(print_ensemble, console, result, cost)
+        )
         with report_write_errors(out):
-            written = publish(out, files, "comparison.ensemble")
-        print_ensemble(console, result, cost)
+            draw = partial(files_written_by, lambda folder: draw_ensemble(folder / PICTURE, result))
+            written += publish(out, attempt("picture", draw) or {}, COMMAND)
         console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
 
     def show_equations(results: TaskResults, display: Display) -> None:
@@ -149,7 +155,7 @@ def table_text(points: Points) -> str:
     """ensemble.csv: a row for every motion, scale and model; what begins like a formula stands behind an apostrophe."""
 
     def cell(value: object) -> object:
-        return f"'{value}" if isinstance(value, str) and value.startswith(FORMULA) else value
+        return f"'{value}" if isinstance(value, str) and value.lstrip().startswith(FORMULA) else value
 
     rows, stream = as_rows(points), io.StringIO()
     writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")

@@ -1,13 +1,17 @@
 """The file in which an ensemble is kept beside a report: fractiles, the curve of every motion, the engine's subset."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 from typing import Annotated, Any, Literal
 
 from comparison.json_file import StoredFile
-from comparison.result_types import result
+from comparison.result_types import require, require_size, result
 from comparison.study.models import EXACT
+from reference.measures.peak_demands import QUANTITIES
+from reference.problem.scene import MAX_BODIES
 
+FRACTILES = 3  # of every demand: 16, 50 and 84 %
 FILE, PICTURE = "ensemble.json", "ensemble.png"
 SCHEMA: Literal["phase-resonance/ensemble/2"] = "phase-resonance/ensemble/2"
 
@@ -50,6 +54,10 @@ class Structure:
     isolator: Isolator | None = None
     """null without dry friction, on a plane, and where neither mean nor median of the displacement is known"""
 
+    def __post_init__(self) -> None:
+        require(1 <= self.bodies <= MAX_BODIES, f"bodies must be from 1 to {MAX_BODIES}, not {self.bodies}")
+        require(0.0 < self.weight < math.inf, f"weight must be more than 0 N, not {self.weight:g}")
+
 
 @result
 class Spectrum:
@@ -64,6 +72,11 @@ class Spectrum:
     fractiles: Annotated[Sequence[Sequence[Statistic]], "16, 50 and 84 % at every period, m/s^2"]
     largest: Annotated[Sequence[Statistic], "at every period, m/s^2"]
 
+    def __post_init__(self) -> None:
+        require_size("fractiles", self.fractiles, FRACTILES)
+        for values in (self.mean, *self.fractiles, self.largest):
+            require_size("mean, every fractile and largest", values, len(self.period))
+
 
 @result
 class Demand:
@@ -72,6 +85,9 @@ class Demand:
     structure: Annotated[str, "name"]
     quantity: Annotated[str, "demand"]
     body: Annotated[int | None, "from 1, counted from the platform; null for the isolator"]
+
+    def __post_init__(self) -> None:
+        require(self.quantity in QUANTITIES, f"quantity must be a demand, not {self.quantity[:40]!r}")
 
 
 @result
@@ -89,6 +105,10 @@ class Stripe(Demand):
     reasons: Mapping[str, int] = field(default_factory=dict)
     """why the other motions do not have it, and how many each"""
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_size("fractiles", self.fractiles, FRACTILES)
+
     @property
     def statistics(self) -> tuple[Statistic, ...]:
         """Mean, fractiles, largest and smallest."""
@@ -104,6 +124,11 @@ class Curve(Demand):
     scales: Annotated[Sequence[float], "factors of the motion"]
     values: Annotated[Sequence[float | None], "in the unit of the demand; null without an answer"]
     errors: Annotated[Sequence[float | None], "error estimates of the values"]
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for what, values in (("values", self.values), ("errors", self.errors)):
+            require_size(what, values, len(self.scales))
 
 
 @result
@@ -147,6 +172,14 @@ class Target:
     acceleration: Annotated[Sequence[float], "pseudo-acceleration at every period, m/s^2"]
     motions: Annotated[Sequence[MatchedMotion], "in their order"]
 
+    def __post_init__(self) -> None:
+        require(len(self.motions) > 0, "motions must be at least one")
+        for what, values in (
+            ("acceleration", self.acceleration),
+            *(("acceleration", m.acceleration) for m in self.motions),
+        ):
+            require_size(what, values, len(self.period))
+
 
 @result
 class EnsembleResult:
@@ -164,6 +197,21 @@ class EnsembleResult:
     engine: Annotated[Engine, "the engine's subset"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
     target: Annotated[Target | None, "spectrum to which the motions are scaled; null without --target"] = None
+
+    def __post_init__(self) -> None:
+        require(len(self.structures) > 0, "structures must be at least one")
+        require(len(self.scales) > 0, "scales must be at least one")
+        require(self.motions >= 1, f"motions must be at least 1, not {self.motions}")
+        bodies = {each.name: each.bodies for each in self.structures}
+        require(len(bodies) == len(self.structures), "structures must have different names")
+        named: list[Demand | Spectrum] = [*self.stripes, *self.curves, *self.spectra, *self.engine.differences]
+        for each in named:
+            name = each.structure[:40]
+            require(each.structure in bodies, f"structure {name!r} is none of the structures")
+            body, most = each.body, bodies[each.structure]
+            require(body is None or 1 <= body <= most, f"body must be from 1 to {most} in {name!r}, not {body}")
+        for stripe in self.stripes:
+            require(stripe.scale in self.scales, f"scale {stripe.scale:g} of a stripe is none of the scales")
 
     def stripes_of(self, structure: str, quantity: str) -> list[Stripe]:
         """Return the stripes of one demand of the isolator over the scales, by the equations, or else by the engine."""

@@ -8,17 +8,19 @@ written; others as in `run_command`.
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, number_of_jobs, report_write_errors
+from comparison.cli.arguments import CommandParser, command, number_of_jobs, write_and_show
 from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.terminal import new_table
 from comparison.evidence.benchmarks.analysis import MODELS, BenchmarkTable
 from comparison.evidence.benchmarks.cases import Case, cases, mastodon
 from comparison.evidence.benchmarks.table import PAGE, STORED, Benchmarks, page, with_error, word_explanations
 from comparison.evidence.sides import ENGINE, EQUATIONS
+from comparison.runner.attempts import attempt
 from comparison.runner.output import destination, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
@@ -52,9 +54,13 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     results = compute_tasks("benchmarks", options, argv, analysis.tasks(), SOLVERS, console, executor)
     solved = analysis.collect(None, None, results)
     table = replace(solved, run=run_facts("benchmarks", options, argv, begin))
-    with report_write_errors(out):
-        files = publish(out, {STORED.name: STORED.as_json(table), PAGE: page(table).encode()}, "comparison.benchmarks")
-    print_benchmarks(console, table)
+
+    def write() -> list[Path]:
+        files = publish(out, {STORED.name: STORED.as_json(table)}, "comparison.benchmarks")
+        text = attempt(PAGE, partial(page, table))
+        return files + publish(out, {} if text is None else {PAGE: text.encode()}, "comparison.benchmarks")
+
+    files = write_and_show(out, write, partial(print_benchmarks, console, table))
     console.print(f"Tables: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by phase-resonance run shows them.")
     return 1 if table.explained()[""] or table.counts()[NOT_COMPARED] else 0

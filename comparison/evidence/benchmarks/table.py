@@ -10,7 +10,7 @@ import jinja2
 
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.json_file import StoredFile
-from comparison.result_types import result
+from comparison.result_types import require, result
 from comparison.verdicts import (
     NOT_MET,
     Verdict,
@@ -88,6 +88,10 @@ class Benchmark:
     rows: Annotated[Sequence[Row], "one per published number"]
     endings: Annotated[Mapping[str, str], "by side: how the motion ended"]
     seconds: Annotated[Mapping[str, float], "by side: processor time, s"]
+
+    def __post_init__(self) -> None:
+        for row in self.rows:
+            require(row.numbers.keys() >= {EQUATIONS, ENGINE}, f"numbers must have {EQUATIONS} and {ENGINE}")
 
 
 @result

@@ -9,10 +9,11 @@ import argparse
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, number_of_jobs, read_number, report_write_errors
+from comparison.cli.arguments import CommandParser, command, number_of_jobs, read_number, write_and_show
 from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.user_models import add_models, user_models
 from comparison.evidence.extremes.analysis import LIMIT, Extremes, cells, reduced
@@ -47,11 +48,13 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     refuse_foreign_files(out, [FILE])
     console = wide_console()
     matrix = judge_matrix(extremes, options, argv, console, executor)
-    with report_write_errors(out):
-        (file,) = publish(out, {FILE: STORED.as_json(matrix)}, "comparison.extremes")
-    for verdict in (Verdict.LIMIT, Verdict.FAILED):
-        for row, title, entry in matrix.listed(verdict):
-            console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
+
+    def show() -> None:
+        for verdict in (Verdict.LIMIT, Verdict.FAILED):
+            for row, title, entry in matrix.listed(verdict):
+                console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
+
+    (file,) = write_and_show(out, partial(publish, out, {FILE: STORED.as_json(matrix)}, "comparison.extremes"), show)
     counts = ", ".join(f"{count} {name}" for name, count in matrix.counts().items())
     spent = f"{matrix.run['seconds']} s, {matrix.run['cpu_seconds']} s of processor time"
     console.print(f"{sum(matrix.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)

@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import Annotated, Any
 
 from comparison.json_file import StoredFile
-from comparison.result_types import result
+from comparison.result_types import require, result
 
 FILE = "extremes.json"
 
@@ -61,6 +61,11 @@ class Matrix:
     columns: Annotated[Mapping[str, str], "titles of the models by key"]
     rows: Annotated[Sequence[Extreme], "one per extreme"]
     run: Annotated[Mapping[str, Any], "command, times, provenance, and whether it is the reduced form"]
+
+    def __post_init__(self) -> None:
+        for row in self.rows:
+            for key in row.entries:
+                require(key in self.columns, f"model {key[:40]!r} of a row is none of the columns")
 
     def counts(self) -> dict[str, int]:
         """Number of cells of each verdict, from the best to the worst, zeros included."""

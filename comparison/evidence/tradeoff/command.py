@@ -8,11 +8,12 @@ import argparse
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, number_of_jobs, report_write_errors
+from comparison.cli.arguments import CommandParser, command, number_of_jobs, write_and_show
 from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.terminal import new_table
 from comparison.cli.user_models import add_models, user_models
@@ -21,6 +22,7 @@ from comparison.evidence.tradeoff.analysis import TradeOff
 from comparison.evidence.tradeoff.growth import Growth, MeasuredGrowth, Series, by_workers
 from comparison.evidence.tradeoff.settings import CONSTANT, ENGINE, LEVEL, REFERENCE, RUN, SCIPY
 from comparison.evidence.tradeoff.trade import FILE, SCHEMA, STORED, MeasuredTrade, Trade, TradeFile, load
+from comparison.runner.attempts import attempt
 from comparison.runner.output import destination, netcdf, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
@@ -64,13 +66,21 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     if options.growth:
         return _measure_growth(scenes[0], options, argv, out, console, executor)
     measured = measure_trades(scenes, options, argv, console, executor)
-    with report_write_errors(out):
-        for each in measured:
-            publish(out, {_values_file(each.trade.scene): netcdf(each.values)}, COMMAND)
+
+    def write() -> list[Path]:
         trades = {trade.scene: trade for trade in [*_load_trades(out), *(each.trade for each in measured)]}
-        (file,) = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
-    for each in measured:
-        print_trade(console, each.trade)
+        files = publish(out, {FILE: STORED.as_json(TradeFile(SCHEMA, list(trades.values())))}, COMMAND)
+        for each in measured:
+            name = _values_file(each.trade.scene)
+            values = attempt(name, partial(netcdf, each.values))
+            publish(out, {} if values is None else {name: values}, COMMAND)
+        return files
+
+    def show() -> None:
+        for each in measured:
+            print_trade(console, each.trade)
+
+    (file,) = write_and_show(out, write, show)
     console.print(f"Trade: {file}, and SCENE-tradeoff.nc beside it.", soft_wrap=True)
     return 0
 
@@ -85,9 +95,8 @@ def _measure_growth(
     series = [*Growth().collect(study, None, results), by_workers(scene, process_pool)]
     facts = run_facts("tradeoff", options, words, begin)
     measured = MeasuredGrowth(growth.SCHEMA, scene.name, scene.title, series, facts)
-    with report_write_errors(out):
-        publish(out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
-    print_growth(console, series)
+    write = partial(publish, out, {growth.FILE: growth.STORED.as_json(measured)}, COMMAND)
+    write_and_show(out, write, partial(print_growth, console, series))
     console.print(f"Growth: {out / growth.FILE}", soft_wrap=True)
     return 0
 

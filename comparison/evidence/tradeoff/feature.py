@@ -86,7 +86,7 @@ def _tradeoff_panel(trade: Trade, question: Answered, body: int) -> Panel:
         {"title": "processor time per point, s", "log": True},
         {"title": "relative error, 95 %", "log": True},
         [_curve(method, curves[method], body, number) for number, method in enumerate(shown)],
-        bands=[{"from": 1e-30, "to": question.error}] if question.error > 0.0 else [],
+        bands=[{"from": 1e-30, "to": question.error}] if question.error else [],
         height=260,
     )
 

@@ -11,7 +11,7 @@ import xarray as xr
 
 from comparison.evidence.tradeoff.analysis import Measurement, measure, sample, without_value
 from comparison.json_file import StoredFile, finite_or_none
-from comparison.result_types import result
+from comparison.result_types import require, require_size, result
 from comparison.runner.analysis import Analysis
 from comparison.runner.processes import cores
 from comparison.runner.task import Task
@@ -84,6 +84,11 @@ class Series:
     slope: float | None
     """exponent of the larger half of the values before the first null; null for fewer than three"""
     uncertainty: Annotated[float | None, "standard error of the slope"]
+
+    def __post_init__(self) -> None:
+        require(len(self.values) > 0, "values must be at least one")
+        require_size("seconds", self.seconds, len(self.values))
+        require((self.slope is None) == (self.uncertainty is None), "slope and uncertainty are known both or not")
 
 
 @result

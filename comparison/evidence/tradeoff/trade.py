@@ -10,7 +10,8 @@ import numpy as np
 import xarray as xr
 
 from comparison.json_file import StoredFile
-from comparison.result_types import Array, result
+from comparison.result_types import Array, require, require_size, result
+from reference.problem.scene import MAX_BODIES
 
 FILE = "tradeoff.json"
 SCHEMA: Literal["phase-resonance/tradeoff"] = "phase-resonance/tradeoff"
@@ -67,7 +68,7 @@ class Answered:
     title: Annotated[str, "equations and law of friction"]
     points: Annotated[int, "phase pairs of the sample"]
     reference_solution: Annotated[str, "what the errors are against"]
-    error: Annotated[float, "largest relative error estimate of the reference solution"]
+    error: Annotated[float | None, "largest relative error estimate of the reference solution; null without an answer"]
     checks: Annotated[Sequence[str], "how the reference solution was checked"]
 
 
@@ -82,6 +83,14 @@ class Trade:
     questions: Annotated[Sequence[Answered], "one per panel of the diagram"]
     entries: Annotated[Sequence[Entry], "one per setting"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
+
+    def __post_init__(self) -> None:
+        require(1 <= self.bodies <= MAX_BODIES, f"bodies must be from 1 to {MAX_BODIES}, not {self.bodies}")
+        for each in self.entries:
+            for what, values in (("median", each.median), ("most", each.most), ("error_estimate", each.error_estimate)):
+                require_size(what, values, self.bodies)
+            known = any(each.question == question.key for question in self.questions)
+            require(known, f"question {each.question[:40]!r} of an entry is none of the questions")
 
     def of(self, question: str) -> list[Entry]:
         """The entries of one question, in the order in which they were listed."""

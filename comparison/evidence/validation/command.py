@@ -6,21 +6,29 @@ Exit codes: 0 done; 1 a side has no value for a quantity; 2 wrong input; 3 the f
 """
 
 import time
-from collections.abc import Sequence
+import warnings
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 from rich.console import Console
 
-from comparison.cli.arguments import CommandParser, command, report_write_errors
+from comparison.cli.arguments import CommandParser, command, write_and_show
 from comparison.cli.terminal import new_table
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import frame, pendulum
-from comparison.evidence.validation.files import FRAME_SOURCE, PENDULUM_SOURCE, read_folder
-from comparison.evidence.validation.table import STORED, Validation, joined, recorded
+from comparison.evidence.validation.files import DECAY, FRAME_SOURCE, LARGE, PENDULUM_SOURCE, read_folder, wrong_file
+from comparison.evidence.validation.table import STORED, Found, Validation, joined, recorded
 from comparison.runner.environment import provenance
 from comparison.runner.output import destination, publish, refuse_foreign_files
 from comparison.runner.progress import wide_console
 from comparison.verdicts import NOT_COMPARED, word_counts
+from comparison.wording import exception_line
+from reference.problem import SceneError
+
+REASON = 150  # letters of what a library says of a motion
 
 
 @command
@@ -47,9 +55,8 @@ def main(argv: Sequence[str]) -> int:
     out = destination(options.out)
     refuse_foreign_files(out, [STORED.name])
     table = compared(options.folder)
-    with report_write_errors(out):
-        files = publish(out, {STORED.name: STORED.as_json(table)}, "comparison.validation")
-    print_validation(console, table)
+    write = partial(publish, out, {STORED.name: STORED.as_json(table)}, "comparison.validation")
+    files = write_and_show(out, write, partial(print_validation, console, table))
     console.print(f"Table: {', '.join(map(str, files))}", soft_wrap=True)
     console.print("A report written into the same directory by phase-resonance run shows it.")
     return 1 if table.counts()[NOT_COMPARED] else 0
@@ -59,12 +66,26 @@ def compared(folder: Path) -> Validation:
     """Everything that a folder of measured files allows."""
     begin = time.process_time()
     measured = read_folder(folder)
-    found = [frame.compare(measured.runs)] if measured.runs else []
-    found += [pendulum.compare_decay(measured.decay)] if measured.decay else []
-    found += [pendulum.compare_large(measured.large)] if measured.large else []
+    found = [_compare("s_b_<weight>g_x.mat", frame.compare, measured.runs)] if measured.runs else []
+    found += [_compare(DECAY, pendulum.compare_decay, measured.decay)] if measured.decay else []
+    found += [_compare(LARGE, pendulum.compare_large, measured.large)] if measured.large else []
     seconds = round(time.process_time() - begin, 1)
     run = {"command": f"{STORED.command} FOLDER", "seconds": seconds, "provenance": provenance()}
     return Validation(*joined(found), run)
+
+
+def _compare(file: str, compare: Callable[[Any], Found], measured: Any) -> Found:
+    """Return what an experiment adds. Raises SceneError, one line, for a motion that no comparison can be made of."""
+    try:
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return compare(measured)
+    except SceneError:
+        raise
+    except (ArithmeticError, ValueError, LookupError, TypeError, AssertionError) as error:  # of NumPy, SciPy, pydantic
+        reason = exception_line(error)[:REASON]
+        rule = f"must hold motions like the published ones: none can be compared with these ({reason})"
+        raise wrong_file(file, rule) from error
 
 
 def print_validation(console: Console, table: Validation) -> None:

@@ -1,19 +1,39 @@
-"""The measured files, as their authors publish them, read where the user has them."""
+"""
+The measured files, as their authors publish them, read where the user has them.
+
+A process of its own with limits of memory and time reads a file, and hands back columns of numbers: a file that ends
+the process that reads it costs one line.
+"""
 
 import io
 import re
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.io import loadmat
+from scipy.io import loadmat, whosmat
 
 from comparison.result_types import Array
+from comparison.runner.processes import TimeLimitError, WorkerDiedError, Workers
 from reference.problem import SceneError
 from reference.support.files import read_file
 
+try:
+    import resource
+except ImportError:  # Windows limits no process
+    resource = None  # type: ignore[assignment]
+
 LARGEST = 2**24  # bytes of a file
 MAX_SAMPLES = 2_000_000
+READING = 30.0  # s of processor time that reading a file may take: the published ones take less than 1 s
+MEMORY = 2**29  # bytes that reading a file may take: a column of MAX_SAMPLES takes 2^24
+LENGTHS = (1.0, 1e4)  # s, shortest and longest motion that is compared
+FARTHEST = {"mm": 1e4, "rad": 1e3}  # of a motion that is measured in this unit
+NUMERIC = {"double", "single", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64))}  # no booleans
 FRAME = re.compile(r"s_b_(\d{1,5})g_([xy])\.mat")
 DECAY, LARGE = "SingleDataFreeSwing_1_Dt_0_0001.mat", "SinglePendulumDataForParameterEstimation.mat"
 FRAME_SOURCE = (
@@ -21,6 +41,7 @@ FRAME_SOURCE = (
     "(arXiv 2303.03858), rig in Nonlinear Dynamics 99 (2020) 1781-1799: github.com/l-marino/switching-GPLFM, commit "
     "01dc3d9 (GPL-3.0), files s_b_<weight>g_x.mat and s_b_<weight>g_y.mat"
 )
+CELLS = ("Time_id", "Time_vad", "Y_id", "Y_vad")  # variables of the file of large swings
 PENDULUM_SOURCE = (
     f"swinging pendulum: github.com/dynamicslab/MultiArm-Pendulum, commit e99a7e1 (MIT), files {DECAY} and {LARGE}"
 )
@@ -70,71 +91,160 @@ def read_folder(folder: Path) -> Measured:
     for grams in plates.keys() ^ bases.keys():
         missing = "y" if grams in plates else "x"
         raise wrong_file(folder, f"s_b_{grams}g_{missing}.mat is missing beside its partner")
-    runs = []
-    for grams in sorted(plates, key=int):
-        x, y = _content(plates[grams], "t", "x"), _content(bases[grams], "t", "y")
-        time = _series(plates[grams], "t", x["t"])
-        plate = _series(plates[grams], "x", x["x"], len(time))
-        runs.append(Shaken(int(grams) * 1e-3, time, plate, _series(bases[grams], "y", y["y"], len(time))))
-    decay = _decay(files[DECAY]) if DECAY in files else None
-    large = _large(files[LARGE]) if LARGE in files else None
+    workers = Workers(1)
+    try:
+        runs = [_shaken(workers, int(grams), plates[grams], bases[grams]) for grams in sorted(plates, key=int)]
+        decay = _swing(workers, files[DECAY], decay_columns, ("Theta1",)) if DECAY in files else None
+        large = _swing(workers, files[LARGE], large_columns, CELLS) if LARGE in files else None
+    finally:
+        workers.abandon()
     if not (runs or decay or large):
         rule = f"holds none of the measured files: s_b_<weight>g_x.mat with s_b_<weight>g_y.mat, {DECAY}, {LARGE}"
         raise wrong_file(folder, rule)
     return Measured(runs, decay, large)
 
 
-def _decay(file: Path) -> Swing:
-    content = _content(file, "Theta1")["Theta1"]
+def _shaken(workers: Workers, grams: int, plate: Path, base: Path) -> Shaken:
+    x, y = (_columns(workers, file, dict, ("t", name)) for file, name in ((plate, "x"), (base, "y")))
+    time = _series(plate, "t", x["t"])
+    for name, file, values, count in (("x", plate, x["x"], len(time)), ("y", base, y["y"], len(time))):
+        if np.ptp(_series(file, name, values, count, "mm")) == 0.0 and name == "y":
+            raise wrong_file(file, "y must move: every sample of the base is the same")
+    own = _series(base, "t", y["t"])
+    if len(own) != len(time) or np.abs(own - time).max() > 0.5 * (time[1] - time[0]):
+        raise wrong_file(base, f"t must be the same as in {plate.name}")
+    return Shaken(grams * 1e-3, time, *(np.asarray(values, dtype=float) for values in (x["x"], y["y"])))
+
+
+def _swing(workers: Workers, file: Path, columns: Callable[[Any], Mapping[str, Any]], names: Sequence[str]) -> Swing:
+    found = _columns(workers, file, columns, names)
+    (first, instants), (second, angles) = found.items()
+    time = _series(file, first, instants)
+    angle = _series(file, second, angles, len(time), "rad")
+    if np.ptp(angle) == 0.0:
+        raise wrong_file(file, f"{second} must move: every sample is the same")
+    return Swing(time, angle - np.pi)
+
+
+def decay_columns(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return times and angles of the structure in the file of the decay."""
     try:
-        instants = _series(file, "Theta1.time", content["time"])
-        return Swing(instants, _series(file, "Theta1.values", content["signals"]["values"], len(instants)) - np.pi)
-    except (KeyError, IndexError, TypeError) as error:
-        raise wrong_file(file, "Theta1 must be a structure with time and signals.values") from error
+        return {"Theta1.time": content["Theta1"]["time"], "Theta1.values": content["Theta1"]["signals"]["values"]}
+    except (KeyError, IndexError, TypeError):
+        raise ValueError("Theta1 must be a structure with time and signals.values") from None
 
 
-def _large(file: Path) -> Swing:
-    content = _content(file, "Time_id", "Time_vad", "Y_id", "Y_vad")
+def large_columns(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return times and angles of the cells in the file of large swings."""
     try:
-        time, angle = (
-            np.concatenate([np.atleast_2d(part)[0] for name in names for part in content[name]])
-            for names in (("Time_id", "Time_vad"), ("Y_id", "Y_vad"))
-        )
-    except (IndexError, TypeError, ValueError) as error:
-        raise wrong_file(file, "Y_id must be cells of angles and rates, (2, T)") from error
-    instants = _series(file, "Time", time)
-    return Swing(instants, _series(file, "Y", angle, len(instants)) - np.pi)
+        return {
+            shown: np.concatenate([np.atleast_2d(part)[0] for name in names for part in content[name]])
+            for shown, names in (("Time", CELLS[:2]), ("Y", CELLS[2:]))
+        }
+    except (IndexError, TypeError, ValueError):
+        raise ValueError("Y_id must be cells of angles and rates, (2, T)") from None
 
 
-def _content(file: Path, *names: str) -> dict[str, Any]:
+def _columns(
+    workers: Workers, file: Path, columns: Callable[[Any], Mapping[str, Any]], names: Sequence[str]
+) -> Mapping[str, Any]:
+    """Return the columns of numbers in a file, read by a process of its own. Raises SceneError, one line."""
     try:
-        content = loadmat(io.BytesIO(read_file(file, LARGEST)), variable_names=names, simplify_cells=True)
+        found: Any = workers.start(partial(read_columns, file, columns, tuple(names)), READING).result()
+    except TimeLimitError:
+        found = f"takes more than {READING:g} s to read: must be a MATLAB file with columns of numbers"
+    except WorkerDiedError:
+        found = "ends the process that reads it: must be a MATLAB file with columns of numbers"
+    if isinstance(found, str):
+        raise wrong_file(file, found)
+    return dict(found)
+
+
+def read_columns(
+    file: Path, columns: Callable[[Any], Mapping[str, Any]], names: tuple[str, ...]
+) -> Mapping[str, Any] | str:
+    """Read the columns of variables of a file inside a worker process; return what is wrong with it as text."""
+    try:
+        with limited_memory(), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            data = read_file(file, LARGEST)
+            kinds = {name: kind for name, _, kind in whosmat(io.BytesIO(data))}
+            for name in names:
+                if name not in kinds:
+                    return f"must hold the variable {name}"
+                if columns is dict and kinds[name] not in NUMERIC:
+                    return _must_be_a_column(name)
+            found = loadmat(io.BytesIO(data), variable_names=names, simplify_cells=True)
     except OSError as error:
-        raise wrong_file(file, error.strerror or "cannot be read") from None
-    except Exception as error:  # whatever scipy makes of bytes that are no such file
-        raise wrong_file(file, "must be a MATLAB file of version 5 to 7.2") from error
-    for name in names:
-        if name not in content:
-            raise wrong_file(file, f"must hold the variable {name}")
-    return dict(content)
+        return error.strerror or "cannot be read"
+    except MemoryError:
+        return f"takes more than {MEMORY / 2**20:.0f} MiB to read: must be a MATLAB file with columns of numbers"
+    except Exception:  # whatever scipy makes of bytes that are no such file
+        return "must be a MATLAB file of version 5 to 7.2"
+    try:
+        listed = columns({name: found[name] for name in names})
+    except ValueError as error:
+        return str(error)
+    for name, values in listed.items():
+        if not isinstance(values, np.ndarray) or values.dtype.kind not in "fiu" or values.size > 3 * MAX_SAMPLES:
+            return _must_be_a_column(name)
+    return listed
 
 
-def _series(file: Path, name: str, values: Any, count: int | None = None) -> Array:
-    """A column of finite samples; rising at even steps where it is the time, `count` is None."""
+@contextmanager
+def limited_memory() -> Iterator[None]:
+    """Let the process take MEMORY more than it has, where the system tells how much that is."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text().split()[0])
+    except (OSError, ValueError):
+        pages = 0
+    if not pages or resource is None:
+        yield
+        return
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    most = pages * resource.getpagesize() + MEMORY
+    resource.setrlimit(resource.RLIMIT_AS, (most if before[1] < 0 else min(most, before[1]), before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
+
+
+def _must_be_a_column(name: str) -> str:
+    return f"{name} must be one column of 500 to {MAX_SAMPLES} numbers"
+
+
+def _series(file: Path, name: str, values: Any, count: int | None = None, unit: str = "") -> Array:
+    """Return a column of finite samples; rising at even steps where it is the time, `count` is None."""
     series = np.asarray(values)
     if series.dtype.kind not in "fiu" or series.ndim != 1 or not 500 <= len(series) <= MAX_SAMPLES:
-        raise wrong_file(file, f"{name} must be one column of 500 to {MAX_SAMPLES} numbers")
+        raise wrong_file(file, _must_be_a_column(name))
     series = series.astype(float)
     if count is not None and len(series) != count:
         raise wrong_file(file, f"{name} must have as many samples as the time, {count}, not {len(series)}")
     if not np.isfinite(series).all():
         raise wrong_file(file, f"{name} must be finite numbers")
-    steps = np.diff(series)
-    if count is None and not (steps.min() > 0.0 and np.ptp(steps) < 1e-3 * steps.mean()):
-        raise wrong_file(file, f"{name} must rise in even steps")
+    if count is None:
+        _refuse_time(file, name, series)
+    elif (farthest := float(np.abs(series).max())) > FARTHEST[unit]:
+        rule = f"{name} must be a motion of at most {FARTHEST[unit]:g} {unit}, not {farthest:.3g} {unit}"
+        raise wrong_file(file, rule)
     return series
 
 
+def _refuse_time(file: Path, name: str, series: Array) -> None:
+    """Raise SceneError where a column is no time that rises in even steps."""
+    with np.errstate(all="ignore"):
+        steps, span = np.diff(series), float(series[-1] - series[0])
+        even = steps.min() > 0.0 and np.ptp(steps) < 1e-3 * steps.mean()
+    if not even:
+        raise wrong_file(file, f"{name} must rise in even steps")
+    if not LENGTHS[0] <= span <= LENGTHS[1]:
+        raise wrong_file(file, f"{name} must span {LENGTHS[0]:g} to {LENGTHS[1]:g} s, not {span:.3g} s")
+
+
 def wrong_file(file: Path | str, rule: str) -> SceneError:
-    """Return what is wrong with a file, in one line."""
+    """Return what is wrong with a file, in one line that names it however long its path is."""
+    if isinstance(file, Path) and file.suffix == ".mat":
+        return SceneError("command line", "FOLDER", str(file.parent), f"{file.name}: {rule}")
     return SceneError("command line", "FOLDER", str(file), rule)

@@ -35,6 +35,8 @@ CYCLES = 12  # computed, of which the last is read
 SAMPLES = 250  # samples of a cycle, as measured
 FEWEST = 3  # whole cycles of a run
 HARMONICS = 6  # fitted to the base motion
+UNEXPLAINED = 0.1  # rms share of the base motion that they may leave; 0.003 in the published runs
+DRIFT = 0.1  # share of its range by which the middle of the plate may move between cycles
 SPEED = 2.0  # mm/s: slower is at rest
 WIDTH = 4  # samples to either side of a velocity
 REGULARIZATION = 1e-4  # m/s, of the engine
@@ -101,7 +103,11 @@ def fold(run: Shaken) -> Cycles:
 
     scaled = least_squares(lambda factor: fitted(first * factor[0])[1], [1.0], x_scale=1e-3, xtol=1e-12, ftol=1e-12)
     frequency = first * float(scaled.x[0])
-    factors, _ = fitted(frequency)
+    factors, rest = fitted(frequency)
+    left = float(rest.std() / run.base.std())
+    if not left <= UNEXPLAINED:
+        rule = f"y must be periodic: {HARMONICS} harmonics leave {100.0 * left:.0f} % of it, which may be "
+        raise wrong_file(f"s_b_{1e3 * run.weight:g}g_y.mat", f"{rule}{100.0 * UNEXPLAINED:.0f} % at most")
     harmonics = factors[1 : HARMONICS + 1] - 1j * factors[HARMONICS + 1 :]
     begin = np.angle(harmonics[0])
     phase = frequency * time + begin / (2.0 * np.pi)
@@ -111,6 +117,17 @@ def fold(run: Shaken) -> Cycles:
         raise wrong_file(f"s_b_{1e3 * run.weight:g}g_y.mat", rule)
     grid = np.arange(SAMPLES) / SAMPLES
     motions = np.array([np.interp(number + grid, phase, run.plate) for number in whole])
+    plate = f"s_b_{1e3 * run.weight:g}g_x.mat"
+    for number, motion in enumerate(motions, start=1):
+        if math.isnan(read_cycle(motion, frequency)[2]):
+            rule = (
+                f"x must be faster than {SPEED:g} mm/s to either side in every cycle, or in none: not in cycle {number}"
+            )
+            raise wrong_file(plate, rule)
+    drift = float(np.abs(np.diff(motions.mean(axis=1))).max() / (np.ptp(motions, axis=1).min() or np.inf))
+    if drift > DRIFT:
+        rule = f"x must repeat itself: its middle moves by {100.0 * drift:.0f} % of its range from a cycle to the next"
+        raise wrong_file(plate, f"{rule}, which may be {100.0 * DRIFT:.0f} % at most")
     return Cycles(run, motions, frequency, abs(harmonics[0]), complex(harmonics[1] * np.exp(-2j * begin)))
 
 

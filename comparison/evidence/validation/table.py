@@ -14,7 +14,7 @@ import multibody
 import reference
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import StoredFile, finite_or_none
-from comparison.result_types import Array, result
+from comparison.result_types import Array, require, require_size, result
 from comparison.verdicts import NOT_MET, Verdict, count_verdicts, judge, word_verdict
 from reference.measures.demands import ANSWERED
 from reference.problem import Scene, State, Trajectory
@@ -55,6 +55,10 @@ class Quantity:
     cause: Annotated[str, "explanation of what is not met: the friction law, an input, or none found; empty where met"]
     sides: Annotated[Mapping[str, Comparison], "by side: equations, smoothed (with the engine's friction law), engine"]
 
+    def __post_init__(self) -> None:
+        for side in (EQUATIONS, ENGINE):
+            require(side in self.sides, f"sides must have {side}")
+
     @property
     def base(self) -> float | None:
         """Value to which an E is relative, None where a share of it says nothing."""
@@ -84,6 +88,11 @@ class Curve:
     name: Annotated[str, "measured, equations or engine"]
     x: Annotated[Sequence[float], "along the first axis"]
     y: Annotated[Sequence[float], "along the second axis"]
+
+    def __post_init__(self) -> None:
+        known = ("measured", EQUATIONS, ENGINE)
+        require(self.name in known, f"name of a curve must be one of {', '.join(known)}, not {self.name[:40]!r}")
+        require_size("y", self.y, len(self.x))
 
 
 @result

@@ -2,11 +2,13 @@
 
 import tempfile
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import xarray as xr
 
 from comparison.runner.analysis import Analysis
+from comparison.runner.attempts import attempt
 from comparison.runner.task import Task, fingerprint
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import Pair
@@ -48,12 +50,14 @@ class Pictures(Analysis[dict[str, bytes]]):
         return tasks
 
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> dict[str, bytes]:
-        """The files; a picture that no worker could draw is drawn here, for the page refers to it."""
-        return {
-            name: content
-            for task in self.tasks(study, surfaces)
-            for name, content in results.value(task, lambda picture, *failure: draw_picture(picture))
-        }
+        """Return the files; a picture that no worker could draw is tried here, and left out where that raises."""
+        files: dict[str, bytes] = {}
+        for task in self.tasks(study, surfaces):
+            draw = partial(results.value, task, lambda picture, *failure: draw_picture(picture))
+            kind, one, _, body, _ = task.argument
+            name = f"picture of {one.scenes[0].name}, {f'body {body}' if body else kind},"
+            files |= dict(attempt(name, draw) or ())
+        return files
 
 
 def draw_picture(picture: Picture) -> Files:

@@ -1,0 +1,33 @@
+"""
+The one place where an error of a part costs that part alone: a section, a picture, a table, one file of several.
+
+A command computes, then writes tables and JSON, then draws. What raises beside the results becomes one line, and the
+exit code is as without it.
+"""
+
+import errno
+from collections.abc import Callable
+from typing import TypeVar
+
+from comparison.runner.output import on_stderr
+from comparison.wording import exception_line
+from reference.support.command import OutputError
+
+# errors of a place that takes nothing more: they concern every file that follows, and end the command with code 3
+PLACE_IS_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO}
+LONGEST = 300  # letters of a line
+
+T = TypeVar("T")
+
+
+def attempt(what: str, act: Callable[[], T], say: Callable[[str], object] = on_stderr) -> T | None:
+    """Return what `act` returns; where it raises return None, and `say` that `what` could not be shown, and why."""
+    try:
+        return act()
+    except OutputError:
+        raise
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno in PLACE_IS_FULL:
+            raise
+        say(f"{what} could not be shown: {exception_line(error)[:LONGEST]}")
+        return None

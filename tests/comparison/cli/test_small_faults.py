@@ -1,0 +1,101 @@
+"""What once ended in a traceback, or reached the terminal as it came, ends in one line."""
+
+import errno
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from places import ROOT
+
+import reference
+from comparison.analyses.ensemble import command as ensemble
+from comparison.cli.arguments import EndedEarlyError, write_and_show
+from reference.problem import load_family
+from reference.problem.scene_file import parse_scene
+
+ROWS = "\n".join(f"{0.02 * n:.2f},{np.sin(0.3 * n):.5f},0.1" for n in range(200))
+RECORD = f"time [s],ax [m/s^2],ay [m/s^2]\n{ROWS}\n"
+SUITE = """title = "suite"
+isolator = {radius = 1.0, friction = 0.1}
+bodies = [{mass = 1.0}]
+excitation = {record = {suite = "motions", motion = "all"}}
+"""
+
+
+def suite(folder: Path, names: list[str]) -> str:
+    """A scene with all motions of a folder."""
+    (folder / "motions").mkdir()
+    for name in names:
+        (folder / "motions" / f"{name}.csv").write_text(RECORD)
+    (folder / "suite.toml").write_text(SUITE)
+    return str(folder / "suite.toml")
+
+
+def test_control_characters_of_a_motion_s_name_do_not_reach_the_terminal(tmp_path: Path) -> None:
+    family = load_family(suite(tmp_path, ["\x1b[31mred", "two\nlines", "plain"]))
+    labels = family.labels["excitation.record.motion"]
+    assert sorted(labels) == ["plain", "two\ufffdlines", "\ufffd[31mred"]
+
+
+def test_a_suite_with_too_many_motions_is_blamed_on_the_suite(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("reference.problem.families.MAX_SCENES", 2)
+    with pytest.raises(reference.SceneError, match=r"excitation.record.suite = 'motions': 3 motions: a family"):
+        load_family(suite(tmp_path, ["a", "b", "c"]))
+
+
+@pytest.mark.parametrize("name", ["=1+1", "\n=1+1", " =1+1", "\t@a", "\r+1", "-1"])
+def test_no_cell_of_the_table_begins_like_a_formula(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    monkeypatch.setattr(ensemble, "as_rows", lambda points: [{"motion": name, "scale": -1.0}])
+    text = ensemble.table_text(())
+    assert f"'{name}" in text
+    assert text.endswith(",-1.0\n")
+
+
+class Endless:
+    """Claims to be long."""
+
+    def __len__(self) -> int:
+        return 10**15
+
+    def __getitem__(self, place: int) -> float:
+        return 1.0
+
+
+def test_phases_that_claim_to_be_endless_are_refused() -> None:
+    with pytest.raises(ValueError, match="phases: takes more memory than there is: must be"):
+        reference.amplification(reference.load_scene("fig3-I"), Endless())
+
+
+def test_a_scene_is_parsed_from_bytes_alone() -> None:
+    text: Any = "x"
+    with pytest.raises(TypeError, match="text = 'x': must be the text of a scene file as bytes"):
+        parse_scene(text, "x")
+
+
+@pytest.mark.parametrize("threads", ["0", "-1", "many", ""])
+def test_a_wrong_number_of_threads_is_one_line(tmp_path: Path, threads: str) -> None:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "NUMBA_NUM_THREADS": threads}
+    words = [sys.executable, "-P", "-m", "comparison.run", "--plan"]
+    ended = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert (ended.returncode, ended.stderr.count("\n")) == (2, 1)
+    assert ended.stderr.startswith(f"environment: NUMBA_NUM_THREADS = {threads!r}: must be a whole number from 1")
+
+
+def test_what_cannot_be_written_is_shown_all_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    def write() -> list[Path]:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with pytest.raises(EndedEarlyError, match="No space left on device") as ended:
+        write_and_show(tmp_path, write, lambda: print("the table"))
+    assert (ended.value.code, capsys.readouterr().out) == (3, "the table\n")
+
+
+def test_what_cannot_be_shown_is_written_all_the_same(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "table"
+    assert write_and_show(tmp_path, lambda: [file], lambda: print(SimpleNamespace().nothing)) == [file]
+    assert capsys.readouterr().err.startswith("results could not be shown: AttributeError: ")

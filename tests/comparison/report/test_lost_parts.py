@@ -1,0 +1,156 @@
+"""Whatever a library raises in one part of a report costs that part alone, and is one line."""
+
+import json
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+from distinct_models import distinct_hierarchy, distinct_motions
+from known_analyses import analyses_are, known_others
+from known_results import FILES, MEASURED, SEARCHED, known_assumptions, leave_beside
+from places import scene_text
+from report_texts import page_of
+from runs import quick_figures
+
+import comparison.registry
+from comparison.cli.reports import CompleteLevel, Reports
+from comparison.registry import FEATURES
+from comparison.report import page, writing
+from comparison.report.results import Results
+from comparison.run import main
+from comparison.runner.runner import Runner
+
+FAMILY = "friction = 0.1", "friction = {values = [0.1, 0.2]}"
+ERROR = "RuntimeError: no <font> of the two is here"
+PAGES = "index.html", "verification.html"
+WHOLE = (*PAGES, "junit.xml", "summary.json", "summary.md", "summary.schema.json", "surfaces.nc")
+
+
+def fail(*words: Any, **more: Any) -> Any:
+    """As a library does."""
+    raise RuntimeError("no <font>\n of the two is here")
+
+
+Last = tuple[Path, Callable[[], Results], int]
+
+
+class Place(NamedTuple):
+    """Attribute `name` of `owner` that raises, and what is then said not to be shown."""
+
+    owner: Any
+    name: str
+    said: str
+
+
+def places() -> Iterator[Place]:
+    """Every call by which a section, a picture or a file gets its content."""
+    for feature in (each for each in FEATURES if each.key != "demands"):  # not asked for here
+        if feature.analysis:
+            yield Place(feature.key, "collect", f"section {feature.key}")
+        for field in (*feature.fields, *feature.scene_fields):
+            if field.compute:
+                yield Place(field, "compute", f"section {field.name}")
+        for name, said in {"figures": "pictures of ", "packed_data": ""}.items():
+            if getattr(feature, name):
+                yield Place(feature, name, f"{said}{feature.key}")
+        if section := feature.section:
+            yield Place(section, "context", f"section {section.name}")
+            if section.verdict:
+                yield Place(section, "verdict", f"verdict of section {section.name}")
+            if section.lead:
+                yield Place(section, "lead", "sentences of sections")
+    for name, said in {"netcdf": "surfaces.nc", "summary_text": "summary.md", "junit": "junit.xml",
+                       "schema_json": "summary.schema.json"}.items():  # fmt: skip
+        yield Place(writing, name, said)
+    yield Place(Results, "as_json", "summary.json")
+    for name, said in {"word_verdict": "verdict", "_alert_groups": "alerts", "scale_of": "summary",
+                       "page_data": "surfaces"}.items():  # fmt: skip
+        yield Place(page, name, said)
+
+
+def put(place: Place, value: Any) -> None:
+    """Set the attribute, of a frozen dataclass, too."""
+    if isinstance(place.owner, type) or place.owner in (page, writing):
+        setattr(place.owner, place.name, value)
+    else:
+        object.__setattr__(place.owner, place.name, value)
+
+
+@contextmanager
+def raising(place: Place) -> Iterator[None]:
+    """Let the call raise in the block."""
+    if isinstance(place.owner, str):  # known answers are in the place of the analysis itself
+        place = place._replace(owner=next(each for each in comparison.registry.ANALYSES if each.key == place.owner))
+    before, own = getattr(place.owner, place.name), place.name in vars(place.owner)
+    put(place, fail)
+    try:
+        yield
+    finally:
+        if own:
+            put(place, before)
+        else:
+            object.__delattr__(place.owner, place.name)
+
+
+@pytest.fixture(scope="module")
+def last_report(tmp_path_factory: pytest.TempPathFactory) -> Last:
+    """A report with every section that has known results, and what writes it again."""
+    place, calls = tmp_path_factory.mktemp("lost") / "report", []
+    leave_beside(place, FILES, "fig3-I")
+    write = Reports.write
+
+    def remember(self: Reports, complete: CompleteLevel, runner: Runner) -> Results:
+        calls.append(partial(write, self, complete, runner))
+        return calls[-1]()
+
+    with pytest.MonkeyPatch.context() as patch:
+        quick_figures(patch)
+        known = {"motions": distinct_motions, "worst_phases": SEARCHED, "measured": MEASURED}
+        known |= {"assumptions": known_assumptions(), **known_others()}
+        analyses_are(patch, **known)
+        patch.setattr(Reports, "write", remember)
+        family = place.with_name("family.toml")
+        family.write_text(scene_text("fig3-I", FAMILY), encoding="utf-8")
+        words = ["fig3-I", str(family), "--grid", "2", "--out", str(place)]
+        assert main(words, distinct_hierarchy(), ThreadPoolExecutor) == 0
+        sections = sum(page_of(place, name).count('class="section"') for name in PAGES)
+        yield place, calls[-1], sections
+
+
+def test_a_report_of_which_every_part_raises_is_written(last_report: Last, capsys: pytest.CaptureFixture[str]) -> None:
+    folder, write, _ = last_report
+    with ExitStack() as stack:
+        for place in places():
+            if place.said not in WHOLE:
+                stack.enter_context(raising(place))
+        write()
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) > 30
+    assert all(line.endswith(f" could not be shown: {ERROR}") for line in lines)
+    assert {file.name for file in folder.iterdir()} >= set(WHOLE)
+    shown = page_of(folder, "index.html")
+    assert all(f"{part} could not be shown" in shown for part in ("verdict", "alerts", "summary", "section claims"))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("place", [*places()], ids=lambda place: f"{place.said} {place.name}".replace(" ", "-"))
+def test_what_raises_in_a_part_costs_that_part_alone(
+    last_report: Last, place: Place, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, write, sections = last_report
+    with raising(place):
+        write()
+    line = f"{place.said} could not be shown: {ERROR}"
+    assert capsys.readouterr().err.splitlines() == [line]
+    there = {file.name for file in folder.iterdir()}
+    assert set(WHOLE) - there == {place.said} & set(WHOLE), "every other file is there"
+    shown = "".join(page_of(folder, name) for name in PAGES)
+    if place.said not in WHOLE:
+        assert line.replace("<font>", "&lt;font&gt;") in shown
+    assert shown.count('class="section"') >= sections - 1
+    for name in {"summary.json", "summary.schema.json"} & there:
+        json.loads((folder / name).read_text(encoding="utf-8"))
