@@ -66,9 +66,7 @@ def test_a_plan_shows_a_wrong_unit_a_zero_line_and_a_swapped_direction(
     assert f"x: peak {0.5 * peak:.4g} m/s^2" in said
 
 
-def test_motions_of_a_suite_are_said_once_for_all_scales(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_motions_of_a_suite_are_said_once_for_all_scales(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for number in range(1, 7):
         drift = 0.1 if number == 5 else 0.0
         Path(f"suite/m{number}.csv").write_text(table(number * ALONG_X + drift, ALONG_X))
