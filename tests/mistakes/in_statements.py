@@ -42,7 +42,9 @@ TRENDS = tuple(
 TABLES = ("tests/comparison/report/test_tables_of_sections.py",)
 LAWS = ("tests/reference/problem/test_readings.py",)
 MEASURED = ("tests/comparison/evidence/test_validation_statements.py",)
-DEFAULT = ("tests/docs/test_default_study.py::test_the_readings_are_mean_and_largest_of_the_platform_on_the_common_grid",)
+DEFAULT = (
+    "tests/docs/test_default_study.py::test_the_readings_are_mean_and_largest_of_the_platform_on_the_common_grid",
+)
 SECTIONS = "comparison/report/templates/sections/"
 
 # fmt: off
