@@ -58,6 +58,7 @@ from reference.support.files import write_new
 COMMAND = "comparison.ensemble"
 TABLE = "ensemble.csv"
 FORMULA = ("=", "+", "-", "@")  # begin formulas in a spreadsheet, behind white space, too
+CONTROLS = ("\t", "\r", "\n")  # begin no plain cell
 FILES = (STORED.name, TABLE, PICTURE, "ensemble.pdf")
 MODELS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # what the workers ask
 SUBSET = 2  # motions of every scene that the engine computes, unless the command says otherwise
@@ -155,7 +156,8 @@ def table_text(points: Points) -> str:
     """ensemble.csv: a row for every motion, scale and model; what begins like a formula stands behind an apostrophe."""
 
     def cell(value: object) -> object:
-        return f"'{value}" if isinstance(value, str) and value.lstrip().startswith(FORMULA) else value
+        formula = isinstance(value, str) and (value[:1] in CONTROLS or value.lstrip().startswith(FORMULA))
+        return f"'{value}" if formula else value
 
     rows, stream = as_rows(points), io.StringIO()
     writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
