@@ -10,6 +10,7 @@ exponents, loading_period                                       of the loading
 ground_peak                                                     denominator of (5.1)
 checked_phase, checked_phases, flat_phases, phase_axis,
 phase_grid                                                      phase pairs
+describe_record                                                 what was read of a recorded motion, with warnings
 half_turn, own_axes, planar, planar_chain, linear, no_friction,
 untilted, mirror_symmetric, unused_harmonics, in_plane          what a scene does not require
 verbatim                                                        a text of a scene for matplotlib
