@@ -577,7 +577,7 @@ MISTAKES = (
     # seen first by the recorded reports, or beside them
     Mistake(REPORT + "templates/report.html.j2", "level {{ results.run.level }} of {{ results.run.levels }}",
             "level {{ results.run.levels }} of {{ results.run.level }}",
-            "An early report is called the last one.", (RECORDED,)),
+            "An early report is called the last one.", (LEVELS + "each_level_has_a_whole_report_that_names_it",)),
     Mistake(ANALYSES + "families/analysis.py", "(float(np.median(row)), min(row)", "(float(np.mean(row)), min(row)",
             "The mean of stored motions is called their median.", (RECORDED,)),
     Mistake(ANALYSES + "ensemble/analysis.py", "p.spectra.error.max(axis=1)", "p.spectra.error.min(axis=1)",
