@@ -22,8 +22,8 @@ from pathlib import Path
 from typing import NamedTuple, NoReturn
 
 SCRIPT = "phase-resonance"
-# thresholds of Python's garbage collector: what is imported stays, and looking through it again and again takes a tenth
-# of a command that only reads what is stored
+# thresholds of the garbage collector: imports stay, and looking through them again takes a tenth of a command that only
+# reads stored results
 COLLECTIONS = 50_000, 20, 100
 
 PACKAGE = Path(__file__).parents[1]  # comparison
@@ -97,7 +97,7 @@ def start(module: str) -> NoReturn:
     _started.append(Clock.now())
     gc.set_threshold(*COLLECTIONS)
     _refuse_threads()
-    if not sys.warnoptions:  # of libraries: what a user must know is said in a sentence
+    if not sys.warnoptions:  # warnings of libraries: a sentence says what a user must know
         warnings.simplefilter("ignore")
         os.environ.setdefault("PYTHONWARNINGS", "ignore")  # in worker processes
     sys.modules["__main__"].__spec__ = __spec__  # what worker processes load again: not the whole command

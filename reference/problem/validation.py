@@ -16,7 +16,7 @@ EXCITATIONS = ("two frequencies", "recorded motion")
 SUPPORTS = ("number of supports", "positions of supports")
 FRICTIONS = ("constant friction", "velocity-dependent friction")
 ALONG_AXES = {"stiffness": "[kx, ky], N/m", "period": "[Tx, Ty], s"}  # form of the keys of a link
-LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # of pendulums with several surfaces
+LISTS_OF_SURFACES = ("isolator.radius", "isolator.friction", "isolator.period")  # a list here means several surfaces
 MISSING = {
     "excitation": 'the table [excitation] is missing: give amplitudes, periods and decay, or record = "motion.csv"'
 }

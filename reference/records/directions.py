@@ -16,7 +16,7 @@ SPELLINGS = {
     "y": ("H2", "N", "S", "NS", "N-S", "SN", "NORTH", "T", "TR", "TRAN", "TRANS", "T1", "FP", "Y", "HN2", "BH2", "HH2"),
     "z": ("V", "UP", "UD", "U-D", "U", "DN", "DOWN", "DWN", "VER", "VERT", "VERTICAL", "Z", "HN3", "BH3", "HH3"),
 }
-CHANNEL_BANDS = ("BH", "BN", "EH", "EN", "HG", "HH", "HL", "HN")  # of SEED codes, in front of E, N, Z
+CHANNEL_BANDS = ("BH", "BN", "EH", "EN", "HG", "HH", "HL", "HN")  # SEED codes in front of E, N, Z
 AXIS_OF = {word: axis for axis, words in SPELLINGS.items() for word in words}
 AXIS_OF |= {f"{band}{end}": axis for band in CHANNEL_BANDS for end, axis in zip("ENZ", "xyz")}
 LONGEST_WORD = max(map(len, AXIS_OF))

@@ -111,7 +111,7 @@ def parse_plain_lines(lines: Iterable[str]) -> list[float] | None:
 
 
 def holds_numbers(line: str) -> bool:
-    """Whether a line is one of data: not blank and without a word, which `nan` and `inf` are not."""
+    """Tell whether a line is one of data: not blank and without a word, which `nan` and `inf` are not."""
     return bool(line.strip()) and not any(not NOT_FINITE.fullmatch(word) for word in WORD.findall(line[:MAX_LINE]))
 
 

@@ -26,7 +26,7 @@ MAX_ACCELERATION = 1e300  # finite in any unit
 MIN_INTERVAL = 1e-9  # s, between samples
 ACCELERATIONS = "(K,) along x, (K, 2) along x and y or (K, 3), m/s^2"
 STEP_MISMATCH = 1e-6  # relative: DT is printed with four to six digits
-TIME_MISMATCH = 0.01  # of a step, between the instants of two files
+TIME_MISMATCH = 0.01  # share of a step by which the instants of two files may differ
 
 
 class RecordError(ValueError):

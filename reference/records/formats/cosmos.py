@@ -27,11 +27,11 @@ REAL_HEADER = re.compile(
     r"\s*([0-9]{1,9}) Real-header values follow on +([0-9]{1,9}) lines, Format ?= ?\([0-9]+[FE]([0-9]{1,3})\.",
     re.IGNORECASE,
 )
-STEP_AT = 33  # of the real header: sampling interval, s
+STEP_AT = 33  # place of the sampling interval, s, in the real header
 
 
 def recognizes_cosmos(head: Sequence[str]) -> bool:
-    """Whether the first lines have a block of accelerations."""
+    """Tell whether the first lines have a block of accelerations."""
     return any(BLOCK.match(line) or OLD_BLOCK.match(line) for line in head)
 
 

@@ -45,11 +45,11 @@ class Column:
 
 
 def recognizes_csv(head: Sequence[str]) -> bool:
-    """Whether one of the first lines is a header with a time and an acceleration."""
+    """Tell whether one of the first lines is a header with a time and an acceleration."""
     return _header_row([(number, line) for number, line in enumerate(head, 1) if line.strip()], None) is not None
 
 
-@lru_cache(maxsize=32)  # of a family whose other keys run
+@lru_cache(maxsize=32)  # the files are the same while other keys of a family run
 def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Reading:
     """Return what a table holds; unit: of columns whose header names none. Raises RecordError."""
     lines = ((number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip())

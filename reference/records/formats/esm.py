@@ -18,7 +18,7 @@ ENTRY = re.compile(r"([A-Z][A-Z0-9_/^\[\]]*): ?(.*)")
 
 
 def recognizes_esm(head: Sequence[str]) -> bool:
-    """Whether one of the first lines states the sampling interval of ESM."""
+    """Tell whether one of the first lines states the sampling interval of ESM."""
     return any(line.startswith("SAMPLING_INTERVAL_S:") for line in head)
 
 

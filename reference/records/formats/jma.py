@@ -19,7 +19,7 @@ UNIT = re.compile(r"\s*UNIT\s*[=:,]\s*([^\s(,]+)", re.IGNORECASE)
 
 
 def recognizes_jma(head: Sequence[str]) -> bool:
-    """Whether the first lines state a sampling rate and a unit."""
+    """Tell whether the first lines state a sampling rate and a unit."""
     return any(map(RATE.match, head)) and any(map(UNIT.match, head))
 
 

@@ -17,12 +17,12 @@ RATE = re.compile(r"Sampling Freq\(Hz\)\s+([0-9.]+) ?Hz")
 SCALE = re.compile(r"Scale Factor\s+([0-9.]+) ?\(gal\)/([0-9.]+)")
 LASTING = re.compile(r"Duration Time\(s\)\s+([0-9.]+)")
 WAY = re.compile(r"Dir\.\s+(\S+)")
-NUMBERED = {"1": "NS", "2": "EW", "3": "UD", "4": "NS", "5": "EW", "6": "UD"}  # of KiK-net: borehole, then surface
+NUMBERED = {"1": "NS", "2": "EW", "3": "UD", "4": "NS", "5": "EW", "6": "UD"}  # KiK-net: borehole, then surface
 HEADER = 17  # lines
 
 
 def recognizes_knet(head: Sequence[str]) -> bool:
-    """Whether the first lines state a scale factor in gal."""
+    """Tell whether the first lines state a scale factor in gal."""
     return any(map(SCALE.match, head)) and any(map(RATE.match, head))
 
 

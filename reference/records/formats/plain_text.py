@@ -118,7 +118,7 @@ def _first_data_line(lines: Sequence[str]) -> int | None:
 
 
 def _counts(lines: Sequence[str], number: int) -> bool:
-    """Whether a line 'count step' states how many values are behind it."""
+    """Tell whether a line 'count step' states how many values are behind it."""
     stated = COUNT_AND_STEP.fullmatch(lines[number][:MAX_LINE])
     behind = sum(len(line.split()) for line in lines[number + 1 :])
     return stated is not None and len(stated[1]) < 10 and int(stated[1]) == behind
@@ -211,11 +211,11 @@ def _even_step(rows: Sequence[Sequence[float]]) -> float | None:
 
 
 def begins_with_numbers(head: Sequence[str]) -> bool:
-    """Whether the first line of a text that is not blank has numbers alone."""
+    """Tell whether the first line of a text that is not blank has numbers alone."""
     first = next((line for line in head if line.strip()), "")
     return _loose_cells(first) is not None
 
 
 def has_options(table: Mapping[str, Any]) -> bool:
-    """Whether the table of a file states what only a plain text needs."""
+    """Tell whether the table of a file states what only a plain text needs."""
     return any(key in table for key in ("step", "skip", "column"))
