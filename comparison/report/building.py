@@ -36,7 +36,7 @@ def build_report(
     features: Sequence[Feature],
     kind: type[Results],
     families: Sequence[Family],
-    lost: Sequence[str],
+    lost: Sequence[str] = (),
 ) -> Report:
     """
     Return everything that a report is made from; a field whose own computation raises is empty, with a line in `lost`.

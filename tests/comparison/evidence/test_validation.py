@@ -330,7 +330,8 @@ def test_a_comparison_error_is_within_all_uncertainties():
     one = np.ones(2)
     data = table.Data(("a", "b"), ("mm", "mm"), ("predicted",) * 2, one, np.array([0.12, 0.12]))
     values = np.array([1.1285, 1.135])
-    answers, varied = {EQUATIONS: table.Answer(values, np.array([0.03, 0.03]))}, [values + 0.024, values - 0.032]
+    answers = dict.fromkeys((EQUATIONS, ENGINE), table.Answer(values, np.array([0.03, 0.03])))
+    varied = [values + 0.024, values - 0.032]
     first, second = table.quantities("run", data, answers, varied, lambda k, allowed: "why")
     assert [each.sides[EQUATIONS].verdict for each in (first, second)] == [MET, NOT_MET]
     assert [each.sides[EQUATIONS].error for each in (first, second)] == pytest.approx([0.1285, 0.135])

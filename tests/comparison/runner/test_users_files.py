@@ -1,5 +1,6 @@
 """What the study did not write is never deleted, replaced or run: it stays, and the study's own files go beside it."""
 
+import errno
 import hashlib
 import os
 import signal
@@ -260,7 +261,9 @@ def test_a_second_run_replaces_the_first_also_behind_a_link(command: Callable[..
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["link", "report", "report.tiles"]
 
 
-@pytest.mark.parametrize(("error", "code"), [(OSError("No space left on device"), 3), (KeyboardInterrupt(), 130)])
+@pytest.mark.parametrize(
+    ("error", "code"), [(OSError(errno.ENOSPC, "No space left on device"), 3), (KeyboardInterrupt(), 130)]
+)
 def test_a_report_that_cannot_be_finished_leaves_the_old_one(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, error: BaseException, code: int
 ) -> None:
