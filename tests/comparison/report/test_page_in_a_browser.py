@@ -174,6 +174,7 @@ def test_every_plot_is_saved_as_svg_that_needs_nothing_else(browser: Browser, fi
         assert plots.count() == page.locator("button.save").count() >= least
         for number in range(plots.count()):
             plot = plots.nth(number)
+            page.wait_for_timeout(150)  # a browser saves ten files a second for a page, and no more
             with page.expect_download() as saved:
                 plot.locator("button.save").click()
             file = saved.value
