@@ -159,8 +159,11 @@ const firstPlace = () => sceneNow().places.length ? 0 : null;
 function chooseScene(scene, body = 1) {
   Object.assign(state, { scene, body, cursor: null, away: null, place: null });
   if (!sceneNow().recorded) state.pair = drawnPair(body);
-  const largest = sceneNow().places.findIndex(place => place.why.includes(`body ${body}`));
-  change({ place: largest >= 0 ? largest : firstPlace() });
+  // the largest difference of this body where both models have a motion, else a place where both have one
+  const largest = place => place.why.includes(`body ${body}`);
+  const both = place => [pairNow().first, pairNow().second].every(key => place.motions.some(motion => motion.model === key));
+  const tests = [place => largest(place) && both(place), both, largest];
+  change({ place: tests.map(test => sceneNow().places.findIndex(test)).find(index => index >= 0) ?? firstPlace() });
   part("readout").textContent = "";
   showMotions();
 }
