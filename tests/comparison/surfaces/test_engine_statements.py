@@ -94,7 +94,7 @@ def test_a_broken_limit_says_where_and_by_how_much(limit: Limit, breach: Breach,
     assert (broken.breach_texts, broken.broken) == ([said], [f"tower: {said}"])
 
 
-REST = "ot checked, as no limit is stated: total of b; total, like-for-like of a"
+REST = "checked, as no limit is stated: total of b; total, like-for-like of a"
 UNCHECKED = {"a": ["total", "like-for-like"], "b": ["total"], "c": []}
 
 
@@ -103,9 +103,9 @@ UNCHECKED = {"a": ["total", "like-for-like"], "b": ["total"], "c": []}
     [
         ((0, 0), UNCHECKED, "No scene states acceptance limits: nothing was checked."),
         ((5, 0), {"a": [], "b": []}, "Every acceptance limit holds."),
-        ((5, 0), UNCHECKED, f"5 acceptance limits hold. N{REST}."),
-        ((1, 0), UNCHECKED, f"1 acceptance limit holds. N{REST}."),
-        ((5, 1), UNCHECKED, f"1 acceptance limit is broken. N{REST}."),
+        ((5, 0), UNCHECKED, f"5 acceptance limits hold. Not {REST}."),
+        ((1, 0), UNCHECKED, f"1 acceptance limit holds. Not {REST}."),
+        ((5, 1), UNCHECKED, f"1 acceptance limit is broken. Not {REST}."),
         ((5, 3), {"a": []}, "3 acceptance limits are broken."),
     ],
 )
@@ -116,7 +116,7 @@ def test_what_is_not_checked_is_never_said_to_hold(
 
 
 def test_of_many_scenes_without_limits_some_are_named() -> None:
-    assert word_unchecked(UNCHECKED) == f"n{REST}"
+    assert word_unchecked(UNCHECKED) == f"not {REST}"
     assert word_unchecked({"c": []}) == ""
     many = {f"s{number}": ["total"] for number in range(6)}
     assert word_unchecked(many).endswith(": total of s0, s1, s2, s3 and 2 more")
