@@ -97,7 +97,7 @@ function contactPaths(scene, motion) {
 const DEMANDS = [
   ["displacement", "largest displacement of the isolator, mm", MM], ["residual", "residual displacement (± includes the creep of regularized friction), mm", MM], ["cap_share", "largest displacement, share of ρ", 1],
   ["travel_share", "largest displacement, share of the travel", 1],
-  ["acceleration", "largest absolute acceleration, m/s²", 1, i => i ? `body ${i + 1}` : "platform"], ["base_shear", "base shear, N", 1], ["drift", "story drift, mm", MM, i => `body ${i + 2}`],
+  ["acceleration", "largest absolute acceleration (literal supremum where friction sticks), m/s²", 1, i => i ? `body ${i + 1}` : "platform"], ["base_shear", "base shear, N", 1], ["drift", "story drift, mm", MM, i => `body ${i + 2}`],
   ["contact_force_min", "smallest contact force, N", 1], ["contact_force_max", "largest contact force, N", 1],
   ["support_force_min", "smallest support force, N", 1], ["support_force_max", "largest support force, N", 1],
   ["torsion", "largest rotation about the vertical, mrad", 1e3, i => i ? `body ${i + 1}` : "platform"], ["stops", "number of stops", 1],
