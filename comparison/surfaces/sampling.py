@@ -29,8 +29,7 @@ def sampling_error(sizes: Array, independent: int) -> float:
     grid = len(sizes)
     if independent < FEWEST:
         return float("nan")
-    coarser = nested_grids(grid)[-2] if len(nested_grids(grid)) > 1 else 1
-    factor = grid // coarser
+    factor = grid // (1, *nested_grids(grid))[-2]
     shifted = [mean_of_known(sizes[row::factor, column::factor]) for row in range(factor) for column in range(factor)]
     scatter = float(np.sqrt(np.nanmean((np.array(shifted) - mean_of_known(sizes)) ** 2)))
     return SAFETY * max(scatter, float(np.nanstd(sizes)) / grid)

@@ -7,7 +7,6 @@ import re
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from jsonschema import Draft202012Validator
 from pypdf import PdfReader
 
@@ -34,20 +33,11 @@ def both_pages(report: Path) -> str:
     return page_of(report) + page_of(report, "verification.html")
 
 
-def _packed(report: Path, name: str) -> bytes:
-    (packed,) = re.findall(rf'<script[^>]*id="{name}"[^>]*>(.*?)</script>', page_of(report), flags=re.DOTALL)
-    return gzip.decompress(base64.b64decode(packed))
-
-
 def data_of(report: Path) -> dict[str, Any]:
     """The numbers that the page draws."""
-    found: dict[str, Any] = json.loads(_packed(report, "data"))
+    (packed,) = re.findall(r'<script[^>]*id="data"[^>]*>(.*?)</script>', page_of(report), flags=re.DOTALL)
+    found: dict[str, Any] = json.loads(gzip.decompress(base64.b64decode(packed)))
     return found
-
-
-def motions_of(report: Path) -> list[int]:
-    """The packed numbers of the motions that the page draws."""
-    return np.frombuffer(_packed(report, "motions"), dtype="<i4").tolist()
 
 
 def text_of(path: Path) -> tuple[int, str]:

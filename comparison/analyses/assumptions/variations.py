@@ -30,13 +30,6 @@ class Variation:
     bars: Literal["softening", "shortening"] | None = None
     """what the weight above does to bars that give way: softening or shortening; null as stated"""
 
-    @property
-    def is_uneven(self) -> bool:
-        """
-        Return whether supports leave the circle, centers of mass the axis, or bodies and links their common directions.
-        """
-        return self.oval != 0.0 or self.offset != 0.0 or self.yaw != 0.0
-
     def of(self, scene: Scene) -> Scene:
         """Return the scene with this variation."""
         radius, stated = float(scene.support_radius or np.nan), scene.isolator.supports
