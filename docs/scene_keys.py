@@ -25,7 +25,10 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         " practice: `friction = {slow = 0.03, fast = 0.06, rate = 100.0}`. At rest the coefficient is `slow`. The"
         " regularized law is mu(v) min(1, v / v_reg). `load_exponent` n multiplies the coefficient by (N / N_ref)^n of"
         " the normal force N. In the spatial model N is the force of one support and N_ref its share. `slow` may then"
-        " stand alone. Each number may run over a range.",
+        " stand alone. With `initial_stiffness` k or `yield_displacement` friction yields elastically before it slides,"
+        " as in elements of codes for buildings: `friction = {slow = 0.05, yield_displacement = 0.001}`. Friction is then"
+        " k times an elastic displacement, bounded by mu N, and speed is that of the platform. Each number may run over a"
+        " range.",
     ),
     (
         "`heating` of `isolator.friction`",

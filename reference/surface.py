@@ -214,6 +214,7 @@ def prepare_run(
     axes: int = 2,
 ) -> tuple[System, RunSettings]:
     """Return the compiled scene and the settings of its runs from arguments of `amplification`. Raises ValueError."""
+    scene.require_rigid_friction("the solver")
     check_choice("equations", equations, ("exact", "small"))
     check_choice("rest_condition", rest_condition, ("consistent", "printed"))
     tolerance = check_number("tolerance", tolerance, TOLERANCE)

@@ -32,6 +32,7 @@ def assemble(
     **options: int,
 ) -> EngineModel:
     """Assemble the engine's system of `scene`. Raises ValueError for an unknown model or loading, or a wrong v_reg."""
+    scene.require_rigid_friction("the engine's model")
     check_choice("loading", loading, LOADINGS)
     check_choice("model", model, sorted(BUILDERS))
     if regularization is not None:

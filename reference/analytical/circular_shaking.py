@@ -71,6 +71,7 @@ def circular_shaking(scene: Scene, acceleration: float, frequency: float, equati
         raise ValueError("links differ in x and y: the motion is not circular")
     if scene.lubricated or not scene.dry_friction.constant:
         raise ValueError("constant dry friction only")
+    scene.require_rigid_friction("the closed form")
 
     def misfit(radius: float) -> float:
         free, held, _ = _response(scene, acceleration, frequency, radius if equations == "exact" else 0.0)

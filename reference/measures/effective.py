@@ -74,12 +74,14 @@ def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolat
         raise ValueError("effective_isolator: a lubricated scene has no dry friction; take one that has")
     if not (np.isfinite(amplitude) & (amplitude > 0.0)).all():
         raise ValueError(f"effective_isolator: displacement is {displacement!r}: pass lengths in m above 0")
-    friction, slope = scene.dry_friction.fast, amplitude / scene.radius
-    stiffness = scene.total_mass * GRAVITY * (friction + slope) / amplitude
+    weight, largest, slope = scene.total_mass * GRAVITY, scene.dry_friction.fast, amplitude / scene.radius
+    friction = np.minimum(largest, scene.dry_friction.stiffness * amplitude / weight)  # elastic where it does not yield
+    dissipating = largest - largest**2 * weight / (scene.dry_friction.stiffness * amplitude)
+    stiffness = weight * (friction + slope) / amplitude
     with np.errstate(divide="ignore", invalid="ignore"):
         return EffectiveIsolator(
             stiffness,
             2.0 * np.pi * np.sqrt(scene.total_mass / stiffness),
-            2.0 / np.pi * friction / (friction + slope),
-            slope / friction,
+            2.0 / np.pi * np.maximum(dissipating, 0.0) / (friction + slope),
+            slope / largest,
         )

@@ -74,6 +74,8 @@ class DryFriction:
         0 for a coefficient that does not depend on the normal force.
     heat : Heat, optional
         None for a coefficient that does not depend on the heat of sliding.
+    stiffness : float
+        N/m, of friction that yields elastically before it slides; inf for rigid friction.
 
     Examples
     --------
@@ -87,6 +89,12 @@ class DryFriction:
     rate: float
     exponent: float = 0.0
     heat: Heat | None = None
+    stiffness: float = math.inf
+
+    @property
+    def elastic(self) -> bool:
+        """True if friction yields elastically before it slides."""
+        return self.stiffness < math.inf
 
     @property
     def varies(self) -> bool:
@@ -172,7 +180,7 @@ class Heating(Table):
 
 class VelocityFriction(Table):
     """
-    Dry friction that depends on the slip speed, the normal force, its own heat, or several of them.
+    Dry friction that depends on the slip speed, the normal force, its own heat, or several of them, or that yields.
 
     The coefficient is (fast - (fast - slow) exp(-rate |v|)) (N / N_ref)^n, times the temperature factor of `heating`.
     """
@@ -191,14 +199,31 @@ class VelocityFriction(Table):
         Range(1e-11, 1e16, "N"),
     )
 
+    initial_stiffness: Positive | None = key(
+        "stiffness k of the whole isolator's friction before it slides: friction is k times an elastic displacement, "
+        "bounded by mu N; rigid without it",
+        Range(1e-12, 1e18, "N/m"),
+    )
+    yield_displacement: Positive | None = key(
+        "mu N / k under the weight, of the larger of slow and fast; give this or initial_stiffness",
+        Range(1e-12, 1e3, "m"),
+    )
     heating: Heating | None = key("the table below; without it the surface stays cold")
 
     @model_validator(mode="after")
     def _check_pairs(self) -> VelocityFriction:
         if (self.fast is None) != (self.rate is None):
             raise ValueError("give fast and rate together, or neither")
-        if self.fast is None and self.load_exponent is None and self.heating is None:
-            raise ValueError("give fast and rate, load_exponent or heating, or one number in place of the table")
+        yields = self.initial_stiffness is not None or self.yield_displacement is not None
+        if not yields and self.fast is None and self.load_exponent is None and self.heating is None:
+            keys = "fast and rate, load_exponent, heating or initial_stiffness"
+            raise ValueError(f"give {keys}, or one number in place of the table")
+        if yields and None not in (self.initial_stiffness, self.yield_displacement):
+            raise ValueError("give initial_stiffness or yield_displacement, the other follows: remove one of them")
+        if yields and self.heating is not None:
+            raise ValueError(
+                "heating is that of rigid friction: remove it, or initial_stiffness and yield_displacement"
+            )
         if self.reference_load is not None and self.load_exponent is None:
             raise ValueError("reference_load belongs to a load_exponent: state that, too, or remove this key")
         return self
@@ -219,7 +244,8 @@ def law_of_friction(stated: float | VelocityFriction | None, weight: float, slid
     """
     Return the law of dry friction that a scene states under a weight, N; without friction where it states none.
 
-    A `reference_load` refers the coefficients to another load. The heat of `heating` spreads over all sliders.
+    A `reference_load` refers the coefficients to another load. The heat of `heating` spreads over all sliders. A
+    `yield_displacement` is that under the weight.
     """
     if not isinstance(stated, VelocityFriction):
         return DryFriction(stated or 0.0, stated or 0.0, 0.0)
@@ -230,4 +256,7 @@ def law_of_friction(stated: float | VelocityFriction | None, weight: float, slid
         track = heating.contact_radius, heating.conductivity, heating.diffusivity, heating.initial_temperature
         heat = Heat.of(*track, sliders)
     fast = stated.slow if stated.fast is None else stated.fast
-    return DryFriction(share * stated.slow, share * fast, stated.rate or 0.0, exponent, heat)
+    law = DryFriction(share * stated.slow, share * fast, stated.rate or 0.0, exponent, heat)
+    if stated.yield_displacement is not None:
+        return replace(law, stiffness=law.largest * weight / stated.yield_displacement)
+    return law if stated.initial_stiffness is None else replace(law, stiffness=stated.initial_stiffness)

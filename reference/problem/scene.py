@@ -145,6 +145,12 @@ class Scene(Table):
             periods = 2.0 * np.pi * np.sqrt(self.masses[1:, None] / self.stiffness)
         if self.dry_friction.exponent != 0.0:
             derived["isolator.friction: under the weight"] = self.dry_friction.slow, range_of(VelocityFriction, "slow")
+        if self.dry_friction.elastic:
+            for name, value in (
+                ("initial_stiffness", self.dry_friction.stiffness),
+                ("yield_displacement", self.yield_displacement),
+            ):
+                derived[f"isolator.friction: {name}"] = value, range_of(VelocityFriction, name)
         allowed = {name: range_of(Body, name) for name in ("stiffness", "period", "damping")}
         for (i, axis), k in np.ndenumerate(self.stiffness):
             derived[f"bodies.{i + 1}: k^{'xy'[axis]} in N/m"] = float(k), allowed["stiffness"]
@@ -391,9 +397,22 @@ class Scene(Table):
         return law_of_friction(self.isolator.friction, self.total_mass * GRAVITY, sliders)
 
     @property
+    def yield_displacement(self) -> float:
+        """Elastic displacement at which friction slides under the weight, m; 0 for rigid friction."""
+        return self.friction_coefficient * self.total_mass * GRAVITY / self.dry_friction.stiffness
+
+    def require_rigid_friction(self, user: str) -> None:
+        """Raise SceneError where friction yields, for a `user` of the scene that has rigid friction only."""
+        table = self.isolator.friction
+        if isinstance(table, VelocityFriction) and self.dry_friction.elastic:
+            name = "initial_stiffness" if table.yield_displacement is None else "yield_displacement"
+            rule = f"{user} has friction that is rigid before it slides: remove this key"
+            raise SceneError(self.name, f"isolator.friction.{name}", getattr(table, name), rule)
+
+    @property
     def has_dry_friction(self) -> bool:
-        """True if friction is dry and not zero: only then a law can be regularized and a motion comes to rest."""
-        return not self.lubricated and self.friction_coefficient != 0.0
+        """True if dry friction is rigid and not zero: only then a law can be regularized and a motion comes to rest."""
+        return not self.lubricated and self.friction_coefficient != 0.0 and not self.dry_friction.elastic
 
     @property
     def recorded(self) -> bool:

@@ -80,8 +80,8 @@ class Isolator(Table):
         Range(1e-7, 1e12, "m", or_infinite=True),
     )
     friction: Friction | None = key(
-        "dry friction coefficient mu of (2.5), or the table below where it depends on velocity or load; give this "
-        "or lubrication",
+        "dry friction coefficient mu of (2.5), or the table below where it depends on velocity or load or yields; give "
+        "this or lubrication",
         Range(0.0, 1e3),
     )
     lubrication: NonNegative | None = key(

@@ -10,9 +10,9 @@ from reference.support.arguments import brief
 
 MAX_LETTERS = 300  # longest path or key that an error shows
 NEAR = 0.7  # ratio of letters that two spellings of one word share: words of other meanings share less
-RIGID = (
-    "dry friction is rigid before it slides and has no stiffness or displacement of yield: remove this key; "
-    "support_stiffness is vertical"
+YIELDS = (
+    "friction that yields before it slides is a table: write friction = {slow = 0.05, initial_stiffness = 1e7}, N/m, "
+    "or yield_displacement = 0.001, m"
 )
 ONE_SURFACE = (
     "one sliding surface is modeled: write radius and friction as one number each; two equal surfaces are one of the "
@@ -26,8 +26,8 @@ EFFECTIVE = "write radius, the effective radius rho = R - r of the one sliding s
 FOLLOWS = "follows from radius, friction and the weight: remove this key"
 HINTS = {  # what a key of other programs is here, by its letters and digits, in one table or in every table
     **dict.fromkeys(("bearings", "isolators"), "did you mean supports?"),
-    **dict.fromkeys(("initialstiffness", "kinit", "kinitial", "k1", "k0", "elasticstiffness"), RIGID),
-    **dict.fromkeys(("uy", "dy", "yielddisplacement", "sheardisplacement", "preyieldstiffness"), RIGID),
+    **dict.fromkeys(("initialstiffness", "kinit", "kinitial", "k1", "k0", "elasticstiffness"), YIELDS),
+    **dict.fromkeys(("uy", "dy", "yielddisplacement", "sheardisplacement", "preyieldstiffness"), YIELDS),
     **dict.fromkeys(("triple", "double", "surfaces", "radii", "r1", "r2", "l1", "l2", "mu1", "mu2"), ONE_SURFACE),
     **dict.fromkeys(("radius1", "radius2", "friction1", "friction2", "doublependulum", "triplependulum"), ONE_SURFACE),
     **dict.fromkeys(("isolator.damping", "isolator.dampingratio", "isolator.zeta", "isolator.c"), NO_DAMPER),

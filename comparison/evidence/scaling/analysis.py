@@ -35,8 +35,9 @@ def scale_scene(scene: Scene, s: float) -> Scene:
     """The scene with loading, dry friction and travel times s, the rate of friction with speed over s."""
     values: dict[str, Any] = {"excitation.scale": s * (scene.excitation.scale or 1.0)}
     law = scene.dry_friction
-    if not law.constant:
+    if not law.constant or law.elastic:
         table = {"slow": s * law.slow} | ({"load_exponent": law.exponent} if law.exponent else {})
+        table |= {"initial_stiffness": law.stiffness} if law.elastic else {}
         values["isolator.friction"] = table | ({"fast": s * law.fast, "rate": law.rate / s} if law.varies else {})
     elif not scene.lubricated:
         values["isolator.friction"] = s * scene.friction_coefficient

@@ -8,7 +8,7 @@ from reference.problem import SceneError, load_scene
 TOP = 'title = "x"\nduration = 5.0\n'
 BODY = "[[bodies]]\nmass = 1000.0\n"
 LOADING = "[excitation]\namplitudes = [[1.0, 1.0], [0.0, 0.0]]\nperiods = [1.0, 2.0]\ndecay = [0.1, 0.1]\n"
-RIGID, ONE_SURFACE = "dry friction is rigid before it slides", "one sliding surface is modeled"
+YIELDS, ONE_SURFACE = "friction that yields before it slides is a table", "one sliding surface is modeled"
 NO_DAMPER = "the isolator has no damper beside its friction"
 
 
@@ -21,7 +21,7 @@ def said_of(folder, isolator="radius = 2.0\nfriction = 0.05\n", body="", loading
     ("line", "said"),
     [
         *(
-            (f"{key} = 1e7", RIGID)
+            (f"{key} = 1e7", YIELDS)
             for key in ("initial_stiffness", "k_init", "kInit", "uy", "yield_displacement", "k1")
         ),
         *((f"{key} = 0.02", NO_DAMPER) for key in ("damping", "damping_ratio", "zeta")),

@@ -11,7 +11,8 @@ from reference.support.arguments import brief
 
 PEAK = {"quantity": "mu", "body": 2, "value": 2.3, "uncertainty": 0.1, "phases": [0.3, 1.1]}
 BARS = {"count": 4, "bending_stiffness": 0.8, "length": 1.0}
-HOT = {"contact_radius": 0.02, "conductivity": 0.02, "diffusivity": 1e-3, "initial_temperature": 500.0}
+WARM = {"contact_radius": 0.02, "conductivity": 0.02, "diffusivity": 1e-3}
+HOT = {**WARM, "initial_temperature": 500.0}
 
 
 def law(**table: object) -> dict[str, Any]:
@@ -66,7 +67,15 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     (places([0.1, 0.1], [0.2, 0.2], [0.3, 0.3]), "isolator.supports", "on one line"),
     (places([0, 1], [1, -1], [0, 1]), "isolator.supports", "at the same place"),
     (places([1, 1], [2, 1], [1, 2]), "bodies: center of mass of all [x, y] in m", "would carry nothing at rest"),
-    (law(), "isolator.friction", "give fast and rate, load_exponent or heating, or one number"),
+    (law(), "isolator.friction", "give fast and rate, load_exponent, heating or initial_stiffness"),
+    (law(initial_stiffness=1e4, yield_displacement=1e-3), "isolator.friction", "the other follows: remove one of them"),
+    (
+        law(initial_stiffness=1e4, heating=WARM),
+        "isolator.friction",
+        "heating is that of rigid friction: remove it",
+    ),
+    (law(yield_displacement=0.0), "isolator.friction.yield_displacement", "must be greater than 0"),
+    (law(initial_stiffness=1e-3), "isolator.friction: yield_displacement = 1962.", "from 1e-12 to 1000 m"),
     (law(fast=0.2), "isolator.friction", "give fast and rate together, or neither"),
     (law(fast=0.2, rate=1.0, reference_load=9.0), "isolator.friction", "reference_load belongs to a load_exponent"),
     (law(load_exponent=2.0), "isolator.friction.load_exponent", "must be finite, from -0.5 to 1"),

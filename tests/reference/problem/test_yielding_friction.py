@@ -1,0 +1,36 @@
+"""The keys of friction that yields elastically before it slides."""
+
+import numpy as np
+import pytest
+
+import reference
+from reference.problem import GRAVITY
+
+SCENE = reference.load_scene("fig3-I")
+WEIGHT = SCENE.total_mass * GRAVITY
+
+
+def yielding(**table: float) -> reference.Scene:
+    return SCENE.with_values({"isolator.friction": {"slow": 0.1, **table}})
+
+
+@pytest.mark.parametrize("table", [{}, {"fast": 0.2, "rate": 10.0}, {"load_exponent": 0.5, "reference_load": 5.0}])
+def test_yield_displacement_and_initial_stiffness_state_the_same(table):
+    scene = yielding(yield_displacement=1e-3, **table)
+    law = scene.dry_friction
+    assert law.elastic
+    assert law.stiffness == pytest.approx(law.largest * WEIGHT / 1e-3)
+    assert scene.yield_displacement == pytest.approx(1e-3)
+    same = yielding(initial_stiffness=law.stiffness, **table)
+    assert same.dry_friction.stiffness == law.stiffness
+    assert not SCENE.dry_friction.elastic
+    assert SCENE.yield_displacement == 0.0
+
+
+def test_effective_isolator_counts_the_elastic_part_of_the_loop():
+    scene = yielding(yield_displacement=2e-3)
+    rigid, soft = (reference.effective_isolator(each, [1e-3, 2e-3, 0.01]) for each in (SCENE, scene))
+    loss = soft.damping * soft.stiffness * np.array([1e-3, 2e-3, 0.01]) ** 2 * 2.0 * np.pi
+    np.testing.assert_allclose(loss, [0.0, 0.0, 4.0 * 0.1 * WEIGHT * 0.008], atol=1e-12)
+    np.testing.assert_array_equal(soft.stiffness[1:], rigid.stiffness[1:])
+    assert soft.stiffness[0] == pytest.approx(WEIGHT * (0.05 / 1e-3 + 1.0 / SCENE.radius))
