@@ -20,9 +20,10 @@ from reference.solver.phases.yielding import (
     begin_yielding,
     commit_force,
     cut_at_yield_or_unloading,
-    share_before_reversal,
+    share_before_slowest,
     solve_yielding_step,
 )
+from reference.solver.record import record_stick
 from reference.solver.run import FIRST_STEP, HOLDING_TIME, MAX_IDLE_PHASES, NEGLIGIBLE_REMAINDER, RIM_SQUARED_FRACTION
 from reference.solver.step_control import (
     FAILURE_SHORTENING,
@@ -66,12 +67,13 @@ EVENT_TIME = 1e-9
 
 @compiled
 def integrate_yielding(system: System, work: Workspace, settings: RunSettings, record: StepRecord, until: float) -> int:
-    """Follow the motion from the state in work.x, work.v to the first step beyond `until`, s; as `integrate` of run.py."""
+    """Follow the motion from the state in work.x, work.v to the first step beyond `until`, s; as `integrate` (run.py)."""
     # The gates of a step are those of `follow_phase`. The friction force is zero at the start. Where two phases end at
     # once in favor of the other, the next one makes a short step whatever its events.
     reset_workspace(work, min(FIRST_STEP * settings.period, system.duration), system.duration)
     work.force[0] = work.force[1] = 0.0
     contact, idle, shorter, begun, at_event = ELASTIC, 0, inf, False, False
+    since = work.time
     begin_yielding(system, work, contact, False)
     while remaining_time(system, work, settings) > 0.0:
         if work.time > until:
@@ -92,8 +94,9 @@ def integrate_yielding(system: System, work: Workspace, settings: RunSettings, r
                 return classify_end(system, work, settings, code)
             work.length, shorter = FAILURE_SHORTENING * h, inf
             continue
-        if not held and share_before_reversal(system, work, contact) < 1.0:
-            shorter = h * share_before_reversal(system, work, contact)
+        smooth = share_before_slowest(system, work)
+        if smooth < 1.0 and not held:
+            shorter, at_event = h * smooth, False
             continue
         angle = vibration_angle(system, contact, h)
         error = step_error(
@@ -125,8 +128,13 @@ def integrate_yielding(system: System, work: Workspace, settings: RunSettings, r
             shorter, at_event = inf, False
         if following != contact:
             idle, begun = idle + 1, True
+            if contact == ELASTIC:
+                record_stick(record, since, work.time)
+            since = work.time
             begin_yielding(system, work, following, contact == PLASTIC)
             contact = following
+    if contact == ELASTIC:
+        record_stick(record, since, work.time)
     return SOLVED
 
 
