@@ -17,7 +17,7 @@ from scipy.optimize import minimize_scalar
 
 Array = NDArray[np.float64]
 GRAVITY = 9.81
-ALONG = 1e-6  # s, of the difference quotients along the motion
+ALONG = 3e-7  # s, of the difference quotients along the motion
 PER_STEP = 8  # instants in a step at which accelerations are read
 NEAR = 0.01  # share of the largest value so far by which samples may miss a peak
 
