@@ -23,7 +23,7 @@ PHASES = [(0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (1.0, 3.0)]
 MASS, RADIUS, FRICTION, WAY = 2.0, 0.5, 0.05, 2e-3
 LIMIT, PENDULUM = FRICTION * MASS * GRAVITY, MASS * GRAVITY / RADIUS
 STIFFNESS = LIMIT / WAY
-ALONE = chain(RADIUS, FRICTION, [MASS], amplitudes=[[1e-12, 0.0], [0.0, 0.0]], duration=6.0).with_values(
+ALONE = chain(RADIUS, FRICTION, [MASS], amplitudes=[[1e-12, 0.0], [0.0, 0.0]], duration=12.0).with_values(
     {"isolator.friction": {"slow": FRICTION, "yield_displacement": WAY}}
 )
 
@@ -57,7 +57,7 @@ def test_energy_is_balanced_and_dissipated_as_by_the_other_program(name):
     assert abs(lost - FOUND[name]["dissipated"]) <= allowed + 1e-6 * lost
     assert allowed < 1e-2 * lost
     if equations == "exact":  # (4.3) as printed keeps terms that do work
-        assert abs(demands.energy_imbalance.value) <= demands.energy_imbalance.error
+        assert abs(demands.energy_balance.value) <= demands.energy_balance.error
         assert abs(FOUND[name]["imbalance"]) < 1e-9 * lost
 
 
@@ -71,10 +71,11 @@ def test_the_stored_values_are_what_the_other_program_says():
 
 def test_below_yield_the_platform_swings_on_both_stiffnesses_without_loss():
     rate = math.sqrt((STIFFNESS + PENDULUM) / MASS)
-    times = np.linspace(0.0, 6.0, 400)  # 15 periods
+    times = np.linspace(0.0, 12.0, 400)  # 30 periods
     motion = thrown(0.9 * WAY * rate, times)
     np.testing.assert_allclose(motion.position[:, 0, 0], 0.9 * WAY * np.sin(rate * times), atol=1e-8 * WAY)
-    assert abs(reference.demands(motion).friction_energy.value) < 1e-9 * LIMIT * WAY
+    lost = reference.demands(thrown(0.9 * WAY * rate)).friction_energy
+    assert abs(lost.value) <= lost.error < 1e-3 * LIMIT * WAY
 
 
 def turning_points(speed: float, count: int) -> list[float]:
@@ -96,13 +97,13 @@ def turning_points(speed: float, count: int) -> list[float]:
 
 
 def test_free_decay_has_the_turning_points_of_a_bilinear_oscillator():
-    motion, expected = thrown(0.6), turning_points(0.6, 30)
-    assert len(expected) > 5
+    motion, expected = thrown(2.0), turning_points(2.0, 30)
+    assert len(expected) == 10
     # the platform turns where friction becomes elastic again; the first interval is the start
     starts = np.array([start for start, _ in motion.stick[1:]])
-    found = thrown(0.6, starts).position[:, 0, 0]
+    found = thrown(2.0, starts).position[:, 0, 0]
     np.testing.assert_allclose(found, expected, rtol=1e-7)
-    assert motion.stick[-1][1] == ALONE.duration
+    assert motion.stick[-1][1] == pytest.approx(ALONE.duration)
     residual = reference.demands(motion).residual
     last = motion.position[motion.time > motion.stick[-1][0], 0, 0]
     assert residual.error >= np.ptp(last)
@@ -110,18 +111,18 @@ def test_free_decay_has_the_turning_points_of_a_bilinear_oscillator():
 
 
 def test_a_slow_cycle_loses_four_times_friction_and_way_beyond_yield():
-    period = 40.0
-    slow = ALONE.with_values({
-        "excitation.amplitudes": [[2.0, 0.0], [0.0, 0.0]], "excitation.periods": [period, period], "duration": 100.0,
-        "excitation.decay": [1e-9, 1e-9],
-    })  # fmt: skip
-    times = np.linspace(0.5 * period, 2.5 * period, 60001)
-    motion = reference.trajectory(slow, (0.0, 0.0), "small", tolerance=1e-8, times=times)
-    last = motion.time >= 1.5 * period
-    amplitude = np.abs(motion.position[last, 0, 0]).max()
-    lost = np.trapezoid(motion.friction_power[last], motion.time[last])
-    assert lost == pytest.approx(4.0 * LIMIT * (amplitude - WAY), rel=2e-3)
-    assert lost < 0.99 * 4.0 * LIMIT * amplitude
+    # on a flat cap, whose slope changes the friction force by 1e-5
+    period, radius, friction = 400.0, 50.0, 0.002
+    slow = chain(
+        radius, 0.0, [MASS], (), ((0.04, 0.0), (0.0, 0.0)), (period, period), (1e-9, 1e-9), 2.5 * period
+    )
+    slow = slow.with_values({"isolator.friction": {"slow": friction, "yield_displacement": WAY}})
+    times = np.linspace(1.5 * period, 2.5 * period, 100001)
+    motion = reference.trajectory(slow, (0.0, 0.0), "exact", tolerance=1e-8, times=times)
+    amplitude = np.abs(motion.position[:, 0, 0]).max()
+    lost, limit = np.trapezoid(motion.friction_power, motion.time), friction * MASS * GRAVITY
+    assert lost == pytest.approx(4.0 * limit * (amplitude - WAY), rel=1e-4)
+    assert amplitude > 20.0 * WAY
 
 
 @pytest.mark.parametrize("table", [{}, {"fast": 0.05, "rate": 50.0}, {"load_exponent": 0.3}])
@@ -159,8 +160,8 @@ def test_a_small_yield_displacement_tends_to_the_set_valued_law_but_for_the_plat
     answers = [reference.amplification(yielding(FIG3, way), PHASES, tolerance=1e-6) for way in ways]
     body = np.array([np.abs(each.mu[:, 1] / limit.mu[:, 1] - 1.0).max() for each in answers])
     reach = np.array([np.abs(each.displacement / limit.displacement - 1.0).max() for each in answers])
-    for off in (body, reach):
-        assert (off[1:] < 0.3 * off[:-1]).all()
+    assert (body[1:] < 0.12 * body[:-1]).all()
+    assert (reach[1:] < 0.65 * reach[:-1]).all()
     platform = np.abs(answers[-1].mu[:, 0] / limit.mu[:, 0] - 1.0)
     assert platform.max() > 0.05
 
@@ -169,7 +170,7 @@ def test_a_small_yield_displacement_tends_to_the_set_valued_law_but_for_the_plat
     ("values", "status"),
     [
         ({"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [12.0, 0.0]]}, "contact lost"),
-        ({"excitation.amplitudes": [[9.0, 0.0], [0.0, 9.0]]}, "rim reached"),
+        ({"excitation.amplitudes": [[20.0, 0.0], [0.0, 20.0]]}, "rim reached"),
         ({"isolator.travel": 0.01}, "travel reached"),
     ],
 )
