@@ -1,4 +1,4 @@
-"""Write yielding_values.json, what yielding_motion.py finds on ten scenes: `python tests/oracles/yielding_values.py`."""
+"""Write yielding_values.json, the answers of yielding_motion.py: `python tests/oracles/yielding_values.py`."""
 
 import json
 from pathlib import Path
