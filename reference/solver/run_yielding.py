@@ -82,7 +82,7 @@ def integrate_yielding(system: System, work: Workspace, settings: RunSettings, r
     begin_yielding(system, work, contact, False)
     while remaining_time(system, work, settings) > 0.0 and work.time <= until:
         if not count_step(work, settings):
-            return STEP_LIMIT
+            return classify_failure(system, work, contact, settings, STEP_LIMIT)
         h = propose_plain_length(system, work, settings)
         if aims > 0 and h < shorter:
             aims = 0  # the event is beyond a kink of the loading
@@ -93,7 +93,7 @@ def integrate_yielding(system: System, work: Workspace, settings: RunSettings, r
         if held:
             h = min(h, HOLDING_TIME * settings.period)
         code = UNSOLVED
-        if not is_too_short(work, contact, settings, h, UNSOLVED):
+        if not is_too_short(work, contact, settings, h, SOLVED if held else UNSOLVED):
             load_step(system, work, h)
             guess_from_last_step(work, h)
             code = solve_yielding_step(system, work, contact, h, NEWTON_FRACTION * settings.tolerance * work.scale[0])
