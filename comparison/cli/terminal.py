@@ -18,8 +18,8 @@ from comparison.study.models import models_of, why_not_spatial
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
+from reference.plausibility import implausible_values
 from reference.problem import Scene, describe_record
-from reference.problem.plausibility import implausible_values
 from reference.problem.tables import Record
 from reference.records.description import RecordDescription
 

@@ -12,6 +12,7 @@ SMALL = TESTS + "test_small_readings.py::"
 REDUCTIONS = TESTS + "problem/test_reductions.py"
 SPECTRA = TESTS + "test_floor_spectra.py::"
 TRAVEL = TESTS + "test_travel.py::"
+BUILDING = TESTS + "test_building.py::"
 READINGS, SLOPES = TESTS + "problem/test_readings.py::", TESTS + "test_sensitivity.py::"
 
 # fmt: off
@@ -190,9 +191,23 @@ MISTAKES = (
             "np.divide(-self.eigenvalue.real, 2.0 * size,", "Damping ratios are half.",
             (TESTS + "test_flat_slider.py::test_the_modes_on_a_plane_begin_with_rigid_motion",)),
     Mistake("reference/natural_modes.py",
-            "return frequency, symmetric * sign / np.sqrt(masses)[:, None], participation * sign",
-            "return frequency, symmetric / np.sqrt(masses)[:, None], participation * sign",
+            "return frequency, shape * sign, participation * sign",
+            "return frequency, shape, participation * sign",
             "Shapes and participation factors differ in sign.", (TESTS + "test_natural_modes.py",)),
+    Mistake("reference/building.py", "elongation = np.diff(shape, axis=0, prepend=0.0)",
+            "elongation = np.diff(shape, axis=0, prepend=shape[:1])",
+            "Modal damping lacks the damper of the lowest story.",
+            (BUILDING + "test_modal_damping_of_a_shear_building_is_proportional_to_frequency",)),
+    Mistake("reference/building.py", "elongation**2 / (2.0 * frequency)", "elongation**2 / frequency",
+            "Modal damping is twice as large.",
+            (BUILDING + "test_modal_damping_is_that_of_complex_modes_where_dampers_are_weak",)),
+    Mistake("reference/building.py", "solve_chain(scene.masses[1:], scene.stiffness[:, axis], DESCRIBED)",
+            "solve_chain(scene.masses[:-1], scene.stiffness[:, axis], DESCRIBED)",
+            "The fixed base carries the masses of the platform and of all floors but the uppermost.",
+            (BUILDING + "test_modal_damping_is_that_of_complex_modes_where_dampers_are_weak",)),
+    Mistake("reference/building.py", "max(np.hypot(*(first + second)), np.hypot(*(first - second)))",
+            "np.hypot(*(first + second))", "The peak of the ground is that at one pair of phases.",
+            (BUILDING + "test_peak_of_the_ground_is_the_resultant_of_x_and_y_over_all_phases",)),
     Mistake(PROBLEM + "definition.py", "left = max(right - (2.0 if n < end - 1 else 1.0) * step, 0.0)", "continue",
             "The denominator of (5.1) is read at samples.",
             (TESTS + "problem/test_loading.py::test_ground_peak_is_the_maximum_of_dense_samples",)),

@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 from chains import refusal
 
+from reference.plausibility import implausible_values
 from reference.problem import SceneError, load_scene
-from reference.problem.plausibility import implausible_values
 from reference.support.arguments import brief
 
 PEAK = {"quantity": "mu", "body": 2, "value": 2.3, "uncertainty": 0.1, "phases": [0.3, 1.1]}
