@@ -69,7 +69,8 @@ def test_overturning_moments_are_those_of_the_floor_forces(moved: tuple[Trajecto
 def moments(motion: Trajectory) -> np.ndarray:
     """Overturning moment on the supports over time, (T, 2), N m: of the floor forces, and of the displaced weight."""
     of_floors = np.einsum("i,tia->ta", MASSES * HEIGHTS, motion.absolute_acceleration[:, :, :2])
-    return of_floors - R / 2.0 * motion.contact_force[:, None] * motion.position[:, 0, :2]
+    moment: np.ndarray = of_floors - R / 2.0 * motion.contact_force[:, None] * motion.position[:, 0, :2]
+    return moment
 
 
 def test_supports_by_statics_carry_weight_and_moment(moved: tuple[Trajectory, StoryForces]) -> None:
