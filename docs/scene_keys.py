@@ -95,6 +95,8 @@ One number of a scene may run over a range, which makes one scene for each value
 `friction = {{range = [0.02, 0.2], steps = 10}}` or `friction = {{values = [0.05, 0.1]}}`. Several keys may run if the
 file begins with `combine`. `combine = "product"` makes a scene for each combination of the values. `combine = "zip"`
 makes a scene of the first values, one of the second, and so on. `motion = "all"` runs over the motions of a suite.
+`bounds = [0.8, 1.5]` in `[isolator]` makes two scenes of each, "lower bound" and "upper bound": both coefficients of
+friction times these factors. It needs no `combine`.
 
 The duration is at most {MAX_CYCLES:g} times the shortest period of the loading and the pendulum.
 

@@ -12,7 +12,7 @@ SMALL = TESTS + "test_small_readings.py::"
 REDUCTIONS = TESTS + "problem/test_reductions.py"
 SPECTRA = TESTS + "test_floor_spectra.py::"
 TRAVEL = TESTS + "test_travel.py::"
-BUILDING = TESTS + "test_building.py::"
+BUILDING, BOUNDS = TESTS + "test_building.py::", TESTS + "problem/test_bounds_of_friction.py::"
 READINGS, SLOPES = TESTS + "problem/test_readings.py::", TESTS + "test_sensitivity.py::"
 
 # fmt: off
@@ -211,6 +211,15 @@ MISTAKES = (
     Mistake(PROBLEM + "definition.py", "left = max(right - (2.0 if n < end - 1 else 1.0) * step, 0.0)", "continue",
             "The denominator of (5.1) is read at samples.",
             (TESTS + "problem/test_loading.py::test_ground_peak_is_the_maximum_of_dense_samples",)),
+    Mistake(PROBLEM + "families.py", 'for key in ("slow", "fast") if', 'for key in ("fast",) if',
+            "Bounds multiply fast friction alone.",
+            (BOUNDS + "test_bounds_multiply_slow_and_fast_friction_alike_and_nothing_else",)),
+    Mistake(PROBLEM + "families.py", "running = [*bounds, *running]", "running = [*running, *bounds]",
+            "Bounds and the other values that run are mixed up.",
+            (BOUNDS + "test_bounds_are_combined_with_every_value_that_runs",)),
+    Mistake(PROBLEM + "families.py", '{**isolator, "bounds": [*bounds]}', '{"bounds": [*bounds], **isolator}',
+            "Bounds of the caller give way to those in the file.",
+            (BOUNDS + "test_bounds_of_the_caller_take_the_place_of_those_in_the_file",)),
     Mistake(PROBLEM + "families.py", '("scene", list(values))', '("scene", sorted(values))',
             "Results stand at the values of other scenes.",
             (TESTS + "problem/test_family_files.py::test_the_value_that_runs_is_a_coordinate_of_results",)),

@@ -22,6 +22,7 @@ from reference.measures import Demands, Estimate, FloorSpectra, demands, effecti
 from reference.measures.distribution import fractile
 from reference.measures.peak_demands import list_demands, unit_of
 from reference.problem import GRAVITY, Family, Scene, SceneError
+from reference.problem.families import BOUNDS
 
 SCALE = "excitation.scale"
 RECORD = "excitation.record"
@@ -196,11 +197,16 @@ def members_of(families: Sequence[Family]) -> tuple[Member, ...]:
             if not scene.recorded:
                 rule = "an ensemble needs recorded motions: give --suite, or a record in the scene"
                 raise SceneError(family.name, "excitation", scene.name, rule)
-            values = ", ".join(f"{key.rpartition('.')[2]}={family.columns[key][n]}" for key in inner)
+            values = ", ".join(_entry(family, key, n) for key in inner)
             motion = ", ".join(family.labels[key][n] for key in outer)
             structure = f"{family.name}[{values}]" if values else family.name
             members.append(Member(structure, motion, float(scene.excitation.scale or 1.0), scene))
     return tuple(members)
+
+
+def _entry(family: Family, key: str, n: int) -> str:
+    """What tells a structure apart by one key that runs."""
+    return family.labels[key][n] if key == BOUNDS else f"{key.rpartition('.')[2]}={family.columns[key][n]}"
 
 
 def refuse_unfit(members: Sequence[Member], model: Model) -> None:

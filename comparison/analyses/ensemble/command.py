@@ -33,6 +33,7 @@ from comparison.cli.arguments import (
     CommandParser,
     command,
     number_of_jobs,
+    read_bounds,
     read_number,
     read_whole_number,
     report_write_errors,
@@ -48,7 +49,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
 from comparison.wording import percent
 from reference.problem import Family, SceneError
-from reference.problem.families import family_of
+from reference.problem.families import family_of, with_bounds
 from reference.problem.scene_file import scene_tables, scene_text
 from reference.records.motion_lists import FILE as MOTIONS
 from reference.records.motion_lists import motion_list_text
@@ -149,7 +150,7 @@ def family_of_options(options: argparse.Namespace, source: str) -> Family:
         asked: Any = {"range": [low, high], "steps": count} if count > 1 else {"values": [low]}
         loading = {**loading, "scale": asked} if isinstance(loading, dict) else loading
     data["excitation"] = loading
-    return family_of(data, source)
+    return family_of(with_bounds(data, read_bounds(options)), source)
 
 
 def table_text(points: Points) -> str:
@@ -251,6 +252,7 @@ def _parser() -> CommandParser:
         metavar=("A", "B"),
         help="with --target: periods between which the spectra are compared, s (default: all of the file)",
     )
+    parser.add_bounds()
     parser.add_argument("--scales", nargs=3, metavar=("LOW", "HIGH", "COUNT"), help="scale factors of every motion")
     parser.add_argument(
         "--engine",

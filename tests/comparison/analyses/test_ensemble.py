@@ -202,6 +202,8 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
         ((*SUITE, "--engine", "-1"), "", "--engine"),
         ((*SUITE, "--model", "spatial"), "", "--model translational"),
         (("mine.toml", *SUITE), "", "two files have this name"),
+        ((*SUITE, "--bounds", "1.5", "0.8"), "", "--bounds = '1.5 0.8': the smaller factor must be the first"),
+        ((*SUITE, "--bounds", "0.8", "x"), "", "--bounds = 'x': must be a number from 0.01 to 100"),
         ((*SUITE, "--periods", "0.2", "1"), "", "needs --target"),
         ((*SUITE, "--target", "code.csv"), f"{HEAD.replace('[g]', '[yd/s^2]')}0.1, 1\n1, 1", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv"), f"{HEAD}1, 1\n0.1, 1", NO_SPECTRUM),
@@ -241,6 +243,21 @@ def test_several_scenes_have_statistics_of_their_own(folder: Path) -> None:
         expected |= {"restoring": mean / 0.25 / friction_fast}
         assert each["isolator"].pop("statistic") == "mean"
         assert each["isolator"] == pytest.approx(expected, rel=1e-9)
+
+
+def test_bounds_on_the_command_line_are_the_two_structures_of_the_file(folder: Path, capsys) -> None:
+    friction = "friction = {slow = 0.025, fast = 0.05, rate = 50.0}"
+    (folder / "mine.toml").write_text(SCENE.replace("friction = 0.05", friction))
+    assert run("mine.toml", *SUITE, "--engine", "0", "--bounds", "0.8", "1.2") == 0
+    found = content()
+    assert [each["name"] for each in found["structures"]] == ["mine[lower bound]", "mine[upper bound]"]
+    assert "(lower bound): 3 motions" in (said := capsys.readouterr().out)
+    assert "(upper bound): 3 motions" in said
+    by_hand = friction.replace("slow = 0.025, fast = 0.05", "slow = 0.03, fast = 0.06")
+    (folder / "upper.toml").write_text(SCENE.replace("friction = 0.05", by_hand))
+    assert run("upper.toml", *SUITE, "--engine", "0") == 0
+    upper = [{**row, "structure": ""} for row in found["stripes"] if row["structure"] == "mine[upper bound]"]
+    assert upper == [{**row, "structure": ""} for row in content()["stripes"]]
 
 
 def test_the_spatial_engine_adds_demands_of_supports(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -106,6 +106,13 @@ def test_plan_counts_the_work_and_computes_and_writes_nothing(command: Callable[
     assert f"Roughly {4.0 + (points + 3.0 + 3.5) / 2 + 4.0:.0f} s with" in mirrored
 
 
+def test_bounds_of_the_command_line_make_two_scenes_of_each() -> None:
+    scenes = parse_options(["fig3-I", "fig4-dry", "--bounds", "0.8", "1.5", "--plan"]).scenes
+    names = [f"{name}[{bound} bound]" for name in ("fig3-I", "fig4-dry") for bound in ("lower", "upper")]
+    assert [scene.name for scene in scenes] == names
+    assert [scene.friction_coefficient for scene in scenes] == [0.08, 0.15] * 2
+
+
 def test_plan_refuses_what_takes_more_work_than_is_allowed(command: Callable[..., Run]) -> None:
     run = command(*SMALL, "--plan", "--max-work", "1000", hierarchy=MODEL_HIERARCHY)
     assert "fig3-I, translational engine: refused before any step" in run.out
