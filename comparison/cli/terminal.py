@@ -138,7 +138,7 @@ def new_table(*headings: str) -> Table:
     """An empty table: words to the left, numbers to the right. Where it is too wide words are folded, never numbers."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
-        words = heading in ("file", "scene", "model", "difference", "step", "quantity", "verdict")
+        words = heading in ("file", "scene", "model", "motion", "difference", "step", "quantity", "verdict", "bound")
         whole = heading == "difference" or not words
         table.add_column(heading, justify="left" if words else "right", no_wrap=whole, overflow="fold")
     return table

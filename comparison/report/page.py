@@ -48,7 +48,7 @@ def pages(report: Report) -> dict[str, str]:
         "lead_lines": part("sentences of sections", partial(lead_lines, report)) or [],
         "alerts": part("alerts", partial(render_alerts, report)) or "",
         "summary": part("summary", partial(render_summary, report)) or "",
-        "data": part("surfaces", lambda: pack(page_data(report).encode())) or nothing,
+        "data": part("surfaces", lambda: pack(page_data(report, partial(note_lost, lost)).encode())) or nothing,
         "packed": {key: numbers or "" for key, numbers in packed.items()},
     }
     verification = {"data": nothing, "packed": {}}

@@ -23,7 +23,8 @@ HEIGHT_AXIS = "height above the sliding contact, m"
 
 def isolator_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
     """Demands of the isolator over the scale or as strips, a dot or a line for every motion."""
-    shown = [quantity for quantity in SHOWN if any(curve.quantity == quantity for curve in ensemble.curves)]
+    moved = {curve.quantity for curve in ensemble.curves if any(curve.values)}  # nothing is drawn of zeros alone
+    shown = [quantity for quantity in SHOWN if quantity in moved]
     return [partial(_panel, ensemble, quantity) for quantity in shown]
 
 
@@ -63,7 +64,8 @@ def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
         by_engine += _values(engine, factor, place - WIDTH if one else None, **look)
     title = title_of(quantity)
     places = range(len(ensemble.structures))
-    strips = {"title": "", "ticks": [[place, ""] for place in places], "range": [-0.6, len(places) - 0.4]}
+    bounds = list(labels(ensemble).values())
+    strips = {"title": "", "ticks": [[place, bounds[place]] for place in places], "range": [-0.6, len(places) - 0.4]}
     scales = {"title": "scale factor of the motion", "range": [0.0, 1.04 * ensemble.top]}
     label = f"{title} {'by bound' if one else 'over the scale factor'}, {count_motions(ensemble.motions)}"
     series += by_engine

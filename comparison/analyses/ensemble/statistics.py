@@ -9,12 +9,11 @@ import numpy as np
 from comparison.analyses.ensemble import result
 from comparison.analyses.ensemble.analysis import Point, Points
 from comparison.analyses.ensemble.members import group_by
-from comparison.analyses.ensemble.quantities import DEMANDS, SMALLEST, Quantity, unit_of_demand
+from comparison.analyses.ensemble.quantities import DEMANDS, FRACTILES, SMALLEST, Quantity, unit_of_demand
 from comparison.json_file import finite_or_none
 from reference.measures import Estimate
 from reference.measures.distribution import fractile
 
-FRACTILES = (0.16, 0.5, 0.84)
 MEDIAN = FRACTILES.index(0.5)
 
 
