@@ -13,7 +13,7 @@ from reference.support.arguments import Range
 
 PAGE = Path(__file__).with_name("scene.md")
 SET_BY_THE_READER = {"name", "origin", "samples"}  # fields of the models that are no keys of a file
-NESTED = {"isolator", "bodies", "excitation", "acceptance", "analyses", "measured"}
+NESTED = {"isolator", "bodies", "excitation", "acceptance", "analyses", "measured", "superstructure"}
 TABLES = (  # heading, model in the schema, dotted name, introduction
     ("At the top of the file", "", "", ""),
     ("`[isolator]`", "Isolator", "isolator", "The spherical gravity-friction isolator under the platform."),
@@ -54,6 +54,13 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         " x = (l / 2) sqrt(P / EJ). `load_effect` softens the bars in every model. Softened bars that would buckle, at"
         " P = pi^2 EJ / l^2, are refused. In the spatial model `axial_stiffness` makes the link a clamped beam in"
         " every direction. Bars that could not hold the bodies upright are refused.",
+    ),
+    (
+        "`[superstructure]`",
+        "Superstructure",
+        "superstructure",
+        "All bodies above the platform together. The mode is that of the links in sway, on a platform that is held;"
+        " higher modes have ratios in proportion to their frequencies. `phase-resonance run NAME --plan` prints them.",
     ),
     ("`[excitation]`, two frequencies", "Excitation", "excitation", "Ground acceleration (5.2)-(5.4)."),
     ("`[excitation]`, recorded motion", "Record", "excitation", "A record in place of the two frequencies."),

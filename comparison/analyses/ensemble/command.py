@@ -40,7 +40,7 @@ from comparison.cli.arguments import (
     write_and_show,
 )
 from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.terminal import new_table, print_implausible_values, print_records
+from comparison.cli.terminal import new_table, print_buildings, print_records
 from comparison.runner.attempts import attempt
 from comparison.runner.output import destination, files_written_by, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
@@ -88,7 +88,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     if options.suite is not None and ":" not in options.suite:
         print_suite(console, options)
     print_records(console, [member.scene for member in members])
-    print_implausible_values(console, [member.scene for member in members])
+    print_buildings(console, [(member.structure, member.scene) for member in members])
     tasks, engine = ensemble.tasks(), len(ensemble.chosen())
     seconds = sum(task.seconds for task in tasks)
     console.print(f"{len(members)} motions by the equations, {engine} by the engine: {seconds:.0f} s of compute.")

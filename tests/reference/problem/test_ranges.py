@@ -68,7 +68,15 @@ SCENE = dict(ranges_in(Scene))
 
 def test_every_number_of_a_scene_has_a_range() -> None:
     tables = {
-        name: name for name in ("isolator", "isolator.friction", "isolator.friction.heating", "bodies", "measured")
+        name: name
+        for name in (
+            "isolator",
+            "isolator.friction",
+            "isolator.friction.heating",
+            "bodies",
+            "superstructure",
+            "measured",
+        )
     }
     tables |= {"bodies.bars": "bodies.bars", "excitation": "excitation.two frequencies"}
     numbers = {"duration", *(f"{name}.{key}" for name, table in tables.items() for key in KEYS[table])}
