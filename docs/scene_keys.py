@@ -74,6 +74,13 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         " that the engine solves. Without such a table the limit is `ratio = 2.0`.",
     ),
     (
+        "`[acceptance.demands]`",
+        "DemandLimits",
+        "acceptance.demands",
+        "Limits of what the motions of an ensemble demand. `phase-resonance ensemble --check` exits with 1 where one is"
+        " not met. `statistic` says whether they are on the mean or on the largest value over the motions.",
+    ),
+    (
         "`[analyses]`",
         "Analyses",
         "analyses",
@@ -134,7 +141,7 @@ def _rows(table: dict[str, Any], dotted: str) -> Iterator[str]:
 
 
 def _literal(default: Any) -> str:
-    return "none" if default is None else f"{default:g}"
+    return "none" if default is None else f'"{default}"' if isinstance(default, str) else f"{default:g}"
 
 
 def _limits(field: dict[str, Any]) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 
-from reference.problem.acceptance import Acceptance, Limits
+from reference.problem.acceptance import Acceptance, DemandLimits, Limits
 from reference.problem.analyses import Analyses
 from reference.problem.bar_links import BarLink, bar_links, stands_upright
 from reference.problem.beam_column import buckling_load
@@ -569,6 +569,7 @@ KEYS: dict[str, tuple[str, ...]] = {
     "acceptance": tuple(Acceptance.model_fields),
     "analyses": tuple(Analyses.model_fields),
     "measured": tuple(Measured.model_fields),
+    "acceptance.demands": tuple(DemandLimits.model_fields),
     **{f"acceptance.{pair}": tuple(Limits.model_fields) for pair in ("like_for_like", "total", "translational", "*")},
     "excitation": (*Excitation.model_fields, "record", "detrend"),
     f"excitation.{EXCITATIONS[0]}": tuple(Excitation.model_fields),
