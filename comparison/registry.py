@@ -34,7 +34,6 @@ FEATURES: tuple[Feature, ...] = (
     _feature("analyses.families"),
     _feature("analyses.worst_phases"),
     _feature("analyses.demands"),
-    _feature("analyses.ensemble"),
     core.DIFFERENCES,
     core.BUDGET,
     _feature("analyses.conditioning"),

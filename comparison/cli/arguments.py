@@ -48,10 +48,10 @@ class CommandParser(OneLineParser):
         help_text = f"TOML files or built-in names (default: {default})"
         self.add_argument("scenes", nargs="*", metavar="SCENE", help=help_text)
 
-    def add_out(self, content: str) -> None:
+    def add_out(self, content: str, default: str = "report") -> None:
         """The folder that the command writes into; content: what goes there, in words."""
         self.add_argument(
-            "--out", default=Path("report"), type=Path, metavar="DIR", help=f"{content} (default %(default)s)"
+            "--out", default=Path(default), type=Path, metavar="DIR", help=f"{content} (default %(default)s)"
         )
 
     def add_bounds(self) -> None:

@@ -537,7 +537,7 @@ class Scene(Table):
     def _digest(self) -> str:
         content = self.model_dump_json(
             exclude=dict.fromkeys(("title", "name", "acceptance", "analyses", "measured"), True)
-            | {"excitation": {"record": True, "origin": True}},
+            | {"excitation": {"record": True, "origin": True}, "bodies": {"__all__": {"floor": True}}},
             exclude_none=True,  # a key that is not given changes no result
         )
         return hashlib.sha256(content.encode()).hexdigest()[:16]

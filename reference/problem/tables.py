@@ -22,6 +22,7 @@ from pydantic import (
 from reference.problem.beam_column import LoadFactors, load_factors
 from reference.problem.friction import Friction
 from reference.problem.keys import (
+    NONE,
     REQUIRED,
     SPATIAL,
     NonNegative,
@@ -186,6 +187,7 @@ LINKS = ("period", "stiffness", "bars")
 class Body(Table):
     """One rigid body; the first is the platform, every other body is linked to the body before it."""
 
+    floor: Text | None = key("name of its floor in the report of an ensemble", models=NONE)
     mass: Positive = key("mass m_i", Range(1e-12, 1e15, "kg"), default=REQUIRED)
     period: PositivePair | None = key(
         "`[Tx, Ty]`, 2 pi sqrt(m_i / k) along x and y of the link to the body below, under load; give this, "

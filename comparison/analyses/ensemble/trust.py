@@ -1,0 +1,171 @@
+"""How far the simple models can be trusted: every model beside the exact equations, on the motions that all have."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from comparison.analyses.ensemble.quantities import DEMANDS, text_of, title_of, unit_for_reading
+from comparison.analyses.ensemble.result import EnsembleResult, Structure
+from comparison.analyses.ensemble.rows import MAIN, labels, place_of
+from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL
+from comparison.wording import percent, signed
+
+COLUMNS = {
+    SMALL.key: "small equations",
+    EXACT.key: "exact equations",
+    TRANSLATIONAL.key: "translational engine",
+    SPATIAL.key: "spatial engine",
+}
+TRUSTED = ("displacement", "base_shear", "acceleration", "drift")  # demands that every model has
+LEAST_SHARE = 0.02  # of the largest value of its kind: a smaller one is no base of a percentage
+STATISTICS = (("mean", 0), ("84 %", 3), ("largest", 4))
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """A model over the exact equations on common motions: mean, smallest and largest."""
+
+    mean: float
+    smallest: float
+    largest: float
+
+    @property
+    def text(self) -> str:
+        """Mean difference, and its range over the motions."""
+        ends = signed(self.smallest - 1.0), signed(self.largest - 1.0)
+        return signed(self.mean - 1.0) + (f" ({ends[0]} to {ends[1]})" if ends[0] != ends[1] else "")
+
+
+@dataclass(frozen=True)
+class TrustRow:
+    """A demand of one bound. ratios: by model, of those that have it at all the common motions."""
+
+    bound: str
+    structure: Structure
+    quantity: str
+    body: int | None
+    motions: tuple[str, ...]
+    value: float  # mean over these motions by the exact equations, SI
+    ratios: Mapping[str, Ratio] = field(default_factory=dict)
+    by_law: Ratio | None = None  # the translational engine over the equations with its friction law
+    turning: Ratio | None = None  # the spatial over the translational engine
+
+    @property
+    def name(self) -> str:
+        """The demand in words, with its place."""
+        where = place_of(self.structure, self.quantity, self.body)
+        return f"{title_of(self.quantity)}{', ' if where else ''}{where}"
+
+    @property
+    def text(self) -> str:
+        """The mean by the exact equations, in the unit in which it is read."""
+        unit, factor = unit_for_reading(self.quantity, self.structure.weight)
+        return f"{text_of(self.value, None, factor)} {unit}".strip()
+
+
+def trust_rows(ensemble: EnsembleResult) -> list[TrustRow]:
+    """Every demand of the main table and of every body, where at least one other model has it."""
+    shown = list(dict.fromkeys([*(each.quantity for each in MAIN), "story_shear"]))
+    names = [name for name in DEMANDS if name in shown and name != "residual"]
+    named = labels(ensemble)
+    rows = []
+    for structure in ensemble.structures:
+        for quantity in names:
+            bodies: Sequence[int | None] = (None, *range(1, structure.bodies + 1))
+            for body in bodies:
+                row = _trust_row(ensemble, structure, named[structure.name], quantity, body)
+                if row is not None:
+                    rows.append(row)
+    return rows
+
+
+def _trust_row(
+    ensemble: EnsembleResult, structure: Structure, bound: str, quantity: str, body: int | None
+) -> TrustRow | None:
+    def values(model: str) -> dict[str, float]:
+        found = ensemble.values_at_top(structure.name, quantity, body, model)
+        return {motion: each.value for motion, each in found.items() if each.value is not None}
+
+    by_model = {key: values(key) for key in (*COLUMNS, REGULARIZED.key)}
+    # statics, not the model itself, gives the supports of all models but the spatial one
+    beside = [SPATIAL.key] if quantity.startswith("support_force") else [key for key in by_model if key != EXACT.key]
+    others = {key: by_model[key] for key in beside if by_model[key]}
+    exact = by_model[EXACT.key]
+    common = [
+        motion for motion, value in exact.items() if value > 0.0 and all(motion in each for each in others.values())
+    ]
+    if not others or not common:
+        return None
+
+    def ratio(upper: str, lower: str) -> Ratio | None:
+        if upper not in others or not (lower == EXACT.key or lower in others):
+            return None
+        pairs = [by_model[upper][motion] / by_model[lower][motion] for motion in common if by_model[lower][motion]]
+        return Ratio(math.fsum(pairs) / len(pairs), min(pairs), max(pairs)) if pairs else None
+
+    ratios = {key: found for key in COLUMNS if key != EXACT.key and (found := ratio(key, EXACT.key))}
+    law = REGULARIZED.key if REGULARIZED.key in others else EXACT.key
+    return TrustRow(
+        bound, structure, quantity, body, tuple(common),
+        math.fsum(exact[motion] for motion in common) / len(common), ratios,
+        ratio(TRANSLATIONAL.key, law), ratio(SPATIAL.key, TRANSLATIONAL.key),
+    )  # fmt: skip
+
+
+def _largest(rows: Sequence[TrustRow], pick: str) -> tuple[float, TrustRow] | None:
+    """The largest size of a difference over the demands that every model has, and its row."""
+    found = []
+    tops = {name: max((row.value for row in rows if row.quantity == name), default=0.0) for name in TRUSTED}
+    for row in rows:
+        ratio = row.ratios.get(SMALL.key) if pick == SMALL.key else getattr(row, pick)
+        if ratio is not None and row.quantity in TRUSTED and row.value >= LEAST_SHARE * tops[row.quantity]:
+            worst = max(ratio.smallest - 1.0, ratio.largest - 1.0, key=abs)
+            found.append((worst, row))
+    return max(found, key=lambda pair: abs(pair[0]), default=None)
+
+
+def trust_sentence(ensemble: EnsembleResult) -> str:
+    """Return the sentence that keeps geometry, the codes and the turning of the bodies apart; "" without an engine."""
+    rows = trust_rows(ensemble)
+    parts = {
+        SMALL.key: "the geometry of the sphere, which the small equations leave out, is worth up to {} ({})",
+        "by_law": "given the same equations and friction law, the equations and the engine differ by up to {} ({})",
+        "turning": "bodies that turn on their supports change a demand by up to {} ({})",
+    }
+    said = []
+    for pick, words in parts.items():
+        if (found := _largest(rows, pick)) is not None:
+            size, row = found
+            bound = f", {row.bound}" if len(ensemble.structures) > 1 else ""
+            said.append(words.format(percent(abs(size)), f"{row.name}{bound}"))
+    if not said:
+        return ""
+    motions = {(row.bound, motion) for row in rows for motion in row.motions}
+    count = f"On the {len(motions)} motion{'s' * (len(motions) != 1)} that all models computed"
+    return f"{count}, three things are apart: {'; '.join(said)}."
+
+
+def extended_rows(ensemble: EnsembleResult) -> Iterator[tuple[TrustRow, Ratio, list[str]]]:
+    """
+    Yield the demands of the suite by the equations, times the ratio of the engine over them.
+
+    Each with the ratio, and mean, 84 % and largest value times its mean, with the range that its spread makes.
+    """
+    for row in trust_rows(ensemble):
+        ratio = row.ratios.get(ensemble.engine.model)
+        stripe = ensemble.stripe(row.structure.name, row.quantity, row.body)
+        if ratio is None or stripe is None:
+            continue
+        unit, factor = unit_for_reading(row.quantity, row.structure.weight)
+        numbers = stripe.mean, *stripe.fractiles, stripe.largest
+        cells = []
+        for _, place in STATISTICS:
+            value = numbers[place].value
+            cells.append("none" if value is None else _with_range(ratio, value, factor))
+        yield row, ratio, [unit, *cells]
+
+
+def _with_range(ratio: Ratio, value: float, factor: float) -> str:
+    """A value times the mean ratio, and the range that the spread of the ratio makes."""
+    mean, low, high = (text_of(each * value, None, factor) for each in (ratio.mean, ratio.smallest, ratio.largest))
+    return f"{mean} ({low} to {high})"
