@@ -14,7 +14,8 @@ from reference.problem.result import Array
 from reference.problem.scene import takes_scene
 
 DESCRIBED = 10  # modes of each axis; of a tall chain only the lowest are found
-NAMED = 6  # modes that a line names
+NAMED = 6  # modes, or buildings, that a line names
+SHOWN = 3  # kinds of buildings that are described
 
 
 @dataclass(frozen=True)
@@ -60,17 +61,7 @@ class Building:
     @property
     def lines(self) -> list[str]:
         """The building as lines of text."""
-        bodies = f"{self.bodies} {'body' if self.bodies == 1 else 'bodies'}"
-        load = "" if self.load_per_support is None else f", {word_force(self.load_per_support)} on each of "
-        load += "" if self.load_per_support is None else f"{self.supports} supports (equal dead load)"
-        lines = [f"Building {self.name}: {bodies}, weight {word_force(self.weight)}{load}"]
-        lines.append(f"  periods on the isolator, without friction: {_word_axes(self.isolated_period, 's')}")
-        if self.bodies > 1:
-            lines.append(f"  periods above a fixed base: {_word_axes(self.fixed_base_period, 's')}")
-            lines.append(f"  damping of these modes: {_word_axes(100.0 * self.modal_damping, '%')}")
-        peak = f"{self.ground_peak:.4g} m/s^2 = {self.ground_peak / GRAVITY:.3g} g"
-        lines.append(f"  peak of the ground: {peak if self.ground_peak else 'none, the ground is at rest'}")
-        return lines
+        return word_buildings([self])
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
@@ -141,6 +132,44 @@ def horizontal_peak(scene: Scene) -> float:
         # The same holds over the cosines of both phases, and both harmonics are largest at the start.
         first, second = scene.amplitudes[:2].T
         return float(max(np.hypot(*(first + second)), np.hypot(*(first - second))))
+
+
+def word_buildings(buildings: Sequence[Building]) -> list[str]:
+    """Return the buildings as lines of text: once what is alike, of the first kinds."""
+    alike: dict[str, list[Building]] = {}
+    for building in buildings:
+        alike.setdefault("\n".join(_word_structure(building)), []).append(building)
+    lines = []
+    for text, own in [*alike.items()][:SHOWN]:
+        names = [*dict.fromkeys(building.name for building in own)]
+        more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+        lines.append(f"Building {', '.join(names[:NAMED])}{more}: {text}")
+        lines.append(f"  peak of the ground: {_word_peaks([building.ground_peak for building in own])}")
+    if len(alike) > SHOWN:
+        lines.append(f"and {len(alike) - SHOWN} more buildings")
+    return "\n".join(lines).splitlines()
+
+
+def _word_structure(building: Building) -> list[str]:
+    """Return what is said of a building without its loading."""
+    bodies = f"{building.bodies} {'body' if building.bodies == 1 else 'bodies'}"
+    load = building.load_per_support
+    each = "" if load is None else f", {word_force(load)} on each of {building.supports} supports (equal dead load)"
+    lines = [f"{bodies}, weight {word_force(building.weight)}{each}"]
+    lines.append(f"  periods on the isolator, without friction: {_word_axes(building.isolated_period, 's')}")
+    if building.bodies > 1:
+        lines.append(f"  periods above a fixed base: {_word_axes(building.fixed_base_period, 's')}")
+        lines.append(f"  damping of these modes: {_word_axes(100.0 * building.modal_damping, '%')}")
+    return lines
+
+
+def _word_peaks(peaks: Sequence[float]) -> str:
+    """Return the peaks of the ground, m/s^2, of one motion or of the least and the most."""
+    if not any(peaks):
+        return "none, the ground is at rest"
+    ends = [min(peaks), max(peaks)]
+    in_meters, in_g = (" to ".join(dict.fromkeys(f"{end / unit:.3g}" for end in ends)) for unit in (1.0, GRAVITY))
+    return f"{in_meters} m/s^2 = {in_g} g"
 
 
 def word_force(force: float) -> str:

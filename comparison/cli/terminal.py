@@ -18,6 +18,7 @@ from comparison.study.models import models_of, why_not_spatial
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
+from reference.building import describe_building, word_buildings
 from reference.plausibility import implausible_values
 from reference.problem import Scene, describe_record
 from reference.problem.tables import Record
@@ -82,9 +83,16 @@ def print_stored(console: Console, results: TaskResults, batches: Sequence[Task]
         console.print(line, soft_wrap=True)  # a path is copied whole
 
 
-def print_implausible_values(console: Console, scenes: Sequence[Scene]) -> None:
-    """A line for every value that is hardly meant, with the first scene that has it."""
-    said = {line: scene.name for scene in reversed(scenes) for line in implausible_values(scene)}
+def print_buildings(console: Console, named: Sequence[tuple[str, Scene]]) -> None:
+    """Print what was read of the buildings; then a line for every kind of value that is hardly meant, once for each."""
+    buildings = [replace(describe_building(scene), name=name) for name, scene in named]
+    for line in word_buildings(buildings):
+        console.print(line, soft_wrap=True, markup=False, highlight=False)
+    strongest: dict[str, tuple[float, Scene]] = {}
+    for building, (name, scene) in zip(buildings, named):
+        if name not in strongest or building.ground_peak > strongest[name][0]:
+            strongest[name] = building.ground_peak, scene
+    said = {line: name for name in reversed(strongest) for line in implausible_values(strongest[name][1])}
     for line, name in said.items():
         console.print(f"Warning: {name}: {line}", soft_wrap=True, markup=False)
 
@@ -104,9 +112,9 @@ def print_records(console: Console, scenes: Sequence[Scene]) -> None:
 
 
 def print_models_left_out(console: Console, study: Study) -> None:
-    """A line for every scene with hardly meant values, or that states only a part of what a model needs."""
+    """Print what was read and what is hardly meant; say which scenes state only a part of what a model needs."""
     print_records(console, study.scenes)
-    print_implausible_values(console, study.scenes)
+    print_buildings(console, [(scene.name, scene) for scene in study.scenes])
     for scene in study.scenes:
         if reason := why_not_spatial(scene):
             console.print(f"{scene.name}: {reason}.", soft_wrap=True)

@@ -226,6 +226,16 @@ class Body(Table):
     )
 
 
+class Superstructure(Table):
+    """All bodies above the platform together."""
+
+    damping: NonNegative | None = key(
+        "damping ratio of the first mode above a fixed base, of x and of y: c = 2 zeta k / omega_1 of every link, "
+        "in proportion to its stiffness; in place of `damping` of every body",
+        Range(0.0, 1.0),
+    )
+
+
 class Excitation(Table):
     """Two-frequency damped ground acceleration (5.2)-(5.4): rows x, y and optionally z, columns the harmonics."""
 

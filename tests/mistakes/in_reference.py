@@ -12,6 +12,7 @@ SMALL = TESTS + "test_small_readings.py::"
 REDUCTIONS = TESTS + "problem/test_reductions.py"
 SPECTRA = TESTS + "test_floor_spectra.py::"
 TRAVEL = TESTS + "test_travel.py::"
+HAND, WRONG = "tests/comparison/test_hand_checks.py::", TESTS + "problem/test_wrong_values.py::"
 BUILDING, BOUNDS = TESTS + "test_building.py::", TESTS + "problem/test_bounds_of_friction.py::"
 READINGS, SLOPES = TESTS + "problem/test_readings.py::", TESTS + "test_sensitivity.py::"
 
@@ -211,6 +212,26 @@ MISTAKES = (
     Mistake(PROBLEM + "definition.py", "left = max(right - (2.0 if n < end - 1 else 1.0) * step, 0.0)", "continue",
             "The denominator of (5.1) is read at samples.",
             (TESTS + "problem/test_loading.py::test_ground_peak_is_the_maximum_of_dense_samples",)),
+    Mistake(PROBLEM + "scene.py", "2.0 * ratio / np.array(first) * self.stiffness",
+            "ratio / np.array(first) * self.stiffness", "The superstructure has half the damping that is stated.",
+            (HAND + "test_modal_damping_of_a_shear_building_is_that_stated_for_its_first_mode",)),
+    Mistake(PROBLEM + "scene.py", "solve_chain(self.masses[1:], links, 1)[0][0] for links in self.stiffness.T",
+            "solve_chain(self.masses[1:], self.stiffness[:, 0], 1)[0][0] for links in self.stiffness.T",
+            "The damping along y is that of the first mode along x.",
+            (HAND + "test_modal_damping_of_a_shear_building_is_that_stated_for_its_first_mode",)),
+    Mistake(PROBLEM + "scene.py", "            if body.damping is not None:\n                rule",
+            "            if body.damping is None:\n                rule",
+            "Damping of a body and of the superstructure go together.",
+            (TESTS + "test_damping.py::test_damping_of_the_superstructure_stands_alone",)),
+    Mistake("reference/plausibility.py", "load not in LOAD_PER_SUPPORT and scene.total_mass > NORMALIZED",
+            "load not in LOAD_PER_SUPPORT", "The cases of the paper, of 1 kg, are taken for buildings.",
+            (WRONG + "test_masses_in_two_units_are_one_line_and_unit_masses_none",)),
+    Mistake("reference/plausibility.py", "as_read <= LARGEST_PEAK * GRAVITY", "True",
+            "A record in a wrong unit is said twice.",
+            (WRONG + "test_a_peak_of_the_ground_is_hardly_meant_by_its_scale_where_the_record_is_not",)),
+    Mistake("reference/plausibility.py", "sorted(map(float, building.fixed_base_period[:, 0]), reverse=True)",
+            "[float(building.fixed_base_period[0, 0])]", "The period along y is not looked at.",
+            (WRONG + "test_what_is_hardly_meant_is_one_line",)),
     Mistake(PROBLEM + "families.py", 'for key in ("slow", "fast") if', 'for key in ("fast",) if',
             "Bounds multiply fast friction alone.",
             (BOUNDS + "test_bounds_multiply_slow_and_fast_friction_alike_and_nothing_else",)),

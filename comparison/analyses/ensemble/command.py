@@ -33,7 +33,7 @@ from comparison.cli.arguments import (
     write_and_show,
 )
 from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.terminal import print_implausible_values, print_records
+from comparison.cli.terminal import print_buildings, print_records
 from comparison.runner.attempts import attempt
 from comparison.runner.output import destination, publish, refuse_foreign_files, refuse_other_page
 from comparison.runner.processes import Pool, process_pool
@@ -79,7 +79,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     if options.suite is not None and ":" not in options.suite:
         print_suite(console, options)
     print_records(console, [member.scene for member in members])
-    print_implausible_values(console, [member.scene for member in members])
+    print_buildings(console, [(member.structure, member.scene) for member in members])
     tasks = ensemble.equation_tasks()
     first = expected_choices(members, asked)
     later = sum(task.seconds for task in ensemble.engine_tasks([Choice(member, ()) for member in first]))

@@ -15,8 +15,10 @@ from runs import Run, no_executor
 from studies import difference_rows, solved
 
 import reference
+from comparison.analyses.demands.analysis import DemandSurfaces
 from comparison.cli.options import parse_options
 from comparison.runner.processes import cores
+from comparison.study.costs import seconds_per_motion
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit, check_limits
@@ -162,6 +164,16 @@ def test_without_a_word_the_study_is_the_papers_four_cases_on_48_phases(
 def test_the_cost_of_a_model_is_that_of_all_its_batches() -> None:
     costs = solved(Study((reference.load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy()))["cost"]
     assert costs.values.ravel() == pytest.approx(0.016), "16 phase pairs of 1 ms each"
+
+
+def test_the_plan_counts_every_motion_of_the_demands() -> None:
+    scene = reference.load_scene("fig3-I")
+    for grid in (4, 8):
+        study = Study((scene,), grid, 1e-3, MODEL_HIERARCHY)
+        tasks = DemandSurfaces().tasks(study)
+        motions = [(task.argument[1], len(task.argument[3])) for task in tasks]
+        expected = sum(count * seconds_per_motion(scene, model) for model, count in motions)
+        assert DemandSurfaces().estimate_seconds(study) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("number", range(6))

@@ -10,7 +10,6 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime
 from pathlib import Path
-from types import SimpleNamespace
 
 import psutil
 import pytest
@@ -27,6 +26,7 @@ from comparison.cli.computing import run_facts
 from comparison.cli.start import Clock
 from comparison.cli.terminal import new_table
 from comparison.run import main
+from reference.problem import load_scene
 
 
 def next_commands(run: Run) -> list[list[str]]:
@@ -96,8 +96,11 @@ def test_a_value_hardly_meant_is_named_once_with_its_first_scene(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(terminal, "implausible_values", lambda scene: ["mass = 1e9: hardly meant"])
-    terminal.print_implausible_values(Console(), [SimpleNamespace(name=name) for name in "ab"])  # type: ignore[misc]
-    assert capsys.readouterr().out == "Warning: a: mass = 1e9: hardly meant\n"
+    terminal.print_buildings(Console(), [(name, load_scene("fig3-I")) for name in "ab"])
+    *building, warning = capsys.readouterr().out.splitlines()
+    assert warning == "Warning: a: mass = 1e9: hardly meant"
+    assert building[0].startswith("Building a, b: 2 bodies, weight 19.62 N"), "once what is alike"
+    assert len(building) == 5
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows does not add up the times of processes")
