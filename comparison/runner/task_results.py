@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, get_type_hints
 
 from comparison.runner.cache import Cache, Key
-from comparison.runner.task import GIVEN_UP, Task, TaskResult, result_without_value
+from comparison.runner.task import Task, TaskResult, result_without_value
 from reference.problem import Outcome
 
 
@@ -72,7 +72,7 @@ class TaskResults:
         self._remember(task, result)
         if self.cache is None:
             return
-        overrun = result.outcome == Outcome.TIME_LIMIT and result.value is None and result.error_message != GIVEN_UP
+        overrun = result.outcome == Outcome.TIME_LIMIT and result.value is None
         if overrun and task.timeout is not None:
             self.cache.put(task.key, Overrun(task.timeout, result.error_message))
         elif not result.error_message:

@@ -34,7 +34,7 @@ MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call 
 TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
 ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it
 OURS, INSTALLED = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
-UNKNOWN_ERROR = np.nan  # time limit, s, of an engine that states none
+UNKNOWN_ERROR = np.nan  # error of an engine that states none
 LONGEST_STATUS = 60  # letters of a status of its own words that a message repeats
 
 

@@ -160,7 +160,7 @@ MISTAKES = (
     Mistake(RUNNER + "processes.py", "        made.shutdown(wait=False, cancel_futures=True)\n        raise",
             "        raise", "An executor is not shut down after an exception.",
             (DEATHS + "an_executor_ends_with_the_block_that_it_was_made_for",)),
-    Mistake(RUNNER + "task_results.py", " and result.error_message != GIVEN_UP", "",
+    Mistake(RUNNER + "task_results.py", "overrun = result.outcome == Outcome.TIME_LIMIT and", "overrun = result.outcome in (Outcome.TIME_LIMIT, Outcome.NOT_ASKED) and",
             "A batch that was given up is stored as an overrun.", (DEATHS + "a_batch_that_was_given_up_is_not_stored",)),
     Mistake(RUNNER + "task_results.py", "task.timeout > stored.timeout", "task.timeout >= stored.timeout",
             "A repeated run waits for every hang again.",
