@@ -44,7 +44,7 @@ class StoreError(OSError):
 
 
 @dataclass(frozen=True)
-class Key:
+class CacheKey:
     """
     What a result is found by. about: all that the results of its group depend on in common, as text; item: what
     distinguishes this one, as a hash; kind: the suffix of its file, which the counts go by.
@@ -72,7 +72,7 @@ class Cache:
         self.folder = folder
         self.kept: Counter[str] = Counter()
 
-    def get(self, key: Key, declared: Any) -> Any | None:
+    def get(self, key: CacheKey, declared: Any) -> Any | None:
         """The stored result to the last bit, of type `declared`; None if there is none that is whole and fits."""
         try:
             file = read_file(self.folder / key.name, LIMIT)
@@ -87,11 +87,11 @@ class Cache:
             os.utime(self.folder / key.group)  # lately used
         return value
 
-    def holds(self, key: Key) -> bool:
+    def holds(self, key: CacheKey) -> bool:
         """Return whether there is a file for it, whatever its state."""
         return (self.folder / key.name).exists()
 
-    def put(self, key: Key, value: Any) -> None:
+    def put(self, key: CacheKey, value: Any) -> None:
         """Store a result, unless it names a fault. Raises StoreError, and leaves what is stored as it was."""
         if faulty(value):
             return
@@ -104,7 +104,7 @@ class Cache:
             raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {error.strerror}") from None
         self.kept[key.kind] += 1
 
-    def remove(self, keys: Iterable[Key]) -> None:
+    def remove(self, keys: Iterable[CacheKey]) -> None:
         """Drop these results and no others."""
         wanted = {key.name for key in keys}
         for group in {Path(name).parent.name for name in wanted}:
@@ -113,7 +113,7 @@ class Cache:
                     if f"{group}/{entry.name}" in wanted and _is_result(entry):
                         os.unlink(entry.path)
 
-    def trim(self, keys: Iterable[Key], limit: int = LIMIT) -> None:
+    def trim(self, keys: Iterable[CacheKey], limit: int = LIMIT) -> None:
         """Drop groups other than those of `keys`, least recently used first, while all take more than `limit`."""
         needed = {key.group for key in keys}
         with suppress(OSError):  # a store that cannot be looked through is not worth ending a run for
@@ -157,7 +157,7 @@ def faulty(result: Any) -> bool:
     return bool(getattr(result, "error_message", ""))
 
 
-def _checksum(key: Key, content: bytes) -> bytes:
+def _checksum(key: CacheKey, content: bytes) -> bytes:
     return hashlib.sha256(key.name.encode() + b"\0" + content).digest()
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from comparison.runner.cache import Key
+from comparison.runner.cache import CacheKey
 from comparison.runner.environment import environment_fingerprint, task_environment_fingerprint
 from comparison.study.batches import Batch
 from comparison.study.models import Model
@@ -40,7 +40,7 @@ class Task:
     model: str = ""  # "package:name" of the only model that it asks: no other source changes its value
 
     @cached_property
-    def key(self) -> Key:
+    def key(self) -> CacheKey:
         """
         Return what it is found by: the function, all that its argument holds, versions and the source that computes it.
         """
@@ -54,7 +54,7 @@ class Task:
         }
         item = json.dumps([function, fingerprint(self.argument)])
         digest = hashlib.sha256(item.encode()).hexdigest()
-        return Key(json.dumps(about, indent=1, sort_keys=True), digest, BATCH if self.batch else RESULT)
+        return CacheKey(json.dumps(about, indent=1, sort_keys=True), digest, BATCH if self.batch else RESULT)
 
     @cached_property
     def batch(self) -> Batch | None:

@@ -20,8 +20,8 @@ from reference.records.samples import (
     AXES,
     LARGEST,
     Array,
-    Reading,
     RecordError,
+    RecordSamples,
     join_directions,
     origin_of,
     samples_of_arrays,
@@ -93,7 +93,7 @@ def _is_example(name: str) -> bool:
     return any(entry.name == f"{name}.toml" for entry in EXAMPLES.iterdir())
 
 
-def _read(label: str, key: str, file: Any) -> tuple[str, Reading]:
+def _read(label: str, key: str, file: Any) -> tuple[str, RecordSamples]:
     """The name of a file, given as a text or as a table with what the file does not state, and what it holds."""
     options: Mapping[str, Any] = file if isinstance(file, dict) else {"file": file}
     for option, value in options.items():

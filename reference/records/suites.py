@@ -25,8 +25,8 @@ from reference.records.numerals import decode_text
 from reference.records.samples import (
     LARGEST,
     Array,
-    Reading,
     RecordError,
+    RecordSamples,
     check_samples,
     join_directions,
     origin_of,
@@ -97,7 +97,7 @@ def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[
 
 def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
     """The samples of a motion of a folder, and where they are from. Raises SuiteError."""
-    readings: dict[str, Reading] = {}
+    readings: dict[str, RecordSamples] = {}
     for axis, file in motion.files.items():
         try:
             readings[axis] = read_record(read_file(file, LARGEST), file.name)

@@ -12,9 +12,9 @@ from comparison.analyses.assumptions.trials import (
     CLOSE_ENOUGH,
     DURATION,
     WITHIN,
-    Answer,
     Arguments,
     DirectionTrial,
+    TaskTrials,
     Trial,
     answer_trials,
     change_of,
@@ -250,7 +250,7 @@ class Assumptions(MappedAnalysis[Validity]):
         """Return the cells and what they allow to say; None if no scene has both models of the engine."""
         cells: list[AssumptionCell] = []
         directions: list[DirectionTrial] = []
-        answers: list[Answer] = self.values(study, surfaces, results)
+        answers: list[TaskTrials] = self.values(study, surfaces, results)
         for (scene, _, what, *_), answer in zip(self.arguments(study), answers):
             if what is None:  # before the variations of its scene
                 (plain,) = answer.trials

@@ -40,7 +40,7 @@ class Number:
 
 
 @result
-class Row:
+class PublishedNumber:
     """One published number."""
 
     quantity: Annotated[str, "what it is"]
@@ -85,7 +85,7 @@ class Benchmark:
     evidence: Annotated[str, "for what it is evidence"]
     regularization: Annotated[float, "v_reg of the engine, m/s"]
     difference: Annotated[str, "what the source models and this project does not; empty where the models are the same"]
-    rows: Annotated[Sequence[Row], "one per published number"]
+    rows: Annotated[Sequence[PublishedNumber], "one per published number"]
     endings: Annotated[Mapping[str, str], "by side: how the motion ended"]
     seconds: Annotated[Mapping[str, float], "by side: processor time, s"]
 
@@ -110,7 +110,7 @@ class Benchmarks:
         found = [number.explanation for _, _, _, number in self.judged() if number.verdict == NOT_MET]
         return {why: found.count(why) for why in (FRICTION, MODEL, "")}
 
-    def judged(self) -> Iterator[tuple[Benchmark, Row, str, Number]]:
+    def judged(self) -> Iterator[tuple[Benchmark, PublishedNumber, str, Number]]:
         """Every number that has a verdict: of the equations and of the engine."""
         for each in self.benchmarks:
             for row in each.rows:
@@ -164,6 +164,6 @@ def with_error(number: Number, digits: int = MOST_DIGITS) -> str:
     return f"{number.value:.{max(1, min(digits, known))}g} ± {number.error:.0e}"
 
 
-def stated(row: Row) -> str:
+def stated(row: PublishedNumber) -> str:
     """The published number with its unit and uncertainty."""
     return f"{row.published:.7g} {row.unit}".rstrip() + (f" ± {row.uncertainty:g}" if row.uncertainty else "")

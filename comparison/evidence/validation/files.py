@@ -68,7 +68,7 @@ class Swing(NamedTuple):
     angle: Array
 
 
-class Measured(NamedTuple):
+class MeasuredFiles(NamedTuple):
     """What a folder holds."""
 
     runs: list[Shaken]
@@ -76,7 +76,7 @@ class Measured(NamedTuple):
     large: Swing | None
 
 
-def read_folder(folder: Path) -> Measured:
+def read_folder(folder: Path) -> MeasuredFiles:
     """The measured files in a folder and in the folders directly in it. Raises SceneError, one line."""
     if not folder.is_dir():
         raise wrong_file(folder, "must be a folder with the measured files")
@@ -101,7 +101,7 @@ def read_folder(folder: Path) -> Measured:
     if not (runs or decay or large):
         rule = f"holds none of the measured files: s_b_<weight>g_x.mat with s_b_<weight>g_y.mat, {DECAY}, {LARGE}"
         raise wrong_file(folder, rule)
-    return Measured(runs, decay, large)
+    return MeasuredFiles(runs, decay, large)
 
 
 def _shaken(workers: Workers, grams: int, plate: Path, base: Path) -> Shaken:

@@ -25,7 +25,17 @@ from scipy.optimize import least_squares
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import table
 from comparison.evidence.validation.files import Shaken, wrong_file
-from comparison.evidence.validation.table import COVERAGE, CYCLE, DEGREES, INPUT, LAW, OPEN, SIDES, Answer, Found
+from comparison.evidence.validation.table import (
+    COVERAGE,
+    CYCLE,
+    DEGREES,
+    INPUT,
+    LAW,
+    OPEN,
+    SIDES,
+    ComputedValues,
+    Found,
+)
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
@@ -202,7 +212,7 @@ def compute(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
     return table.motion_of(side, scene, phases, place, REGULARIZATION, TOLERANCE, "small")
 
 
-def read(cycles: Cycles, motion: Trajectory) -> Answer:
+def read(cycles: Cycles, motion: Trajectory) -> ComputedValues:
     """The quantities of a computed motion of a run."""
     rate = cycles.frequency
     return table.answer(motion, lambda each: read_cycle(last_cycle(each, rate), rate), len(NAMES))
@@ -356,7 +366,7 @@ def _compare_run(
         f"off by {np.std(best - cycles.mean):.3f} mm rms, and by {off:.3f} mm with {setup.ratio:.3f}; the plate is "
         f"above its middle for {100.0 * np.mean(cycles.mean > middle):.0f} % of a cycle"
     )
-    residual = table.Residual(title, use, off / float(data.values[0]))
+    residual = table.CycleResidual(title, use, off / float(data.values[0]))
     axes, turn = ("phase of the base, deg", "top plate, mm"), np.arange(SAMPLES) * 360.0 / SAMPLES
     return Found(
         rows, [], [fact], [residual], table.curves(title, axes, {name: (turn, y) for name, y in lines.items()})

@@ -13,7 +13,7 @@ from scipy.special import ellipk
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import table
 from comparison.evidence.validation.files import DECAY, LARGE, Swing, wrong_file
-from comparison.evidence.validation.table import COVERAGE, INPUT, LAW, OPEN, SIDES, Answer, Data, Found
+from comparison.evidence.validation.table import COVERAGE, INPUT, LAW, OPEN, SIDES, ComputedValues, Data, Found
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
@@ -92,10 +92,10 @@ def compare_large(swing: Swing) -> Found:
     names = [f"half period at {angle:g} rad" for angle in ANGLES]
     data = Data(names, ["ms"] * 3, ["predicted"] * 3, 1e3 * values[:-2], 1e3 * spreads[:-2])
 
-    def compute(side: str, half: float, equations: str = "exact") -> Answer:
+    def compute(side: str, half: float, equations: str = "exact") -> ComputedValues:
         motions = [_motion(side, half, 0.0, angle, 3.2, equations) for angle in ANGLES]
         parts = [table.answer(each, lambda motion: 1e3 * np.diff(_zeros(motion))[:1], 1) for each in motions]
-        return Answer(*(np.concatenate(each) for each in zip(*parts)))
+        return ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
 
     answers = {side: compute(side, half) for side in SIDES}
     again, varied, small = (compute(EQUATIONS, *each).values for each in ((other,), (half + scatter,), (half, "small")))

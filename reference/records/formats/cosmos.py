@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from reference.records.numerals import parse_number, unit_factor
-from reference.records.samples import Reading, RecordError, evenly_spaced
+from reference.records.samples import RecordError, RecordSamples, evenly_spaced
 from reference.support.arguments import brief
 
 FORMAT = "COSMOS V2"
@@ -36,7 +36,7 @@ def recognizes_cosmos(head: Sequence[str]) -> bool:
 
 
 @lru_cache(maxsize=32)
-def read_cosmos(text: str, name: str = "file.V2") -> Reading:
+def read_cosmos(text: str, name: str = "file.V2") -> RecordSamples:
     """Return what such a file holds. Raises RecordError."""
     lines = text.splitlines()
     blocks = [(at, found) for at, line in enumerate(lines) if (found := BLOCK.match(line) or OLD_BLOCK.match(line))]

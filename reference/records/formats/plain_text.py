@@ -25,7 +25,7 @@ from reference.records.numerals import (
     quote_name,
     unit_factor,
 )
-from reference.records.samples import MIN_INTERVAL, Array, Reading, RecordError, evenly_spaced
+from reference.records.samples import MIN_INTERVAL, Array, RecordError, RecordSamples, evenly_spaced
 from reference.support.arguments import as_float, brief
 
 FORMAT = "plain text"
@@ -53,7 +53,7 @@ COUNT_AND_STEP = re.compile(r"\s*([0-9]+)[\s,]+([0-9]*\.[0-9]+(?:e-?[0-9]+)?)\s*
 @lru_cache(maxsize=64)
 def read_plain_text(
     text: str, name: str, step: Any = None, unit: Any = None, skip: Any = 0, column: Any = None
-) -> Reading:
+) -> RecordSamples:
     """
     Return the values of a text behind `skip` lines: all in their order (`column` 0), or those of one column, from 1.
 

@@ -139,8 +139,8 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
         motions = [cycle(frame.Setup(ratio=ratio + change)) for change in (5e-4, -5e-4, 5e-4, -5e-4)]
         return frame.Cycles(run, np.array(motions), 1.0, 2.0, 0.02)
 
-    def read(cycles: frame.Cycles, setup: frame.Setup) -> table.Answer:
-        return table.Answer(frame.read_cycle(cycle(setup), 1.0), np.full(5, 1e-3))
+    def read(cycles: frame.Cycles, setup: frame.Setup) -> table.ComputedValues:
+        return table.ComputedValues(frame.read_cycle(cycle(setup), 1.0), np.full(5, 1e-3))
 
     for name, known in (("fold", folded), ("compute", lambda side, cycles, setup: setup), ("read", read)):
         monkeypatch.setattr(frame, name, known)
@@ -330,7 +330,7 @@ def test_a_comparison_error_is_within_all_uncertainties():
     one = np.ones(2)
     data = table.Data(("a", "b"), ("mm", "mm"), ("predicted",) * 2, one, np.array([0.12, 0.12]))
     values = np.array([1.1285, 1.135])
-    answers = dict.fromkeys((EQUATIONS, ENGINE), table.Answer(values, np.array([0.03, 0.03])))
+    answers = dict.fromkeys((EQUATIONS, ENGINE), table.ComputedValues(values, np.array([0.03, 0.03])))
     varied = [values + 0.024, values - 0.032]
     first, second = table.quantities("run", data, answers, varied, lambda k, allowed: "why")
     assert [each.sides[EQUATIONS].verdict for each in (first, second)] == [MET, NOT_MET]

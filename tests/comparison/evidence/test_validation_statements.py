@@ -8,7 +8,7 @@ import pytest
 
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import statements
-from comparison.evidence.validation.table import STORED, Comparison, Quantity, Validation, recorded
+from comparison.evidence.validation.table import STORED, Comparison, MeasuredQuantity, Validation, recorded
 from comparison.verdicts import judge
 
 LOADED = ", friction of the load"
@@ -19,7 +19,7 @@ def changed(experiment: str, name: str, change: Change, sides: tuple[str, ...] =
     """The record with another comparison of one quantity, by some sides."""
     table = recorded()
 
-    def altered(each: Quantity) -> Quantity:
+    def altered(each: MeasuredQuantity) -> MeasuredQuantity:
         if (each.experiment, each.name) != (experiment, name):
             return each
         return replace(each, sides={**each.sides, **{side: change(each.sides[side]) for side in sides}})
@@ -63,7 +63,7 @@ def test_both_sides_are_worded_equations_first() -> None:
             side: Comparison(1.0 + error, error, 0.0, 0.1, judge(error, 0.1))
             for side, error in ((EQUATIONS, equations), (ENGINE, engine))
         }
-        return Quantity("frame", "half range", "mm", "predicted", 1.0, 0.1, 0.0, "", sides).word_both()
+        return MeasuredQuantity("frame", "half range", "mm", "predicted", 1.0, 0.1, 0.0, "", sides).word_both()
 
     assert both(0.2, -0.3) == "not met (by +20 % / −30 %)"
     assert both(0.2, 0.05) == "not met (by +20 %) / met"

@@ -17,7 +17,7 @@ from runs import SMALL, Run
 from comparison.cli import reports
 from comparison.evidence.extremes import command as extremes
 from comparison.report import page
-from comparison.runner.cache import Cache, Key, store_beside
+from comparison.runner.cache import Cache, CacheKey, store_beside
 from comparison.runner.output import (
     MANIFEST,
     Own,
@@ -171,7 +171,7 @@ def test_a_manifest_that_was_tampered_with_proves_nothing(tmp_path: Path) -> Non
 
 
 def test_a_folder_of_24_letters_in_the_store_is_never_trimmed(tmp_path: Path) -> None:
-    needed, old = (Key(f'"{name}"', "0" * 64, "batch") for name in ("needed", "old"))
+    needed, old = (CacheKey(f'"{name}"', "0" * 64, "batch") for name in ("needed", "old"))
     cache = Cache(tmp_path / "e.tiles")
     cache.put(old, 1.5)
     photos = tmp_path / "e.tiles" / "my-photos-of-summer-2024"
