@@ -8,7 +8,7 @@ from recorded_figures import figures_are_told
 
 from comparison.evidence.tradeoff.feature import tradeoff_answers, tradeoff_panels
 from comparison.evidence.tradeoff.trade import Answered, MeasuredSetting, Trade
-from comparison.evidence.trend_panels import trend_panels
+from comparison.evidence.trend_feature import trend_panels
 from comparison.evidence.trends import Trend
 from comparison.report.glossary import GLOSSARY, explained
 from comparison.report.page import content_policy
