@@ -21,7 +21,7 @@ def make_trend_feature(
     Return the feature of an analysis that makes trends.
 
     title: of its section. scenes: those that have it. meaning: of its field. column: title of the column of medians.
-    parameter: title of the axis of the panels, where all have one. texts: what its template reads besides.
+    parameter: title of the axis of the panels, where all have one. texts: what else its template reads.
     """
     found = ResultField(analysis.key, list[Trend], f"{meaning}; null if not computed")
     section = Section(

@@ -46,7 +46,7 @@ class StoreError(OSError):
 @dataclass(frozen=True)
 class CacheKey:
     """
-    What a result is found by. about: all that the results of its group depend on in common, as text; item: what
+    Key of a stored result. about: all that the results of its group depend on in common, as text; item: what
     distinguishes this one, as a hash; kind: the suffix of its file, which the counts go by.
     """
 
@@ -126,7 +126,7 @@ class Cache:
                     del sizes[group]
 
 
-def store_beside(out: Path) -> Path:
+def locate_store(out: Path) -> Path:
     """Return where the results of a report are kept."""
     return out.with_name(f"{out.name}.tiles")
 
@@ -135,9 +135,9 @@ def refuse_foreign_store(out: Path) -> None:
     """Raise SceneError, one line, if something that is no folder of results is where that of the report belongs."""
 
     def refusal(rule: str) -> SceneError:
-        return SceneError("command line", "--out", str(out), f"{folder.name!r} beside it {rule}")
+        return SceneError("command line", "--out", str(out), f"{folder.name!r} next to it {rule}")
 
-    folder = store_beside(out)
+    folder = locate_store(out)
     try:
         if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
             raise refusal("is not the folder that keeps results of this study: move it away")
@@ -205,7 +205,7 @@ def _pack(about: Any, value: Any) -> bytes:
     arrays = BytesIO()
     count = 0
 
-    def beside_json(part: Any) -> Any:
+    def convert_to_json(part: Any) -> Any:
         nonlocal count
         if isinstance(part, bytes | np.ndarray):
             array = np.frombuffer(part, np.uint8) if isinstance(part, bytes) else part
@@ -222,7 +222,7 @@ def _pack(about: Any, value: Any) -> bytes:
             return {each.name: getattr(part, each.name) for each in fields(part)}
         raise TypeError(f"{type(part).__name__} cannot be stored")
 
-    text = json.dumps({"about": about, "value": value}, default=beside_json)
+    text = json.dumps({"about": about, "value": value}, default=convert_to_json)
     return text.encode() + b"\n" + arrays.getvalue()
 
 

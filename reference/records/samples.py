@@ -36,7 +36,7 @@ class RecordError(ValueError):
 @dataclass(frozen=True)
 class RecordSamples:
     """
-    What one file holds.
+    Samples of one file.
 
     format: name of its format. time: (K,), s, as the file has it. directions: accelerations (K,), m/s^2, by axis, or
     under "" where the file does not say along which. names: what the file calls them. step: s, where the file states

@@ -157,7 +157,7 @@ FILES: Mapping[str, bytes] = {
     benchmarks.FILE: benchmarks.STORED.as_json(known_benchmarks()),
     growth.FILE: growth.STORED.as_json(known_growth()),
     ensemble.FILE: ensemble.STORED.as_json(known_ensemble()),
-    validation.STORED.name: validation.STORED.as_json(replace(validation.recorded(), facts=["a <fact>"])),
+    validation.STORED.name: validation.STORED.as_json(replace(validation.load_record(), facts=["a <fact>"])),
 }
 
 

@@ -64,7 +64,7 @@ class DirectionTrial:
 
 @dataclass(frozen=True)
 class TaskTrials:
-    """What one task found: its trials, the directions that it tried first, and what went wrong, or ""."""
+    """Findings of one task: its trials, the directions that it tried first, and what went wrong, or ""."""
 
     trials: tuple[Trial, ...]
     directions: tuple[DirectionTrial, ...] = ()

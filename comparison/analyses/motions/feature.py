@@ -37,7 +37,7 @@ class MotionSpectra(Part):
 
 
 class _MotionOfScene(Part):
-    """What one stored motion demands of isolator and structure; no value where the motion ended early."""
+    """Demands of one stored motion on isolator and structure; no value where the motion ended early."""
 
     model: str
     """key of the model"""

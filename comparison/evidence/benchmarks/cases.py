@@ -31,7 +31,7 @@ RAMP = 2e-7  # m, what it changes that Newmark's pulse ends within 1 ms
 
 @dataclass(frozen=True)
 class MotionReading:
-    """How a motion is read: `factor` times `function(motion, **arguments)`, one number or several."""
+    """Number read off a motion: `factor` times `function(motion, **arguments)`, one number or several."""
 
     function: Callable[..., float | Sequence[float] | Array]
     arguments: Mapping[str, Any] = field(default_factory=dict)

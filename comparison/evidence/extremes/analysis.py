@@ -40,7 +40,7 @@ STRICTEST = 1e-10  # relative error that a model can be asked for
 
 @dataclass(frozen=True)
 class Reply:
-    """What a model answered: as `reference.problem.Amplification`, or `invalid` (its rule) or `raised` (what)."""
+    """Answer of a model: as `reference.problem.Amplification`, or `invalid` (its rule) or `raised` (what)."""
 
     mu: Array
     error: Array
@@ -49,7 +49,9 @@ class Reply:
     raised: str = ""
 
 
-def judged(reply: Reply, finer: Sequence[Reply], tolerance: float, invalid: bool, right: Sequence[str]) -> MatrixEntry:
+def judge_reply(
+    reply: Reply, finer: Sequence[Reply], tolerance: float, invalid: bool, right: Sequence[str]
+) -> MatrixEntry:
     """The verdict on the worst phase pair of an answer; finer: answers to the same question, the most trusted first."""
     if reply.raised:
         return MatrixEntry(Verdict.FAILED, f"raises {reply.raised}")
@@ -146,7 +148,7 @@ def solve_cell(cell: Cell) -> MatrixEntry:
             finer.append(_ask(row, other, {**settings, **known, "tolerance": strict}))
             if finer[-1].status and NUMERICS.isdisjoint(finer[-1].status):  # an answer, be it a refusal, at every point
                 break
-    entry = judged(reply, finer, tolerance, row.invalid, row.right)
+    entry = judge_reply(reply, finer, tolerance, row.invalid, row.right)
     cause = CAUSES.get((row.group, row.title), {}).get(column.key) if entry.verdict == Verdict.LIMIT else None
     reason = " ".join(": ".join(filter(None, (entry.reason, cause))).split())
     total = time.process_time() - begin
@@ -224,7 +226,7 @@ def _entry_of_failure(cell: Cell, failed: TaskResult) -> MatrixEntry:
     return MatrixEntry(Verdict.FAILED, reason, failed.outcome.value)
 
 
-def reduced(every: Sequence[ExtremeCase]) -> list[ExtremeCase]:
+def select_quick(every: Sequence[ExtremeCase]) -> list[ExtremeCase]:
     """The extremes that take a fraction of a second, mostly without the models of the engine."""
     chosen = [
         replace(row, columns=tuple(key for key in row.columns if key in REFERENCE or row.group in BRIEF))

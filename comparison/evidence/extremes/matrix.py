@@ -84,7 +84,7 @@ class Matrix:
         """The rows that share a quantity."""
         return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]
 
-    def listed(self, verdict: str) -> list[tuple[Extreme, str, MatrixEntry]]:
+    def cells_of(self, verdict: str) -> list[tuple[Extreme, str, MatrixEntry]]:
         """Row, title of the column and entry of the cells of one verdict."""
         return [
             (row, self.columns[key], entry)

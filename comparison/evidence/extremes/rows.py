@@ -215,7 +215,7 @@ def _sizes() -> Iterator[ExtremeCase]:
 
 
 def _above_its_contacts(stated: dict[str, Any]) -> dict[str, Any]:
-    """The bodies no lower beside the contacts than in the plain scene: heights count from a radius below them."""
+    """The bodies no lower against the contacts than in the plain scene: heights count from a radius below them."""
     rise = max(stated["isolator"]["radius"] - PLAIN_RADIUS, 0.0)
     return {**stated, "bodies": [{**body, "height": body["height"] + rise} for body in stated["bodies"]]}
 

@@ -9,7 +9,14 @@ import numpy as np
 import xarray as xr
 
 from comparison.evidence.tradeoff import trade
-from comparison.evidence.tradeoff.settings import Setting, Settings, TradeoffQuestion, asked, settings, user_settings
+from comparison.evidence.tradeoff.settings import (
+    Setting,
+    Settings,
+    TradeoffQuestion,
+    questions_of,
+    settings,
+    user_settings,
+)
 from comparison.json_file import finite_or_none
 from comparison.result_types import Array
 from comparison.runner.analysis import Analysis
@@ -43,7 +50,7 @@ class Measurement:
 
 @dataclass(frozen=True)
 class SettingResult:
-    """What a measurement gave."""
+    """Result of a measurement."""
 
     mu: Array  # (M, N), NaN without a value
     error_estimate: Array  # (M, N), absolute, NaN without
@@ -90,7 +97,7 @@ def without_value(measurement: Measurement, failed: TaskResult) -> SettingResult
     return SettingResult(nothing, nothing, 0.0, np.nan, failed.reason)
 
 
-def joined(parts: Sequence[SettingResult]) -> SettingResult:
+def join_results(parts: Sequence[SettingResult]) -> SettingResult:
     """The measurements of one function as one: times added up, and the first error message."""
     mu, error_estimate = map(np.concatenate, zip(*((part.mu, part.error_estimate) for part in parts)))
     seconds, step = sum(part.seconds for part in parts), float(np.mean([part.step for part in parts]))
@@ -121,7 +128,7 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
 
     def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
         """The tasks of the reference solution of every question; then of every setting, and of what it is against."""
-        questions = {question.key: question for question in asked(scene)}
+        questions = {question.key: question for question in questions_of(scene)}
         for question in questions.values():
             yield self._tasks(scene, question.reference_solution, question, question.seconds)
         for each in self._settings(scene):
@@ -145,9 +152,9 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
 
     def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
         measured = (
-            joined([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
+            join_results([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
         )
-        solutions = [(question, next(measured)) for question in asked(scene)]
+        solutions = [(question, next(measured)) for question in questions_of(scene)]
         rows = [(setting, next(measured), next(measured)) for setting in self._settings(scene)]
         entries = [entry(setting, answer, against.mu) for setting, answer, against in rows]
         entries = trade.with_pareto_fronts(entries, len(scene.bodies))
@@ -156,7 +163,7 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
         values = dict(zip(trade.MEANINGS, map(list, numbers)))
         phases = sample(max(question.points for question in answered))
         found = trade.Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
-        return trade.MeasuredTrade(found, trade.labeled(entries, values, phases))
+        return trade.MeasuredTrade(found, trade.label_values(entries, values, phases))
 
 
 def entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:

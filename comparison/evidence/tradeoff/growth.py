@@ -53,7 +53,7 @@ def tall(scene: Scene, bodies: int) -> Scene:
 
 @dataclass(frozen=True)
 class GrowingQuantity:
-    """What grows. scene: of a value, from the scene of the study."""
+    """Quantity that grows. scene: of a value, from the scene of the study."""
 
     name: str
     unit: str
@@ -74,7 +74,7 @@ QUANTITIES = (
 
 @result
 class Series:
-    """What one model costs over the values of one quantity."""
+    """Cost of one model over the values of one quantity."""
 
     quantity: Annotated[str, "what grows"]
     unit: Annotated[str, "its unit; empty for a pure number"]

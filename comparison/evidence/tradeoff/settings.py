@@ -77,14 +77,14 @@ QUESTIONS = (
 )
 
 
-def asked(scene: Scene) -> list[TradeoffQuestion]:
+def questions_of(scene: Scene) -> list[TradeoffQuestion]:
     """The questions that a scene allows."""
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
 def settings(scene: Scene, quick: bool = False) -> list[Setting]:
     """Every setting that is measured for a scene; quick: every other one of the expensive ones."""
-    keys = {question.key for question in asked(scene)}
+    keys = {question.key for question in questions_of(scene)}
     every = [*_reference(scene), *_scipy(quick), *_levels(quick), *_constant(quick)]
     return [setting for setting in every if setting.question in keys]
 

@@ -24,7 +24,7 @@ MEANINGS = {
 
 @result
 class StatedSetting:
-    """What is known of a setting before it is measured."""
+    """Setting before it is measured."""
 
     question: Annotated[str, "key of the question that it answers"]
     method: Annotated[str, "the curve that it belongs to"]
@@ -156,7 +156,9 @@ class MeasuredTrade:
     values: xr.Dataset
 
 
-def labeled(entries: Sequence[MeasuredSetting], values: Mapping[str, Sequence[Array]], phases: Array) -> xr.Dataset:
+def label_values(
+    entries: Sequence[MeasuredSetting], values: Mapping[str, Sequence[Array]], phases: Array
+) -> xr.Dataset:
     """Every value (P, N) by setting, point and body; a question with fewer points leaves the rest NaN."""
     axes = ("setting", "point", "body")
     variables: dict[str, Any] = {}

@@ -69,7 +69,7 @@ class Swing(NamedTuple):
 
 
 class MeasuredFiles(NamedTuple):
-    """What a folder holds."""
+    """Measurements in a folder."""
 
     runs: list[Shaken]
     decay: Swing | None
@@ -90,7 +90,7 @@ def read_folder(folder: Path) -> MeasuredFiles:
     plates, bases = ({match[1]: files[match[0]] for match in named if match[2] == axis} for axis in "xy")
     for grams in plates.keys() ^ bases.keys():
         missing = "y" if grams in plates else "x"
-        raise wrong_file(folder, f"s_b_{grams}g_{missing}.mat is missing beside its partner")
+        raise wrong_file(folder, f"s_b_{grams}g_{missing}.mat is missing, but its partner is there")
     workers = Workers(1)
     try:
         runs = [_shaken(workers, int(grams), plates[grams], bases[grams]) for grams in sorted(plates, key=int)]
@@ -165,7 +165,7 @@ def read_columns(
 ) -> Mapping[str, Any] | str:
     """Read the columns of variables of a file inside a worker process; return what is wrong with it as text."""
     try:
-        with limited_memory(), warnings.catch_warnings():
+        with limit_memory(), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             data = read_file(file, LARGEST)
             kinds = {name: kind for name, _, kind in whosmat(io.BytesIO(data))}
@@ -192,7 +192,7 @@ def read_columns(
 
 
 @contextmanager
-def limited_memory() -> Iterator[None]:
+def limit_memory() -> Iterator[None]:
     """Let the process take MEMORY more than it has, where the system tells how much that is."""
     try:
         pages = int(Path("/proc/self/statm").read_text().split()[0])

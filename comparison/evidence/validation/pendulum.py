@@ -74,7 +74,9 @@ def compare_decay(swing: Swing) -> Found:
     drawn = {"measured": sizes} | {side: 1e3 * _compute_turns(motions[side])[1] for side in (EQUATIONS, ENGINE)}
     axes = ("number of the turning point", "angle, mrad")
     curves = table.curves("pendulum, decay", axes, {name: (numbers, y) for name, y in drawn.items()})
-    given = [table.given(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named]
+    given = [
+        table.word_input(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named
+    ]
     return Found(rows, given, [fact], [], curves)
 
 
@@ -110,7 +112,7 @@ def compare_large(swing: Swing) -> Found:
     fact = "pendulum, large angles: the half period of the small-vibration equations is off by "
     fact += ", ".join(f"{error:.1f} % at {angle:g} rad" for error, angle in off)
     source = f"fitted to the half period at {FITTED} rad, and the scatter of the swings about it"
-    given = table.given("pendulum, large angles: half period", half, scatter, "s", source)
+    given = table.word_input("pendulum, large angles: half period", half, scatter, "s", source)
     drawn = {"measured": (sizes, 1e3 * periods)} | {
         s: (np.array(ANGLES), answers[s].values) for s in (EQUATIONS, ENGINE)
     }

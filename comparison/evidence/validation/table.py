@@ -1,4 +1,4 @@
-"""Measured quantities beside what both sides compute, as data: a file, and what the report needs of it."""
+"""Measured quantities compared with what both sides compute, as data: a file, and what the report needs of it."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -97,7 +97,7 @@ class Curve:
 
 @result
 class CycleResidual:
-    """How far a whole motion is off, which quantities of it alone do not show."""
+    """Difference of a whole motion, which quantities of it alone do not show."""
 
     experiment: Annotated[str, "the run, and the law of friction where it is of the load"]
     use: Annotated[str, "calibrated or predicted"]
@@ -131,21 +131,21 @@ class Validation:
 STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "phase-resonance validation")
 
 
-def recorded() -> Validation:
+def load_record() -> Validation:
     """The table of the published files, as the command made it; without their motions."""
     file = resources.files("comparison.evidence.validation") / "recorded.json"
     return TypeAdapter(Validation).validate_json(file.read_bytes())
 
 
 class ComputedValues(NamedTuple):
-    """What one side computes, (Q,), with its numerical errors."""
+    """Values that one side computes, (Q,), with their numerical errors."""
 
     values: Array
     errors: Array
 
 
 class Found(NamedTuple):
-    """What one experiment adds to the table."""
+    """Contribution of one experiment to the table."""
 
     quantities: list[MeasuredQuantity]
     inputs: list[str]
@@ -154,13 +154,13 @@ class Found(NamedTuple):
     curves: list[Curve]
 
 
-def joined(parts: Sequence[Found]) -> Found:
+def join_findings(parts: Sequence[Found]) -> Found:
     """Return what several experiments add."""
     return Found(*([each for part in column for each in part] for column in zip(*parts)))
 
 
 class Data(NamedTuple):
-    """What was measured: names and units of the quantities, their use, D and u_D."""
+    """Measurements: names and units of the quantities, their use, D and u_D."""
 
     names: Sequence[str]
     units: Sequence[str]
@@ -202,7 +202,7 @@ def spline(motion: Trajectory) -> CubicHermiteSpline:
     return CubicHermiteSpline(motion.time, motion.position[:, 0, 0], motion.velocity[:, 0, 0])
 
 
-def given(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:
+def word_input(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:
     """An input as a sentence."""
     return f"{name} {value:.5g} ± {uncertainty:.2g} {unit}".rstrip() + f" ({source})"
 

@@ -2,7 +2,7 @@
 Formats of recorded accelerograms: one table of readers, one file a format.
 
 A reader is (name, what it recognizes in the first lines, function of text and file name). The first that recognizes a
-file reads it. A new format is one file beside this one and its line in the table.
+file reads it. A new format is one file in this folder and its line in the table.
 """
 
 from __future__ import annotations

@@ -97,7 +97,7 @@ def _guess_separator(line: str) -> str:
 
 
 def _header_row(rows: Sequence[tuple[int, str]], separator: str | None) -> tuple[int, str] | None:
-    """Which of the first lines names a time and an acceleration, and its separator; None where none does."""
+    """Return the first line that names a time and an acceleration, and its separator; None where none does."""
     for row, (number, line) in enumerate(rows[:MAX_PREAMBLE]):
         if len(line) > MAX_LINE or line.lstrip().startswith("#"):
             continue
@@ -197,7 +197,7 @@ def _name_and_unit(cell: str) -> tuple[str, str]:
 
 
 def _column(place: int, cell: str) -> HeaderCell:
-    """What a cell of the header is; "wrong" is one with the unit of an acceleration that names none."""
+    """Return a cell of the header; its kind is "wrong" with the unit of an acceleration and no name of one."""
     name, unit = _name_and_unit(cell)
     words = [word for word in re.split(r"[\s_.:/]+", name.lower()) if word]
     if words and all(word in TIMES for word in words):

@@ -13,7 +13,7 @@ from rich.console import Console
 from scipy.stats import linregress
 
 from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs
-from comparison.evidence.tradeoff.analysis import Measurement, SettingResult, entry, joined, sample
+from comparison.evidence.tradeoff.analysis import Measurement, SettingResult, entry, join_results, sample
 from comparison.evidence.tradeoff.growth import QUANTITIES, STORED, Growth, fit_slope, tall, with_slope
 from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Setting, TradeoffQuestion, settings
 from comparison.evidence.tradeoff.trade import load, quantile, unbeaten, with_pareto_fronts
@@ -60,7 +60,7 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     parts = [
         SettingResult(ones[:2], ones[:2], part, step, why) for part, step, why in ((2.0, 0.1, ""), (4.0, 0.3, "no"))
     ]
-    both = joined(parts)
+    both = join_results(parts)
     assert (both.seconds, both.step, both.error_message) == (6.0, pytest.approx(0.2), "no")
 
 
