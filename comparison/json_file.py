@@ -1,4 +1,4 @@
-"""JSON files of results: written by one command, and read by another that finds them beside the report."""
+"""JSON files of results: written by one command, and read by another that finds them next to the report."""
 
 import json
 import math
@@ -39,7 +39,7 @@ def replace_unstorable(content: Any) -> Any:
 
 @dataclass(frozen=True)
 class StoredFile(Generic[T]):
-    """A JSON file of results, which one command writes and the next report beside it shows; what: in words."""
+    """A JSON file of results, which one command writes and the next report in the same folder shows; what: in words."""
 
     name: str
     kind: type[T]

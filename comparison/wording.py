@@ -88,7 +88,7 @@ def degrees(phase: float) -> str:
 
 
 def symbols(text: str) -> Markup:
-    """Return names such as v_reg, l^3 and rho with indices, powers and Greek letters; % stays beside its number."""
+    """Return names such as v_reg, l^3 and rho with indices, powers and Greek letters; % stays next to its number."""
     greek = _with_greek(str(escape(PERCENT.sub("\u00a0%", text))))
     return Markup(SUBSCRIPTS.sub(r"<sub>\1</sub>", POWERS.sub(r"<sup>\1</sup>", greek)))
 

@@ -139,7 +139,7 @@ def _parser() -> CommandParser:
     names, on_request = ", ".join(EVERYTHING.names), ", ".join(each.name for each in SELECTABLE if each.on_request)
     parser.add_argument("--only", metavar="LIST", help=f"make these analyses only, separated by commas: {names}")
     parser.add_argument("--skip", metavar="LIST", help="make all analyses but these")
-    parser.add_argument("--also", metavar="LIST", help=f"make these analyses besides: {on_request}")
+    parser.add_argument("--also", metavar="LIST", help=f"make these analyses, too: {on_request}")
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument(
         "--plan", action="store_true", help="print what would be computed and roughly how long it takes; run nothing"

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from comparison.cli.options import Options
 from comparison.registry import first_tasks, levels, seconds_by_stage, select_analyses
-from comparison.runner.cache import Cache, store_beside
+from comparison.runner.cache import Cache, locate_store
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import refusal_of
@@ -57,7 +57,7 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
         console.print(f"Not in the report: {reasons}.", soft_wrap=True)
     if len(study.phased) < len(study.scenes):
         console.print("A recorded motion has no phases: one point per model.")
-    results = TaskResults(Cache(store_beside(options.out)), options.fresh)
+    results = TaskResults(Cache(locate_store(options.out)), options.fresh)
     print_stored(console, results, surface_tasks(study), first_tasks(study, analyses))
     seconds = sum(seconds_of_model(study, model) for model in study.hierarchy)
     seconds += sum(seconds_by_stage(study).values())

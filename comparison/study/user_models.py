@@ -1,5 +1,5 @@
 """
-Engines that a user enters beside the models of the hierarchy: a function of theirs becomes a model of the study.
+Engines that a user enters after the models of the hierarchy: a function of theirs becomes a model of the study.
 
 Every call goes through `amplification` here, in a worker process of its own kind: whatever the function prints is
 dropped, and what it returns is read into the arrays of `reference.problem.Amplification` or refused with a reason.
@@ -64,7 +64,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
 
 
 def note_line(error: BaseException, file: Path | None) -> None:
-    """Add to an exception where in the user's files, those beside the engine's, it arose."""
+    """Add to an exception where in the user's files, those in the folder of the engine's, it arose."""
     if file is None:
         return
     folder = file.parent

@@ -52,7 +52,7 @@ class DirectionRead:
 @dataclass(frozen=True)
 class RecordDescription:
     """
-    What was read of a recorded motion.
+    Description of a recorded motion as it was read.
 
     Attributes
     ----------
@@ -138,7 +138,7 @@ def describe_samples(
 
 
 def _warnings_of(one: DirectionRead, values: Array, velocity: Array, time: Array, detrend: str | None) -> list[str]:
-    """What of one direction is hardly meant."""
+    """Return warnings of what is hardly meant in one direction."""
     warnings = []
     # Velocity less its chord is what remains when the mean is taken off. Noise, a walk from rest, ends about as far
     # from zero as it strays from the chord; a zero line that was left in ends far beyond: its velocity grows with time.

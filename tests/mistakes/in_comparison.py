@@ -196,7 +196,7 @@ MISTAKES = (
             "Results of the engine are kept when the question is read otherwise.", (CACHED + "a_key_names_versions_and_sources_and_a_report_the_commit",)),
     Mistake(RUNNER + "environment.py", 'sorted(folder.rglob("*.py"))', 'sorted(folder.glob("*.py"))',
             "A change in a folder of a package is no change of its source.", (CACHED + "changed_source_is_another_source",)),
-    Mistake(RUNNER + "progress.py", "about {self.left:.0f} s left", "about {self.left:.0f} min left",
+    Mistake(RUNNER + "progress.py", "about {self.seconds_left:.0f} s left", "about {self.seconds_left:.0f} min left",
             "Seconds are called minutes.", (LEVELS + "the_time_left_follows_from_the_work_so_far",)),
     # study
     Mistake(STUDY + "models.py", "return min(asked, REFERENCE_TOLERANCE) if", "return asked if",

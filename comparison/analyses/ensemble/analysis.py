@@ -221,7 +221,7 @@ def structures_of(members: Sequence[Member], moved: Mapping[str, result.Stripe])
         if displacement and not scene.flat and scene.dry_friction.fast:
             linear = effective_isolator(scene, displacement)
             period, damping, restoring = map(float, (linear.period, linear.damping, linear.restoring))
-            isolator = result.Isolator(displacement, period, damping, restoring, statistic)
+            isolator = result.LinearIsolator(displacement, period, damping, restoring, statistic)
         found.append(result.Structure(name, scene.title, len(scene.bodies), scene.total_mass * GRAVITY, isolator))
     return found
 
@@ -250,7 +250,9 @@ def stripes(points: Sequence[Point]) -> Iterator[result.Stripe]:
                 numbers = [point.estimate(quantity) for point in at_scale]
                 worst = -math.inf if quantity[0] in SMALLEST else math.inf
                 mean, *shares, largest, smallest = statistics(numbers, (*FRACTILES, 1.0, 0.0), worst)
-                fractiles = [result.Fractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)]
+                fractiles = [
+                    result.DemandFractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)
+                ]
                 lost = [pair for pair in zip(numbers, at_scale) if not math.isfinite(pair[0].value)]
                 lacking = Counter(number.reason or point.status for number, point in lost)
                 about = name, *_name_points(quantity), own[0].model, unit_of(quantity[0]), scale
@@ -293,7 +295,7 @@ def spectrum_bands(points: Sequence[Point]) -> Iterator[result.Spectrum]:
             yield result.Spectrum(*about, mean, shares, largest)
 
 
-def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[result.Curve]:
+def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[result.DemandCurve]:
     """Every demand of every motion over its scales, by structure, demand, model and motion."""
     for name in _by(equations, "member.structure"):
         both = [[point for point in points if point.member.structure == name] for points in (equations, engine)]
@@ -304,7 +306,9 @@ def curves(equations: Sequence[Point], engine: Sequence[Point]) -> Iterator[resu
                     numbers = [_statistic(point.estimate(quantity)) for point in points]
                     values, errors = [each.value for each in numbers], [each.error for each in numbers]
                     scales = [point.member.scale for point in points]
-                    yield result.Curve(name, *_name_points(quantity), points[0].model, motion, scales, values, errors)
+                    yield result.DemandCurve(
+                        name, *_name_points(quantity), points[0].model, motion, scales, values, errors
+                    )
 
 
 def quantities(points: Sequence[Point]) -> list[Quantity]:
@@ -324,7 +328,9 @@ def uncertain_fractile(numbers: Sequence[Estimate], share: float, worst: float =
     return Estimate(middle, max(high - middle, middle - low)) if math.isfinite(middle) else Estimate(math.nan, math.nan)
 
 
-def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Point]) -> Iterator[result.Difference]:
+def bounds(
+    points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Point]
+) -> Iterator[result.DemandDifference]:
     """The largest difference of every demand that both sides have, and the largest with the same friction law."""
     equations = {(point.member.structure, point.member.scene.name): point for point in points}
     for name, own in _by(engine, "member.structure").items():
@@ -334,7 +340,7 @@ def bounds(points: Sequence[Point], engine: Sequence[Point], alike: Sequence[Poi
             apart, same = ([*_differences(quantity, first, own)] for first in (matching, same_law))
             closest = max(same, default=(math.nan, math.nan))
             largest, alike_apart, errors = map(finite_or_none, (max(apart, default=closest)[0], *closest))
-            yield result.Difference(name, *_name_points(quantity), largest, alike_apart, errors, len(apart))
+            yield result.DemandDifference(name, *_name_points(quantity), largest, alike_apart, errors, len(apart))
 
 
 def _differences(quantity: Quantity, first: Sequence[Point], second: Sequence[Point]) -> Iterator[tuple[float, float]]:

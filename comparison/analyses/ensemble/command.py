@@ -113,7 +113,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     def show_equations(results: TaskResults, display: Display) -> None:
         show(equations, results)
         count = f"{engine} of {len(members)} motions"
-        console.print(f"Next: {count} by the {model.title}, about {display.left:.0f} s; then all tables again.")
+        console.print(f"Next: {count} by the {model.title}, about {display.seconds_left:.0f} s; then all tables again.")
 
     first = equations.tasks(), show_equations
     show(ensemble, compute_tasks("ensemble", options, argv, tasks, MODELS, console, executor, *first))

@@ -10,8 +10,8 @@ import numpy as np
 
 from comparison.analyses.ensemble.result import (
     STORED,
-    Curve,
-    Difference,
+    DemandCurve,
+    DemandDifference,
     EnsembleResult,
     Statistic,
     Stripe,
@@ -110,7 +110,7 @@ def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     return panel(title, label, strips if one else scales, _from_zero(f"{title}, {unit}", series), series)
 
 
-def _values(curves: Sequence[Curve], factor: float, place: float | None, **look: Any) -> list[dict[str, Any]]:
+def _values(curves: Sequence[DemandCurve], factor: float, place: float | None, **look: Any) -> list[dict[str, Any]]:
     """The motions, each over its scales, or all side by side about a place; dots have their errors."""
     series = []
     for number, curve in enumerate(curves):
@@ -191,7 +191,7 @@ def isolator_sentence(structure: Structure) -> str:
 
 def largest_differences(ensemble: EnsembleResult) -> list[tuple[str, float | None, float | None, float | None]]:
     """Every demand with its largest difference over the structures, that like for like, and its error."""
-    found: dict[str, list[Difference]] = {}
+    found: dict[str, list[DemandDifference]] = {}
     for each in ensemble.engine.differences:
         if each.points:
             found.setdefault(title_of(each.quantity, each.body), []).append(each)

@@ -25,14 +25,14 @@ class Statistic:
 
 
 @result
-class Fractile(Statistic):
+class DemandFractile(Statistic):
     """A fractile of a demand over the motions."""
 
     share: Annotated[float, "part of the motions below it"] = 0.5
 
 
 @result
-class Isolator:
+class LinearIsolator:
     """The linear isolator that design codes put in the place of the bearing; see `reference.effective_isolator`."""
 
     displacement: float
@@ -51,7 +51,7 @@ class Structure:
     title: Annotated[str, "title of its scenes"]
     bodies: Annotated[int, "number of bodies"]
     weight: Annotated[float, "N"]
-    isolator: Isolator | None = None
+    isolator: LinearIsolator | None = None
     """null without dry friction, on a plane, and where neither mean nor median of the displacement is known"""
 
     def __post_init__(self) -> None:
@@ -99,7 +99,7 @@ class Stripe(Demand):
     scale: Annotated[float, "factor of the motions"]
     answered: Annotated[int, "motions that have the demand"]
     mean: Annotated[Statistic, "mean over the motions"]
-    fractiles: Annotated[Sequence[Fractile], "from small to large shares"]
+    fractiles: Annotated[Sequence[DemandFractile], "from small to large shares"]
     largest: Annotated[Statistic, "largest over the motions"]
     smallest: Annotated[Statistic, "smallest over the motions"]
     reasons: Mapping[str, int] = field(default_factory=dict)
@@ -116,7 +116,7 @@ class Stripe(Demand):
 
 
 @result
-class Curve(Demand):
+class DemandCurve(Demand):
     """A demand of one motion over its scale factors."""
 
     model: Annotated[str, "key of the model"]
@@ -132,7 +132,7 @@ class Curve(Demand):
 
 
 @result
-class Difference(Demand):
+class DemandDifference(Demand):
     """How far the engine is from the equations in one demand."""
 
     largest: float | None
@@ -148,7 +148,7 @@ class Engine:
 
     model: Annotated[str, "key of the model"]
     points: Annotated[Sequence[Mapping[str, str]], "scene, motion and status of every motion"]
-    differences: Annotated[Sequence[Difference], "one for each demand"]
+    differences: Annotated[Sequence[DemandDifference], "one for each demand"]
     tolerance: Annotated[float, "relative error asked of its largest accelerations"] = 1e-3
 
 
@@ -192,7 +192,7 @@ class EnsembleResult:
     outcomes: Annotated[Mapping[str, int], "motions by the equations with every status"]
     stripes: Sequence[Stripe]
     """by structure, demand and scale; by the equations, then by the engine over its subset"""
-    curves: Annotated[Sequence[Curve], "by structure, demand, model and motion"]
+    curves: Annotated[Sequence[DemandCurve], "by structure, demand, model and motion"]
     spectra: Annotated[Sequence[Spectrum], "by structure and body"]
     engine: Annotated[Engine, "the engine's subset"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
@@ -223,7 +223,7 @@ class EnsembleResult:
         asked = structure, quantity, EXACT.key, max(self.scales)
         return [each for each in self.stripes if (each.structure, each.quantity, each.model, each.scale) == asked]
 
-    def curves_of(self, structure: str, quantity: str) -> tuple[list[Curve], list[Curve]]:
+    def curves_of(self, structure: str, quantity: str) -> tuple[list[DemandCurve], list[DemandCurve]]:
         """Return the curves of one demand of the isolator, by the equations and by the engine."""
         own = [each for each in self.curves if (each.structure, each.quantity) == (structure, quantity)]
         return [each for each in own if each.model == EXACT.key], [each for each in own if each.model != EXACT.key]

@@ -20,7 +20,7 @@ it are changes: value i is the sum of the numbers up to i, times 2^exponent.
 |---|---|---|
 | time | 1 | s |
 | position | x and y of body 1, of body 2, ...: relative to the plate | m |
-| acceleration | likewise, absolute | m/s^2 |
+| acceleration | columns as of position: absolute | m/s^2 |
 | contact_force | 1, the normal force of the isolator | N |
 | isolator_force | x and y: horizontal force of the bodies on the isolator | N |
 | support_force | one for each support of the spatial model | N |

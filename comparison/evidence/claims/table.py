@@ -62,7 +62,7 @@ class ClaimTable:
     @computed_field  # type: ignore[prop-decorator]
     @property
     def counts(self) -> dict[str, dict[str, int]]:
-        """How many statements are met, not met and not compared, by name of the reading."""
+        """Return the numbers of statements met, not met and not compared, by name of the reading."""
         return {
             reading.name: {
                 word: sum(each.verdicts[reading.name].verdict == word for each in self.statements) for word in VERDICTS

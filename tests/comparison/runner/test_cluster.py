@@ -106,7 +106,7 @@ def test_a_task_that_killed_every_worker_it_was_on_has_died_as_often() -> None:
     remote: Future[Any] = Future()
     remote.set_exception(KilledWorker("task", SimpleNamespace(address="tcp://there"), 3))
     answer: Future[Any] = Future()
-    dask._arrived(remote, answer)
+    dask._pass_on(remote, answer)
     error = answer.exception()
     assert isinstance(error, WorkerDiedError)
     assert error.times == 4
