@@ -321,7 +321,7 @@ def test_a_side_without_a_value_is_an_exit_code(monkeypatch: pytest.MonkeyPatch,
     lacking = replace(first, sides={**first.sides, ENGINE: nothing})
     for quantities, code in ((load_record().quantities, 0), ([lacking, *rest], 1)):
         compared = replace(load_record(), quantities=quantities)
-        monkeypatch.setattr("comparison.evidence.validation.command.compared", lambda folder, table=compared: table)
+        monkeypatch.setattr("comparison.evidence.validation.command.compare_folder", lambda folder, table=compared: table)
         assert main([str(tmp_path), "--out", str(tmp_path / "report")]) == code
 
 
