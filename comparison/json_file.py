@@ -46,6 +46,14 @@ class StoredFile(Generic[T]):
     what: str
     command: str
 
+    def word_field(self, meaning: str) -> str:
+        """Return the meaning of the field of the results that shows the file."""
+        return f"{meaning}; null unless {self.command} left it next to the report"
+
+    def word_origin(self, argument: str = "") -> str:
+        """Return what makes the section that shows the file; argument: what the command is given, in words."""
+        return f"{self.command}{argument} makes it, next to the report; the next run of the study shows it"
+
     def as_json(self, results: T) -> bytes:
         """The content of the file, which `load` reads."""
         return json_text(asdict(results)).encode()  # type: ignore[call-overload]

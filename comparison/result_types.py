@@ -64,7 +64,7 @@ def require(holds: bool, rule: str) -> None:
 
 
 def require_size(what: str, values: Sized, count: int) -> None:
-    """Raise ValueError unless there are so many values."""
+    """Raise ValueError unless there are `count` values."""
     require(len(values) == count, f"{what} must be {count} values, not {len(values)}")
 
 

@@ -68,7 +68,7 @@ def _decimals(size: float, error: float) -> int | None:
 
 
 def shorten_text(text: str, letters: int) -> str:
-    """A text of at most so many letters; of a longer one the end is three dots."""
+    """Return a text of at most `letters` letters; of a longer one the end is three dots."""
     return text if len(text) <= letters else text[: letters - 1] + "…"
 
 

@@ -79,16 +79,20 @@ def parse_options(argv: Sequence[str]) -> Options:
     if options.budget is not None and not hasattr(signal, "setitimer"):
         raise SceneError("command line", "--budget", words.budget, "needs a timer that this system does not have")
     if not options.plan:
-        try:
-            for field in (field for feature in FEATURES for field in feature.stored):
-                assert field.load is not None
-                field.load(options.out)
-        except (OSError, ValueError) as error:
-            rule = f"the report cannot show {error}"
-            raise SceneError("command line", "--out", str(options.out), rule) from None
-        refuse_foreign_report(options.out)
-        refuse_foreign_store(options.out)
+        _refuse_unusable_folder(options.out)
     return options
+
+
+def _refuse_unusable_folder(out: Path) -> None:
+    """Refuse a folder that keeps the report from being written or shown. Raises SceneError."""
+    try:
+        for field in (field for feature in FEATURES for field in feature.stored):
+            assert field.load is not None
+            field.load(out)
+    except (OSError, ValueError) as error:
+        raise SceneError("command line", "--out", str(out), f"the report cannot show {error}") from None
+    refuse_foreign_report(out)
+    refuse_foreign_store(out)
 
 
 def _refuse_limits_of_no_engine(scenes: Sequence[Scene], engines: Sequence[str]) -> None:

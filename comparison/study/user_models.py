@@ -168,12 +168,12 @@ def _read(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer
     error[~(error >= 0.0)] = UNKNOWN_ERROR
     status, error_message = _outcomes(outcomes, points)
     drop_unusable(mu, error, status, own=False)
-    lacking = np.isnan(mu).any(axis=1)
-    for point in np.flatnonzero(lacking).tolist():
+    missing = np.isnan(mu).any(axis=1)
+    for point in np.flatnonzero(missing).tolist():
         status[point] = Outcome.SOLVER_FAILED.value if status[point] == Outcome.OK else status[point]
     for name in ("instant", "displacement"):
         arrays[name][~((arrays[name] >= 0.0) & (arrays[name] <= LARGEST_MU))] = np.nan
-    arrays["displacement"][lacking] = np.nan
+    arrays["displacement"][missing] = np.nan
     return EngineAnswer(status=np.array(status), cost=seconds, error_message=error_message, **arrays)
 
 

@@ -12,7 +12,7 @@ from reference.support.constants import GRAVITY
 
 LARGEST_PEAK, SMALLEST_PEAK = 3.0, 0.001  # g
 UNEVEN = 0.01  # relative, of the steps of a column of times
-FEW_SAMPLES = 100  # below so many, no zero line is judged
+FEW_SAMPLES = 100  # samples, below which no zero line is judged
 SHARE_OF_PEAK_VELOCITY = 0.2  # with which a record may end: at most 0.07 in 289 public records
 CLIPPED = 4  # equal samples in a row at the largest size
 FLAT = 1e-9  # relative, of samples that are equal

@@ -139,19 +139,10 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
     """
     if components not in (None, 1, 2) or isinstance(components, bool):
         raise SuiteError("components", "must be 1, every component a motion of its own, or 2, pairs")
-    place = folder / suite
-    try:
-        if (listed := read_motion_list(place)) is not None:
-            return listed
-        files = sorted(place.iterdir())
-    except (OSError, ValueError) as error:
-        if isinstance(error, RecordError):
-            raise SuiteError("suite", str(error)) from None
-        reason = getattr(error, "strerror", None) or error
-        raise SuiteError("suite", f"{reason}; {SUITE_RULE}, relative to the scene file") from None
-    if len(files) > MAX_FILES:
-        raise SuiteError("suite", f"{len(files)} files: must be at most {MAX_FILES}")
-    kinds = {file: _kind(file) for file in files}
+    found = _read_directory(folder / suite)
+    if isinstance(found, MotionList):
+        return found
+    kinds = {file: _kind(file) for file in found}
     records = [file for file, kind in kinds.items() if not kind]
     ignored = Counter(kind for kind in kinds.values() if kind)
     if not records:
@@ -169,6 +160,22 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
         raise SuiteError("suite", f"has CSV and .AT2 files: {shown}: take one kind, or list the motions in {FILE}")
     motions = _pair_files(parts) if parts else [Motion(file.stem, {"": file}) for file in whole]
     return MotionList(_with_own_names(motions), ignored)
+
+
+def _read_directory(place: Path) -> MotionList | list[Path]:
+    """Return the list of motions that a directory holds, or else its files. Raises SuiteError."""
+    try:
+        if (listed := read_motion_list(place)) is not None:
+            return listed
+        files = sorted(place.iterdir())
+    except RecordError as error:
+        raise SuiteError("suite", str(error)) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise SuiteError("suite", f"{reason}; {SUITE_RULE}, relative to the scene file") from None
+    if len(files) > MAX_FILES:
+        raise SuiteError("suite", f"{len(files)} files: must be at most {MAX_FILES}")
+    return files
 
 
 def _kind(file: Path) -> str:

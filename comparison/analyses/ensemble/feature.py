@@ -282,7 +282,7 @@ def text_of(number: Statistic, factor: float) -> str:
 FOUND = ResultField(
     "ensemble",
     EnsembleResult,
-    "demands under many motions at many scales; null unless phase-resonance ensemble left it beside the report",
+    STORED.word_field("demands under many motions at many scales"),
     load=STORED.load,
 )
 FEATURE = Feature(
@@ -290,7 +290,7 @@ FEATURE = Feature(
     (FOUND,),
     section=Section(
         "Demands under many motions",
-        "phase-resonance ensemble SCENE makes it, beside the report; the next run of the study shows it",
+        STORED.word_origin(" SCENE"),
         lambda report: {
             "ensemble_panels": ensemble_panels(FOUND.of(report.results)),
             "demand_rows": demand_rows,

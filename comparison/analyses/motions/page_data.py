@@ -152,7 +152,7 @@ def _blocks(motion: StoredMotion) -> dict[str, list[int]]:
 
 
 def significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:
-    """Nested lists of numbers with so many significant digits."""
+    """Return nested lists of numbers with that number of significant digits."""
     if values.ndim > 1:
         return [significant_digits(part, digits) for part in values]
     return [float(f"{value:.{digits}g}") for value in values]

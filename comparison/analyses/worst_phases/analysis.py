@@ -66,7 +66,7 @@ class Worst:
 
 # an engine model that is not searched, its largest value on its grid with error, and phases of that
 OnGrid = tuple[Model, float, float, tuple[float, float]]
-# scene, model, engine of its equations, engine not searched, quantity, body, tolerance of the engines, starts (K, 2)
+# scene, model, its engine, engine that is not searched, quantity, body, tolerance of the engines, starts (K, 2)
 Arguments = tuple[Scene, Model, Model | None, OnGrid | None, Quantity, int, float, Array | None]
 
 

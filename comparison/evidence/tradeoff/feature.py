@@ -102,15 +102,13 @@ def _curve(method: str, entries: Sequence[MeasuredSetting], body: int, number: i
 TRADES = ResultField(
     "tradeoff",
     list[Trade],
-    "error against compute time for every model and parameter; null unless phase-resonance tradeoff left it "
-    "beside the report",
+    trade.STORED.word_field("error against compute time for every model and parameter"),
     load=trade.load,
 )
 GROWTH = ResultField(
     "growth",
     MeasuredGrowth,
-    "how the cost grows with bodies, duration, phase pairs and workers; null unless phase-resonance tradeoff "
-    "--growth left it beside the report",
+    growth.STORED.word_field("how the cost grows with bodies, duration, phase pairs and workers"),
     load=growth.STORED.load,
 )
 
@@ -127,7 +125,7 @@ FEATURE = Feature(
     (TRADES, GROWTH),
     section=Section(
         "Speed for accuracy",
-        "phase-resonance tradeoff SCENE makes it, beside the report; the next run of the study shows it",
+        trade.STORED.word_origin(" SCENE"),
         _context,
         verifies=True,
         verdict=lambda results: word_trades(TRADES.get(results) or ()),

@@ -38,7 +38,7 @@ MAX_WORK = 1e9  # steps of the engine: the limit ends what takes too long, not a
 
 
 def tall(scene: Scene, bodies: int) -> Scene:
-    """The scene with its upper body cut into so many less one, each above the other on links of the same period."""
+    """Return the scene with its upper body cut into `bodies` - 1, each above the other on links of the same period."""
     table = scene.model_dump(exclude_none=True)
     first, second = table["bodies"][0], table["bodies"][min(1, len(table["bodies"]) - 1)]
     height = second.get("height", STOREY)

@@ -152,7 +152,7 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
     question = TradeoffQuestion("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
     monkeypatch.setattr(analysis, "settings", lambda scene, quick: known)
-    monkeypatch.setattr(analysis, "asked", lambda scene: [question])
+    monkeypatch.setattr(analysis, "questions_of", lambda scene: [question])
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
     (first,) = load(tmp_path / "out")

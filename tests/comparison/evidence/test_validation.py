@@ -15,7 +15,7 @@ from scipy.io import savemat
 from scipy.special import ellipk
 
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
-from comparison.evidence.validation import frame, pendulum, table
+from comparison.evidence.validation import command, frame, pendulum, table
 from comparison.evidence.validation.command import compare_folder, main
 from comparison.evidence.validation.feature import panels
 from comparison.evidence.validation.files import DECAY, LARGE, Shaken, read_folder
@@ -320,8 +320,8 @@ def test_a_side_without_a_value_is_an_exit_code(monkeypatch: pytest.MonkeyPatch,
     nothing = table.Comparison(None, None, None, None, NOT_COMPARED)
     lacking = replace(first, sides={**first.sides, ENGINE: nothing})
     for quantities, code in ((load_record().quantities, 0), ([lacking, *rest], 1)):
-        compared = replace(load_record(), quantities=quantities)
-        monkeypatch.setattr("comparison.evidence.validation.command.compared", lambda folder, table=compared: table)
+        table_of_folder = replace(load_record(), quantities=quantities)
+        monkeypatch.setattr(command, "compare_folder", lambda folder, found=table_of_folder: found)
         assert main([str(tmp_path), "--out", str(tmp_path / "report")]) == code
 
 
