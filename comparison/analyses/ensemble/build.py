@@ -89,7 +89,7 @@ def structures_of(members: Sequence[Member], moved: Mapping[str, result.Stripe])
         if displacement and not scene.flat and friction:
             linear = effective_isolator(scene, displacement)
             period, damping, restoring = map(float, (linear.period, linear.damping, linear.restoring))
-            isolator = result.Isolator(displacement, period, damping, restoring, statistic, friction)
+            isolator = result.LinearIsolator(displacement, period, damping, restoring, statistic, friction)
         weight = scene.total_mass * GRAVITY
         about = name, scene.title, len(scene.bodies), weight, isolator, read_building(scene)
         found.append(result.Structure(*about))

@@ -105,7 +105,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
             turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
             engine = SPATIAL if turning else TRANSLATIONAL
             count = f"{len(chosen)} of {len(members)} motions"
-            console.print(f"Next: {count} by the {engine.title}, about {display.left:.0f} s.")
+            console.print(f"Next: {count} by the {engine.title}, about {display.seconds_left:.0f} s.")
         shown.append((chosen, bool(further)))
         return further
 

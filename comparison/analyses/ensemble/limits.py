@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from comparison.analyses.ensemble.result import Curve, EnsembleResult, Statistic, Stripe
+from comparison.analyses.ensemble.result import DemandCurve, EnsembleResult, Statistic, Stripe
 from comparison.study.models import EXACT
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, Verdict, judge, word_verdict
 from reference.measures.peak_demands import QUANTITIES, unit_of
@@ -161,7 +161,7 @@ def _values_at_top(
     top = max(ensemble.scales)
     asked = structure, quantity, body
     own = [curve for curve in ensemble.curves if (curve.structure, curve.quantity, curve.body) == asked]
-    by_model: dict[str, list[Curve]] = {}
+    by_model: dict[str, list[DemandCurve]] = {}
     for curve in own:
         if top in curve.scales:
             by_model.setdefault(curve.model, []).append(curve)

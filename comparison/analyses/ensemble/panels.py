@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from comparison.analyses.ensemble.quantities import title_of, unit_for_reading
-from comparison.analyses.ensemble.result import Curve, EnsembleResult, Statistic, Structure
+from comparison.analyses.ensemble.result import DemandCurve, EnsembleResult, Statistic, Structure
 from comparison.analyses.ensemble.rows import HEIGHTS, floor_of, labels
 from comparison.analyses.ensemble.sentences import count_motions
 from comparison.report.panels import panel
@@ -72,7 +72,7 @@ def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     return panel(title, label, strips if one else scales, _from_zero(f"{title}, {unit}", series), series)
 
 
-def _values(curves: Sequence[Curve], factor: float, place: float | None, **look: Any) -> list[dict[str, Any]]:
+def _values(curves: Sequence[DemandCurve], factor: float, place: float | None, **look: Any) -> list[dict[str, Any]]:
     """The motions, each over its scales, or all side by side about a place; dots have their errors."""
     series = []
     for number, curve in enumerate(curves):
