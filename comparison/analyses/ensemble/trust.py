@@ -157,7 +157,7 @@ def trust_sentence(ensemble: EnsembleResult) -> str:
     if not said:
         return ""
     motions = {(row.bound, motion) for row in rows for motion in row.motions}
-    count = f"On the {len(motions)} motion{'s' * (len(motions) != 1)} that all models computed"
+    count = f"On the {f'{len(motions)} motions' if len(motions) > 1 else 'one motion'} that all models computed"
     return f"{count}, three things are apart: {'; '.join(said)}."
 
 
