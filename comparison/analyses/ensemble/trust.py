@@ -108,9 +108,8 @@ def _trust_row(
     beside = [SPATIAL.key] if quantity.startswith("support_force") else [key for key in by_model if key != EXACT.key]
     others = {key: by_model[key] for key in beside if by_model[key]}
     exact = by_model[EXACT.key]
-    common = [
-        motion for motion, value in exact.items() if value > 0.0 and all(motion in each for each in others.values())
-    ]
+    known = [motion for motion, value in exact.items() if value > 0.0]
+    common = [motion for motion in known if all(motion in each for each in others.values())]
     if not others or not common:
         return None
 

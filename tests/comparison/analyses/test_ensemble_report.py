@@ -364,6 +364,29 @@ def test_a_platform_below_its_contact_is_said() -> None:
     )
 
 
+def test_every_motion_is_a_dot_with_its_error_by_both_sides() -> None:
+    found = planted()
+    curves = [replace(each, errors=(0.01,)) for each in found.curves]
+    (drawn,) = (make() for make in panels.isolator_panels(replace(found, curves=curves)))
+    series = drawn["plot"]["series"]
+    dots = [each for each in series if each.get("color") == 0 and "one motion" in each["name"]]
+    assert [each["y"][0] for each in dots] == pytest.approx([100.0, 200.0, 300.0, 400.0])
+    assert [(each["low"][0], each["high"][0]) for each in dots[:1]] == [(pytest.approx(90.0), pytest.approx(110.0))]
+    by_engine = [each for each in series if each.get("color") == "ink"]
+    assert [each["y"][0] for each in by_engine] == pytest.approx([315.0, 420.0])
+    assert by_engine[0]["name"] == "spatial engine"
+
+
+def test_profiles_have_the_height_on_the_vertical_axis(found: EnsembleResult) -> None:
+    drawn = next(each for each in (make() for make in panels.height_panels(found)) if "acceleration" in each["title"])
+    assert drawn["plot"]["y"]["title"] == "height above the sliding contact, m"
+    median = next(each for each in drawn["plot"]["series"] if each["name"] == "upper bound, 50 %")
+    assert median["y"] == pytest.approx([0.5, 3.5, 6.5])
+    expected = [found.stripe("mine[upper bound]", "acceleration", body) for body in (1, 2, 3)]
+    assert median["x"] == pytest.approx([each.fractiles[1].value / GRAVITY for each in expected])  # type: ignore[union-attr, operator]
+    assert [each.partition(":")[0] for each in median["titles"]] == ["deck", "body 2", "roof"]
+
+
 def fails(*rest: Any) -> None:
     raise RuntimeError("planted")
 
