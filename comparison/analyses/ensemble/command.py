@@ -27,7 +27,7 @@ from comparison.analyses.ensemble.limits import (
     word_check,
     word_checks,
 )
-from comparison.analyses.ensemble.members import SCALE, Member, group_by, members_of, refuse_unfit
+from comparison.analyses.ensemble.members import SCALE, Member, group_by, members_of, refuse_unfit, with_suite
 from comparison.analyses.ensemble.page import page_of
 from comparison.analyses.ensemble.result import STORED, EnsembleResult, Target
 from comparison.analyses.ensemble.table import table_text
@@ -248,14 +248,8 @@ def family_of_options(options: argparse.Namespace, source: str) -> Family:
     data = scene_tables(scene_text(source), source)
     loading: Any = data.get("excitation")
     if options.suite is not None:
-        name = options.suite if ":" in options.suite else str(Path(options.suite).absolute())
-        record: dict[str, Any] = {"suite": name, "motion": "all"} | ({"normalized": True} if options.normalized else {})
-        record |= {} if options.components is None else {"components": options.components}
-        scale = loading.get("scale", 1.0) if isinstance(loading, dict) else 1.0
-        data = {key: value for key, value in data.items() if key != "duration"}  # as long as each motion
-        detrend = {"detrend": loading["detrend"]} if isinstance(loading, dict) and "detrend" in loading else {}
-        loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}, **detrend}
-        data.setdefault("combine", "product")
+        data = with_suite(data, options.suite, options.components, options.normalized)
+        loading = data["excitation"]
     if options.scales is not None:
         low, high = (read_number("--scales", text, 1e-6, 1e6, "LOW and HIGH") for text in options.scales[:2])
         count = read_whole_number("--scales", options.scales[2], 1, MAX_SCALES)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from comparison.analyses.ensemble.quantities import title_of, unit_of_demand
 from comparison.analyses.ensemble.result import EnsembleResult, Statistic, Stripe, Structure
 from comparison.analyses.ensemble.rows import labels, place_of
+from comparison.analyses.ensemble.sentences import count_motions
 from comparison.study.models import EXACT
 from comparison.verdicts import (
     MET,
@@ -130,7 +131,7 @@ def _check_body(
     count = f"{len(known)} of " if len(known) < ensemble.motions else ""
     what = "base shear over the weight" if key == "base_shear" else title_of(key)
     what += f" {place}" if (place := place_of(structure, key, body)) else ""
-    what += f", {statistic} of {count}{ensemble.motions} motions{by}"
+    what += f", {statistic} of {count}{count_motions(ensemble.motions)}{by}"
     about: tuple[str, str, str] = f"{KEY}{key}", labels(ensemble)[structure.name], what
     lacking = (ensemble.motions if statistic == MEAN else len(values)) - len(known)
     reason = f"{lacking} {'motion has' if lacking == 1 else 'motions have'} no value" if lacking else ""
