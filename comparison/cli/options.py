@@ -79,16 +79,20 @@ def parse_options(argv: Sequence[str]) -> Options:
     if options.budget is not None and not hasattr(signal, "setitimer"):
         raise SceneError("command line", "--budget", words.budget, "needs a timer that this system does not have")
     if not options.plan:
-        try:
-            for field in (field for feature in FEATURES for field in feature.stored):
-                assert field.load is not None
-                field.load(options.out)
-        except (OSError, ValueError) as error:
-            rule = f"the report cannot show {error}"
-            raise SceneError("command line", "--out", str(options.out), rule) from None
-        refuse_foreign_report(options.out)
-        refuse_foreign_store(options.out)
+        _refuse_unusable_folder(options.out)
     return options
+
+
+def _refuse_unusable_folder(out: Path) -> None:
+    """Refuse a folder that keeps the report from being written or shown. Raises SceneError."""
+    try:
+        for field in (field for feature in FEATURES for field in feature.stored):
+            assert field.load is not None
+            field.load(out)
+    except (OSError, ValueError) as error:
+        raise SceneError("command line", "--out", str(out), f"the report cannot show {error}") from None
+    refuse_foreign_report(out)
+    refuse_foreign_store(out)
 
 
 def _refuse_limits_of_no_engine(scenes: Sequence[Scene], engines: Sequence[str]) -> None:
@@ -140,7 +144,7 @@ def _parser() -> CommandParser:
     names, on_request = ", ".join(EVERYTHING.names), ", ".join(each.name for each in SELECTABLE if each.on_request)
     parser.add_argument("--only", metavar="LIST", help=f"make these analyses only, separated by commas: {names}")
     parser.add_argument("--skip", metavar="LIST", help="make all analyses but these")
-    parser.add_argument("--also", metavar="LIST", help=f"make these analyses besides: {on_request}")
+    parser.add_argument("--also", metavar="LIST", help=f"make these analyses, too: {on_request}")
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument(
         "--plan", action="store_true", help="print what would be computed and roughly how long it takes; run nothing"

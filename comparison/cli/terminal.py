@@ -2,6 +2,7 @@
 
 from collections.abc import Hashable, Sequence
 from dataclasses import replace
+from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -9,7 +10,8 @@ from rich.table import Table
 
 from comparison.cli.options import Options
 from comparison.registry import first_tasks, levels, seconds_by_stage, select_analyses
-from comparison.runner.cache import Cache, store_beside
+from comparison.runner.analysis import Analysis
+from comparison.runner.cache import Cache, locate_store
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import refusal_of
@@ -20,7 +22,7 @@ from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
 from reference.building import describe_building, word_buildings
 from reference.plausibility import implausible_values
-from reference.problem import Scene, describe_record
+from reference.problem import Family, Scene, describe_record
 from reference.problem.tables import Record
 from reference.records.description import RecordDescription
 
@@ -31,8 +33,30 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     """Print what would be computed, and roughly how long it would take."""
     for reason, of in _refusals(study).items():
         console.print(f"{_list_names(of)}: {reason}.", soft_wrap=True)
+    _print_models(console, study, options.families)
+    analyses = select_analyses(study)
+    _print_analyses(console, study, analyses)
+    _print_levels(console, study)
+    _print_reductions(console, study)
+    if study.absent:
+        reasons = ", ".join(f"{analysis} ({reason})" for analysis, reason in study.absent.items())
+        console.print(f"Not in the report: {reasons}.", soft_wrap=True)
+    if len(study.phased) < len(study.scenes):
+        console.print("A recorded motion has no phases: one point per model.")
+    results = TaskResults(Cache(locate_store(options.out)), options.fresh)
+    print_stored(console, results, surface_tasks(study), first_tasks(study, analyses))
+    seconds = sum(seconds_of_model(study, model) for model in study.hierarchy)
+    seconds += sum(seconds_by_stage(study).values())
+    wall = STARTING + seconds / options.jobs + WRITING
+    first = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
+    console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{first}; nothing was computed.")
+    console.print(f"The report would go to {options.out}.", soft_wrap=True)
+
+
+def _print_models(console: Console, study: Study, families: Sequence[Family]) -> None:
+    """Print a table of the models of every file, with their phase pairs."""
     table = new_table("file", "scenes", "model", "phase pairs", "computed", "tolerance")
-    for family in options.families:
+    for family in families:
         for model in study.hierarchy:
             scenes = [scene for scene in family.scenes if model.applies(scene)]
             if scenes:
@@ -41,31 +65,24 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
                 counts = f"{points:,}", f"{computed:,}", f"{model.tolerance(study.tolerance):.0e}"
                 table.add_row(family.name, str(len(scenes)), model.title, *counts)
     console.print(table)
-    analyses = select_analyses(study)
+
+
+def _print_analyses(console: Console, study: Study, analyses: Sequence[Analysis[Any]]) -> None:
+    """Print the number of tasks of every analysis, where it is known before the surfaces are."""
     counted = {
         each.stage: "chosen by the surfaces" if each.needs_surfaces else len(each.tasks(study.selecting(each.key)))
         for each in analyses
     }
     console.print(f"Analyses (tasks): {', '.join(f'{name} ({count})' for name, count in counted.items()) or 'none'}.")
+
+
+def _print_levels(console: Console, study: Study) -> None:
+    """Print the grids of phases of every level; a study without phases has none."""
     for level in levels(study) if study.phased else ():
-        of_level = level.study
-        kinds = {"equations" if m.side == "reference" else m.title: len(of_level.axis(m)) for m in of_level.hierarchy}
+        models = level.study.hierarchy
+        kinds = {"equations" if m.side == "reference" else m.title: len(level.study.axis(m)) for m in models}
         grids = ", ".join(f"{kind} {count} x {count} phases" for kind, count in kinds.items())
         console.print(f"{level.title.capitalize()}: {grids}.")
-    _print_reductions(console, study)
-    if study.absent:
-        reasons = ", ".join(f"{analysis} ({reason})" for analysis, reason in study.absent.items())
-        console.print(f"Not in the report: {reasons}.", soft_wrap=True)
-    if len(study.phased) < len(study.scenes):
-        console.print("A recorded motion has no phases: one point per model.")
-    results = TaskResults(Cache(store_beside(options.out)), options.fresh)
-    print_stored(console, results, surface_tasks(study), first_tasks(study, analyses))
-    seconds = sum(seconds_of_model(study, model) for model in study.hierarchy)
-    seconds += sum(seconds_by_stage(study).values())
-    wall = STARTING + seconds / options.jobs + WRITING
-    first = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
-    console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{first}; nothing was computed.")
-    console.print(f"The report would go to {options.out}.", soft_wrap=True)
 
 
 def _list_names(names: Sequence[str]) -> str:
@@ -146,7 +163,7 @@ def new_table(*headings: str) -> Table:
     """An empty table: words to the left, numbers to the right. Where it is too wide words are folded, never numbers."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
-        words = heading in ("file", "scene", "model", "difference", "step", "quantity", "verdict")
+        words = heading in ("file", "scene", "model", "motion", "difference", "step", "quantity", "verdict", "bound")
         whole = heading == "difference" or not words
         table.add_column(heading, justify="left" if words else "right", no_wrap=whole, overflow="fold")
     return table

@@ -17,6 +17,7 @@ from comparison.report.results import VALIDATED_BRIEFLY, Results
 from comparison.report.section import Report, Section
 from comparison.report.surface_sections import models_in_use
 from comparison.runner.attempts import attempt
+from comparison.study.study import Study
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.statements import CELLS, word_verdict
 from comparison.surfaces.waterfall import PHASES, Waterfall
@@ -48,7 +49,7 @@ def pages(report: Report) -> dict[str, str]:
         "lead_lines": part("sentences of sections", partial(lead_lines, report)) or [],
         "alerts": part("alerts", partial(render_alerts, report)) or "",
         "summary": part("summary", partial(render_summary, report)) or "",
-        "data": part("surfaces", lambda: pack(page_data(report).encode())) or nothing,
+        "data": part("surfaces", lambda: pack(page_data(report, partial(note_lost, lost)).encode())) or nothing,
         "packed": {key: numbers or "" for key, numbers in packed.items()},
     }
     verification = {"data": nothing, "packed": {}}
@@ -81,7 +82,7 @@ def render_summary(report: Report) -> Markup:
     drawn = [(bars, line) for bars, line in waterfalls if is_drawn(bars)]
     context = {
         "results": results,
-        "second_title": "Exudyn" if any(model.side == "engine" for model in models_in_use(study)) else "the last model",
+        "second_title": name_second(study),
         "cells": CELLS,
         "drawn": drawn,
         "hidden_bodies": len(waterfalls) - len(drawn),
@@ -93,6 +94,11 @@ def render_summary(report: Report) -> Markup:
         "effects": {PHASES: "other phases", **{model.key: model.effect or model.title for model in study.hierarchy}},
     }
     return render_template("sections/summary.html.j2", context)
+
+
+def name_second(study: Study) -> str:
+    """Return what the answers compare with the paper's equations."""
+    return "Exudyn" if any(model.side == "engine" for model in models_in_use(study)) else "the last model"
 
 
 def is_drawn(bars: Waterfall) -> bool:

@@ -1,4 +1,4 @@
-"""The one shape of everything that is computed beside the surfaces."""
+"""The one shape of everything that is computed in addition to the surfaces."""
 
 from abc import abstractmethod
 from typing import ClassVar, Protocol, TypeVar

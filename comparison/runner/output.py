@@ -3,7 +3,7 @@ The folders that commands write for the user: reports, tables, figures.
 
 Every such folder holds a manifest of the files that this study wrote there, with a hash of each. A file is the study's
 own if it is as the manifest says, and everything else is the user's. Only the study's own files are replaced or
-removed; where something else is in the way the new ones go beside under a new name.
+removed; where something else is in the way the new ones go to a new name next to it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparison.runner.cache import store_beside
+from comparison.runner.cache import locate_store
 from reference.problem import SceneError
 from reference.support.files import (
     NEW,
@@ -84,7 +84,7 @@ def destination(path: Path, option: str = "--out") -> Path:
         raise refusal("is a symbolic link that leads back to itself: give another directory") from None
     except OSError as error:
         raise refusal(f"cannot be used: {error.strerror}: give another directory") from None
-    # a path that means what it says stays as it was typed, for the messages; "." has no name to put a store beside
+    # a path that means what it says stays as it was typed, for the messages; "." has no name for the store
     return path if path.name and Path(os.path.abspath(path)) == place and ".." not in path.parts else place
 
 
@@ -133,7 +133,7 @@ def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
     try:
         existing = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
         tempfile.TemporaryDirectory(dir=existing, prefix=TEMPORARY).cleanup()
-        store_beside(out.absolute()).exists()
+        locate_store(out.absolute()).exists()
     except OSError as error:
         raise SceneError("command line", option, str(out), f"cannot be written: {error.strerror}") from None
 
@@ -152,7 +152,7 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
     A new folder to write a report into; if the block ends without exception its files go to `out`, each whole.
 
     What the report there has no more is removed, and files of other commands are kept. If anything but the study's own
-    files is there by then all of it stays as it is and the report goes beside, which `say` is told. `place` of the
+    files is there by then all of it stays and the report goes to a new name, which `say` is told. `place` of the
     report says after the block where it is.
     """
     place = out.resolve()
@@ -172,7 +172,7 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
 
 
 def clear_dead(out: Path) -> None:
-    """Remove the unfinished reports that killed runs left beside `out`."""
+    """Remove the unfinished reports that killed runs left next to `out`."""
     for staging_folder in find_abandoned_staging(out.resolve()):
         clear_staging(staging_folder)
 
@@ -194,7 +194,7 @@ def publish(
             else:
                 file = write_new(file, content)
             if file.name != name:
-                say(f"{str(folder / name)!r} is not a file of this study and stays: see {file.name!r} beside it")
+                say(f"{str(folder / name)!r} is not a file of this study and stays: see {file.name!r} next to it")
                 _note(folder, manifest | {file.name: Own(command, (digest,))}, say)
             written.append(file)
     return written
@@ -262,7 +262,7 @@ def manifest_json(manifest: Mapping[str, Own]) -> bytes:
 
 
 def _install_report(new: Path, place: Path, say: Callable[[str], None]) -> Path:
-    """Move the files of a new report to their place, or beside it; the place."""
+    """Move the files of a new report to their place, or next to it; return the place."""
     mine = {
         path.relative_to(new).as_posix(): Own(REPORT, (_hash(path.read_bytes()),))
         for path, is_folder in _walk_folder(new)

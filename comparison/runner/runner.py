@@ -117,7 +117,7 @@ class Runner:
                 return
             self._queue.remove(work)
             if work.task.batch and self.hung[work.task.group] >= GIVEN_UP_AFTER:
-                self._keep(work, result_without_value(Outcome.TIME_LIMIT, GIVEN_UP))
+                self._keep(work, result_without_value(Outcome.NOT_ASKED, GIVEN_UP))
             else:
                 self._at_work[_start_task(work.task, executor)] = work
 

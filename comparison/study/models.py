@@ -221,7 +221,7 @@ def partner_of(engine: Model, scene: Scene, hierarchy: Sequence[Model]) -> Model
 
 def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
-    Return a pair for each effect of the chain, then the same effects where other models stand beside the chain, then
+    Return a pair for each effect of the chain, then the same effects where other models stand outside the chain, then
     the two readings of (5.1).
 
     An effect as integrated is a share of mu of the first model of the chain, so that the effects of the chain add up to

@@ -12,9 +12,9 @@ from comparison.surfaces.differences import Difference
 from comparison.surfaces.statements import name_engine, word_engine, word_engine_without_values, word_headline
 from comparison.surfaces.surfaces import outcome_counts
 from comparison.surfaces.waterfall import NAN, Waterfall
+from reference.problem.readings import BOTH_READINGS
 
 NAMED = 0.2  # share of the total: an effect above it is named as a cause; share of an effect: an interaction is stated
-BOTH_READINGS = "in both readings"  # both readings of (5.1) are the same where no friction is dry
 # the same effect in another order: key of the pair in the chain; of the pair beside it, and what is different there
 ELSEWHERE = {
     "geometry": ("geometry-regularized", "under regularized friction"),

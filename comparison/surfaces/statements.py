@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 from comparison.wording import degrees, difference, more_or_less, percent, signed
+from reference.problem.readings import BOTH_READINGS
 
 if TYPE_CHECKING:
     from comparison.surfaces.acceptance import Breach, Limit
@@ -154,13 +155,19 @@ def word_engine_without_values(title: str, like: str, lacking: str, outcomes: Ma
 def word_breach(limit: Limit, breach: Breach) -> str:
     """Return where, by which value and how a limit is broken; without the scene."""
     body = f"body {breach.body}: " if breach.body else ""
-    found = breach.reason or f"{breach.found:.3g} found"
+    found = breach.reason or f"{_digits_above(breach.found, limit.allowed)} found"
     text = f"{body}acceptance.{limit.key}: {found}, {limit.allowed:g} allowed"
     if not limit.default:
         return text
     where = "" if math.isnan(breach.phases[0]) else f" at ({', '.join(map(degrees, breach.phases))})"
     largest = "" if math.isnan(breach.largest) else f"; largest difference {signed(breach.largest)}{where}"
     return f"{text} by default{largest}"
+
+
+def _digits_above(found: float, allowed: float) -> str:
+    """Return a value with three digits, or with as many as show that it exceeds the limit."""
+    texts = (f"{found:.{digits}g}" for digits in range(3, 18))
+    return next((text for text in texts if float(text) > allowed), f"{found:.3g}")
 
 
 def word_gate(limits: int, broken: int, unchecked: Mapping[str, Sequence[str]]) -> str:
@@ -212,19 +219,23 @@ def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
 def _word_largest(known: Sequence[Headline]) -> str:
     """Return the largest mean difference of all bodies, the next one, and the ends over the phases."""
     largest, *others = sorted(known, key=lambda each: -abs(each.mean))
-    phased = largest.phases_per_axis > 1
+    phased = [each for each in known if each.phases_per_axis > 1]
     size = difference(abs(largest.mean), largest.error).removeprefix("+")
-    over = " in the mean over the initial phases" if phased else " under the record"
+    over = " in the mean over the initial phases" if largest.phases_per_axis > 1 else " under the record"
     than = "lower" if largest.mean < 0.0 else "higher"
     rest = f"; every other body: at most {percent(abs(others[0].mean))}" if others else ""
-    ends = [*((each.low, each.low_error) for each in known), *((each.high, each.high_error) for each in known)]
-    low, high = min(ends), max(ends)
-    single = f", and by {difference(*low)} to {difference(*high)} at single phase pairs" if phased else ""
-    names = {each.second_name for each in known}
-    models = largest.second_name if len(names) == 1 else " or ".join(sorted(names))
+    single = ""
+    if phased:
+        low = min((each.low, each.low_error) for each in phased)
+        high = max((each.high, each.high_error) for each in phased)
+        single = f", and by {difference(*low)} to {difference(*high)} at single phase pairs"
+    first = " or ".join(sorted({each.first_name for each in known}))
+    second = " or ".join(sorted({each.second_name for each in known}))
+    # what is the same in both readings is also that of the others
+    readings = sorted({each.reading for each in known} - {BOTH_READINGS}) or [BOTH_READINGS]
     return (
-        f"The largest accelerations that {largest.first_name} give, read {largest.reading}, differ from those of "
-        f"{models} by at most {size}{over} ({largest.scene}, {largest.name}: {largest.second_name} is "
+        f"The largest accelerations that {first} give, read {' or '.join(readings)}, differ from those of "
+        f"{second} by at most {size}{over} ({largest.scene}, {largest.name}: {largest.second_name} is "
         f"{than}{rest}){single}."
     )
 
@@ -245,11 +256,11 @@ def _word_codes(known: Sequence[Headline]) -> str:
     higher = [each for each in known if math.isfinite(each.supremum_mean)]
     if higher:
         mean = max(higher, key=lambda each: each.supremum_mean)
-        most = max(higher, key=lambda each: each.supremum_maximum)
-        size = f"up to {percent(mean.supremum_mean)} higher ({mean.scene}, {mean.name})"
-        if mean.phases_per_axis > 1:
-            size = f"up to {percent(mean.supremum_mean)} higher in the mean ({mean.scene}, {mean.name}) and up to "
-            size += f"{percent(most.supremum_maximum)} at single phase pairs ({most.scene}, {most.name})"
+        over = " in the mean" if mean.phases_per_axis > 1 else ""
+        size = f"up to {percent(mean.supremum_mean)} higher{over} ({mean.scene}, {mean.name})"
+        if phased := [each for each in higher if each.phases_per_axis > 1]:
+            most = max(phased, key=lambda each: each.supremum_maximum)
+            size += f" and up to {percent(most.supremum_maximum)} at single phase pairs ({most.scene}, {most.name})"
         parts.append(
             f"their literal supremum is {size}" if not alike else f"the literal supremum of the equations is {size}"
         )
@@ -293,7 +304,7 @@ def word_agreement_cell(numbers: Headline) -> str:
 def word_supremum_cell(numbers: Headline) -> str:
     """Return by how much the literal supremum is higher, in the first screen's table."""
     if math.isnan(numbers.supremum_mean):
-        return "no difference" if numbers.reading == "in both readings" else "not compared"
+        return "no difference" if numbers.reading == BOTH_READINGS else "not compared"
     if numbers.supremum_maximum < SAME:
         return "no difference"
     if numbers.phases_per_axis == 1:

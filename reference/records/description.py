@@ -12,7 +12,7 @@ from reference.support.constants import GRAVITY
 
 LARGEST_PEAK, SMALLEST_PEAK = 3.0, 0.001  # g
 UNEVEN = 0.01  # relative, of the steps of a column of times
-FEW_SAMPLES = 100  # below so many, no zero line is judged
+FEW_SAMPLES = 100  # samples, below which no zero line is judged
 SHARE_OF_PEAK_VELOCITY = 0.2  # with which a record may end: at most 0.07 in 289 public records
 CLIPPED = 4  # equal samples in a row at the largest size
 FLAT = 1e-9  # relative, of samples that are equal
@@ -52,7 +52,7 @@ class DirectionRead:
 @dataclass(frozen=True)
 class RecordDescription:
     """
-    What was read of a recorded motion.
+    Description of a recorded motion as it was read.
 
     Attributes
     ----------
@@ -138,7 +138,7 @@ def describe_samples(
 
 
 def _warnings_of(one: DirectionRead, values: Array, velocity: Array, time: Array, detrend: str | None) -> list[str]:
-    """What of one direction is hardly meant."""
+    """Return warnings of what is hardly meant in one direction."""
     warnings = []
     # Velocity less its chord is what remains when the mean is taken off. Noise, a walk from rest, ends about as far
     # from zero as it strays from the chord; a zero line that was left in ends far beyond: its velocity grows with time.

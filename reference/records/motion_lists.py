@@ -47,7 +47,7 @@ class MotionList:
 
     @property
     def sentence(self) -> str:
-        """What the folder holds, with an example of how components were paired."""
+        """Return the content of the folder in words, with an example of how components were paired."""
         first = self.motions[0].files
         how = f"as {FILE} lists them" if self.listed else "" if "" in first else "paired by name"
         if not self.listed and list(first) == ["x"]:

@@ -25,8 +25,8 @@ from reference.records.numerals import decode_text
 from reference.records.samples import (
     LARGEST,
     Array,
-    Reading,
     RecordError,
+    RecordSamples,
     check_samples,
     join_directions,
     origin_of,
@@ -97,7 +97,7 @@ def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[
 
 def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
     """The samples of a motion of a folder, and where they are from. Raises SuiteError."""
-    readings: dict[str, Reading] = {}
+    readings: dict[str, RecordSamples] = {}
     for axis, file in motion.files.items():
         try:
             readings[axis] = read_record(read_file(file, LARGEST), file.name)
@@ -139,19 +139,10 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
     """
     if components not in (None, 1, 2) or isinstance(components, bool):
         raise SuiteError("components", "must be 1, every component a motion of its own, or 2, pairs")
-    place = folder / suite
-    try:
-        if (listed := read_motion_list(place)) is not None:
-            return listed
-        files = sorted(place.iterdir())
-    except (OSError, ValueError) as error:
-        if isinstance(error, RecordError):
-            raise SuiteError("suite", str(error)) from None
-        reason = getattr(error, "strerror", None) or error
-        raise SuiteError("suite", f"{reason}; {SUITE_RULE}, relative to the scene file") from None
-    if len(files) > MAX_FILES:
-        raise SuiteError("suite", f"{len(files)} files: must be at most {MAX_FILES}")
-    kinds = {file: _kind(file) for file in files}
+    found = _read_directory(folder / suite)
+    if isinstance(found, MotionList):
+        return found
+    kinds = {file: _kind(file) for file in found}
     records = [file for file, kind in kinds.items() if not kind]
     ignored = Counter(kind for kind in kinds.values() if kind)
     if not records:
@@ -167,12 +158,28 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
     if whole and parts:
         shown = f"{brief(whole[0].name)} holds whole motions, {brief(parts[0].name)} a component"
         raise SuiteError("suite", f"has CSV and .AT2 files: {shown}: take one kind, or list the motions in {FILE}")
-    motions = _paired(parts) if parts else [Motion(file.stem, {"": file}) for file in whole]
+    motions = _pair_files(parts) if parts else [Motion(file.stem, {"": file}) for file in whole]
     return MotionList(_with_own_names(motions), ignored)
 
 
+def _read_directory(place: Path) -> MotionList | list[Path]:
+    """Return the list of motions that a directory holds, or else its files. Raises SuiteError."""
+    try:
+        if (listed := read_motion_list(place)) is not None:
+            return listed
+        files = sorted(place.iterdir())
+    except RecordError as error:
+        raise SuiteError("suite", str(error)) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise SuiteError("suite", f"{reason}; {SUITE_RULE}, relative to the scene file") from None
+    if len(files) > MAX_FILES:
+        raise SuiteError("suite", f"{len(files)} files: must be at most {MAX_FILES}")
+    return files
+
+
 def _kind(file: Path) -> str:
-    """What a file of a folder is that is no record; "" for a record."""
+    """Return the kind of a file that is no record, "" for a record."""
     suffix = file.suffix.lower()
     if file.name.startswith("."):
         return "hidden files"
@@ -191,13 +198,13 @@ def _is_recognized(file: Path) -> bool:
     """Tell whether the content of a file is that of a record."""
     try:
         status = file.stat()
-        return status.st_size <= LARGEST and _recognized(file, status.st_mtime_ns, status.st_size)
+        return status.st_size <= LARGEST and _is_record(file, status.st_mtime_ns, status.st_size)
     except OSError:
         return False
 
 
 @lru_cache(maxsize=4096)
-def _recognized(file: Path, changed: int, size: int) -> bool:
+def _is_record(file: Path, changed: int, size: int) -> bool:
     try:
         return recognize_format(decode_text(read_file(file, LARGEST)), file.suffix) is not None
     except (OSError, RecordError):
@@ -234,7 +241,7 @@ def _groups(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direction]
     return groups
 
 
-def _paired(files: Sequence[Path]) -> list[Motion]:
+def _pair_files(files: Sequence[Path]) -> list[Motion]:
     """The components of motions, by what their names have in common. Raises SuiteError for all that are left alone."""
     groups, left, motions = _groups(files), set(files), []
     for base in sorted(groups, key=lambda base: (-len(groups[base]), len(base))):
@@ -250,7 +257,7 @@ def _paired(files: Sequence[Path]) -> list[Motion]:
 
 
 def _not_understood(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tuple[str, Direction]]]) -> str:
-    """What is said of all components that make no motion, in one message."""
+    """Return one message on all components that make no motion."""
     shares: dict[str, list[Path]] = {}
     for file in files:
         bases = [base.upper() for base, _ in split_name(file.stem, file.suffix)]
@@ -263,16 +270,16 @@ def _not_understood(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tu
         angles = [f"{one.azimuth:g}" for one in told if one.azimuth is not None]
         upright = sum(one.axis == "z" for one in told)
         if not base:
-            said.append(f"{_listed([file.name for file in alone])}: no direction at the end of the name")
+            said.append(f"{_list_names([file.name for file in alone])}: no direction at the end of the name")
         elif len(angles) == len(told) >= 2:
             numbers = f"numbers {', '.join(angles[:3])}"
-            said.append(f"{_listed([file.name for file in alone])}: {numbers} are no azimuths across each other")
+            said.append(f"{_list_names([file.name for file in alone])}: {numbers} are no azimuths across each other")
         else:
             found = f"{len(told) - upright} horizontal and {upright} vertical"
             lone.setdefault(found, []).append(groups[base][alone[0]][0])
     for found, names in lone.items():
         said.append(
-            f"{_listed(names)} {'has' if len(names) == 1 else 'have'} {found} components: must have 2, and 0 or 1"
+            f"{_list_names(names)} {'has' if len(names) == 1 else 'have'} {found} components: must have 2, and 0 or 1"
         )
     return (
         f"{'; '.join(said[:MAX_NAMED])}{f'; and {len(said) - MAX_NAMED} more' if len(said) > MAX_NAMED else ''}. "
@@ -281,7 +288,7 @@ def _not_understood(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tu
     )
 
 
-def _listed(names: Sequence[str]) -> str:
+def _list_names(names: Sequence[str]) -> str:
     shown = ", ".join(brief(name) for name in names[:MAX_NAMED])
     return shown if len(names) <= MAX_NAMED else f"{shown} and {len(names) - MAX_NAMED} more"
 

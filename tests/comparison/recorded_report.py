@@ -114,13 +114,13 @@ def full_ensemble() -> ensemble.EnsembleResult:
     def next_number() -> ensemble.Statistic:
         return ensemble.Statistic(0.0137 * next(number), 0.0001 * next(number))
 
-    def fractiles() -> list[ensemble.Fractile]:
+    def fractiles() -> list[ensemble.DemandFractile]:
         each = [next_number() for _ in FRACTILES]
-        return [ensemble.Fractile(one.value, one.error, share) for one, share in zip(each, FRACTILES)]
+        return [ensemble.DemandFractile(one.value, one.error, share) for one, share in zip(each, FRACTILES)]
 
     structures, stripes, spectra = [], [], []
     for name in ("tower", "office"):
-        isolator = ensemble.Isolator(*(next_number().value for _ in range(4)))  # type: ignore[arg-type]
+        isolator = ensemble.LinearIsolator(*(next_number().value for _ in range(4)))  # type: ignore[arg-type]
         structures.append(ensemble.Structure(name, f"The {name}", 2, 9.81e3, isolator))
         for quantity, body in DEMANDS:
             of = name, quantity, body, "exact", unit_of(quantity), 2.0, next(number)

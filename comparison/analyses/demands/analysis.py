@@ -151,7 +151,7 @@ def _batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:
 
 
 def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset:
-    """The surfaces with those of the demands beside them, as surfaces.nc has them."""
+    """The surfaces and those of the demands, as surfaces.nc has them."""
     if demands is None:
         return surfaces
     renamed = demands.rename({name: f"{PREFIX}{name}" for name in demands.data_vars})

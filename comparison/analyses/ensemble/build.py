@@ -15,6 +15,7 @@ from reference.building import horizontal_peak
 from reference.measures import effective_isolator
 from reference.measures.story_forces import heights_above_contact
 from reference.problem import GRAVITY, Scene
+from reference.records.motion_lists import Motion
 
 
 def build_result(
@@ -22,12 +23,12 @@ def build_result(
     run: Mapping[str, Any],
     tolerance: float,
     target: result.Target | None = None,
-    magnitudes: Mapping[str, float] | None = None,
+    listed: Mapping[str, Motion] | None = None,
 ) -> result.EnsembleResult:
     """
     Return building, motions, statistics of the points, curves of the motions and extremes of the supports.
 
-    magnitudes: of the earthquakes by motion, where they are known.
+    listed: motions of the suite by name, with the factors and magnitudes that its list states.
     """
     members = [point.member for point in points.equations]
     rows = list(stripes(points))
@@ -35,7 +36,7 @@ def build_result(
     asked = "displacement", EXACT.key, scales[-1]
     moved = {row.structure: row for row in rows if (row.quantity, row.model, row.scale) == asked}
     statuses = Counter(sorted(point.status for point in points.equations))
-    suite = read_suite(members, magnitudes or {})
+    suite = read_suite(members, listed or {})
     return result.EnsembleResult(
         schema=result.SCHEMA,
         structures=structures_of(members, moved),
@@ -65,14 +66,15 @@ def engine_motions(points: Points) -> list[result.EngineMotion]:
     return [result.EngineMotion(*at, each.reasons, statuses[at]) for at, each in zip(places, points.chosen)]
 
 
-def read_suite(members: Sequence[Member], magnitudes: Mapping[str, float]) -> list[result.GroundMotion]:
+def read_suite(members: Sequence[Member], listed: Mapping[str, Motion]) -> list[result.GroundMotion]:
     """The motions in their order, each once, with their peaks at scale 1."""
     found = []
     for motion, own in group_by(members, "motion").items():
         member = own[0]
         peak = horizontal_peak(member.scene) / member.scale
-        magnitude = magnitudes.get(motion)
-        found.append(result.GroundMotion(motion, member.scene.duration, peak, member.factor, magnitude))
+        about = listed.get(motion)
+        factor, magnitude = (about.factor, about.magnitude) if about else (1.0, None)
+        found.append(result.GroundMotion(motion, member.scene.duration, peak, factor * member.factor, magnitude))
     return found
 
 
@@ -87,7 +89,7 @@ def structures_of(members: Sequence[Member], moved: Mapping[str, result.Stripe])
         if displacement and not scene.flat and friction:
             linear = effective_isolator(scene, displacement)
             period, damping, restoring = map(float, (linear.period, linear.damping, linear.restoring))
-            isolator = result.Isolator(displacement, period, damping, restoring, statistic, friction)
+            isolator = result.LinearIsolator(displacement, period, damping, restoring, statistic, friction)
         weight = scene.total_mass * GRAVITY
         about = name, scene.title, len(scene.bodies), weight, isolator, read_building(scene)
         found.append(result.Structure(*about))

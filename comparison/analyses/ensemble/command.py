@@ -58,7 +58,7 @@ from reference.problem import Family, SceneError
 from reference.problem.families import family_of, with_bounds
 from reference.problem.scene_file import scene_tables, scene_text
 from reference.records.motion_lists import FILE as MOTIONS
-from reference.records.motion_lists import motion_list_text
+from reference.records.motion_lists import Motion, motion_list_text
 from reference.records.suites import list_motions
 from reference.support.files import write_new
 
@@ -109,7 +109,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
         return 0
     begin = time.monotonic()
-    write = partial(write_ensemble, console, options, argv, begin, ensemble, target, magnitudes_of(options), check)
+    write = partial(write_ensemble, console, options, argv, begin, ensemble, target, listed_motions(options), check)
 
     def then(results: TaskResults, display: Display) -> Sequence[Task]:
         chosen = [] if asked == 0 else choose_motions(ensemble.points(results).equations, asked)
@@ -120,7 +120,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
             turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
             engine = SPATIAL if turning else TRANSLATIONAL
             count = f"{len(chosen)} of {len(members)} motions"
-            console.print(f"Next: {count} by the {engine.title}, about {display.left:.0f} s.")
+            console.print(f"Next: {count} by the {engine.title}, about {display.seconds_left:.0f} s.")
         shown.append((chosen, bool(further)))
         return further
 
@@ -172,7 +172,7 @@ def write_ensemble(
     begin: float,
     ensemble: Ensemble,
     target: Target | None,
-    magnitudes: Mapping[str, float],
+    listed: Mapping[str, Motion],
     check: Callable[[EnsembleResult], list[DemandCheck]],
     results: TaskResults,
     points: Points,
@@ -181,7 +181,7 @@ def write_ensemble(
     """Write the files of the ensemble, show on the terminal what they hold, write the page; return the result."""
     cost = results.parts[STAGE].seconds
     run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
-    result = build_result(points, run, ensemble.tolerance, target, magnitudes)
+    result = build_result(points, run, ensemble.tolerance, target, listed)
     files = {STORED.name: STORED.as_json(result)}
     files |= {CHECKED: junit_of(checks, run)} if (checks := check(result)) else {}
     if (table := attempt(TABLE, lambda: table_text(points, result).encode())) is not None:
@@ -225,12 +225,12 @@ def expected_choices(members: Sequence[Member], asked: Asked) -> list[Member]:
     return chosen
 
 
-def magnitudes_of(options: argparse.Namespace) -> dict[str, float]:
-    """Magnitudes by motion, where motions.csv of the suite states them."""
+def listed_motions(options: argparse.Namespace) -> dict[str, Motion]:
+    """Motions of the folder of the suite by name."""
     if options.suite is None or ":" in options.suite:
         return {}
     listed = list_motions(options.suite, Path(), options.components).motions
-    return {motion.name: motion.magnitude for motion in listed if motion.magnitude is not None}
+    return {motion.name: motion for motion in listed}
 
 
 def print_suite(console: Console, options: argparse.Namespace) -> None:

@@ -7,10 +7,9 @@ from typing import Any
 from markupsafe import Markup
 
 from comparison.analyses.ensemble import panels, sentences
-from comparison.analyses.ensemble.quantities import text_of, title_of
+from comparison.analyses.ensemble.quantities import FRACTILES, text_of, title_of, unit_for_reading
 from comparison.analyses.ensemble.result import EnsembleResult
 from comparison.analyses.ensemble.rows import HEIGHTS, demand_rows, floor_of, labels, profile_rows
-from comparison.analyses.ensemble.statistics import FRACTILES
 from comparison.analyses.ensemble.trust import COLUMNS, STATISTICS, extended_rows, trust_rows, trust_sentence
 from comparison.report.building import note_lost
 from comparison.report.page import lost_line, render_page, render_template
@@ -56,7 +55,11 @@ def _demands(ensemble: EnsembleResult, say: Say) -> Context:
 
 
 def _height(ensemble: EnsembleResult, say: Say) -> Context:
-    tables = [(title_of(name), profile_rows(ensemble, name, ensemble.top)) for name in HEIGHTS]
+    weight = ensemble.structures[0].weight
+    tables = [
+        (f"{title_of(name)}, {unit_for_reading(name, weight)[0]}", profile_rows(ensemble, name, ensemble.top))
+        for name in HEIGHTS
+    ]
     return {
         **shares(),
         "tables": [(title, rows) for title, rows in tables if rows],
@@ -116,7 +119,7 @@ SECTIONS: tuple[tuple[Section, Callable[[EnsembleResult, Say], Context], Callabl
     (
         Section("The engine’s ratios, extended to the suite", folded=False, name="extended"),
         _extended,
-        lambda ensemble: bool(ensemble.engine.motions),
+        lambda ensemble: 0 < len(ensemble.engine.motions) < ensemble.motions * len(ensemble.structures),
     ),
     (
         Section("Demands at the other scales", folded=False, name="scales"),

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from comparison.analyses.ensemble.quantities import title_of, unit_for_reading
-from comparison.analyses.ensemble.result import Curve, EnsembleResult, Statistic, Structure
+from comparison.analyses.ensemble.result import DemandCurve, EnsembleResult, Statistic, Structure
 from comparison.analyses.ensemble.rows import HEIGHTS, floor_of, labels
 from comparison.analyses.ensemble.sentences import count_motions
 from comparison.report.panels import panel
@@ -23,7 +23,8 @@ HEIGHT_AXIS = "height above the sliding contact, m"
 
 def isolator_panels(ensemble: EnsembleResult) -> list[Callable[[], Panel]]:
     """Demands of the isolator over the scale or as strips, a dot or a line for every motion."""
-    shown = [quantity for quantity in SHOWN if any(curve.quantity == quantity for curve in ensemble.curves)]
+    moved = {curve.quantity for curve in ensemble.curves if any(curve.values)}  # nothing is drawn of zeros alone
+    shown = [quantity for quantity in SHOWN if quantity in moved]
     return [partial(_panel, ensemble, quantity) for quantity in shown]
 
 
@@ -63,14 +64,15 @@ def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
         by_engine += _values(engine, factor, place - WIDTH if one else None, **look)
     title = title_of(quantity)
     places = range(len(ensemble.structures))
-    strips = {"title": "", "ticks": [[place, ""] for place in places], "range": [-0.6, len(places) - 0.4]}
+    bounds = list(labels(ensemble).values())
+    strips = {"title": "", "ticks": [[place, bounds[place]] for place in places], "range": [-0.6, len(places) - 0.4]}
     scales = {"title": "scale factor of the motion", "range": [0.0, 1.04 * ensemble.top]}
     label = f"{title} {'by bound' if one else 'over the scale factor'}, {count_motions(ensemble.motions)}"
     series += by_engine
     return panel(title, label, strips if one else scales, _from_zero(f"{title}, {unit}", series), series)
 
 
-def _values(curves: Sequence[Curve], factor: float, place: float | None, **look: Any) -> list[dict[str, Any]]:
+def _values(curves: Sequence[DemandCurve], factor: float, place: float | None, **look: Any) -> list[dict[str, Any]]:
     """The motions, each over its scales, or all side by side about a place; dots have their errors."""
     series = []
     for number, curve in enumerate(curves):

@@ -21,6 +21,7 @@ OF_BODY = {
     "overturning_moment": "overturning moment below body {}",
     "torsion": "rotation of body {}",
 }
+FRACTILES = (0.16, 0.5, 0.84)  # shares of the motions below a value
 SMALLEST = ("contact_force_min", "support_force_min")  # demands of which the smallest value is the worst
 READ = {
     "m": ("mm", 1e3),

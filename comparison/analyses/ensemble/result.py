@@ -25,14 +25,14 @@ class Statistic:
 
 
 @result
-class Fractile(Statistic):
+class DemandFractile(Statistic):
     """A fractile of a demand over the motions."""
 
     share: Annotated[float, "part of the motions below it"] = 0.5
 
 
 @result
-class Isolator:
+class LinearIsolator:
     """The linear isolator that design codes put in the place of the bearing; see `reference.effective_isolator`."""
 
     displacement: float
@@ -69,7 +69,7 @@ class Structure:
     title: Annotated[str, "title of its scenes"]
     bodies: Annotated[int, "number of bodies"]
     weight: Annotated[float, "N"]
-    isolator: Isolator | None = None
+    isolator: LinearIsolator | None = None
     """null without dry friction, on a plane, and where neither mean nor median of the displacement is known"""
     building: BuildingRead | None = None
     """null in a file of which it is not known"""
@@ -119,7 +119,7 @@ class Stripe(Demand):
     scale: Annotated[float, "factor of the motions"]
     answered: Annotated[int, "motions that have the demand"]
     mean: Annotated[Statistic, "mean over the motions"]
-    fractiles: Annotated[Sequence[Fractile], "from small to large shares"]
+    fractiles: Annotated[Sequence[DemandFractile], "from small to large shares"]
     largest: Annotated[Statistic, "largest over the motions"]
     smallest: Annotated[Statistic, "smallest over the motions"]
     reasons: Mapping[str, int] = field(default_factory=dict)
@@ -138,7 +138,7 @@ class Stripe(Demand):
 
 
 @result
-class Curve(Demand):
+class DemandCurve(Demand):
     """A demand of one motion over its scale factors."""
 
     model: Annotated[str, "key of the model"]
@@ -241,7 +241,7 @@ class EnsembleResult:
     outcomes: Annotated[Mapping[str, int], "motions by the equations with every status"]
     stripes: Sequence[Stripe]
     """by structure, demand and scale; by the equations, then by every model that computed every motion"""
-    curves: Annotated[Sequence[Curve], "by structure, demand, model and motion"]
+    curves: Annotated[Sequence[DemandCurve], "by structure, demand, model and motion"]
     spectra: Annotated[Sequence[Spectrum], "by structure and body"]
     engine: Annotated[Engine, "the engine's motions"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
@@ -284,7 +284,7 @@ class EnsembleResult:
         asked = structure, quantity, EXACT.key, self.top if scale is None else scale
         return [each for each in self.stripes if (each.structure, each.quantity, each.model, each.scale) == asked]
 
-    def curves_of(self, structure: str, quantity: str, model: str = EXACT.key) -> list[Curve]:
+    def curves_of(self, structure: str, quantity: str, model: str = EXACT.key) -> list[DemandCurve]:
         """Return the curves of one demand of the isolator by one model."""
         asked = structure, quantity, model
         return [each for each in self.curves if (each.structure, each.quantity, each.model) == asked]

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from comparison.analyses.ensemble.quantities import READ, SMALLEST, text_of, unit_for_reading
+from comparison.analyses.ensemble.quantities import FRACTILES, READ, SMALLEST, text_of, unit_for_reading
 from comparison.analyses.ensemble.result import EnsembleResult, Statistic, Stripe, Structure
 from comparison.study.models import EXACT, SPATIAL
 from reference.problem import GRAVITY
@@ -15,6 +15,7 @@ ENVELOPE = "envelope"
 NOT_ALL = "–"  # statistic over all motions of a demand that only some of them have
 HEIGHTS = ("acceleration", "drift", "drift_ratio", "story_shear", "overturning_moment")  # shown over the height
 PLATFORM = 1
+WORST = 4  # column of the worst value, behind mean and fractiles
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ MAIN = (
     Shown("isolator displacement", "displacement"),
     Shown("displacement over travel", "travel_share"),
     Shown("base shear", "base_shear", unit="kN"),
-    Shown("base shear over weight", "base_shear"),
+    Shown("base shear over weight", "base_shear", unit="%"),
     Shown("platform acceleration", "acceleration", "platform"),
     Shown("largest floor acceleration", "acceleration", "floors"),
     Shown("largest drift", "drift", "floors"),
@@ -98,7 +99,7 @@ def demand_rows(ensemble: EnsembleResult, scale: float) -> list[DemandRow]:
     """The main table at a scale: every demand of every bound, then its envelope."""
     rows: list[DemandRow] = []
     for shown in MAIN:
-        rows += _rows_of(ensemble, shown, partial(_stripe, ensemble, shown, scale), scale)
+        rows += _rows_of(ensemble, shown, partial(stripe_of, ensemble, shown, scale), scale)
     return rows
 
 
@@ -118,12 +119,12 @@ def profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> list[
 
 
 def _rows_of(
-    ensemble: EnsembleResult, shown: Shown, stripe_of: Callable[[Structure], Stripe | None], scale: float
+    ensemble: EnsembleResult, shown: Shown, read: Callable[[Structure], Stripe | None], scale: float
 ) -> Iterator[DemandRow]:
     """The lines of one demand."""
     named, found = labels(ensemble), []
     for structure in ensemble.structures:
-        stripe = stripe_of(structure)
+        stripe = read(structure)
         if stripe is not None:
             found.append((structure, stripe))
             yield _row(shown, structure, named[structure.name], stripe, is_first=len(found) == 1)
@@ -133,7 +134,7 @@ def _rows_of(
         yield _envelope(shown, found, named)
 
 
-def _stripe(ensemble: EnsembleResult, shown: Shown, scale: float, structure: Structure) -> Stripe | None:
+def stripe_of(ensemble: EnsembleResult, shown: Shown, scale: float, structure: Structure) -> Stripe | None:
     """The statistics of a demand of a structure; of several bodies those of the governing one."""
     own = ensemble.profile(structure.name, shown.quantity, scale)
     if shown.bodies:
@@ -143,9 +144,12 @@ def _stripe(ensemble: EnsembleResult, shown: Shown, scale: float, structure: Str
     return own[0] if own else None
 
 
-def _read(shown: Shown, structure: Structure) -> tuple[str, float]:
+def unit_of_row(shown: Shown, structure: Structure) -> tuple[str, float]:
+    """The unit in which a row is read, and its factor."""
     if shown.unit == "kN":
         return READ["N"]
+    if shown.unit == "%":
+        return "%", 100.0 / structure.weight
     return unit_for_reading(shown.quantity, structure.weight)
 
 
@@ -157,14 +161,30 @@ def worst_of(stripe: Stripe) -> tuple[Statistic, str]:
 
 
 def _row(shown: Shown, structure: Structure, bound: str, stripe: Stripe, is_first: bool) -> DemandRow:
-    unit, factor = _read(shown, structure)
+    unit, factor = unit_of_row(shown, structure)
     worst, motion = worst_of(stripe)
     numbers = stripe.mean, *stripe.fractiles, worst
     motions = "; ".join([str(stripe.answered), *(f"{count} {reason}" for reason, count in stripe.reasons.items())])
     motions += "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
     where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" else ""
-    cells = tuple(text_of(each.value, each.error, factor) for each in numbers)
+    count = stripe.answered + sum(stripe.reasons.values())
+    cells = tuple(cell_of(each, factor, column, count, stripe.quantity) for column, each in enumerate(numbers))
     return DemandRow(shown.name, unit, bound, where, cells, motion, motions, is_first)
+
+
+def cell_of(number: Statistic, factor: float, column: int, motions: int, quantity: str) -> str:
+    """
+    The text of a cell: mean, fractiles, worst value, of so many motions; the fractiles without their errors.
+
+    Of few motions a fractile lies beyond the outermost of them, and is left out: 16 % of three, but not of four.
+    """
+    if column in (0, WORST):
+        text = text_of(number.value, number.error, factor)
+        return f"{text} (smallest)" if column == WORST and quantity in SMALLEST and number.value is not None else text
+    share = FRACTILES[column - 1]
+    if not 0.5 / motions <= share <= 1.0 - 0.5 / motions:
+        return NOT_ALL
+    return text_of(number.value, None, factor)
 
 
 def _envelope(shown: Shown, found: Sequence[tuple[Structure, Stripe]], named: dict[str, str]) -> DemandRow:
@@ -180,17 +200,20 @@ def _envelope(shown: Shown, found: Sequence[tuple[Structure, Stripe]], named: di
 
         def size(row: tuple[Structure, Stripe, tuple[Statistic, ...]], column: int = column) -> float:
             value = row[2][column].value
-            return sign * _read(shown, row[0])[1] * (value if value is not None else -math.inf)
+            return sign * unit_of_row(shown, row[0])[1] * (value if value is not None else -math.inf)
 
         structure, stripe, numbers = max(known, key=size)
         at = structure, stripe
-        number, factor = numbers[column], _read(shown, structure)[1]
-        cells.append(text_of(number.value, number.error, factor))
+        number, factor = numbers[column], unit_of_row(shown, structure)[1]
+        count = stripe.answered + sum(stripe.reasons.values())
+        cells.append(cell_of(number, factor, column, count, shown.quantity))
     structure, stripe = at
     where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" else ""
     motion = worst_of(stripe)[1] if cells[-1] != "none" else ""
     said = f"{motion}, {named[structure.name]}" if motion else ""
-    return DemandRow(shown.name, _read(shown, structure)[0], ENVELOPE, where, tuple(cells), said, "", is_first=False)
+    return DemandRow(
+        shown.name, unit_of_row(shown, structure)[0], ENVELOPE, where, tuple(cells), said, "", is_first=False
+    )
 
 
 def _engine_rows(ensemble: EnsembleResult, shown: Shown) -> Iterator[DemandRow]:
@@ -202,7 +225,7 @@ def _engine_rows(ensemble: EnsembleResult, shown: Shown) -> Iterator[DemandRow]:
         if not known or shown.bodies:
             continue
         motion = max(known, key=lambda name: known[name].value or 0.0)
-        unit, factor = _read(shown, structure)
+        unit, factor = unit_of_row(shown, structure)
         worst = text_of(known[motion].value, known[motion].error, factor)
         cells = (*(NOT_ALL,) * 4, worst)
         motions = f"{len(known)} of {ensemble.motions} ({ensemble.engine.model} engine)"

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from comparison.analyses.ensemble.quantities import text_of, unit_for_reading
 from comparison.analyses.ensemble.result import EnsembleResult, Structure, SupportExtremes, Target
-from comparison.analyses.ensemble.rows import floor_of, labels, peak_in_g
+from comparison.analyses.ensemble.rows import MAIN, floor_of, labels, peak_in_g, stripe_of
 from comparison.study.models import EXACT
 from comparison.wording import percent
 
@@ -12,11 +12,12 @@ NAMED = 12  # motions that are named one by one
 DEFINITIONS = (
     "Displacement, drift, story shear, base shear, overturning moment and acceleration are resultants of x and y, "
     "the largest over time; floor spectra are the larger of x and y.",
-    "± is the numerical error of a number, not the scatter over the motions: the fractiles show that. An error below "
-    "the last digit is not shown.",
+    "± is the numerical error of a number, not the scatter over the motions: the fractiles show that. Mean and largest "
+    "value have it, where it is not below the last digit; summary.json has those of the fractiles.",
     "16 %, 50 % and 84 % are fractiles over the motions (Hazen), and each motion has a value of its own. A motion "
     "without a value, as one that reaches the rim or the travel, counts as worse than all others; a statistic that "
-    "rests on it is none. “Largest” is of a smallest force the smallest.",
+    "rests on it is none. A fractile beyond the outermost motions is left out, as 16 % of three. The column “largest” "
+    "has the smallest value of a smallest force.",
     "The envelope is in every column the worst of the bounds.",
     "All supports carry the same dead load. Support forces by the equations are statics: normal force and overturning "
     "moment on equally stiff supports under a stiff platform, negative where a support would lift off. Those of the "
@@ -57,12 +58,21 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
         mean, largest = (text_of(each.value, None, factor) for each in (stripe.mean, stripe.largest))
         bound = f"{labels(ensemble)[structure.name]}, " if len(ensemble.structures) > 1 else ""
         travel = structure.building.travel if structure.building else None
-        share = f", {percent(most / travel)} of the travel" if quantity == "displacement" and travel else ""
+        share = f" = {percent(most / travel)} of the travel" if quantity == "displacement" and travel else ""
         where = f"{bound}{stripe.largest_motion}"
-        said.append(f"{words} {mean} {unit} in the mean, {largest} {unit}{share} at most ({where})")
+        said.append(f"{words}: mean {mean} {unit}, largest {largest} {unit}{share} ({where})")
+    lost = {each.name: missing_motions(ensemble, each) for each in ensemble.structures}
+    bounds = [f"{', '.join(motions)} ({labels(ensemble)[name]})" for name, motions in lost.items() if motions]
+    lacking = f"No value under {'; '.join(bounds)}. " if bounds else ""
     if not said:
-        return f"No demand is known of all motions. {outcomes_sentence(ensemble)}"
-    return f"{'; '.join(said)}. {outcomes_sentence(ensemble)}".replace("isolator", "Isolator", 1)
+        return f"{lacking}No demand is known of all motions. {outcomes_sentence(ensemble)}"
+    return f"{lacking}{'; '.join(said)}. {outcomes_sentence(ensemble)}".replace("isolator", "Isolator", 1)
+
+
+def missing_motions(ensemble: EnsembleResult, structure: Structure) -> list[str]:
+    """The motions of which a structure has no displacement at the largest scale."""
+    known = ensemble.values_at_top(structure.name, "displacement", None, EXACT.key)
+    return [motion for motion, each in known.items() if each.value is None]
 
 
 def outcomes_sentence(ensemble: EnsembleResult) -> str:
@@ -114,7 +124,7 @@ def engine_sentences(ensemble: EnsembleResult) -> list[str]:
         bound = f", {named[structure.name]}" if len(ensemble.structures) > 1 else ""
         said.append(f"The {engine.model} engine computed{bound}: {'; '.join(each_motion)}{more}.")
     if said:
-        said.append(f"It was asked for largest accelerations to {percent(engine.tolerance)}.")
+        said.append(f"The engine was asked for largest accelerations to {percent(engine.tolerance)}.")
     return said
 
 
@@ -151,15 +161,21 @@ def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) ->
 
 
 def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[str]:
-    """Return which motions of a structure lack a displacement, and so every demand, at the largest scale, and why."""
-    stripe = ensemble.stripe(structure.name, "displacement")
-    if stripe is None or not stripe.reasons:
-        return []
-    known = ensemble.values_at_top(structure.name, "displacement", None, EXACT.key)
-    ended = [motion for motion, each in known.items() if each.value is None]
-    which = f" ({', '.join(ended[:NAMED])}{' and more' if len(ended) > NAMED else ''})"
-    reasons = ", ".join(f"{count} {reason}" for reason, count in stripe.reasons.items())
-    return [f"Without a value for {count_motions(len(ended))}{which}: every demand ({reasons})."]
+    """Return which motions of a structure lack which demands at the largest scale, and why."""
+    stripes = [found for shown in MAIN if (found := stripe_of(ensemble, shown, ensemble.top, structure)) is not None]
+    ended = missing_motions(ensemble, structure)
+    lacking: dict[tuple[str, int], list[str]] = {}
+    for shown in MAIN:
+        found = stripe_of(ensemble, shown, ensemble.top, structure)
+        for reason in found.reasons.items() if found else ():
+            lacking.setdefault(reason, []).append(shown.name)
+    lines = []
+    for (why, count), names in lacking.items():
+        every = len(names) == len(stripes)
+        which = f" ({', '.join(ended[:NAMED])}{' and more' * (len(ended) > NAMED)})" if every else ""
+        what = "every demand" if every else ", ".join(names)
+        lines.append(f"Without a value for {count_motions(count)}{which}: {what} ({why}).")
+    return lines
 
 
 def ground_sentence(ensemble: EnsembleResult) -> str:

@@ -9,12 +9,11 @@ import numpy as np
 from comparison.analyses.ensemble import result
 from comparison.analyses.ensemble.analysis import Point, Points
 from comparison.analyses.ensemble.members import group_by
-from comparison.analyses.ensemble.quantities import DEMANDS, SMALLEST, Quantity, unit_of_demand
+from comparison.analyses.ensemble.quantities import DEMANDS, FRACTILES, SMALLEST, Quantity, unit_of_demand
 from comparison.json_file import finite_or_none
 from reference.measures import Estimate
 from reference.measures.distribution import fractile
 
-FRACTILES = (0.16, 0.5, 0.84)
 MEDIAN = FRACTILES.index(0.5)
 
 
@@ -49,7 +48,9 @@ def _stripes(points: Sequence[Point]) -> Iterator[result.Stripe]:
                 numbers = [point.estimate(quantity) for point in at_scale]
                 worst = -math.inf if quantity[0] in SMALLEST else math.inf
                 mean, *shares, largest, smallest = statistics(numbers, (*FRACTILES, 1.0, 0.0), worst)
-                fractiles = [result.Fractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)]
+                fractiles = [
+                    result.DemandFractile(each.value, each.error, share) for share, each in zip(FRACTILES, shares)
+                ]
                 lost = [pair for pair in zip(numbers, at_scale) if not math.isfinite(pair[0].value)]
                 lacking = Counter(number.reason or point.status for number, point in lost)
                 about = name, *name_points(quantity), own[0].model, unit_of_demand(quantity[0]), scale
@@ -110,7 +111,7 @@ def spectrum_bands(points: Sequence[Point]) -> Iterator[result.Spectrum]:
             yield result.Spectrum(*about, mean, shares, largest)
 
 
-def curves(points: Points) -> Iterator[result.Curve]:
+def curves(points: Points) -> Iterator[result.DemandCurve]:
     """Every demand of every motion over its scales, by structure, demand, model and motion."""
     every = [list(points.equations), *map(list, points.compared.values())]
     asked = quantities(points.every)
@@ -123,7 +124,7 @@ def curves(points: Points) -> Iterator[result.Curve]:
                     numbers = [statistic(point.estimate(quantity)) for point in at]
                     values, errors = [each.value for each in numbers], [each.error for each in numbers]
                     scales = [point.member.scale for point in at]
-                    yield result.Curve(name, *name_points(quantity), at[0].model, motion, scales, values, errors)
+                    yield result.DemandCurve(name, *name_points(quantity), at[0].model, motion, scales, values, errors)
 
 
 def support_extremes(points: Points) -> Iterator[result.SupportExtremes]:

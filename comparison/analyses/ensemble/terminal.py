@@ -5,11 +5,14 @@ from functools import partial
 
 from rich.console import Console
 
+from comparison.analyses.ensemble.members import group_by
+from comparison.analyses.ensemble.quantities import FRACTILES
 from comparison.analyses.ensemble.result import EnsembleResult
-from comparison.analyses.ensemble.rows import DemandRow, demand_rows, labels
+from comparison.analyses.ensemble.rows import ENVELOPE, DemandRow, demand_rows, labels
 from comparison.analyses.ensemble.sentences import (
     answer_sentence,
     below_contact_sentence,
+    count_motions,
     engine_sentences,
     heading,
     isolator_sentence,
@@ -17,13 +20,10 @@ from comparison.analyses.ensemble.sentences import (
     support_sentences,
     target_sentence,
 )
-from comparison.analyses.ensemble.statistics import FRACTILES
 from comparison.analyses.ensemble.trust import COLUMNS, trust_rows, trust_sentence
 from comparison.cli.terminal import new_table
 from comparison.runner.attempts import attempt
 from comparison.study.models import EXACT
-
-TRUST_SHOWN = ("displacement", "base_shear", "support_force_max")
 
 
 def print_equations(console: Console, ensemble: EnsembleResult) -> None:
@@ -65,19 +65,21 @@ def _print_factors(console: Console, ensemble: EnsembleResult) -> None:
 
 
 def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
-    say(console, [f"{heading(ensemble)}:"])
+    say(console, [f"{heading(ensemble)}."])
     shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
-    table = new_table("demand", "bound", "unit", "mean", *shares, "largest", "motion")
-    for row in demand_rows(ensemble, ensemble.top):
-        table.add_row(*_cells(row))
-    console.print(table)
+    for bound, rows in group_by(demand_rows(ensemble, ensemble.top), "bound").items():
+        say(console, [f"{bound}:".capitalize() if bound == ENVELOPE else f"{bound}:"])
+        table = new_table("quantity", "unit", "mean", *shares, "largest", "motion")
+        for row in rows:
+            table.add_row(*_cells(row))
+        console.print(table)
 
 
 def _cells(row: DemandRow) -> list[str]:
     mean, *others = row.cells
     values = [cell.partition(" ±")[0] for cell in others]
-    name = f"{row.name} ({row.where})" if row.where else row.name
-    return [name, row.bound, row.unit, mean, *values, row.motion]
+    name = f"{row.name}, {row.where}" if row.where else row.name
+    return [name, row.unit, mean, *values, row.motion]
 
 
 def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
@@ -95,10 +97,10 @@ def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
 
 def _print_trust(console: Console, ensemble: EnsembleResult) -> None:
     models = {key: title for key, title in COLUMNS.items() if key != EXACT.key}
-    table = new_table("demand", "bound", "exact equations", *models.values())
-    for row in trust_rows(ensemble):
-        if row.quantity in TRUST_SHOWN:
-            ratios = [row.ratios[key].text if key in row.ratios else "" for key in models]
-            table.add_row(row.name, row.bound, row.text, *ratios)
-    console.print(table)
+    for bound, rows in group_by(trust_rows(ensemble), "bound").items():
+        say(console, [f"{bound}, mean difference from the exact equations on {count_motions(len(rows[0].motions))}:"])
+        table = new_table("quantity", "exact", *(title.partition(" ")[0] for title in models.values()))
+        for row in rows:
+            table.add_row(row.name, row.text, *(row.ratios[key].brief if key in row.ratios else "" for key in models))
+        console.print(table)
     say(console, [trust_sentence(ensemble)])

@@ -4,11 +4,11 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from comparison.analyses.ensemble.quantities import DEMANDS, text_of, title_of, unit_for_reading
+from comparison.analyses.ensemble.quantities import text_of
 from comparison.analyses.ensemble.result import EnsembleResult, Structure
-from comparison.analyses.ensemble.rows import MAIN, labels, place_of
+from comparison.analyses.ensemble.rows import MAIN, Shown, labels, place_of, stripe_of, unit_of_row, worst_of
 from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL
-from comparison.wording import percent, signed
+from comparison.wording import percent
 
 COLUMNS = {
     SMALL.key: "small equations",
@@ -17,7 +17,11 @@ COLUMNS = {
     SPATIAL.key: "spatial engine",
 }
 TRUSTED = ("displacement", "base_shear", "acceleration", "drift")  # demands that every model has
-LEAST_SHARE = 0.02  # of the largest value of its kind: a smaller one is no base of a percentage
+# rows of the main table with the ratio of another, or without a base of one
+LEFT_OUT = (
+    "displacement over travel", "base shear over weight", "largest drift ratio", "residual displacement",
+    "uplift of a support",
+)  # fmt: skip
 STATISTICS = (("mean", 0), ("84 %", 3), ("largest", 4))
 
 
@@ -32,8 +36,18 @@ class Ratio:
     @property
     def text(self) -> str:
         """Mean difference, and its range over the motions."""
-        ends = signed(self.smallest - 1.0), signed(self.largest - 1.0)
-        return signed(self.mean - 1.0) + (f" ({ends[0]} to {ends[1]})" if ends[0] != ends[1] else "")
+        ends = _in_percent(self.smallest - 1.0), _in_percent(self.largest - 1.0)
+        return self.brief + (f" ({ends[0]} to {ends[1]})" if ends[0] != ends[1] else "")
+
+    @property
+    def brief(self) -> str:
+        """Mean difference alone."""
+        return f"{_in_percent(self.mean - 1.0)} %"
+
+
+def _in_percent(share: float) -> str:
+    """A share in percent to two decimals, without the sign of percent."""
+    return f"{100.0 * share:+.2f}".replace("-", "−").replace("+0.00", "0.00").replace("−0.00", "0.00")
 
 
 @dataclass(frozen=True)
@@ -42,7 +56,7 @@ class TrustRow:
 
     bound: str
     structure: Structure
-    quantity: str
+    shown: Shown
     body: int | None
     motions: tuple[str, ...]
     value: float  # mean over these motions by the exact equations, SI
@@ -53,35 +67,38 @@ class TrustRow:
     @property
     def name(self) -> str:
         """The demand in words, with its place."""
-        where = place_of(self.structure, self.quantity, self.body)
-        return f"{title_of(self.quantity)}{', ' if where else ''}{where}"
+        where = place_of(self.structure, self.shown.quantity, self.body) if self.shown.bodies == "floors" else ""
+        return f"{self.shown.name}{', ' if where else ''}{where}"
+
+    @property
+    def read(self) -> tuple[str, float]:
+        """The unit in which the demand is read, and its factor."""
+        return unit_of_row(self.shown, self.structure)
 
     @property
     def text(self) -> str:
         """The mean by the exact equations, in the unit in which it is read."""
-        unit, factor = unit_for_reading(self.quantity, self.structure.weight)
+        unit, factor = self.read
         return f"{text_of(self.value, None, factor)} {unit}".strip()
 
 
 def trust_rows(ensemble: EnsembleResult) -> list[TrustRow]:
-    """Every demand of the main table and of every body, where at least one other model has it."""
-    shown = list(dict.fromkeys([*(each.quantity for each in MAIN), "story_shear"]))
-    names = [name for name in DEMANDS if name in shown and name != "residual"]
-    named = labels(ensemble)
-    rows = []
+    """The demands of the main table, of bodies the governing one, where at least one other model has them."""
+    named, rows = labels(ensemble), []
     for structure in ensemble.structures:
-        for quantity in names:
-            bodies: Sequence[int | None] = (None, *range(1, structure.bodies + 1))
-            for body in bodies:
-                row = _trust_row(ensemble, structure, named[structure.name], quantity, body)
-                if row is not None:
-                    rows.append(row)
+        for shown in MAIN:
+            stripe = stripe_of(ensemble, shown, ensemble.top, structure)
+            if stripe is not None and shown.name not in LEFT_OUT:
+                row = _trust_row(ensemble, structure, named[structure.name], shown, stripe.body)
+                rows += [] if row is None else [row]
     return rows
 
 
 def _trust_row(
-    ensemble: EnsembleResult, structure: Structure, bound: str, quantity: str, body: int | None
+    ensemble: EnsembleResult, structure: Structure, bound: str, shown: Shown, body: int | None
 ) -> TrustRow | None:
+    quantity = shown.quantity
+
     def values(model: str) -> dict[str, float]:
         found = ensemble.values_at_top(structure.name, quantity, body, model)
         return {motion: each.value for motion, each in found.items() if each.value is not None}
@@ -106,7 +123,7 @@ def _trust_row(
     ratios = {key: found for key in COLUMNS if key != EXACT.key and (found := ratio(key, EXACT.key))}
     law = REGULARIZED.key if REGULARIZED.key in others else EXACT.key
     return TrustRow(
-        bound, structure, quantity, body, tuple(common),
+        bound, structure, shown, body, tuple(common),
         math.fsum(exact[motion] for motion in common) / len(common), ratios,
         ratio(TRANSLATIONAL.key, law), ratio(SPATIAL.key, TRANSLATIONAL.key),
     )  # fmt: skip
@@ -115,10 +132,9 @@ def _trust_row(
 def _largest(rows: Sequence[TrustRow], pick: str) -> tuple[float, TrustRow] | None:
     """The largest size of a difference over the demands that every model has, and its row."""
     found = []
-    tops = {name: max((row.value for row in rows if row.quantity == name), default=0.0) for name in TRUSTED}
     for row in rows:
         ratio = row.ratios.get(SMALL.key) if pick == SMALL.key else getattr(row, pick)
-        if ratio is not None and row.quantity in TRUSTED and row.value >= LEAST_SHARE * tops[row.quantity]:
+        if ratio is not None and row.shown.quantity in TRUSTED:
             worst = max(ratio.smallest - 1.0, ratio.largest - 1.0, key=abs)
             found.append((worst, row))
     return max(found, key=lambda pair: abs(pair[0]), default=None)
@@ -129,7 +145,7 @@ def trust_sentence(ensemble: EnsembleResult) -> str:
     rows = trust_rows(ensemble)
     parts = {
         SMALL.key: "the geometry of the sphere, which the small equations leave out, is worth up to {} ({})",
-        "by_law": "given the same equations and friction law, the equations and the engine differ by up to {} ({})",
+        "by_law": "given the same equations and friction law, the two codes differ by up to {} ({})",
         "turning": "bodies that turn on their supports change a demand by up to {} ({})",
     }
     said = []
@@ -153,11 +169,11 @@ def extended_rows(ensemble: EnsembleResult) -> Iterator[tuple[TrustRow, Ratio, l
     """
     for row in trust_rows(ensemble):
         ratio = row.ratios.get(ensemble.engine.model)
-        stripe = ensemble.stripe(row.structure.name, row.quantity, row.body)
+        stripe = stripe_of(ensemble, row.shown, ensemble.top, row.structure)
         if ratio is None or stripe is None:
             continue
-        unit, factor = unit_for_reading(row.quantity, row.structure.weight)
-        numbers = stripe.mean, *stripe.fractiles, stripe.largest
+        unit, factor = row.read
+        numbers = stripe.mean, *stripe.fractiles, worst_of(stripe)[0]
         cells = []
         for _, place in STATISTICS:
             value = numbers[place].value

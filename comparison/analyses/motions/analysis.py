@@ -91,7 +91,7 @@ class StoredMotion:
     arrays below are empty in a motion that lacks them. isolator_force: (T, 2), N, horizontal force of the bodies on the
     isolator. support_force: (T, K), N, normal force of every support of the spatial model. yaw: (T,), rad, turn of the
     platform about the vertical, of the spatial model. demands: of the motion before it was decimated; None if it was
-    not computed. spectra: likewise.
+    not computed. spectra: floor spectra of the motion, or None.
     """
 
     place: Place

@@ -38,7 +38,7 @@ MAX_WORK = 1e9  # steps of the engine: the limit ends what takes too long, not a
 
 
 def tall(scene: Scene, bodies: int) -> Scene:
-    """The scene with its upper body cut into so many less one, each above the other on links of the same period."""
+    """Return the scene with its upper body cut into `bodies` - 1, each above the other on links of the same period."""
     table = scene.model_dump(exclude_none=True)
     first, second = table["bodies"][0], table["bodies"][min(1, len(table["bodies"]) - 1)]
     height = second.get("height", STOREY)
@@ -52,8 +52,8 @@ def tall(scene: Scene, bodies: int) -> Scene:
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """What grows. scene: of a value, from the scene of the study."""
+class GrowingQuantity:
+    """Quantity that grows. scene: of a value, from the scene of the study."""
 
     name: str
     unit: str
@@ -64,15 +64,17 @@ class Quantity:
 
 _EACH = EXACT, TRANSLATIONAL, SPATIAL
 QUANTITIES = (
-    Quantity("bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), _EACH),
-    Quantity("duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}), _EACH),
-    Quantity(PAIRED, "", PHASES, lambda scene, n: scene, (EXACT,)),
+    GrowingQuantity("bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), _EACH),
+    GrowingQuantity(
+        "duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}), _EACH
+    ),
+    GrowingQuantity(PAIRED, "", PHASES, lambda scene, n: scene, (EXACT,)),
 )
 
 
 @result
 class Series:
-    """What one model costs over the values of one quantity."""
+    """Cost of one model over the values of one quantity."""
 
     quantity: Annotated[str, "what grows"]
     unit: Annotated[str, "its unit; empty for a pure number"]
@@ -127,7 +129,7 @@ class Growth(Analysis[list[Series]]):
     """The series of the first scene with phases; quantities: what grows."""
 
     key, stage = "growth", "growth"
-    quantities: Sequence[Quantity] = QUANTITIES
+    quantities: Sequence[GrowingQuantity] = QUANTITIES
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for every quantity, model and value."""
@@ -143,7 +145,7 @@ class Growth(Analysis[list[Series]]):
             collected.append(with_slope(quantity.name, quantity.unit, model.title, quantity.values, seconds))
         return collected
 
-    def _series(self, study: Study) -> list[tuple[Quantity, Model, list[Task]]]:
+    def _series(self, study: Study) -> list[tuple[GrowingQuantity, Model, list[Task]]]:
         scene = study.phased[0]
         return [
             (quantity, model, [self._task(quantity, model, scene, value) for value in quantity.values])
@@ -152,7 +154,7 @@ class Growth(Analysis[list[Series]]):
             if model.applies(scene)
         ]
 
-    def _task(self, quantity: Quantity, model: Model, scene: Scene, value: float) -> Task:
+    def _task(self, quantity: GrowingQuantity, model: Model, scene: Scene, value: float) -> Task:
         work = {"max_work": MAX_WORK} if model.side == "engine" else {}
         settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(TOLERANCE), **work}
         phases = sample(int(value) if quantity.name == PAIRED else POINTS[model.side])

@@ -25,7 +25,17 @@ from scipy.optimize import least_squares
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import table
 from comparison.evidence.validation.files import Shaken, wrong_file
-from comparison.evidence.validation.table import COVERAGE, CYCLE, DEGREES, INPUT, LAW, OPEN, SIDES, Answer, Found
+from comparison.evidence.validation.table import (
+    COVERAGE,
+    CYCLE,
+    DEGREES,
+    INPUT,
+    LAW,
+    OPEN,
+    SIDES,
+    ComputedValues,
+    Found,
+)
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
@@ -95,15 +105,17 @@ def fold(run: Shaken) -> Cycles:
     spectrum = np.abs(np.fft.rfft(run.base - run.base.mean()))
     first = float(np.argmax(spectrum)) / (time[-1] + time[1])
 
-    def fitted(frequency: float) -> tuple[Array, Array]:
+    def fit_harmonics(frequency: float) -> tuple[Array, Array]:
         turns = 2.0 * np.pi * frequency * np.outer(time, np.arange(HARMONICS + 1))
         terms = np.hstack([np.cos(turns), np.sin(turns[:, 1:])])
         factors: Array = np.linalg.lstsq(terms, run.base, rcond=None)[0]
         return factors, run.base - terms @ factors
 
-    scaled = least_squares(lambda factor: fitted(first * factor[0])[1], [1.0], x_scale=1e-3, xtol=1e-12, ftol=1e-12)
+    scaled = least_squares(
+        lambda factor: fit_harmonics(first * factor[0])[1], [1.0], x_scale=1e-3, xtol=1e-12, ftol=1e-12
+    )
     frequency = first * float(scaled.x[0])
-    factors, rest = fitted(frequency)
+    factors, rest = fit_harmonics(frequency)
     left = float(rest.std() / run.base.std())
     if not left <= UNEXPLAINED:
         rule = f"y must be periodic: {HARMONICS} harmonics leave {100.0 * left:.0f} % of it, which may be "
@@ -202,7 +214,7 @@ def compute(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
     return table.motion_of(side, scene, phases, place, REGULARIZATION, TOLERANCE, "small")
 
 
-def read(cycles: Cycles, motion: Trajectory) -> Answer:
+def read(cycles: Cycles, motion: Trajectory) -> ComputedValues:
     """The quantities of a computed motion of a run."""
     rate = cycles.frequency
     return table.answer(motion, lambda each: read_cycle(last_cycle(each, rate), rate), len(NAMES))
@@ -273,7 +285,7 @@ def compare(runs: Sequence[Shaken]) -> Found:
     setup, varied = fitted.setup, fitted.variations()
     own = [setup if each is first else fit(each, setup, "ratio")[0] for each in folded]
     inputs = [
-        table.given(f"frame: {name}", getattr(setup, key), size, unit, source)
+        table.word_input(f"frame: {name}", getattr(setup, key), size, unit, source)
         for key, (size, name, unit, source) in ASSUMED.items()
     ]
     inputs.append(_ratio_of_setup(fitted))
@@ -284,7 +296,7 @@ def compare(runs: Sequence[Shaken]) -> Found:
     rest = [(each, best) for each, best in zip(folded, own) if each is not first]
     if any(_slides(each) for each, _ in rest):
         parts.append(_compare_by_load(fitted, rest))
-    return table.joined([Found([], inputs, [], [], []), *parts])
+    return table.join_findings([Found([], inputs, [], [], []), *parts])
 
 
 def _slides(cycles: Cycles) -> bool:
@@ -293,7 +305,7 @@ def _slides(cycles: Cycles) -> bool:
 
 def _ratio_of_setup(fitted: Fitted) -> str:
     source = f"fitted to the motion of the run with {1e3 * fitted.cycles.run.weight:g} g; its scatter over the cycles"
-    return table.given("frame: friction ratio", fitted.setup.ratio, fitted.spread, "", source)
+    return table.word_input("frame: friction ratio", fitted.setup.ratio, fitted.spread, "", source)
 
 
 def _compare_by_load(first: Fitted, rest: Sequence[tuple[Cycles, Setup]]) -> Found:
@@ -322,7 +334,7 @@ def _compare_by_load(first: Fitted, rest: Sequence[tuple[Cycles, Setup]]) -> Fou
         heavier = setup._replace(disc=setup.disc + ASSUMED["disc"][0])
         use = "calibrated" if cycles is chosen else "predicted"
         found.append(_compare_run(cycles, use, setup, [*scattered, heavier, *changed], shifted, own, LOADED))
-    return table.joined(found)
+    return table.join_findings(found)
 
 
 def _compare_run(
@@ -356,7 +368,7 @@ def _compare_run(
         f"off by {np.std(best - cycles.mean):.3f} mm rms, and by {off:.3f} mm with {setup.ratio:.3f}; the plate is "
         f"above its middle for {100.0 * np.mean(cycles.mean > middle):.0f} % of a cycle"
     )
-    residual = table.Residual(title, use, off / float(data.values[0]))
+    residual = table.CycleResidual(title, use, off / float(data.values[0]))
     axes, turn = ("phase of the base, deg", "top plate, mm"), np.arange(SAMPLES) * 360.0 / SAMPLES
     return Found(
         rows, [], [fact], [residual], table.curves(title, axes, {name: (turn, y) for name, y in lines.items()})

@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from comparison.analyses.ensemble.feature import demand_rows, labels, largest_differences
 from runs import no_picture
 from terminal_tables import rows_under
 
 import reference
 from comparison.analyses.ensemble import analysis
 from comparison.analyses.ensemble.command import FILES, main, table_text
-from comparison.analyses.ensemble.feature import demand_rows, labels, largest_differences
 from comparison.analyses.ensemble.result import STORED
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner

@@ -13,10 +13,10 @@ from comparison.analyses.ensemble.command import main
 from comparison.analyses.ensemble.limits import check_limits, compare_with_stored, word_check, word_checks
 from comparison.analyses.ensemble.result import (
     SCHEMA,
-    Curve,
+    DemandCurve,
+    DemandFractile,
     Engine,
     EnsembleResult,
-    Fractile,
     Statistic,
     Stripe,
     Structure,
@@ -34,7 +34,7 @@ def ensemble_of(
     """An ensemble of three motions at scale 1; values: of every demand and body by motion, alike at all bounds."""
     both = [("exact", values), ("spatial", engine or {})]
     curves = [
-        Curve(f"job[{bound}]", *about, model, motion, [1.0], [value], [error])
+        DemandCurve(f"job[{bound}]", *about, model, motion, [1.0], [value], [error])
         for bound in bounds
         for model, known in both
         for about, row in known.items()
@@ -51,7 +51,7 @@ def stripe_of(structure: str, quantity: str, body: int | None, row: tuple[float 
     whole = [value for value in row if value is not None]
     complete = len(whole) == len(row)
     mean, largest = (Statistic(value if complete else None, error) for value in (float(np.mean(whole)), max(whole)))
-    fractiles = [Fractile(1.0, 0.0, share) for share in (0.16, 0.5, 0.84)]
+    fractiles = [DemandFractile(1.0, 0.0, share) for share in (0.16, 0.5, 0.84)]
     named = MOTIONS[row.index(max(whole))]
     return Stripe(
         structure, quantity, body, "exact", "m", 1.0, len(whole), mean, fractiles, largest, largest, {}, named, named

@@ -25,7 +25,7 @@ from runs import Run, no_executor
 
 from comparison.evidence.extremes import command as extremes
 from comparison.evidence.extremes.matrix import STORED
-from comparison.runner.cache import Cache, store_beside
+from comparison.runner.cache import Cache, locate_store
 from comparison.runner.output import publish
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import MODEL_HIERARCHY
@@ -192,7 +192,7 @@ def test_a_full_disk_is_exit_3_and_the_run_goes_on_later(
     assert run.err.count("\n") == 1
     assert "a result could not be stored: No space left on device; 3 of " in run.err
     assert "go on with: python -m comparison.run fig3-I --grid 4 " in run.err
-    store = store_beside(run.report)
+    store = locate_store(run.report)
     assert len(list(store.glob("*/*.batch"))) == 3
     assert not list(store.glob("*/.phase*"))
     assert not run.report.exists()

@@ -30,7 +30,7 @@ import multibody.models.engine
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.evidence.claims.table import paper_complete
 from comparison.registry import ANALYSES, EVERYTHING, first_tasks
-from comparison.runner.cache import MAGIC, Cache, Key
+from comparison.runner.cache import MAGIC, Cache, CacheKey
 from comparison.runner.environment import (
     environment_fingerprint,
     provenance,
@@ -139,7 +139,7 @@ def _on_disk(folder: Path) -> int:
 
 
 def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path) -> None:
-    needed, old, new = (Key(f'"{name}"', "0" * 64, "batch") for name in ("needed", "old", "new"))
+    needed, old, new = (CacheKey(f'"{name}"', "0" * 64, "batch") for name in ("needed", "old", "new"))
     store = Cache(tmp_path)
     for age, key in enumerate((needed, old, new)):
         store.put(key, 1.5)
@@ -258,7 +258,7 @@ def test_the_cost_of_a_task_is_its_own_processor_time() -> None:
     assert 0.0 <= execute(Task(len, "abc", "test")).cost < 0.1 < time.process_time()
 
 
-KEY = Key('{"a": 1}', "0" * 64, "result")
+KEY = CacheKey('{"a": 1}', "0" * 64, "result")
 
 
 class Color(Enum):
@@ -297,7 +297,7 @@ VALUE = Outer(
 )
 
 
-def forged(key: Key, content: bytes) -> bytes:
+def forged(key: CacheKey, content: bytes) -> bytes:
     """A file with a right checksum."""
     return MAGIC + hashlib.sha256(key.name.encode() + b"\0" + content).digest() + content
 
@@ -357,7 +357,7 @@ def test_a_forged_file_with_a_right_checksum_is_not_taken(
 def test_no_file_of_another_result_is_taken(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
     cache.put(KEY, VALUE)
-    other = Key(KEY.about, "1" * 64, "result")
+    other = CacheKey(KEY.about, "1" * 64, "result")
     (tmp_path / KEY.name).rename(tmp_path / other.name)
     assert cache.get(other, Outer) is None
 

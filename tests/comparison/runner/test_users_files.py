@@ -17,7 +17,7 @@ from runs import SMALL, Run
 from comparison.cli import reports
 from comparison.evidence.extremes import command as extremes
 from comparison.report import page
-from comparison.runner.cache import Cache, Key, store_beside
+from comparison.runner.cache import Cache, CacheKey, locate_store
 from comparison.runner.output import (
     MANIFEST,
     Own,
@@ -171,7 +171,7 @@ def test_a_manifest_that_was_tampered_with_proves_nothing(tmp_path: Path) -> Non
 
 
 def test_a_folder_of_24_letters_in_the_store_is_never_trimmed(tmp_path: Path) -> None:
-    needed, old = (Key(f'"{name}"', "0" * 64, "batch") for name in ("needed", "old"))
+    needed, old = (CacheKey(f'"{name}"', "0" * 64, "batch") for name in ("needed", "old"))
     cache = Cache(tmp_path / "e.tiles")
     cache.put(old, 1.5)
     photos = tmp_path / "e.tiles" / "my-photos-of-summer-2024"
@@ -219,9 +219,9 @@ PLACES = {  # others are refused by phase-resonance init, too
     "a link that leads back": ("loop", "leads back to itself"),
     "a link with another's store beside what it means": (
         "link",
-        "beside it is not a store of results of this study, it holds 'mine.txt'",
+        "next to it is not a store of results of this study, it holds 'mine.txt'",
     ),
-    "a store that is a link": ("linked-store", "beside it is not the folder that keeps results"),
+    "a store that is a link": ("linked-store", "next to it is not the folder that keeps results"),
     "a file": ("page.html", "is a file: give a directory"),
     "a mount point": ("mount", "is a mount point, which cannot be replaced"),
     "files of others": ("elsewhere.tiles", "is not a report of this study: give another directory, or empty this one"),
@@ -313,4 +313,4 @@ def test_what_a_killed_run_left_is_cleared_of_a_living_one_not(tmp_path: Path) -
 
 def test_the_working_directory_has_a_store_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert store_beside(destination(Path("."))) == tmp_path.resolve().with_name(f"{tmp_path.name}.tiles")
+    assert locate_store(destination(Path("."))) == tmp_path.resolve().with_name(f"{tmp_path.name}.tiles")

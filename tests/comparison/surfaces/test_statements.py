@@ -212,6 +212,29 @@ def test_the_verdict_finds_the_worst_phase_pair_below_zero() -> None:
     assert higher in said, "each has its own body"
 
 
+def test_the_verdict_names_every_reading_and_model_that_its_bodies_have() -> None:
+    same = replace(OTHER, reading="in both readings")
+    assert "give, read as integrated, differ" in word_verdict([KNOWN, same], "m"), "what holds in both holds in this"
+    assert "give, read in both readings, differ" in word_verdict([same], "m")
+    high = replace(OTHER, reading="literal supremum", first_name="the paper's equations (supremum)")
+    said = word_verdict([KNOWN, high], "m")
+    assert (
+        "that the paper's equations or the paper's equations (supremum) give, read as integrated or literal supremum, differ"
+        in said
+    )
+
+
+def test_the_verdict_takes_the_ends_over_the_phases_where_there_are_phases() -> None:
+    record = replace(KNOWN, phases_per_axis=1, mean=0.7, low=0.7, high=0.7)
+    said = word_verdict([OTHER, record], "m")
+    assert "by at most 70 % under the record (" in said
+    assert ", and by −1.0 ± 0.2 % to +19 ± 1 % at single phase pairs." in said
+    said = word_verdict([OTHER, replace(record, supremum_mean=0.05, supremum_maximum=0.05)], "m")
+    assert "up to 13 % higher in the mean (tower, body 2) and up to 22 % at single phase pairs (tower, body 2)" in said
+    said = word_verdict([OTHER, replace(record, supremum_mean=0.33, supremum_maximum=0.33)], "m")
+    assert "up to 33 % higher (tower, platform) and up to 22 % at single phase pairs (tower, body 2)" in said
+
+
 def test_the_verdict_names_the_largest_of_the_other_bodies() -> None:
     said = word_verdict([OTHER, KNOWN, replace(OTHER, mean=-0.033), replace(OTHER, mean=0.001)], "m")
     assert "every other body: at most 3.3 %)" in said
