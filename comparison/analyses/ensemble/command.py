@@ -44,6 +44,7 @@ from comparison.cli.arguments import (
     write_and_show,
 )
 from comparison.cli.computing import compute_tasks, run_facts
+from comparison.cli.start import start_time
 from comparison.cli.terminal import print_buildings, print_records
 from comparison.report.junit import JUnitCase, JUnitSuite, junit_text
 from comparison.runner.attempts import attempt
@@ -52,6 +53,7 @@ from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Display, wide_console
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
+from comparison.study.costs import STARTING, WRITING
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, has_spatial_data, why_not_spatial
 from comparison.verdicts import MET
 from reference.problem import Family, SceneError
@@ -93,14 +95,16 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     console, ensemble = wide_console(), Ensemble(members, spatial=options.model != TRANSLATIONAL.key)
     if options.suite is not None and ":" not in options.suite:
         print_suite(console, options)
-    print_records(console, [member.scene for member in members])
+    print_records(console, [(member.motion, member.scene) for member in members], short=not options.plan)
     print_buildings(console, [(member.structure, member.scene) for member in members])
     tasks = ensemble.equation_tasks()
     first = expected_choices(members, asked)
     later = sum(task.seconds for task in ensemble.engine_tasks([Choice(member, ()) for member in first]))
     seconds = sum(task.seconds for task in tasks) + later
     count = f"{len(members)} motions by the equations, about {len(first)} by the engine"
-    console.print(f"{count}: {seconds:.0f} s of compute.")
+    jobs = number_of_jobs(options)
+    wall = f"about {STARTING + seconds / jobs + WRITING:.0f} s with {jobs} worker{'' if jobs == 1 else 's'}"
+    console.print(f"{count}: {wall}.")
     if ensemble.spatial and asked != 0:
         for line in dict.fromkeys(f"{m.structure}: {why}" for m in first if (why := why_not_spatial(m.scene))):
             console.print(f"{line}.", soft_wrap=True, markup=False)
@@ -108,7 +112,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         lengths = [member.scene.duration for member in members]
         console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
         return 0
-    begin = time.monotonic()
+    begin = start_time().wall
     write = partial(write_ensemble, console, options, argv, begin, ensemble, target, listed_motions(options), check)
 
     def then(results: TaskResults, display: Display) -> Sequence[Task]:
@@ -131,6 +135,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         written = write(results, ensemble.points(results, chosen), print_equations)
     if chosen:
         written = write(results, ensemble.points(results, chosen), print_engine)
+    console.print(f"The ensemble took {time.monotonic() - begin:.0f} s.")
     return print_checks(check(written), asked=options.check or options.against is not None)
 
 

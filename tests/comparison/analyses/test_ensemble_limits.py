@@ -1,5 +1,6 @@
 """Limits on demands of an ensemble: the verdict, who broke it, and the exit code; demands of a stored ensemble."""
 
+import re
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -21,6 +22,7 @@ from comparison.analyses.ensemble.result import (
     Stripe,
     Structure,
 )
+from comparison.analyses.ensemble.sentences import drift_warning
 from reference.problem.acceptance import DemandLimits
 
 WEIGHT = 2e6  # N
@@ -199,7 +201,11 @@ def limit_file(limits: str) -> None:
 def test_check_exits_1_and_says_last_which_limit_at_which_bound_and_motion(folder: Path, capsys: Any) -> None:
     limit_file("displacement = 0.001\nbase_shear = 9.0")
     assert run("block.toml") == 0, "nothing is asked for"
-    assert capsys.readouterr().err == ""
+    before, said = capsys.readouterr(), "Record strong: 40 samples, step 0.05 s, 1.95 s, peaks x 0."
+    assert before.err == ""
+    assert said in before.out, "a motion has its name"
+    assert re.search(r"4 motions by the equations, about 0 by the engine: about \d+ s with \d+ worker", before.out)
+    assert re.search(r"The ensemble took \d+ s\.", before.out)
     assert run("block.toml", "--check") == 1
     *_, before, last = capsys.readouterr().err.splitlines()
     assert last.startswith("lower bound: largest displacement of the isolator, largest of 2 motions: ")
@@ -247,3 +253,13 @@ def test_a_wrong_comparison_is_one_line_before_anything_is_computed(folder, caps
     said = capsys.readouterr().err
     assert (line in said, said.count("\n")) == (True, 1), said
     assert not Path("out").exists()
+
+
+def test_a_drift_beyond_a_tenth_of_the_story_is_one_warning_with_story_and_motion() -> None:
+    rows: Values = {("drift_ratio", 2): (0.05, 0.236, 0.1), ("drift_ratio", 3): (0.05, 0.12, 0.1)}
+    ensemble = ensemble_of(rows)
+    (structure,) = ensemble.structures
+    said = drift_warning(ensemble, structure)
+    assert said.startswith("Warning: the drift below body 2 under Imperial Valley is 23.6 % of the height of the story")
+    usual = ensemble_of({("drift_ratio", 2): (0.05, 0.1, 0.01)})
+    assert drift_warning(usual, structure) == drift_warning(ensemble_of(MOVED), structure) == ""
