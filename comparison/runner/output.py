@@ -92,7 +92,7 @@ def refuse_foreign_report(out: Path) -> None:
     """Raise SceneError, one line, if a report cannot take the place of what is at `out`, a `destination`."""
     refusal = partial(SceneError, "command line", "--out", str(out))
     place = out.resolve()
-    refuse_other_page(place, REPORT)
+    refuse_other_page(out, REPORT)
     if place.exists():
         if Path.cwd().resolve().is_relative_to(place):
             raise refusal("is the directory you work in: give one inside it")

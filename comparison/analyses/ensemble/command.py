@@ -231,11 +231,18 @@ def expected_choices(members: Sequence[Member], asked: Asked) -> list[Member]:
 
 
 def listed_motions(options: argparse.Namespace) -> dict[str, Motion]:
-    """Motions of the folder of the suite by name."""
-    if options.suite is None or ":" in options.suite:
-        return {}
-    listed = list_motions(options.suite, Path(), options.components).motions
-    return {motion.name: motion for motion in listed}
+    """Motions of the folders of suites by name: of `--suite`, or of the scene files."""
+    suites = [(Path(), options.suite)]
+    if options.suite is None:
+        loadings = [(source, scene_tables(scene_text(source), source).get("excitation")) for source in options.scenes]
+        records = [(Path(source).parent, loading.get("record")) for source, loading in loadings if loading]
+        suites = [(folder, record.get("suite")) for folder, record in records if isinstance(record, dict)]
+    found = [
+        list_motions(suite, folder, options.components).motions
+        for folder, suite in suites
+        if isinstance(suite, str) and ":" not in suite
+    ]
+    return {motion.name: motion for motions in found for motion in motions}
 
 
 def print_suite(console: Console, options: argparse.Namespace) -> None:

@@ -108,9 +108,8 @@ def _trust_row(
     beside = [SPATIAL.key] if quantity.startswith("support_force") else [key for key in by_model if key != EXACT.key]
     others = {key: by_model[key] for key in beside if by_model[key]}
     exact = by_model[EXACT.key]
-    common = [
-        motion for motion, value in exact.items() if value > 0.0 and all(motion in each for each in others.values())
-    ]
+    known = [motion for motion, value in exact.items() if value > 0.0]
+    common = [motion for motion in known if all(motion in each for each in others.values())]
     if not others or not common:
         return None
 
@@ -157,7 +156,7 @@ def trust_sentence(ensemble: EnsembleResult) -> str:
     if not said:
         return ""
     motions = {(row.bound, motion) for row in rows for motion in row.motions}
-    count = f"On the {len(motions)} motion{'s' * (len(motions) != 1)} that all models computed"
+    count = f"On the {f'{len(motions)} motions' if len(motions) > 1 else 'one motion'} that all models computed"
     return f"{count}, three things are apart: {'; '.join(said)}."
 
 
