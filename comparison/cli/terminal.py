@@ -114,23 +114,24 @@ def print_buildings(console: Console, named: Sequence[tuple[str, Scene]]) -> Non
         console.print(f"Warning: {name}: {line}", soft_wrap=True, markup=False)
 
 
-def print_records(console: Console, scenes: Sequence[Scene]) -> None:
-    """Say once of every recorded motion what was read."""
+def print_records(console: Console, named: Sequence[tuple[str, Scene]], short: bool = False) -> None:
+    """Say once of every recorded motion what was read, in a line where short; named: by motion, "" for its files."""
     read: dict[Hashable, RecordDescription] = {}
-    for scene in scenes:
+    for name, scene in named:
         if isinstance(record := scene.excitation, Record):
             what = record.files, tuple(record.origin), record.detrend
             if what not in read:
                 read[what] = describe_record(scene)
+                read[what] = replace(read[what], title=name or read[what].title)
             elif record.scale != read[what].scale:  # a study of many factors
                 read[what] = replace(read[what], scale=1.0)
-    for one in read.values():
-        console.print(str(one), soft_wrap=True, markup=False, highlight=False)
+    for line in (line for one in read.values() for line in (one.short_lines if short else one.lines)):
+        console.print(line, soft_wrap=True, markup=False, highlight=False)
 
 
 def print_models_left_out(console: Console, study: Study) -> None:
     """Print what was read and what is hardly meant; say which scenes state only a part of what a model needs."""
-    print_records(console, study.scenes)
+    print_records(console, [("", scene) for scene in study.scenes])
     print_buildings(console, [(scene.name, scene) for scene in study.scenes])
     for scene in study.scenes:
         if reason := why_not_spatial(scene):

@@ -77,7 +77,8 @@ class Isolator(Table):
         "natural period T_c of one mass alone on the isolator; give this or radius", Range(1e-3, 1e6, "s")
     )
     radius: Radius | None = key(
-        "rho = R - r, depression's radius less that of the sphere; inf for a flat slider; give this or period",
+        "effective radius rho = R - r, depression's radius less that of the sphere; inf for a flat slider; give this or "
+        "period",
         Range(1e-7, 1e12, "m", or_infinite=True),
     )
     friction: Friction | None = key(
@@ -205,7 +206,8 @@ class Body(Table):
         other_form=True,
     )
     height: NonNegative | None = key(
-        "height of the center of mass above the centers of the depressions, or above the plane of a flat slider",
+        "height of the center of mass above the centers of the depressions, which lie radius + sphere_radius below the "
+        "sliding contact; above the plane of a flat slider",
         Range(0.0, 1e6, "m"),
         models=SPATIAL,
     )

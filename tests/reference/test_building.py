@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from reference import damped_modes, describe_building, load_scene
+from reference.building import word_buildings
 from reference.problem import GRAVITY, Scene, ground_acceleration, phase_grid
 
 FLOORS = 5
@@ -83,3 +84,14 @@ def test_the_lines_of_a_building_have_its_numbers_with_their_units() -> None:
         "  damping of these modes: 1.42, 4.15, 6.55, 8.41, 9.59 % along x and y",
         "  peak of the ground: 1.41 m/s^2 = 0.144 g",
     ]
+
+
+def test_buildings_that_are_alike_are_described_once_with_all_peaks() -> None:
+    scene = shear_building()
+    scenes = [scene.with_values({"excitation.scale": scale, "name": f"job {scale:g}"}) for scale in (2.0, 4.0, 1.0)]
+    stiffer = scene.with_values({"bodies.1.stiffness": [1e9, 1e9], "name": "other"})
+    lines = word_buildings([describe_building(each) for each in (*scenes, stiffer)])
+    assert lines[0].startswith("Building job 2, job 4, job 1: 6 bodies")
+    assert lines[4] == "  peak of the ground: 1.41 to 5.66 m/s^2 = 0.144 to 0.577 g"
+    assert lines[5].startswith("Building other: 6 bodies")
+    assert len(lines) == 10

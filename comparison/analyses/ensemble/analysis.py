@@ -10,13 +10,14 @@ from comparison.analyses.ensemble.quantities import Quantity, values_of_motion
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
+from comparison.study.costs import seconds_per_motion
 from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL, Model, has_spatial_data
 from reference.measures import Demands, Estimate, FloorSpectra, StoryForces, demands, floor_spectra, story_forces
 from reference.problem import Scene
 
 STAGE = "ensemble"
 REST = (0.0, 0.0)  # a record has no phases
-SECONDS_PER_KNOT = {"reference": 8e-5, "engine": 1e-3, "spatial": 7e-3}  # s of processor time, for six bodies
+WITH_SPECTRA = 1.7  # processor time of a motion with its floor spectra over that without
 LIMIT = 900.0  # s of processor time of one motion
 TOLERANCE = 1e-2  # asked of the engine's largest accelerations: motions differ by far more
 
@@ -114,7 +115,7 @@ class Ensemble:
 
     def _task(self, member: Member, model: Model) -> Task:
         scene = member.scene
-        seconds = SECONDS_PER_KNOT["spatial" if model.is_spatial else model.side] * len(scene.record)
+        seconds = seconds_per_motion(scene, model) * (WITH_SPECTRA if model == EXACT else 1.0)
         arguments: Arguments = scene, model, model.tolerance(self.tolerance)
         return Task(compute_demands, arguments, STAGE, seconds, scene, model.side == "reference", timeout=LIMIT)
 

@@ -1,10 +1,11 @@
 """
 Demands under a suite: `phase-resonance ensemble SCENE [SCENE ...] --suite SUITE --scales LOW HIGH COUNT`.
 
-Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
+Exit codes: 0 done; 1 a limit of --check is not met; 2 a wrong scene or option; others as in `run_command`.
 """
 
 import argparse
+import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -16,7 +17,17 @@ from rich.console import Console
 from comparison.analyses.ensemble.analysis import STAGE, Ensemble, Points
 from comparison.analyses.ensemble.build import build_result
 from comparison.analyses.ensemble.governing import ALL, MOST, Asked, Choice, choose_motions, expected_count, read_engine
-from comparison.analyses.ensemble.members import SCALE, Member, group_by, members_of, refuse_unfit
+from comparison.analyses.ensemble.limits import (
+    NO_LIMITS,
+    WITHIN,
+    DemandCheck,
+    check_limits,
+    compare_with_stored,
+    limits_of,
+    word_check,
+    word_checks,
+)
+from comparison.analyses.ensemble.members import SCALE, Member, group_by, members_of, refuse_unfit, with_suite
 from comparison.analyses.ensemble.page import page_of
 from comparison.analyses.ensemble.result import STORED, EnsembleResult, Target
 from comparison.analyses.ensemble.table import table_text
@@ -33,14 +44,18 @@ from comparison.cli.arguments import (
     write_and_show,
 )
 from comparison.cli.computing import compute_tasks, run_facts
+from comparison.cli.start import start_time
 from comparison.cli.terminal import print_buildings, print_records
+from comparison.report.junit import JUnitCase, JUnitSuite, junit_text
 from comparison.runner.attempts import attempt
 from comparison.runner.output import destination, publish, refuse_foreign_files, refuse_other_page
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Display, wide_console
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
+from comparison.study.costs import STARTING, WRITING
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, has_spatial_data, why_not_spatial
+from comparison.verdicts import MET
 from reference.problem import Family, SceneError
 from reference.problem.families import family_of, with_bounds
 from reference.problem.scene_file import scene_tables, scene_text
@@ -52,7 +67,8 @@ from reference.support.files import write_new
 COMMAND = "comparison.ensemble"
 TABLE = "ensemble.csv"
 PAGE = "index.html"
-FILES = (STORED.name, TABLE, PAGE)
+CHECKED = "junit.xml"
+FILES = (STORED.name, TABLE, PAGE, CHECKED)
 MODELS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # what the workers ask
 ENGINES = {model.key: model for model in (TRANSLATIONAL, SPATIAL)}
 MAX_SCALES = 100
@@ -72,20 +88,23 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         raise SceneError("command line", "--periods", " ".join(options.periods), "needs --target")
     if options.model is not None and asked != 0:
         refuse_unfit(members, ENGINES[options.model])
+    check = demand_check(options, members)
     out = destination(options.out)
     refuse_other_page(out, COMMAND)
     refuse_foreign_files(out, FILES)
     console, ensemble = wide_console(), Ensemble(members, spatial=options.model != TRANSLATIONAL.key)
     if options.suite is not None and ":" not in options.suite:
         print_suite(console, options)
-    print_records(console, [member.scene for member in members])
+    print_records(console, [(member.motion, member.scene) for member in members], short=not options.plan)
     print_buildings(console, [(member.structure, member.scene) for member in members])
     tasks = ensemble.equation_tasks()
     first = expected_choices(members, asked)
     later = sum(task.seconds for task in ensemble.engine_tasks([Choice(member, ()) for member in first]))
     seconds = sum(task.seconds for task in tasks) + later
     count = f"{len(members)} motions by the equations, about {len(first)} by the engine"
-    console.print(f"{count}: {seconds:.0f} s of compute.")
+    jobs = number_of_jobs(options)
+    wall = f"about {STARTING + seconds / jobs + WRITING:.0f} s with {jobs} worker{'' if jobs == 1 else 's'}"
+    console.print(f"{count}: {wall}.")
     if ensemble.spatial and asked != 0:
         for line in dict.fromkeys(f"{m.structure}: {why}" for m in first if (why := why_not_spatial(m.scene))):
             console.print(f"{line}.", soft_wrap=True, markup=False)
@@ -93,8 +112,8 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
         lengths = [member.scene.duration for member in members]
         console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
         return 0
-    begin = time.monotonic()
-    write = partial(write_ensemble, console, options, argv, begin, ensemble, target, listed_motions(options))
+    begin = start_time().wall
+    write = partial(write_ensemble, console, options, argv, begin, ensemble, target, listed_motions(options), check)
 
     def then(results: TaskResults, display: Display) -> Sequence[Task]:
         chosen = [] if asked == 0 else choose_motions(ensemble.points(results).equations, asked)
@@ -113,10 +132,42 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     results = compute_tasks("ensemble", options, argv, tasks, MODELS, console, executor, then)
     ((chosen, said),) = shown
     if not said:
-        write(results, ensemble.points(results, chosen), print_equations)
+        written = write(results, ensemble.points(results, chosen), print_equations)
     if chosen:
-        write(results, ensemble.points(results, chosen), print_engine)
-    return 0
+        written = write(results, ensemble.points(results, chosen), print_engine)
+    console.print(f"The ensemble took {time.monotonic() - begin:.0f} s.")
+    return print_checks(check(written), asked=options.check or options.against is not None)
+
+
+def demand_check(
+    options: argparse.Namespace, members: Sequence[Member]
+) -> Callable[[EnsembleResult], list[DemandCheck]]:
+    """Return what checks the demands of the ensemble that the command line asks for. Raises SceneError."""
+    limits = limits_of({member.structure: member.scene for member in members})
+    within = read_number("--within", options.within, WITHIN.lowest, WITHIN.highest, "a share of the stored demand")
+    try:
+        stored = None if options.against is None else STORED.load(Path(options.against))
+    except ValueError as error:
+        raise SceneError("command line", "--against", options.against, str(error)) from None
+    if options.against is not None and stored is None:
+        rule = f"has no {STORED.name}: give a folder that phase-resonance ensemble wrote"
+        raise SceneError("command line", "--against", options.against, rule)
+
+    def check(result: EnsembleResult) -> list[DemandCheck]:
+        compared = [] if stored is None else compare_with_stored(result, stored, within)
+        return [*check_limits(result, limits), *compared]
+
+    return check
+
+
+def print_checks(checks: Sequence[DemandCheck], asked: bool) -> int:
+    """Say on standard error, as the last lines, which demands are not met; the exit code."""
+    sys.stdout.flush()  # in a file that takes both outputs, too, these lines are the last
+    lines = word_checks(checks)
+    if asked:
+        for line in lines or [f"--check: {NO_LIMITS}"]:
+            print(line, file=sys.stderr)
+    return int(asked and any(check.verdict != MET for check in checks))
 
 
 def write_ensemble(
@@ -127,15 +178,17 @@ def write_ensemble(
     ensemble: Ensemble,
     target: Target | None,
     listed: Mapping[str, Motion],
+    check: Callable[[EnsembleResult], list[DemandCheck]],
     results: TaskResults,
     points: Points,
     show: Callable[[Console, EnsembleResult], None],
-) -> None:
-    """Write the files of the ensemble, then show on the terminal what they hold, then write the page."""
+) -> EnsembleResult:
+    """Write the files of the ensemble, show on the terminal what they hold, write the page; return the result."""
     cost = results.parts[STAGE].seconds
     run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
     result = build_result(points, run, ensemble.tolerance, target, listed)
     files = {STORED.name: STORED.as_json(result)}
+    files |= {CHECKED: junit_of(checks, run)} if (checks := check(result)) else {}
     if (table := attempt(TABLE, lambda: table_text(points, result).encode())) is not None:
         files[TABLE] = table
     written = write_and_show(
@@ -145,6 +198,25 @@ def write_ensemble(
     with report_write_errors(options.out):
         written += publish(destination(options.out), {} if page is None else {PAGE: page}, COMMAND)
     console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
+    return result
+
+
+def junit_of(checks: Sequence[DemandCheck], run: Mapping[str, Any]) -> bytes:
+    """junit.xml of the checks of demands, a suite for every bound; what is not met, or not compared, is a failure."""
+    suites = [
+        JUnitSuite(
+            bound,
+            run["compute_seconds"],
+            run["began"],
+            [
+                JUnitCase(f"{each.key}: {each.what}", [] if each.verdict == MET else [word_check(each)])
+                for each in checks
+                if each.bound == bound
+            ],
+        )
+        for bound in dict.fromkeys(each.bound for each in checks)
+    ]
+    return junit_text(suites).encode()
 
 
 def expected_choices(members: Sequence[Member], asked: Asked) -> list[Member]:
@@ -188,14 +260,8 @@ def family_of_options(options: argparse.Namespace, source: str) -> Family:
     data = scene_tables(scene_text(source), source)
     loading: Any = data.get("excitation")
     if options.suite is not None:
-        name = options.suite if ":" in options.suite else str(Path(options.suite).absolute())
-        record: dict[str, Any] = {"suite": name, "motion": "all"} | ({"normalized": True} if options.normalized else {})
-        record |= {} if options.components is None else {"components": options.components}
-        scale = loading.get("scale", 1.0) if isinstance(loading, dict) else 1.0
-        data = {key: value for key, value in data.items() if key != "duration"}  # as long as each motion
-        detrend = {"detrend": loading["detrend"]} if isinstance(loading, dict) and "detrend" in loading else {}
-        loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}, **detrend}
-        data.setdefault("combine", "product")
+        data = with_suite(data, options.suite, options.components, options.normalized)
+        loading = data["excitation"]
     if options.scales is not None:
         low, high = (read_number("--scales", text, 1e-6, 1e6, "LOW and HIGH") for text in options.scales[:2])
         count = read_whole_number("--scales", options.scales[2], 1, MAX_SCALES)
@@ -252,6 +318,18 @@ def _parser() -> CommandParser:
         help="most complete model of the engine (default: spatial where the scene states what it needs)",
     )
     parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
+    parser.add_argument(
+        "--check", action="store_true", help="exit 1 if a limit of [acceptance.demands] is not met, or not compared"
+    )
+    parser.add_argument(
+        "--against", metavar="DIR", help="exit 1 if a demand is not that of the ensemble that DIR has from earlier"
+    )
+    parser.add_argument(
+        "--within",
+        default="0.01",
+        metavar="X",
+        help="with --against: share of a demand by which it may differ besides its errors (default %(default)s)",
+    )
     parser.add_out(f"where {', '.join(FILES)} go", default="ensemble")
     parser.add_computing()
     return parser

@@ -9,24 +9,33 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from comparison.analyses.ensemble.result import DemandCurve, EnsembleResult, Statistic, Stripe
+from comparison.analyses.ensemble.quantities import title_of, unit_of_demand
+from comparison.analyses.ensemble.result import EnsembleResult, Statistic, Stripe, Structure
+from comparison.analyses.ensemble.rows import labels, place_of
+from comparison.analyses.ensemble.sentences import count_motions
 from comparison.study.models import EXACT
-from comparison.verdicts import MET, NOT_COMPARED, NOT_MET, Verdict, judge, word_verdict
-from reference.measures.peak_demands import QUANTITIES, unit_of
-from reference.problem import GRAVITY, Scene
+from comparison.verdicts import (
+    MET,
+    NOT_COMPARED,
+    NOT_MET,
+    Verdict,
+    count_verdicts,
+    judge,
+    word_counts,
+    word_verdict,
+)
+from reference.problem import Scene
 from reference.problem.acceptance import DemandLimits
+from reference.support.arguments import Range
 
+KEY = "acceptance.demands."
 MEAN, LARGEST = "mean", "largest"
-UNITS = {"displacement": "m", "uplift": "m", "drift_ratio": "", "base_shear": ""}  # of the limits
-WORDS = {
-    "displacement": "displacement of the isolator",
-    "drift_ratio": "drift ratio",
-    "uplift": "uplift of a support",
-    "base_shear": "base shear over the weight",
-}
-COUNTED = "stops"  # a number of events, which a tolerance says nothing of
-NO_HEIGHTS = "the bodies have no heights"
+UNITS = {"displacement": "m", "uplift": "m"}  # of the limits; those of the others are pure numbers
+COUNTED = "stops"  # a number of events, of which a tolerance says nothing
+WITHIN = Range(0.0, 10.0)  # tolerance of a comparison with a stored ensemble
 WORST_FIRST = (NOT_MET, NOT_COMPARED, MET)
+NOT_COMPUTED = "no model that was computed has it; the spatial engine needs supports, heights and sizes of bodies"
+NO_LIMITS = "no scene states [acceptance.demands]: nothing was checked"
 
 
 @dataclass(frozen=True)
@@ -34,19 +43,20 @@ class DemandCheck:
     """
     A demand of a structure against a stated number: a limit, or the demand of a stored ensemble.
 
-    what: the demand in words. over: the motions that it is taken from. found, stated: in `unit`; None without a number.
-    excess: found less stated, 0 below a limit. allowed: size of it that is met. motion: of the largest value, "" of a
-    mean. reason: why nothing is compared, "" otherwise.
+    key: of the limit, or of the demand. bound: what tells the structure apart. what: the demand in words, with the
+    statistic and the motions. found, stated: in `unit`; None without a number. excess: found less stated; of a limit 0
+    below it. allowed: size of it that is met. motion: of the largest value, "" of a mean. reason: why nothing is
+    compared, "" otherwise.
     """
 
-    structure: str
+    key: str
+    bound: str
     what: str
-    over: str
     found: float | None
     stated: float | None
-    excess: float | None
-    allowed: float
-    unit: str
+    excess: float | None = None
+    allowed: float = 0.0
+    unit: str = ""
     motion: str = ""
     reason: str = ""
 
@@ -57,133 +67,107 @@ class DemandCheck:
 
 
 def word_check(check: DemandCheck) -> str:
-    """Return the verdict on a demand in words: structure, demand, motion, both numbers, and by how much."""
-    found = "none" if check.found is None else f"{check.found:.4g} {check.unit}".rstrip()
-    under = f" under {check.motion}" if check.motion else ""
+    """Return the verdict on a demand in words: bound, demand, motion, both numbers, and by how much it is not met."""
+    found, stated = (
+        "none" if value is None else f"{value:.4g} {check.unit}".rstrip() for value in (check.found, check.stated)
+    )
+    under = f" ({check.motion})" if check.motion else ""
     verdict = word_verdict(check.verdict, check.excess, check.stated, check.unit)
     verdict += f" ({check.reason})" if check.reason else ""
-    stated = "none" if check.stated is None else f"{check.stated:.4g} {check.unit}".rstrip()
-    return f"{check.structure}: {check.what}, {check.over}: {found}{under}, stated {stated}: {verdict}"
+    return f"{check.bound}: {check.what}: {found}{under}, {_stated_in_words(check)} {stated}: {verdict}"
 
 
-def check_limits(ensemble: EnsembleResult, scenes: Mapping[str, Scene]) -> list[DemandCheck]:
-    """Return the verdict on every limit of every structure, at the largest scale. scenes: one of each structure."""
-    checks = []
-    for structure in ensemble.structures:
-        scene = scenes[structure.name]
-        limits = scene.acceptance.demands or DemandLimits()
-        for key, limit in limits.limits_by_key().items():
-            found = [*_check_limit(ensemble, structure.name, scene, key, limit, limits.statistic)]
-            checks.append(min(found, key=_rank))
-    return checks
+def _stated_in_words(check: DemandCheck) -> str:
+    return "allowed" if check.key.startswith(KEY) else "stored"
 
 
-def _rank(check: DemandCheck) -> tuple[int, float]:
-    """Order of checks, the worst first."""
-    return WORST_FIRST.index(check.verdict), -(check.found or 0.0)
+def word_checks(checks: Sequence[DemandCheck]) -> list[str]:
+    """Return how many demands are met, then a line for every one that is not, the worst last."""
+    lines = [word_check(check) for check in sorted(checks, key=_order, reverse=True) if check.verdict != MET]
+    return [word_counts(count_verdicts(check.verdict for check in checks), "demand"), *lines] if checks else []
 
 
-def worst_check(checks: Sequence[DemandCheck]) -> DemandCheck | None:
-    """Return the limit that is broken by the largest share, else one that is not compared; None if all are met."""
-    open_checks = [check for check in checks if check.verdict != MET]
-    return min(open_checks, key=lambda check: (WORST_FIRST.index(check.verdict), -_share(check)), default=None)
+def _order(check: DemandCheck) -> tuple[int, float, float]:
+    """Return the order of checks, the worst first: by the share of the stated number by which a demand is off."""
+    share = abs(check.excess or 0.0) / abs(check.stated) if check.stated else math.inf
+    return WORST_FIRST.index(check.verdict), -share, -(check.found or 0.0)
 
 
-def _share(check: DemandCheck) -> float:
-    """By which share of the stated number a demand is off."""
-    return math.inf if not check.stated else abs(check.excess or 0.0) / abs(check.stated)
+def check_limits(ensemble: EnsembleResult, limits: Mapping[str, DemandLimits]) -> list[DemandCheck]:
+    """Return the verdict on every limit of every structure, at the largest scale. limits: by name of the structure."""
+    return [
+        min(_check_bodies(ensemble, structure, key, limit, stated.statistic), key=_order)
+        for structure in ensemble.structures
+        if (stated := limits.get(structure.name)) is not None
+        for key, limit in stated.limits_by_key().items()
+    ]
 
 
-def _check_limit(
-    ensemble: EnsembleResult, structure: str, scene: Scene, key: str, limit: float, statistic: str
-) -> Iterator[DemandCheck]:
-    """One check; of drift ratios one for each story."""
-    unit, plain = UNITS[key], WORDS[key]
-    heights = [body.height for body in scene.bodies]
-    if key == "drift_ratio":
-        for body in range(2, len(heights) + 1):
-            below, above = heights[body - 2], heights[body - 1]
-            factor = None if above is None or below is None or above <= below else 1.0 / (above - below)
-            at = f"{plain} of the story below body {body}"
-            yield _check_values(ensemble, structure, ("drift", body), factor, at, limit, unit, statistic)
-        if len(heights) == 1:
-            yield DemandCheck(structure, plain, statistic, None, limit, None, 0.0, unit, reason="there is no story")
-        return
-    factor = 1.0 / (scene.total_mass * GRAVITY) if key == "base_shear" else 1.0
-    yield _check_values(ensemble, structure, (key, None), factor, plain, limit, unit, statistic)
+def limits_of(scenes: Mapping[str, Scene]) -> dict[str, DemandLimits]:
+    """Return the limits that scenes state, by name of the structure."""
+    stated = {name: scene.acceptance.demands for name, scene in scenes.items()}
+    return {name: limits for name, limits in stated.items() if limits is not None}
 
 
-def _check_values(
-    ensemble: EnsembleResult,
-    structure: str,
-    quantity: tuple[str, int | None],
-    factor: float | None,
-    what: str,
-    limit: float,
-    unit: str,
-    statistic: str,
+def _check_bodies(
+    ensemble: EnsembleResult, structure: Structure, key: str, limit: float, statistic: str
+) -> list[DemandCheck]:
+    """Return the check of a limit; of drift ratios that of every story."""
+    asked = structure.name, key
+    bodies = list(dict.fromkeys(c.body for c in ensemble.curves if (c.structure, c.quantity) == asked))
+    return [_check_body(ensemble, structure, key, body, limit, statistic) for body in bodies or [None]]
+
+
+def _check_body(
+    ensemble: EnsembleResult, structure: Structure, key: str, body: int | None, limit: float, statistic: str
 ) -> DemandCheck:
-    """Return the check of one demand times a factor; None without one."""
-    values, model = _values_at_top(ensemble, structure, *quantity)
-    asked = ensemble.motions
-    known = {
-        motion: (factor * number.value, factor * (number.error or 0.0))
-        for motion, number in values.items()
-        if number.value is not None and factor is not None
-    }
+    """Return the check of a limit on one demand, over all motions that have it."""
+    values, model = _values_at_top(ensemble, structure.name, key, body)
+    known = [
+        (number.value, number.error or 0.0, motion) for motion, number in values.items() if number.value is not None
+    ]
+    per = structure.weight if key == "base_shear" else 1.0
     by = "" if model in ("", EXACT.key) else f" by the {model} engine"
-    over = f"{statistic} of {len(known)} of {asked} motions{by}"
-    over = over.replace(f"{asked} of {asked}", f"{asked}")
-    reason = ""
-    if factor is None:
-        reason = NO_HEIGHTS
-    elif not values:
-        reason = "no model that was computed has it"
-    elif len(known) < (asked if statistic == MEAN else len(values)):
-        lacking = asked - len(known) if statistic == MEAN else len(values) - len(known)
-        reason = f"{lacking} {'motion has' if lacking == 1 else 'motions have'} no value"
-    about = structure, f"{what}", over
+    count = f"{len(known)} of " if len(known) < ensemble.motions else ""
+    what = "base shear over the weight" if key == "base_shear" else title_of(key)
+    what += f" {place}" if (place := place_of(structure, key, body)) else ""
+    what += f", {statistic} of {count}{count_motions(ensemble.motions)}{by}"
+    about: tuple[str, str, str] = f"{KEY}{key}", labels(ensemble)[structure.name], what
+    lacking = (ensemble.motions if statistic == MEAN else len(values)) - len(known)
+    reason = f"{lacking} {'motion has' if lacking == 1 else 'motions have'} no value" if lacking else ""
     if not known:
-        return DemandCheck(*about, None, limit, None, 0.0, unit, reason=reason)
-    motion = "" if statistic == MEAN else max(known, key=lambda name: known[name][0])
-    count = len(known)
-    found, error = (sum(part) / count for part in zip(*known.values())) if statistic == MEAN else known[motion]
+        reason = reason if values else "heights of the bodies are needed" if key == "drift_ratio" else NOT_COMPUTED
+        return DemandCheck(*about, None, limit, unit=UNITS.get(key, ""), reason=reason)
+    if statistic == MEAN:
+        found, error, motion = *(sum(part) / len(known) / per for part in list(zip(*known))[:2]), ""
+    else:
+        value, error, motion = max(known)
+        found, error = value / per, error / per
     excess = max(found - limit, 0.0)
     if statistic == LARGEST and excess > error:  # whatever the others have
         reason = ""
-    return DemandCheck(*about, found, limit, excess, error, unit, motion, reason)
+    return DemandCheck(*about, found, limit, excess, error, UNITS.get(key, ""), motion, reason)
 
 
 def _values_at_top(
     ensemble: EnsembleResult, structure: str, quantity: str, body: int | None
 ) -> tuple[dict[str, Statistic], str]:
-    """Return a demand at the largest scale by motion, and the model that has it: the equations, or else the engine."""
-    top = max(ensemble.scales)
-    asked = structure, quantity, body
-    own = [curve for curve in ensemble.curves if (curve.structure, curve.quantity, curve.body) == asked]
-    by_model: dict[str, list[DemandCurve]] = {}
-    for curve in own:
-        if top in curve.scales:
-            by_model.setdefault(curve.model, []).append(curve)
-    model = EXACT.key if EXACT.key in by_model else next(reversed(by_model), "")
-    found = {}
-    for curve in by_model.get(model, ()):
-        at = list(curve.scales).index(top)
-        found[curve.motion] = Statistic(curve.values[at], curve.errors[at])
-    return found, model
+    """Return a demand at the largest scale by motion, and the model: the equations, or else what alone has it."""
+    for model in (EXACT.key, ensemble.engine.model):
+        if values := ensemble.values_at_top(structure, quantity, body, model):
+            return values, model
+    return {}, ""
 
 
-def compare_with_stored(ensemble: EnsembleResult, stored: EnsembleResult, tolerance: float) -> list[DemandCheck]:
+def compare_with_stored(ensemble: EnsembleResult, stored: EnsembleResult, within: float) -> list[DemandCheck]:
     """Return the verdict on mean and largest value of every demand by the equations against a stored ensemble."""
     new, old = _stripes(ensemble), _stripes(stored)
-    checks = []
-    for place in dict.fromkeys([*old, *new]):
-        for statistic in (MEAN, LARGEST):
-            first, second = new.get(place), old.get(place)
-            check = _compare_stripes(place, statistic, first, second, tolerance)
-            if check is not None:
-                checks.append(check)
-    return checks
+    named = {each.name: each.name for each in (*stored.structures, *ensemble.structures)} | labels(ensemble)
+    return [
+        check
+        for place in dict.fromkeys([*old, *new])
+        for check in _compare_stripes(named, place, new.get(place), old.get(place), within)
+    ]
 
 
 Place = tuple[str, str, int | None, float]
@@ -199,18 +183,19 @@ def _stripes(ensemble: EnsembleResult) -> dict[Place, Stripe]:
 
 
 def _compare_stripes(
-    place: Place, statistic: str, new: Stripe | None, old: Stripe | None, tolerance: float
-) -> DemandCheck | None:
-    """Return the check of one statistic; None where neither ensemble has a value."""
+    named: Mapping[str, str], place: Place, new: Stripe | None, old: Stripe | None, within: float
+) -> Iterator[DemandCheck]:
+    """Return the checks of mean and largest value; none where both ensembles lack it."""
     structure, quantity, body, scale = place
-    found, stated = (None if each is None else each.mean if statistic == MEAN else each.largest for each in (new, old))
-    what = f"{QUANTITIES[quantity][0]}{f' of body {body}' if body else ''} at scale {scale:g}"
-    about = structure, what, f"{statistic} over the motions"
-    unit = unit_of(quantity)
-    value, before = (None if each is None else each.value for each in (found, stated))
-    if value is None or before is None:
-        lacking = "this ensemble" if value is None else "the stored ensemble"
-        check = DemandCheck(*about, value, before, None, 0.0, unit, reason=f"{lacking} lacks it")
-        return None if value is before and new is not None and old is not None else check
-    errors = sum(each.error or 0.0 for each in (found, stated) if each is not None)
-    return DemandCheck(*about, value, before, value - before, tolerance * abs(before) + errors, unit)
+    for statistic in (MEAN, LARGEST):
+        sides = [None if each is None else each.mean if statistic == MEAN else each.largest for each in (new, old)]
+        found, stated = (None if each is None else each.value for each in sides)
+        about = quantity, named[structure], f"{title_of(quantity, body)}, {statistic}, scale {scale:g}", found, stated
+        motion = new.largest_motion if new is not None and statistic == LARGEST else ""
+        unit = unit_of_demand(quantity)
+        if found is not None and stated is not None:
+            errors = sum(each.error or 0.0 for each in sides if each is not None)
+            yield DemandCheck(*about, found - stated, within * abs(stated) + errors, unit, motion)
+        elif new is None or old is None or found is not stated:
+            lacking = "this ensemble" if found is None else "the stored ensemble"
+            yield DemandCheck(*about, unit=unit, motion=motion, reason=f"{lacking} lacks it")

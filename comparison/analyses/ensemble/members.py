@@ -3,6 +3,7 @@
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
+from pathlib import Path
 from typing import Any, TypeVar
 
 from comparison.study.models import Model, has_spatial_data, why_not_spatial
@@ -25,6 +26,22 @@ class Member:
     scale: float  # scale of the ensemble; a factor of the motion itself comes on top
     scene: Scene
     factor: float = 1.0  # factor of the motion, to a target spectrum
+
+
+def with_suite(
+    data: dict[str, Any], suite: str | Path, components: int | None = None, normalized: bool = False
+) -> dict[str, Any]:
+    """Return the tables of a scene file with every motion of a suite as its loading, each as long as it is."""
+    name = str(suite) if ":" in str(suite) else str(Path(suite).absolute())
+    record: dict[str, Any] = {"suite": name, "motion": "all"} | ({"normalized": True} if normalized else {})
+    record |= {} if components is None else {"components": components}
+    loading = data.get("excitation")
+    own = loading if isinstance(loading, dict) else {}
+    scale = own.get("scale", 1.0)
+    kept = {key: own[key] for key in ("detrend",) if key in own}
+    loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}, **kept}
+    under_suite = {key: value for key, value in data.items() if key != "duration"} | {"excitation": loading}
+    return {"combine": "product", **under_suite}
 
 
 def members_of(families: Sequence[Family]) -> tuple[Member, ...]:

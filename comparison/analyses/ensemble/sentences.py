@@ -4,9 +4,10 @@ from collections.abc import Iterator, Sequence
 
 from comparison.analyses.ensemble.quantities import text_of, unit_for_reading
 from comparison.analyses.ensemble.result import EnsembleResult, Structure, SupportExtremes, Target
-from comparison.analyses.ensemble.rows import MAIN, floor_of, labels, peak_in_g, stripe_of
+from comparison.analyses.ensemble.rows import MAIN, floor_of, labels, peak_in_g, place_of, stripe_of
 from comparison.study.models import EXACT
 from comparison.wording import percent
+from reference.plausibility import implausible_drift
 
 NAMED = 12  # motions that are named one by one
 DEFINITIONS = (
@@ -158,6 +159,17 @@ def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) ->
         bound = f", {named[row.structure]}" if len(ensemble.structures) > 1 else ""
         place = f"support {row.support} at [{row.x:.3g}, {row.y:.3g}] m"
         yield f"{name} force {text_of(value, None, 1e-3)} kN, {place} ({getattr(row, f'{name}_motion')}{bound})"
+
+
+def drift_warning(ensemble: EnsembleResult, structure: Structure) -> str:
+    """Return that a drift is hardly meant, with its story and motion; "" for any other."""
+    stripes = [row for row in ensemble.profile(structure.name, "drift_ratio") if row.largest.value is not None]
+    if not stripes:
+        return ""
+    worst = max(stripes, key=lambda row: row.largest.value or 0.0)
+    place = f"{place_of(structure, worst.quantity, worst.body)} under {worst.largest_motion}"
+    line = implausible_drift(worst.largest.value or 0.0, place)
+    return f"Warning: {line}" if line else ""
 
 
 def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[str]:

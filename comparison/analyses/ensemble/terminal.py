@@ -13,6 +13,7 @@ from comparison.analyses.ensemble.sentences import (
     answer_sentence,
     below_contact_sentence,
     count_motions,
+    drift_warning,
     engine_sentences,
     heading,
     isolator_sentence,
@@ -89,6 +90,7 @@ def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
             *missing_sentences(ensemble, structure),
             isolator_sentence(structure),
             below_contact_sentence(structure),
+            drift_warning(ensemble, structure),
         ]
         bound = f"{named[structure.name]}: " if len(ensemble.structures) > 1 else ""
         say(console, [f"{bound}{line}" for line in lines if line])

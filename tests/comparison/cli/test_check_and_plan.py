@@ -54,6 +54,14 @@ def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callabl
     assert beside.err == f"{UNCHECKED.strip()}; {everything}\n"
 
 
+def test_check_says_where_limits_on_demands_are_checked(command: Callable[..., Run], tmp_path: Path) -> None:
+    limited = limited_scene(
+        tmp_path, "[acceptance]\nmedian = 1.0\n[acceptance.demands]\ndisplacement = 0.1", "mine.toml"
+    )
+    run = command(limited, *SMALL[1:], "--check", hierarchy=fake_hierarchy(gap=5e-5))
+    assert run.err.startswith("--check: [acceptance.demands] of mine: phase-resonance ensemble --check checks it\n")
+
+
 @pytest.mark.parametrize(
     ("confirm", "gap", "found"), [(True, 5e-4, ["5"]), (False, 5e-4, []), (True, 2.5e-3, ["2.49", "24.9"])]
 )

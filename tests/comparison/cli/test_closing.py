@@ -103,6 +103,15 @@ def test_a_value_hardly_meant_is_named_once_with_its_first_scene(
     assert len(building) == 5
 
 
+def test_the_warning_of_a_building_is_that_of_its_strongest_motion(capsys: pytest.CaptureFixture[str]) -> None:
+    pair = load_scene("synthetic-pair")
+    scales = (1.0, 20.0, 2.0)
+    terminal.print_buildings(Console(), [("pair", pair.with_values({"excitation.scale": scale})) for scale in scales])
+    *building, warning = capsys.readouterr().out.splitlines()
+    assert warning == "Warning: pair: the peak of the ground is 5.101 g, above 3 g: unit or scale?"
+    assert building[-1] == "  peak of the ground: 2.5 to 50 m/s^2 = 0.255 to 5.1 g"
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows does not add up the times of processes")
 def test_the_processor_time_of_processes_that_run_and_that_ended_is_counted() -> None:
     before = Clock.now()
