@@ -1,7 +1,6 @@
 """What the terminal says before a run: what would be computed, and roughly how long it would take."""
 
-from collections.abc import Hashable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
@@ -17,13 +16,12 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import refusal_of
 from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_model
 from comparison.study.models import models_of, why_not_spatial
+from comparison.study.records import describe_records
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
-from reference.problem import Family, Scene, describe_record
+from reference.problem import Family, Scene
 from reference.problem.plausibility import implausible_values
-from reference.problem.tables import Record
-from reference.records.description import RecordDescription
 
 NAMES = 4  # names of a list that the terminal shows
 
@@ -108,15 +106,7 @@ def print_implausible_values(console: Console, scenes: Sequence[Scene]) -> None:
 
 def print_records(console: Console, scenes: Sequence[Scene]) -> None:
     """Say once of every recorded motion what was read."""
-    read: dict[Hashable, RecordDescription] = {}
-    for scene in scenes:
-        if isinstance(record := scene.excitation, Record):
-            what = record.files, tuple(record.origin), record.detrend
-            if what not in read:
-                read[what] = describe_record(scene)
-            elif record.scale != read[what].scale:  # a study of many factors
-                read[what] = replace(read[what], scale=1.0)
-    for one in read.values():
+    for one in describe_records(scenes):
         console.print(str(one), soft_wrap=True, markup=False, highlight=False)
 
 
