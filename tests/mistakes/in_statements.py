@@ -39,6 +39,7 @@ TRENDS = tuple(
         "test_an_exponent_agrees_within_the_larger_of_its_uncertainty_and_what_is_not_asymptotic",
     )
 )
+RECORDS = ("tests/comparison/analyses/test_records_as_read.py",)
 TABLES = ("tests/comparison/report/test_tables_of_sections.py",)
 LAWS = ("tests/reference/problem/test_readings.py",)
 MEASURED = ("tests/comparison/evidence/test_validation_statements.py",)
@@ -361,4 +362,9 @@ MISTAKES = (
     Mistake(SURFACES + "headline.py", "return abs(self.mean) <= self.error", "return self.mean <= self.error", "A mean below zero is within its error.", SAID),
     Mistake(SURFACES + "headline.py", "like_for_like_ratio=alike.ratio if", "like_for_like_ratio=alike.maximum if", "A size stands for its multiple of the errors.", HEADLINE),
     Mistake(SURFACES + "headline.py", "beyond_error=total.beyond_error", "beyond_error=total.resolved", "Beyond five errors stands for beyond one.", HEADLINE),
+    Mistake("comparison/analyses/records/feature.py", "sum(bool(record.warnings) for record in records)", "sum(len(record.warnings) > 1 for record in records)",
+            "A record with one warning has none.", RECORDS),
+    Mistake("comparison/analyses/records/section.html.j2", '{{ number(one.final_velocity, "%+.2g"|format(one.final_velocity)) }}',
+            '{{ number(one.final_displacement, "%+.2g"|format(one.final_displacement)) }}', "A displacement stands for a velocity.", RECORDS),
+    Mistake("comparison/study/records.py", "elif record.scale != read[what].scale:", "elif False:", "One of several scales is told.", RECORDS),
 )

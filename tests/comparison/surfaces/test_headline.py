@@ -42,7 +42,7 @@ CASES: dict[str, tuple[Any, ...]] = {  # levels and errors of the models, what i
     "causes that are alike": (gaps(0.05, 0.05, 0.05, 0.1001), {"spatial": 1e-3},
         [f"Causes: {TURNING} +5.0 ± 0.1 % (50 % of it), {GEOMETRY} +5 % (50 % of it); which effect is the largest"]),
     "within the errors": ({"spatial": 0.01}, {"spatial": 0.004},
-        ["Exudyn (spatial) and the paper's equations differ by less than five times the numerical error over 4 × 4 initial phases"]),
+        ["the paper's equations differ by less than five times the numerical error over 4 × 4 initial phases"]),
     "codes that differ": ({"translational": 0.2, "spatial": 0.2}, {},
         ["the two codes differ beyond twice their errors, by up to 20 %."]),
     "literal supremum above": ({"small": 0.3, "exact": 0.3, "spatial": 0.02}, {},
