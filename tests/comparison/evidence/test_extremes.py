@@ -13,10 +13,11 @@ from runs import no_executor
 
 import multibody
 from comparison.evidence.extremes import analysis
+from comparison.evidence.extremes.causes import CAUSES
 from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
 from comparison.evidence.extremes.matrix import STORED, Verdict
-from comparison.evidence.extremes.rows import CAUSES, rows, scene
+from comparison.evidence.extremes.rows import rows, scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, process_pool
 from comparison.runner.task import TaskResult
 from reference.problem import Outcome
