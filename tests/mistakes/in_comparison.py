@@ -184,7 +184,7 @@ MISTAKES = (
             "A run ends after its budget.", (LEVELS + "the_time_is_up_at_the_deadline_less_what_is_kept_free",)),
     Mistake(RUNNER + "progress.py", "rough / self._jobs", "rough",
             "The time left counts one worker.", (LEVELS + "the_time_left_follows_from_the_work_so_far",)),
-    Mistake(RUNNER + "output.py", "in entry.hashes", "in entry.hashes or True",
+    Mistake(RUNNER + "manifest.py", "in entry.hashes", "in entry.hashes or True",
             "A changed file of the user counts as the study's own.", (FILES + "what_appears_in_out_meanwhile_stays",)),
     Mistake(RUNNER + "environment.py", '        "exudyn module": os.environ.get("EXUDYN_MODULE", ""),\n', "",
             "Results of another module of the engine are taken.",

@@ -18,18 +18,8 @@ from comparison.cli import reports
 from comparison.evidence.extremes import command as extremes
 from comparison.report import page
 from comparison.runner.cache import Cache, CacheKey, locate_store
-from comparison.runner.output import (
-    MANIFEST,
-    Own,
-    clear_dead,
-    destination,
-    foreign,
-    manifest_json,
-    publish,
-    read_manifest,
-    refuse_foreign_files,
-    replace_report,
-)
+from comparison.runner.manifest import MANIFEST, Own, list_foreign_files, manifest_json, read_manifest
+from comparison.runner.output import clear_dead, destination, publish, refuse_foreign_files, replace_report
 from reference.support.files import TEMPORARY
 
 TABLES = ["extremes.json", "extremes.png"]
@@ -70,7 +60,7 @@ def test_what_appears_in_out_meanwhile_stays(tmp_path: Path, name: str, finished
     assert is_mine(tmp_path / "report" / name)
     assert report.place == tmp_path / "report-2"
     assert page_of(tmp_path / "report-2") == "new"
-    assert foreign(tmp_path / "report-2") == []
+    assert list_foreign_files(tmp_path / "report-2") == []
     (line,) = said
     assert repr(name) in line
     assert "report-2" in line
@@ -153,7 +143,7 @@ def test_a_report_half_moved_is_still_the_studys(tmp_path: Path, monkeypatch: py
             patch.setattr(os, "replace", moved)
             ends()
     refuse_foreign_files(tmp_path / "tables", TABLES)
-    assert foreign(tmp_path / "report") == []
+    assert list_foreign_files(tmp_path / "report") == []
     assert page_of(tmp_path / "report") in ("old", "new"), "each file is whole"
     put(tmp_path / "report", "index.html", content="newer")
     assert {entry.name for entry in tmp_path.iterdir()} == {"report", "tables"}
@@ -210,7 +200,7 @@ def test_files_of_other_commands_in_the_report_are_kept(tmp_path: Path) -> None:
         publish(tmp_path / "report", {"extremes.json": b"{}"}, "comparison.extremes")
     assert report.place == tmp_path / "report"
     assert (tmp_path / "report" / "extremes.json").read_bytes() == b"{}"
-    assert foreign(tmp_path / "report") == []
+    assert list_foreign_files(tmp_path / "report") == []
 
 
 PLACES = {  # others are refused by phase-resonance init, too
