@@ -141,12 +141,6 @@ def _known(scene: Scene, phases: np.ndarray, gap: float, tolerance: float = 1e-6
     return Amplification(mu, 1e-3 * mu, np.full(len(phases), "ok"), nothing, 0.0)
 
 
-def test_a_model_that_raises_leaves_points_without_a_value() -> None:
-    measured = analysis.measure(Measurement(SCENE, ("fake_models:always_raising", {}), sample(2)))
-    assert np.isnan(measured.mu).all()
-    assert measured.error_message == "TypeError: always_raising() missing 1 required positional argument: 'tolerance'"
-
-
 def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
     path, gaps = f"{__name__}:_known", (1e-3, 1e-2)
     question = TradeoffQuestion("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
