@@ -104,14 +104,14 @@ def refuse_foreign_report(out: Path) -> None:
     refuse_unwritable(out, place.parent)
 
 
-def refuse_foreign_files(out: Path, names: Sequence[str], option: str = "--out") -> None:
+def refuse_foreign_files(out: Path, names: Sequence[str]) -> None:
     """Raise SceneError, one line, if files of these names in `out`, a `destination`, would replace ones of the user."""
     manifest = read_manifest(out)
     for name in names if manifest else (MANIFEST, *names):
         if os.path.lexists(out / name) and not is_own(out / name, manifest.get(name)):
             rule = f"holds {name!r}, which this study did not write: move it away, or give another directory"
-            raise SceneError("command line", option, str(out), rule)
-    refuse_unwritable(out, out, option)
+            raise SceneError("command line", "--out", str(out), rule)
+    refuse_unwritable(out, out)
 
 
 def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
@@ -133,13 +133,13 @@ class StagedReport:
 
 
 @contextmanager
-def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterator[StagedReport]:
+def replace_report(out: Path) -> Iterator[StagedReport]:
     """
     A new folder to write a report into; if the block ends without exception its files go to `out`, each whole.
 
     What the report there has no more is removed, and files of other commands are kept. If anything but the study's own
-    files is there by then all of it stays and the report goes to a new name, which `say` is told. `place` of the
-    report says after the block where it is.
+    files is there by then all of it stays and the report goes to a new name, which a line on standard error says. After
+    the block `place` of the report is where it is.
     """
     place = out.resolve()
     made = make_parents(place.parent)
@@ -149,7 +149,7 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
             yield report
             # a thread of its own: what interrupts this one interrupts no move
             with hold_lock(place.parent), ThreadPoolExecutor(1) as mover:
-                report.place = mover.submit(_install_report, report.folder, place, say).result()
+                report.place = mover.submit(_install_report, report.folder, place).result()
     except BaseException:
         with suppress(OSError):
             for parent in made:
@@ -163,10 +163,8 @@ def clear_dead(out: Path) -> None:
         clear_staging(staging_folder)
 
 
-def publish(
-    folder: Path, files: Mapping[str, bytes], command: str, say: Callable[[str], None] = on_stderr
-) -> list[Path]:
-    """Write files of a command into a folder; one that is not the study's stays, and `say` is told. Raises OSError."""
+def publish(folder: Path, files: Mapping[str, bytes], command: str) -> list[Path]:
+    """Write files of a command into a folder; one that is not the study's stays, and is said. Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     with hold_lock(folder.resolve().parent):
@@ -174,14 +172,14 @@ def publish(
             file, digest, manifest = folder / name, hash_of(content), read_manifest(folder)
             ours = is_own(file, manifest.get(name))
             if ours or not os.path.lexists(file):  # noted before: whatever ends the writing, the file remains ours
-                _note(folder, manifest | {name: _old_or_new(manifest.get(name), Own(command, (digest,)))}, say)
+                _note(folder, manifest | {name: _old_or_new(manifest.get(name), Own(command, (digest,)))})
             if ours:
                 write_atomically(file, content)
             else:
                 file = write_new(file, content)
             if file.name != name:
-                say(f"{str(folder / name)!r} is not a file of this study and stays: see {file.name!r} next to it")
-                _note(folder, manifest | {file.name: Own(command, (digest,))}, say)
+                on_stderr(f"{str(folder / name)!r} is not a file of this study and stays: see {file.name!r} next to it")
+                _note(folder, manifest | {file.name: Own(command, (digest,))})
             written.append(file)
     return written
 
@@ -191,10 +189,12 @@ def _old_or_new(old: Own | None, new: Own) -> Own:
     return Own(new.command, (*(old.hashes[-1:] if old else ()), *new.hashes))
 
 
-def _note(folder: Path, manifest: Mapping[str, Own], say: Callable[[str], None]) -> None:
+def _note(folder: Path, manifest: Mapping[str, Own]) -> None:
     """Write the manifest, unless something else has its name."""
     if os.path.lexists(folder / MANIFEST) and not read_manifest(folder):
-        say(f"{str(folder / MANIFEST)!r} is not a file of this study and stays: the next run does not know these files")
+        on_stderr(
+            f"{str(folder / MANIFEST)!r} is not a file of this study and stays: the next run does not know these files"
+        )
     else:
         write_atomically(folder / MANIFEST, manifest_json(manifest))
 
@@ -212,7 +212,7 @@ def files_written_by(*writers: Callable[[Path], object]) -> dict[str, bytes]:
         return {file.name: file.read_bytes() for file in sorted(Path(name).iterdir())}
 
 
-def _install_report(new: Path, place: Path, say: Callable[[str], None]) -> Path:
+def _install_report(new: Path, place: Path) -> Path:
     """Move the files of a new report to their place, or next to it; return the place."""
     mine = {
         path.relative_to(new).as_posix(): Own(REPORT, (hash_of(path.read_bytes()),))
@@ -236,7 +236,7 @@ def _install_report(new: Path, place: Path, say: Callable[[str], None]) -> Path:
         (there / name).parent.mkdir(parents=True, exist_ok=True)
         os.replace(new / name, there / name)
     if why:
-        say(f"{str(place)!r} stays as it is ({why}): the report is in {str(there)!r}")
+        on_stderr(f"{str(place)!r} stays as it is ({why}): the report is in {str(there)!r}")
     return there
 
 

@@ -31,16 +31,16 @@ def swing(values: Array) -> Array:
     return np.where(scale > 0.0, scale, 1.0)
 
 
-def decimate(time: Array, values: Array, peaks: NDArray[np.intp], share: float = SHARE) -> NDArray[np.intp]:
+def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.intp]:
     """
     Indices to keep of `values` (T, C) at `time` (T,): both ends, `peaks`, and as many more as it takes for straight
-    lines between them to miss no value by more than `share` of its component's `swing`.
+    lines between them to miss no value by more than SHARE of its component's `swing`.
     """
     if len(time) < 3:
         return np.arange(len(time))
     kept = np.zeros(len(time), bool)
     kept[[0, len(time) - 1]] = kept[peaks] = True
-    _keep_corners(np.ascontiguousarray(time), np.ascontiguousarray(values / swing(values)), share, kept)
+    _keep_corners(np.ascontiguousarray(time), np.ascontiguousarray(values / swing(values)), SHARE, kept)
     return np.flatnonzero(kept)
 
 
