@@ -13,6 +13,7 @@ from comparison.study.batches import import_function
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import difference_of
+from comparison.wording import exception_line
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
 from reference.measures.demands import ANSWERED
 from reference.problem import Outcome, Scene, Trajectory
@@ -156,14 +157,15 @@ def models_to_show(study: Study, scene: Scene) -> list[Model]:
 def compute_motion(task: Arguments) -> StoredMotion:
     """The motion of one task, decimated; what goes wrong is said in `error_message`."""
     scene, model, tolerance, place, phase = task
-    settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
-        motion: Trajectory = import_function(model.trajectory)(scene, phase, tolerance=tolerance, **settings)
+        motion: Trajectory = import_function(model.trajectory)(
+            scene, phase, tolerance=tolerance, **model.motion_settings
+        )
         if len(motion.time) == 0:  # refused before its first step
             return replace(_nothing(place, model.key, Outcome(motion.status), ""), demands=demands(motion))
         return _store_motion(place, model, motion)
     except Exception as error:
-        return _nothing(place, model.key, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
+        return _nothing(place, model.key, Outcome.SOLVER_FAILED, exception_line(error))
 
 
 def _store_motion(place: Place, model: Model, motion: Trajectory) -> StoredMotion:
