@@ -30,6 +30,7 @@ def _feature(folder: str) -> Feature:
 
 FEATURES: tuple[Feature, ...] = (
     core.SURFACES,
+    _feature("analyses.records"),
     _feature("analyses.motions"),
     _feature("analyses.families"),
     _feature("analyses.worst_phases"),

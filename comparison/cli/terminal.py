@@ -1,6 +1,6 @@
 """What the terminal says before a run: what would be computed, and roughly how long it would take."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -17,14 +17,13 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import refusal_of
 from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_model
 from comparison.study.models import models_of, why_not_spatial
+from comparison.study.records import describe_records
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
 from reference.building import describe_building, word_buildings
 from reference.plausibility import implausible_values
-from reference.problem import Family, Scene, describe_record
-from reference.problem.tables import Record
-from reference.records.description import RecordDescription
+from reference.problem import Family, Scene
 
 NAMES = 4  # names of a list that the terminal shows
 
@@ -116,17 +115,10 @@ def print_buildings(console: Console, named: Sequence[tuple[str, Scene]]) -> Non
 
 def print_records(console: Console, named: Sequence[tuple[str, Scene]], short: bool = False) -> None:
     """Say once of every recorded motion what was read, in a line where short; named: by motion, "" for its files."""
-    read: dict[Hashable, RecordDescription] = {}
-    for name, scene in named:
-        if isinstance(record := scene.excitation, Record):
-            what = record.files, tuple(record.origin), record.detrend
-            if what not in read:
-                read[what] = describe_record(scene)
-                read[what] = replace(read[what], title=name or read[what].title)
-            elif record.scale != read[what].scale:  # a study of many factors
-                read[what] = replace(read[what], scale=1.0)
-    for line in (line for one in read.values() for line in (one.short_lines if short else one.lines)):
-        console.print(line, soft_wrap=True, markup=False, highlight=False)
+    names, scenes = zip(*named) if named else ((), ())
+    for one in describe_records(scenes, names):
+        for line in one.short_lines if short else one.lines:
+            console.print(line, soft_wrap=True, markup=False, highlight=False)
 
 
 def print_models_left_out(console: Console, study: Study) -> None:

@@ -113,15 +113,15 @@ class Cache:
                     if f"{group}/{entry.name}" in wanted and _is_result(entry):
                         os.unlink(entry.path)
 
-    def trim(self, keys: Iterable[CacheKey], limit: int = LIMIT) -> None:
-        """Drop groups other than those of `keys`, least recently used first, while all take more than `limit`."""
+    def trim(self, keys: Iterable[CacheKey]) -> None:
+        """Drop groups other than those of `keys`, least recently used first, while all take more than LIMIT."""
         needed = {key.group for key in keys}
         with suppress(OSError):  # a store that cannot be looked through is not worth ending a run for
             groups = [Path(entry.path) for entry in os.scandir(self.folder) if entry.is_dir(follow_symlinks=False)]
             groups.sort(key=lambda group: (group.stat().st_mtime, group.name))
             sizes = {group: _size(group) for group in groups}
             for group in groups:
-                if sum(sizes.values()) > limit and group.name not in needed:
+                if sum(sizes.values()) > LIMIT and group.name not in needed:
                     _drop(group)
                     del sizes[group]
 

@@ -119,6 +119,11 @@ class Model:
         """Return whether bodies turn in it."""
         return self.settings.get("model") == "spatial"
 
+    @property
+    def motion_settings(self) -> dict[str, object]:
+        """Keyword arguments of its trajectory; a cutoff is a way to read a motion, not to move."""
+        return {key: value for key, value in self.settings.items() if key != "cutoff"}
+
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
         """Keyword arguments of its amplification in a study of this tolerance."""
         asked = {"full": True} if full else {}

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 
 SAME = 1e-6  # share of mu: the error asked of the equations
+UNRESOLVED = "less than five times the numerical error"
 NAMED = 4  # scenes that a sentence names one by one
 
 
@@ -41,7 +42,9 @@ def word_total(numbers: Headline) -> str:
     if numbers.phases_per_axis == 1:
         if numbers.resolved:
             return f"{second} gives {more_or_less(numbers.mean, numbers.error)} than {first} under the record."
-        return f"{second} and {first} agree within the numerical error under the record (difference {size})."
+        if numbers.within_error:
+            return f"{second} and {first} agree within the numerical error under the record (difference {size})."
+        return f"{second} and {first} differ by {size} under the record, {UNRESOLVED}."
     grid = f"{numbers.phases_per_axis} × {numbers.phases_per_axis} initial phases"
     over = grid if numbers.points == numbers.phases_per_axis**2 else f"{numbers.points} of {grid}"
     ends = word_range(numbers)
@@ -52,8 +55,12 @@ def word_total(numbers: Headline) -> str:
         few = f"{numbers.independent} independent of {numbers.points} phase pairs do not tell the mean over all phases"
         return f"{second} against {first}: {few} (mean of these {signed(numbers.mean)}, {ends})."
     if numbers.resolved_share > 0.0:
-        return f"{second} and {first} have no mean difference beyond its error over {over} ({size}; {ends})."
-    return f"{second} and {first} agree within the numerical error over {over} (mean {size}; {ends})."
+        if numbers.within_error:
+            return f"{second} and {first} have no mean difference beyond its error over {over} ({size}; {ends})."
+        return f"{second} and {first} differ in the mean over {over} by {size}, {UNRESOLVED} ({ends})."
+    if numbers.within_error and numbers.beyond_error == 0.0:
+        return f"{second} and {first} agree within the numerical error over {over} (mean {size}; {ends})."
+    return f"{second} and {first} differ by {UNRESOLVED} over {over} (mean {size}; {ends})."
 
 
 def word_range(numbers: Headline) -> str:
@@ -93,12 +100,17 @@ def word_agreement(numbers: Headline) -> str:
     if math.isnan(numbers.like_for_like):
         return ""
     verdict = {
-        True: "agree within their errors, to",
-        False: "differ beyond their errors, by up to",
+        True: f"agree within {_word_multiple(numbers.like_for_like_ratio)}their errors, to",
+        False: "differ beyond twice their errors, by up to",
         None: "differ, with an unknown error, by up to",
     }[numbers.like_for_like_met]
     codes = "the equations and Exudyn" if numbers.engines else "the two codes"
     return f"Given the same equations and friction law {codes} {verdict} {percent(numbers.like_for_like)}."
+
+
+def _word_multiple(ratio: float) -> str:
+    """Return in which multiple of both errors a difference lies that agrees."""
+    return "" if ratio <= 1.0 else "twice "
 
 
 def word_supremum(numbers: Headline) -> str:
@@ -248,10 +260,11 @@ def _word_codes(known: Sequence[Headline]) -> str:
         worst = max(each.like_for_like for each in alike)
         errors = [
             f"{words} for {', '.join(places)}"
-            for met, words in ((False, "not within the errors that both state"), (None, "with an unknown error"))
+            for met, words in ((False, "not within twice the errors that both state"), (None, "with an unknown error"))
             if (places := [f"{each.scene}, {each.name}" for each in alike if each.like_for_like_met is met])
         ]
-        verdict = ", ".join(errors) or "within the errors that both state"
+        within = f"within {_word_multiple(max(each.like_for_like_ratio for each in alike))}the errors that both state"
+        verdict = ", ".join(errors) or within
         parts.append(f"given the same equations and friction law the two codes agree to {percent(worst)}, {verdict}")
     higher = [each for each in known if math.isfinite(each.supremum_mean)]
     if higher:
@@ -288,7 +301,7 @@ def word_range_cell(numbers: Headline) -> str:
 def word_causes_cell(numbers: Headline) -> str:
     """Return the causes of the first screen's table."""
     if not numbers.resolved:
-        return "the mean is not beyond its error"
+        return "the mean is not beyond its error" if numbers.within_error else f"the mean is {UNRESOLVED}"
     words = word_causes(numbers).removeprefix("Cause").removeprefix("s").removeprefix(": ").removesuffix(".")
     return words.replace(" of it", "")
 

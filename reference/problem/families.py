@@ -37,7 +37,8 @@ from reference.problem.scene_file import (
     scene_tables,
     scene_text,
 )
-from reference.records.suites import SuiteError, motion_names, suite_motions
+from reference.records.pairing import SuiteError
+from reference.records.suites import motion_names, suite_motions
 from reference.support.arguments import Range, as_float, brief, takes
 from reference.support.scene_error import SceneError, printable
 

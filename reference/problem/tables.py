@@ -77,8 +77,8 @@ class Isolator(Table):
         "natural period T_c of one mass alone on the isolator; give this or radius", Range(1e-3, 1e6, "s")
     )
     radius: Radius | None = key(
-        "effective radius rho = R - r, that of the depression less that of the sphere; inf for a flat slider; give "
-        "this or period",
+        "effective radius rho = R - r, depression's radius less that of the sphere; inf for a flat slider; give this "
+        "or period",
         Range(1e-7, 1e12, "m", or_infinite=True),
     )
     friction: Friction | None = key(

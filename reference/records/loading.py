@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from reference.records.formats import OPTIONS, read_record
+from reference.records.pairing import SuiteError
 from reference.records.samples import (
     AXES,
     LARGEST,
@@ -26,7 +27,7 @@ from reference.records.samples import (
     origin_of,
     samples_of_arrays,
 )
-from reference.records.suites import SuiteError, suite_samples
+from reference.records.suites import suite_samples
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError, unknown_key
 

@@ -22,8 +22,9 @@ from comparison.analyses.measured.analysis import ComputedPeak, MeasuredPeak
 from comparison.analyses.worst_phases.analysis import Worst
 from comparison.evidence.benchmarks import table as benchmarks
 from comparison.evidence.extremes import matrix as extremes
+from comparison.evidence.extremes.columns import ModelColumn
 from comparison.evidence.extremes.matrix import Extreme, Matrix, MatrixEntry
-from comparison.evidence.extremes.rows import ExtremeCase, ModelColumn, scene
+from comparison.evidence.extremes.rows import ExtremeCase, scene
 from comparison.evidence.tradeoff import command as tradeoff
 from comparison.evidence.tradeoff import growth
 from comparison.evidence.tradeoff.trade import Answered, MeasuredTrade, Trade, with_pareto_fronts

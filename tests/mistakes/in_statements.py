@@ -39,6 +39,7 @@ TRENDS = tuple(
         "test_an_exponent_agrees_within_the_larger_of_its_uncertainty_and_what_is_not_asymptotic",
     )
 )
+RECORDS = ("tests/comparison/analyses/test_records_as_read.py",)
 TABLES = ("tests/comparison/report/test_tables_of_sections.py",)
 LAWS = ("tests/reference/problem/test_readings.py",)
 MEASURED = ("tests/comparison/evidence/test_validation_statements.py",)
@@ -105,8 +106,7 @@ MISTAKES = (
     Mistake(SURFACES + "headline.py", "return abs(self.interaction) > NAMED * abs(self.mean)",
             "return abs(self.interaction) > NAMED", "An interaction is measured by itself.", SAID),
     # word_agreement and its cell
-    Mistake(WORDS, '        True: "agree within their errors, to",\n        False: "differ beyond their errors, by up to",',
-            '        False: "agree within their errors, to",\n        True: "differ beyond their errors, by up to",',
+    Mistake(WORDS, 'False: "differ beyond twice their errors, by up to",', 'False: "agree within twice their errors, to",',
             "Codes that differ beyond their errors are said to agree.", SAID),
     Mistake(WORDS, '        None: "differ, with an unknown error, by up to",', '        None: "agree within their errors, to",',
             "Codes whose error is unknown are said to agree.", SAID),
@@ -354,4 +354,17 @@ MISTAKES = (
             "The agreement of the codes is called the literal supremum.", TABLES),
     Mistake("comparison/report/page.py", 'return "Exudyn" if any(model.side == "engine"', 'return "Exudyn" if any(model.side != "engine"',
             "Exudyn is named where it takes no part.", TABLES),
+    Mistake(WORDS, '"" if ratio <= 1.0 else "twice "', '"" if ratio <= 2.0 else "twice "', "Up to twice the errors is called within the errors.", SAID),
+    Mistake(WORDS, "if numbers.within_error and numbers.beyond_error == 0.0:", "if numbers.within_error:",
+            "Models agree within their errors though they differ beyond them at some phases.", SAID),
+    Mistake(WORDS, "        if numbers.within_error:\n            return f\"{second} and {first} agree", "        if True:\n            return f\"{second} and {first} agree",
+            "A value of four errors is within its error.", SAID),
+    Mistake(SURFACES + "headline.py", "return abs(self.mean) <= self.error", "return self.mean <= self.error", "A mean below zero is within its error.", SAID),
+    Mistake(SURFACES + "headline.py", "like_for_like_ratio=alike.ratio if", "like_for_like_ratio=alike.maximum if", "A size stands for its multiple of the errors.", HEADLINE),
+    Mistake(SURFACES + "headline.py", "beyond_error=total.beyond_error", "beyond_error=total.resolved", "Beyond five errors stands for beyond one.", HEADLINE),
+    Mistake("comparison/analyses/records/feature.py", "sum(bool(record.warnings) for record in records)", "sum(len(record.warnings) > 1 for record in records)",
+            "A record with one warning has none.", RECORDS),
+    Mistake("comparison/analyses/records/section.html.j2", '{{ number(one.final_velocity, "%+.2g"|format(one.final_velocity)) }}',
+            '{{ number(one.final_displacement, "%+.2g"|format(one.final_displacement)) }}', "A displacement stands for a velocity.", RECORDS),
+    Mistake("comparison/study/records.py", "elif record.scale != read[what].scale:", "elif False:", "One of several scales is told.", RECORDS),
 )

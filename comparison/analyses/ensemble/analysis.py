@@ -128,6 +128,5 @@ def _once(tasks: Iterable[Task]) -> list[Task]:
 def compute_demands(task: Arguments) -> Answer:
     """The demands of one motion by one model, and its floor spectra by the equations."""
     scene, model, tolerance = task
-    settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
-    motion = import_function(model.trajectory)(scene, REST, tolerance=tolerance, **settings)
+    motion = import_function(model.trajectory)(scene, REST, tolerance=tolerance, **model.motion_settings)
     return demands(motion), story_forces(motion), floor_spectra(motion) if model == EXACT else None

@@ -10,8 +10,10 @@ import numpy as np
 import xarray as xr
 from pydantic import ValidationError
 
+from comparison.evidence.extremes.causes import CAUSES
+from comparison.evidence.extremes.columns import COLUMNS, EQUATIONS, REFERENCE, ModelColumn
 from comparison.evidence.extremes.matrix import Extreme, Matrix, MatrixEntry, Verdict
-from comparison.evidence.extremes.rows import CAUSES, COLUMNS, EQUATIONS, REFERENCE, ExtremeCase, ModelColumn
+from comparison.evidence.extremes.rows import ExtremeCase
 from comparison.json_file import finite_or_none
 from comparison.result_types import Array
 from comparison.runner.analysis import Analysis

@@ -17,8 +17,9 @@ from comparison.cli.arguments import CommandParser, command, number_of_jobs, rea
 from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.user_models import add_models, user_models
 from comparison.evidence.extremes.analysis import LIMIT, Extremes, cells, select_quick
+from comparison.evidence.extremes.columns import COLUMNS, ENGINE, EQUATIONS, STATED, user_column
 from comparison.evidence.extremes.matrix import FILE, STORED, Matrix, Verdict
-from comparison.evidence.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, rows, user_column
+from comparison.evidence.extremes.rows import rows
 from comparison.runner.output import destination, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console

@@ -1,5 +1,5 @@
 """
-The rows and columns of the matrix of extremes: one quantity of a plain scene driven to its extreme, for every model.
+The rows of the matrix of extremes: one quantity of a plain scene driven to its extreme, for every model.
 
 Scenes are written as in a scene file and read where a cell is solved, so that a wrong one is refused there. They last a
 few seconds, during which the platform rests, slides and stops, unless the duration itself is the extreme.
@@ -10,8 +10,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from comparison.study.models import Model
-from reference.problem.readings import DEFAULT_V_REG
+from comparison.evidence.extremes.columns import (
+    ALL,
+    MAX_WORK,
+    PLANAR,
+    REFERENCE,
+    SPATIAL,
+    STATED,
+    WITH_ENGINE,
+    WITH_V_REG,
+)
 
 Phases = tuple[tuple[float, float], ...]
 
@@ -19,30 +27,9 @@ PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad
 SYMMETRIC: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
 PLAIN_RADIUS = 0.25  # m, of the plain scene, whose period is 1 s
 GRAVITY_LIMIT = 9.81  # m/s^2: downward acceleration of the plate at which the contact carries nothing
-
-
-EQUATIONS, ENGINE = "reference:amplification", "multibody:amplification"
-
-
-@dataclass(frozen=True)
-class ModelColumn:
-    """A model and what confirms it."""
-
-    key: str
-    title: str
-    amplification: str  # "package:function"
-    settings: Mapping[str, Any]  # arguments of the function
-    tolerance: float  # relative error asked
-    # how a value is confirmed, in this order until one answers: function, settings, relative error asked
-    finer: tuple[tuple[str, Mapping[str, Any], float], ...]
-    seconds: float = 0.5  # rough processor time of a cell with its finer runs
-    like: str = ""  # for an engine of the user: the column whose rows concern it, too
-
-
-# steps of the engine for a phase pair, and for one of a tower by its number of bodies, whose steps cost more: a cell
-# ends within the limit of its processor time
-MAX_WORK = 6e5
-MUCH_WORK = 4e6  # where nothing but the number of steps would stop the translational model, whose steps cost least
+# steps of the engine for a phase pair where nothing but their number would stop the translational model, whose steps
+# cost least, and for one of a tower by its number of bodies, whose steps cost more
+MUCH_WORK = 4e6
 TOWER_WORK = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}
 
 
@@ -66,45 +53,6 @@ class ExtremeCase:
     def name(self) -> str:
         """Quantity and value."""
         return f"{self.group} {self.title}"
-
-
-def _column(key: str, title: str, equations: str, regularization: float | None) -> ModelColumn:
-    function, settings = EQUATIONS, {"equations": equations, "regularization": regularization}
-    return ModelColumn(key, title, function, settings, 1e-6, ((function, settings, 1e-8), (function, settings, 1e-7)))
-
-
-_REGULARIZED = {"equations": "exact", "regularization": DEFAULT_V_REG}
-_TRANSLATIONAL = {"model": "translational", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
-_SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
-STATED = "comparison.evidence.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
-
-# the same law and geometry by other means and far closer; the engine itself where that has no answer
-_FINER = (EQUATIONS, _REGULARIZED, 1e-6), (ENGINE, _TRANSLATIONAL, 3e-5), (ENGINE, _TRANSLATIONAL, 1e-4)
-_FINER_SPATIAL = (ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)
-
-COLUMNS = (
-    _column("small", "small equations", "small", None),
-    _column("exact", "exact equations", "exact", None),
-    _column("regularised", "exact equations, v_reg", "exact", DEFAULT_V_REG),
-    ModelColumn("translational", "translational engine", ENGINE, _TRANSLATIONAL, 1e-3, _FINER, 1.0),
-    ModelColumn("spatial", "spatial engine", ENGINE, _SPATIAL, 1e-2, _FINER_SPATIAL, 8.5),
-)
-ALL = tuple(column.key for column in COLUMNS)
-
-
-def user_column(model: Model) -> ModelColumn:
-    """The column of an engine of the user, confirmed by the equations with the same law."""
-    law = {key: value for key, value in model.settings.items() if key != "engine"}
-    like = str(model.like) if model.like in ALL else "exact"
-    finer = ((EQUATIONS, law, 1e-8), (EQUATIONS, law, 1e-6))
-    return ModelColumn(model.key, model.title, model.amplification, model.settings, 1e-3, finer, like=like)
-
-
-PLANAR = ALL[:4]  # every model whose bodies do not turn
-REFERENCE = ALL[:3]
-WITH_V_REG = ALL[2:]
-WITH_ENGINE = ALL[3:]
-SPATIAL = ALL[4:]
 
 
 def scene(
@@ -373,48 +321,3 @@ def _outside_the_rules() -> Iterator[ExtremeCase]:
     yield ExtremeCase(group, "no loading", scene(amplitudes=_along(0.0)), PLANAR, right=("no ground motion",))
     overflow = scene(amplitudes=_along(1e200))
     yield ExtremeCase(group, "loading 1e200 m/s^2", overflow, PLANAR, right=("non-finite load",))
-
-
-_ENGINE = "translational", "spatial"
-_LONG_CHAIN = "the fastest swing of the chain sets the step: the steps take more processor time than a cell may"
-_QUICK = "within a time that the contact, as stiff as rounding allows, cannot follow"
-_FRICTION = f"friction stops so light a platform {_QUICK}"
-_RELAXATION = f"friction relaxes at a stop {_QUICK}, and a larger v_reg has another answer"
-_LIGHT = (
-    "the weight of the tower is so much more than the platform's that the force which starts a slide is less than the "
-)
-_LIGHT += "rounding of those which balance at its start"
-
-# why a model has no answer, where that is known: by quantity and extreme, by key of the model
-CAUSES: dict[tuple[str, str], dict[str, str]] = {
-    ("v_reg, m/s", "1e-06"): {"spatial": _RELAXATION},
-    ("v_reg, m/s", "1e-07"): dict.fromkeys(_ENGINE, _RELAXATION),
-    ("v_reg, m/s", "1e-08"): dict.fromkeys(_ENGINE, _RELAXATION),
-    ("amplitude, m/s^2", "1e-09"): dict.fromkeys(
-        _ENGINE,
-        "the contact force rounds by 1e-15 of the weight over its penetration, which is as much as the accelerations",
-    ),
-    ("rho, m", "0.001"): {
-        "spatial": "heights of a thousand rho: their rounding makes that of the contact force a share of the peaks"
-    },
-    ("bodies N", "100"): {"translational": _LONG_CHAIN},
-    ("bodies N", "1000"): {"translational": _LONG_CHAIN},
-    ("platform's share of the mass", "1e-06"): {
-        **dict.fromkeys(("exact", "regularised"), _LIGHT),
-        **dict.fromkeys(_ENGINE, _FRICTION),
-    },
-    ("platform's share of the mass", "0.001"): {"spatial": _FRICTION},
-    ("link periods, s", "0.001"): {"spatial": _LONG_CHAIN},
-    ("load over the buckling load of bars", "0.0001"): {
-        "spatial": "the swing of so stiff a link asks for a contact that damps none of it: the levels within the work "
-        "of a cell do not reach the tolerance"
-    },
-    ("duration, s", "0.001"): dict.fromkeys(
-        _ENGINE,
-        "mu_2 is so small beside mu_1 that a contact stiff enough not to change it rounds by as much, and a softer "
-        "one changes it",
-    ),
-    ("relative error asked", "1e-06"): {
-        "translational": "the error estimate of the engine counts 1e-6 of a peak at least: less is not measured"
-    },
-}

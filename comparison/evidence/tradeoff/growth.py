@@ -124,12 +124,10 @@ def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float,
     return float(slope), float(np.sqrt(max(covariance[0, 0], 0.0)))
 
 
-@dataclass(frozen=True)
 class Growth(Analysis[list[Series]]):
-    """The series of the first scene with phases; quantities: what grows."""
+    """The series of the first scene with phases."""
 
     key, stage = "growth", "growth"
-    quantities: Sequence[GrowingQuantity] = QUANTITIES
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for every quantity, model and value."""
@@ -149,7 +147,7 @@ class Growth(Analysis[list[Series]]):
         scene = study.phased[0]
         return [
             (quantity, model, [self._task(quantity, model, scene, value) for value in quantity.values])
-            for quantity in self.quantities
+            for quantity in QUANTITIES
             for model in quantity.models
             if model.applies(scene)
         ]
@@ -162,9 +160,9 @@ class Growth(Analysis[list[Series]]):
         return Task(measure, measurement, self.stage, about=scene, timeout=LIMIT)
 
 
-def by_workers(scene: Scene, pool: Callable[[int], Executor], most: int | None = None) -> Series:
+def by_workers(scene: Scene, pool: Callable[[int], Executor]) -> Series:
     """Wall time of the same calls of the equations with 1, 2, 4 ... workers of this machine."""
-    most = most or cores()
+    most = cores()
     counts = sorted({*(2**n for n in range(most.bit_length()) if 2**n <= most), most})
     settings = {**EXACT.settings, "tolerance": 1e-6}
     call = Measurement(scene, (EXACT.amplification, settings), sample(PAIRS))

@@ -172,7 +172,7 @@ def test_each_motion_of_the_engine_is_computed_by_every_model(folder: Path) -> N
 
 def test_the_command_writes_the_demands_of_every_motion(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "1") == 0
-    assert {file.name for file in Path("out").iterdir()} == {*FILES, "manifest.json"} - {CHECKED}, "no limit is stated"
+    assert {file.name for file in Path("out").iterdir()} == {*FILES, "manifest.json"} - {CHECKED}
     summary = content()
     assert (summary["motions"], summary["scales"], summary["outcomes"]) == (3, [0.5, 1.0], {"ok": 6})
     with open("out/ensemble.csv", newline="", encoding="utf-8") as file:

@@ -143,7 +143,10 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     verdicts = [row.entries[model].verdict for row in found.rows for model in models]
     assert verdicts == ["converged", "FAILED"] * len(rows)
     assert found.run["stored_before"] == int(stopped[1])
+    assert found.run["command"] == "phase-resonance extremes --jobs 2 --out report"
     assert extremes.main(words, no_executor) == 1, "nothing is computed twice"
+    with pytest.raises(AssertionError, match="computed"):
+        extremes.main([*words, "--fresh"], no_executor)
 
 
 def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[..., Run]) -> None:

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from known_analyses import collected
 from known_results import FOUND, PLAIN, fake
-from runs import no_executor
 
 import multibody
 from comparison.evidence.extremes import analysis
+from comparison.evidence.extremes.causes import CAUSES
 from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
-from comparison.evidence.extremes.matrix import STORED, Verdict
-from comparison.evidence.extremes.rows import CAUSES, rows, scene
+from comparison.evidence.extremes.matrix import Verdict
+from comparison.evidence.extremes.rows import rows, scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, process_pool
 from comparison.runner.task import TaskResult
 from reference.problem import Outcome
@@ -129,19 +129,6 @@ def test_the_equations_fail_at_none_of_the_extremes():
     matrix = collected(analysis.Extremes(analysis.select_quick(list(rows())), limit=120.0), None, executor=process_pool)
     assert [(row.group, row.title, title, cell.reason) for row, title, cell in matrix.cells_of(Verdict.FAILED)] == []
     assert sum(matrix.counts().values()) >= 120
-
-
-def test_the_command_writes_the_matrix_and_computes_once(tmp_path, capsys):
-    words = ["--models", "small", "--rows", "amplitude, m/s^2 1e", "--jobs", "1", "--out", str(tmp_path / "report")]
-    assert main(words, ThreadPoolExecutor) == 0
-    matrix = STORED.load(tmp_path / "report")
-    assert matrix.run["command"].startswith("phase-resonance extremes --models small ")
-    assert main(words, no_executor) == 0
-    assert f"3 of 3 tasks are in {tmp_path / 'report'}.tiles: only the others are computed." in capsys.readouterr().out
-    again = STORED.load(tmp_path / "report")
-    assert (again.rows, again.run["stored_before"]) == (matrix.rows, 3)
-    with pytest.raises(AssertionError, match="computed"):
-        main([*words, "--fresh"], no_executor)
 
 
 def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):

@@ -17,6 +17,7 @@ from scipy.special import ellipk
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.evidence.validation import command, frame, pendulum, table
 from comparison.evidence.validation.command import compare_folder, main
+from comparison.evidence.validation.cycles import SPEED, WIDTH
 from comparison.evidence.validation.feature import panels
 from comparison.evidence.validation.files import DECAY, LARGE, Shaken, read_folder
 from comparison.evidence.validation.table import COVERAGE, LAW, Validation, load_record
@@ -85,8 +86,8 @@ def test_the_numbers_of_a_known_cycle_are_read():
     half_range, rms, rest, starts, stops = frame.read_cycle(motion, 1.0)
     assert half_range == 1.5
     assert rms == pytest.approx(math.sqrt((200.0 * 1.5**2 + 160.0 * 1.5**2 / 3.0) / 360.0), rel=1e-3)
-    width, top = 360.0 * frame.WIDTH / frame.SAMPLES, 3.0 / (80.0 / 360.0)  # velocity: a mean over twice the width
-    early = width * (1.0 - 2.0 * frame.SPEED / top)
+    width, top = 360.0 * WIDTH / frame.SAMPLES, 3.0 / (80.0 / 360.0)  # velocity: a mean over twice the width
+    early = width * (1.0 - 2.0 * SPEED / top)
     assert (starts, stops) == pytest.approx((70.0 - early, 150.0 + early), abs=0.2)
     assert rest == pytest.approx(100.0 * (200.0 - 4.0 * early) / 360.0, abs=0.2)
     at_rest = frame.read_cycle(0.05 * np.sin(np.linspace(0.0, 6.283, frame.SAMPLES)), 1.0)

@@ -24,7 +24,8 @@ from studies import difference_rows, solved
 import reference
 from comparison.cli.user_models import as_words, look_at, user_models
 from comparison.evidence.extremes.analysis import cells
-from comparison.evidence.extremes.rows import rows, user_column
+from comparison.evidence.extremes.columns import user_column
+from comparison.evidence.extremes.rows import rows
 from comparison.evidence.tradeoff import analysis
 from comparison.evidence.tradeoff.analysis import TradeOff
 from comparison.evidence.tradeoff.feature import tradeoff_panels
