@@ -188,7 +188,6 @@ LINKS = ("period", "stiffness", "bars")
 class Body(Table):
     """One rigid body; the first is the platform, every other body is linked to the body before it."""
 
-    floor: Text | None = key("name of its floor in the report of an ensemble", models=NONE)
     mass: Positive = key("mass m_i", Range(1e-12, 1e15, "kg"), default=REQUIRED)
     period: PositivePair | None = key(
         "`[Tx, Ty]`, 2 pi sqrt(m_i / k) along x and y of the link to the body below, under load; give this, "
@@ -226,6 +225,7 @@ class Body(Table):
         Range(-2.0 * math.pi, 2.0 * math.pi, "rad"),
         models=SPATIAL,
     )
+    floor: Text | None = key("name of its floor in the report of an ensemble", models=NONE)
 
 
 class Superstructure(Table):
