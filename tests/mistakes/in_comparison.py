@@ -318,7 +318,7 @@ MISTAKES = (
             (ENSEMBLE_REPORT + "test_a_report_of_another_kind_is_refused_and_not_shown",)),
     Mistake(REPORT + "page_data.py", "attempt(f\"data of {feature.key} on the page\", read, say)", "read()",
             "A feature whose data cannot be made costs the viewer.",
-            (TESTS + "report/test_lost_parts.py::test_a_report_of_which_every_part_raises_is_written",)),
+            (TESTS + "report/test_lost_parts.py::test_data_of_a_feature_that_fail_cost_neither_the_surfaces_nor_those_of_others",)),
     Mistake(ANALYSES + "ensemble/statistics.py", "max(high - middle, middle - low)", "0.5 * (high - low)",
             "The error of a fractile is that of its smaller side.",
             (OF + "ensemble.py::test_the_error_of_a_fractile_covers_every_change",)),

@@ -82,7 +82,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         along_x = 0.5 * (1.0 + number) * np.sin((3.0 + number) * time) * np.exp(-(((time - 1.0) / 0.5) ** 2))
         table = "\n".join(f"{t:.2f},{a:.6f},{(1.5 if number == 2 else 0.5) * a:.6f}" for t, a in zip(time, along_x))
         (place / "suite" / f"m{number}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{table}\n")
-        lines.append(f"pulse {number},m{number}.csv,,,1.{number},{'6.9' if number == 1 else ''}")
+        name = f"pulse {number}" if number < 4 else "RSN1021_SUPERSTITION_HILLS_B-ICC"  # longer than a column
+        lines.append(f"{name},m{number}.csv,,,1.{number},{'6.9' if number == 1 else ''}")
     (place / "suite" / "motions.csv").write_text("\n".join(lines) + "\n")
     (place / "mine.toml").write_text(SCENE)
     with pytest.MonkeyPatch.context() as patch:
