@@ -58,8 +58,9 @@ def story_forces(trajectory: Trajectory) -> StoryForces:
     of the bodies. The moment leaves out the inertia of turning bodies and the weight times the drift.
 
     The spatial model has forces of its own at every support. Any other model has the normal force of the whole
-    isolator. Equally stiff supports under a stiff platform carry it and the moment as N_k = c0 + c1 x_k + c2 y_k: this
-    is statics, and negative where a support would lift off.
+    isolator. Equally stiff supports under a stiff platform carry it, the moment and the weight that is displaced as
+    N_k = c0 + c1 x_k + c2 y_k: this is statics, and negative where a support would lift off. While all stay closed it
+    is within half a percent of the spatial model in the tests.
 
     Examples
     --------
@@ -146,16 +147,18 @@ def _support_by_statics(scene: Scene, heights: Array, places: Array) -> Callable
     Forces (T, K), N, of equally stiff supports in balance with the normal force and the overturning moment.
 
     The spheres stay with the ground and the depressions go with the platform, so the weight acts off their middle by
-    the displacement, R / rho times for the normals that lean.
+    the displacement, R / rho times for the normals that lean, and that of the floors by their drift besides.
     """
     middle = places.mean(axis=0)
     arms = places - middle
     leverage = arms @ np.linalg.inv(arms.T @ arms)  # (K, 2), 1/m: force of a support for a moment along x and y
     lean = 1.0 if scene.flat else _depression(scene) / scene.radius
+    shares = scene.masses / scene.total_mass
 
     def forces(samples: DemandSamples) -> Array:
         moment = np.einsum("i,tia->ta", scene.masses * heights, samples.acceleration)
-        off_middle = scene.center_of_mass - middle + lean * samples.place[:, 0]
+        drift = np.einsum("i,tia->ta", shares, samples.place - samples.place[:, :1])
+        off_middle = scene.center_of_mass - middle + lean * samples.place[:, 0] + drift
         normal = samples.contact[:, None]
         return normal / len(places) + (normal * off_middle - moment) @ leverage.T
 

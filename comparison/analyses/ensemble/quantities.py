@@ -9,6 +9,7 @@ Quantity = tuple[str, int]  # name, and body from 1 or 0 for the isolator
 
 DEMANDS: dict[str, tuple[str, str]] = {
     **{name: about for name, about in QUANTITIES.items() if name != "energy_balance"},
+    "acceleration": ("largest floor acceleration", "m/s^2"),
     "drift_ratio": ("drift over the height of the story", "1"),
     "story_shear": ("story shear", "N"),
     "overturning_moment": ("overturning moment", "N m"),

@@ -13,6 +13,7 @@ NAMED = 12  # motions that are named one by one
 DEFINITIONS = (
     "Displacement, drift, story shear, base shear, overturning moment and acceleration are resultants of x and y, "
     "the largest over time; floor spectra are the larger of x and y.",
+    "Accelerations by the equations are the literal supremum: the one-sided limits at a stop of the isolator count.",
     "± is the numerical error of a number, not the scatter over the motions: the fractiles show that. Mean and largest "
     "value have it, where it is not below the last digit; summary.json has those of the fractiles.",
     "16 %, 50 % and 84 % are fractiles over the motions (Hazen), and each motion has a value of its own. A motion "
@@ -20,9 +21,9 @@ DEFINITIONS = (
     "rests on it is none. A fractile beyond the outermost motions is left out, as 16 % of three. The column “largest” "
     "has the smallest value of a smallest force.",
     "The envelope is in every column the worst of the bounds.",
-    "All supports carry the same dead load. Support forces by the equations are statics: normal force and overturning "
-    "moment on equally stiff supports under a stiff platform, negative where a support would lift off. Those of the "
-    "spatial engine are its contact forces.",
+    "All supports carry the same dead load, but for eccentric masses. Support forces by the equations are statics: "
+    "normal force, overturning moment and displaced weight on equally stiff supports under a stiff platform, negative "
+    "where a support would lift off. Those of the spatial engine are its contact forces.",
     "The overturning moment is that of the forces of inertia about the sliding contact, or about the floor below.",
     "Effective period and damping are those of a bilinear loop (ASCE/SEI 7, chapter 17) with the friction at high "
     "speed. Damping of the links acts in the superstructure; friction has no part in the modal damping.",

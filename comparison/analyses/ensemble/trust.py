@@ -22,6 +22,7 @@ LEFT_OUT = (
     "displacement over travel", "base shear over weight", "largest drift ratio", "residual displacement",
     "uplift of a support",
 )  # fmt: skip
+UNSEEN = 1e-4  # difference that the two decimals of a table do not show
 STATISTICS = (("mean", 0), ("84 %", 3), ("largest", 4))
 
 
@@ -139,20 +140,25 @@ def _largest(rows: Sequence[TrustRow], pick: str) -> tuple[float, TrustRow] | No
     return max(found, key=lambda pair: abs(pair[0]), default=None)
 
 
+def _at_most(size: float) -> str:
+    """The largest size of a difference in words."""
+    return f"up to {percent(size)}" if size >= UNSEEN else f"less than {percent(UNSEEN)}"
+
+
 def trust_sentence(ensemble: EnsembleResult) -> str:
     """Return the sentence that keeps geometry, the codes and the turning of the bodies apart; "" without an engine."""
     rows = trust_rows(ensemble)
     parts = {
-        SMALL.key: "the geometry of the sphere, which the small equations leave out, is worth up to {} ({})",
-        "by_law": "given the same equations and friction law, the two codes differ by up to {} ({})",
-        "turning": "bodies that turn on their supports change a demand by up to {} ({})",
+        SMALL.key: "the geometry of the sphere, which the small equations leave out, is worth {} ({})",
+        "by_law": "given the same equations and friction law, the two codes differ by {} ({})",
+        "turning": "bodies that turn on their supports change a demand by {} ({})",
     }
     said = []
     for pick, words in parts.items():
         if (found := _largest(rows, pick)) is not None:
             size, row = found
             bound = f", {row.bound}" if len(ensemble.structures) > 1 else ""
-            said.append(words.format(percent(abs(size)), f"{row.name}{bound}"))
+            said.append(words.format(_at_most(abs(size)), f"{row.name}{bound}"))
     if not said:
         return ""
     motions = {(row.bound, motion) for row in rows for motion in row.motions}
