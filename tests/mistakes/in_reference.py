@@ -418,7 +418,7 @@ MISTAKES = (
             (TESTS + "test_story_forces.py::test_supports_by_statics_carry_weight_and_moment",)),
     Mistake("reference/measures/story_forces.py", "- (0.0 if scene.flat else _depression(scene))", "",
             "Heights above the centers of the depressions are taken as those above the contact.",
-            (TESTS + "test_story_forces.py::test_support_forces_of_the_engine_balance_the_overturning_moment",)),
+            (TESTS + "test_story_forces.py::test_overturning_moments_are_those_of_the_floor_forces",)),
     Mistake("reference/measures/story_forces.py", "(heights[body - 1] if body else 0.0)", "0.0",
             "The moment below a floor is that about the contact.",
             (TESTS + "test_story_forces.py::test_overturning_moments_are_those_of_the_floor_forces",)),
