@@ -143,7 +143,7 @@ class StudyRun:
             print_faults(found)
             print_closing(self._console, found, options, self._words, reports.place)
             if options.check:
-                print_check(found)
+                print_check(found, options.scenes)
         if stop is not None:
             raise stop
         if found is None:

@@ -51,13 +51,12 @@ def compute_tasks(
     models: set[str],
     console: Console,
     executor: Pool,
-    first: Sequence[Task] = (),
-    after_first: Callable[[TaskResults, Display], None] = lambda results, display: None,
+    then: Callable[[TaskResults, Display], Sequence[Task]] = lambda results, display: (),
 ) -> TaskResults:
     """
     The results of all tasks of a command: stored ones, and others computed. Raises SceneError, EndedEarlyError.
 
-    first: tasks that are computed before the others; `after_first` is called between, unless no others are missing.
+    then: returns the tasks that follow from the results of the others.
     """
     width = number_of_jobs(options)
     out = destination(options.out)
@@ -76,10 +75,8 @@ def compute_tasks(
         progress(console, sum(task.seconds for task in missing), count) as display,
     ):
         runner = Runner(results, count, pool, display)
-        runner.run(first, compiling_task)
-        if first and results.missing(missing):
-            after_first(results, display)
         runner.run(missing, compiling_task)
+        runner.run(then(results, display), compiling_task)
     return results
 
 

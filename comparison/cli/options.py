@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from comparison.cli.arguments import CommandParser, number_of_jobs, read_number, read_whole_number
+from comparison.cli.arguments import CommandParser, number_of_jobs, read_bounds, read_number, read_whole_number
 from comparison.cli.user_models import add_models, user_models
 from comparison.registry import EVERYTHING, FEATURES, SELECTABLE
 from comparison.runner.cache import refuse_foreign_store
@@ -51,7 +51,7 @@ def parse_options(argv: Sequence[str]) -> Options:
     words = _parser().parse_args(argv)
     names: list[str] = words.scenes or builtin_scenes()
     amplitude = None if words.amplitude is None else read_number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
-    families = tuple(load_family(name, amplitude) for name in names)
+    families = tuple(load_family(name, amplitude, read_bounds(words)) for name in names)
     only, skip, also = (_analyses(f"--{name}", getattr(words, name)) for name in ("only", "skip", "also"))
     if only is not None and skip is not None:
         raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
@@ -139,6 +139,7 @@ def _parser() -> CommandParser:
         help="most steps that Exudyn may take for a phase pair (default 2e6); a scene that needs more is refused "
         "before any step",
     )
+    parser.add_bounds()
     add_models(parser)
     names, on_request = ", ".join(EVERYTHING.names), ", ".join(each.name for each in SELECTABLE if each.on_request)
     parser.add_argument("--only", metavar="LIST", help=f"make these analyses only, separated by commas: {names}")

@@ -1,6 +1,7 @@
 """What the terminal says before a run: what would be computed, and roughly how long it would take."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from rich.box import SIMPLE_HEAD
@@ -20,8 +21,9 @@ from comparison.study.records import describe_records
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
+from reference.building import describe_building, word_buildings
+from reference.plausibility import implausible_values
 from reference.problem import Family, Scene
-from reference.problem.plausibility import implausible_values
 
 NAMES = 4  # names of a list that the terminal shows
 
@@ -97,23 +99,32 @@ def print_stored(console: Console, results: TaskResults, batches: Sequence[Task]
         console.print(line, soft_wrap=True)  # a path is copied whole
 
 
-def print_implausible_values(console: Console, scenes: Sequence[Scene]) -> None:
-    """A line for every value that is hardly meant, with the first scene that has it."""
-    said = {line: scene.name for scene in reversed(scenes) for line in implausible_values(scene)}
+def print_buildings(console: Console, named: Sequence[tuple[str, Scene]]) -> None:
+    """Print what was read of the buildings; then a line for every kind of value that is hardly meant, once for each."""
+    buildings = [replace(describe_building(scene), name=name) for name, scene in named]
+    for line in word_buildings(buildings):
+        console.print(line, soft_wrap=True, markup=False, highlight=False)
+    strongest: dict[str, tuple[float, Scene]] = {}
+    for building, (name, scene) in zip(buildings, named):
+        if name not in strongest or building.ground_peak > strongest[name][0]:
+            strongest[name] = building.ground_peak, scene
+    said = {line: name for name in reversed(strongest) for line in implausible_values(strongest[name][1])}
     for line, name in said.items():
         console.print(f"Warning: {name}: {line}", soft_wrap=True, markup=False)
 
 
-def print_records(console: Console, scenes: Sequence[Scene]) -> None:
-    """Say once of every recorded motion what was read."""
-    for one in describe_records(scenes):
-        console.print(str(one), soft_wrap=True, markup=False, highlight=False)
+def print_records(console: Console, named: Sequence[tuple[str, Scene]], short: bool = False) -> None:
+    """Say once of every recorded motion what was read, in a line where short; named: by motion, "" for its files."""
+    names, scenes = zip(*named) if named else ((), ())
+    for one in describe_records(scenes, names):
+        for line in one.short_lines if short else one.lines:
+            console.print(line, soft_wrap=True, markup=False, highlight=False)
 
 
 def print_models_left_out(console: Console, study: Study) -> None:
-    """A line for every scene with hardly meant values, or that states only a part of what a model needs."""
-    print_records(console, study.scenes)
-    print_implausible_values(console, study.scenes)
+    """Print what was read and what is hardly meant; say which scenes state only a part of what a model needs."""
+    print_records(console, [("", scene) for scene in study.scenes])
+    print_buildings(console, [(scene.name, scene) for scene in study.scenes])
     for scene in study.scenes:
         if reason := why_not_spatial(scene):
             console.print(f"{scene.name}: {reason}.", soft_wrap=True)
@@ -145,7 +156,7 @@ def new_table(*headings: str) -> Table:
     """An empty table: words to the left, numbers to the right. Where it is too wide words are folded, never numbers."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
-        words = heading in ("file", "scene", "model", "difference", "step", "quantity", "verdict")
+        words = heading in ("file", "scene", "model", "motion", "difference", "step", "quantity", "verdict", "bound")
         whole = heading == "difference" or not words
         table.add_column(heading, justify="left" if words else "right", no_wrap=whole, overflow="fold")
     return table

@@ -27,6 +27,10 @@ class Analysis(Protocol[Result]):
     needs_surfaces: ClassVar[bool] = False  # whether the surfaces choose its tasks
     level: ClassVar[int] = LAST  # the first level of the study whose report has it
 
+    def estimate_seconds(self, study: Study) -> float:
+        """Return the rough processor time of a study, s."""
+        return self.seconds * len(study.scenes)
+
     @abstractmethod
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """Return what has to be computed. An analysis that does not need the surfaces ignores them."""

@@ -47,6 +47,7 @@ from comparison.runner.manifest import (
 )
 
 REPORT = "comparison.run"  # the command whose files make up a report; those of others in the folder stay
+PAGE = "index.html"
 FULL_NAME = 240  # bytes of a name: the names made from it are longer
 
 
@@ -88,6 +89,7 @@ def refuse_foreign_report(out: Path) -> None:
     """Raise SceneError, one line, if a report cannot take the place of what is at `out`, a `destination`."""
     refusal = partial(SceneError, "command line", "--out", str(out))
     place = out.resolve()
+    refuse_other_page(out, REPORT)
     if place.exists():
         if Path.cwd().resolve().is_relative_to(place):
             raise refusal("is the directory you work in: give one inside it")
@@ -112,6 +114,15 @@ def refuse_foreign_files(out: Path, names: Sequence[str]) -> None:
             rule = f"holds {name!r}, which this study did not write: move it away, or give another directory"
             raise SceneError("command line", "--out", str(out), rule)
     refuse_unwritable(out, out)
+
+
+def refuse_other_page(out: Path, command: str) -> None:
+    """Raise SceneError, one line, if the page in `out` is that of another command: two answers need two folders."""
+    page = read_manifest(out).get(PAGE)
+    if page is not None and page.command != command:
+        name = page.command.rpartition(".")[2]
+        rule = f"holds the page of `{name}`, of this building or another: give a directory of its own"
+        raise SceneError("command line", "--out", str(out), rule)
 
 
 def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:

@@ -54,6 +54,10 @@ class Display:
         """Work of rough `seconds` need not be done."""
         self.total -= seconds
 
+    def extend(self, seconds: float) -> None:
+        """Work of rough `seconds` is added."""
+        self.total += seconds
+
     @property
     def text(self) -> str:
         """Return what is done last, and the time left."""

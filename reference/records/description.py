@@ -89,12 +89,9 @@ class RecordDescription:
     @property
     def lines(self) -> list[str]:
         """The description as lines of text."""
-        taken = f", times {self.scale:g}" if self.scale != 1.0 else ""
-        taken += f', detrend = "{self.detrend}"' if self.detrend else ""
-        head = f"Record {self.title}: {self.samples} samples, step {self.step:.6g} s, {self.duration:.6g} s{taken}"
         along = {line[0]: line[3:] for line in self.origin if line[1:3] == ": " and line[0] in AXES}
         return [
-            head,
+            self._head,
             *(f"  {line}" for line in self.origin if line[3:] not in along.values()),
             *(
                 f"  {one.axis}: {f'{along[one.axis]}: ' if one.axis in along else ''}peak {one.peak:.4g} m/s^2 = "
@@ -104,6 +101,18 @@ class RecordDescription:
             ),
             *(f"  Warning: {line}" for line in self.warnings),
         ]
+
+    @property
+    def short_lines(self) -> list[str]:
+        """The description as one line of text, and one for every warning."""
+        peaks = ", ".join(f"{one.axis} {one.peak / GRAVITY:.3g} g" for one in self.directions)
+        return [f"{self._head}, peaks {peaks or 'none'}", *(f"  Warning: {line}" for line in self.warnings)]
+
+    @property
+    def _head(self) -> str:
+        taken = f", times {self.scale:g}" if self.scale != 1.0 else ""
+        taken += f', detrend = "{self.detrend}"' if self.detrend else ""
+        return f"Record {self.title}: {self.samples} samples, step {self.step:.6g} s, {self.duration:.6g} s{taken}"
 
     def __str__(self) -> str:
         return "\n".join(self.lines)

@@ -144,12 +144,13 @@ def known_ensemble() -> ensemble.EnsembleResult:
     stripes = [ensemble.Stripe(*named, 1.0, 3, mean, low, largest, smallest),
                ensemble.Stripe(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
     spectrum = ensemble.Spectrum("tower", 1, 2.0, 0.05, (0.1, 1.0), (mean,) * 2, [(mean,) * 2] * 3, (largest,) * 2)
-    difference = ensemble.DemandDifference("tower", "displacement", None, 0.02, 1e-4, 2e-3, 1)
+    moved = ensemble.EngineMotion("tower", "motion 2", 2.0, ["largest displacement"], {"translational": "ok"})
     return ensemble.EnsembleResult(
         schema=ensemble.SCHEMA, structures=[ensemble.Structure("tower", "Tower & <town>", 1, 9.81e3)],
         scales=(1.0, 2.0), spectra=[spectrum],
         motions=3, outcomes={"ok": 5, "rim reached": 1}, stripes=stripes, curves=[*curves, engine],
-        engine=ensemble.Engine("translational", [{"scene": "tower[2]", "status": "ok"}], [difference]), run=MADE,
+        engine=ensemble.Engine("translational", [moved]), run=MADE,
+        suite=[ensemble.GroundMotion(motion, 20.0, 1.5) for motion in known],
     )  # fmt: skip
 
 
@@ -157,7 +158,6 @@ FILES: Mapping[str, bytes] = {
     extremes.FILE: extremes.STORED.as_json(FOUND),
     benchmarks.FILE: benchmarks.STORED.as_json(known_benchmarks()),
     growth.FILE: growth.STORED.as_json(known_growth()),
-    ensemble.FILE: ensemble.STORED.as_json(known_ensemble()),
     validation.STORED.name: validation.STORED.as_json(replace(validation.load_record(), facts=["a <fact>"])),
 }
 

@@ -64,7 +64,7 @@ def test_motions_of_a_suite_are_said_once_for_all_scales(folder: Path, capsys: p
         assert said.count(f"m{number}.csv, CSV") == 1
         assert f"x: peak {np.abs(number * ALONG_X + (0.1 if number == 5 else 0.0)).max():.4g} m/s^2" in said
     assert said.count("Warning") == 1
-    assert "Record suite 5: 400 samples, step 0.01 s, 3.99 s\n  m5.csv, CSV\n  x: peak " in said
+    assert "Record m5: 400 samples, step 0.01 s, 3.99 s\n  m5.csv, CSV\n  x: peak " in said
 
 
 def test_the_ensemble_writes_the_list_of_its_motions(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
