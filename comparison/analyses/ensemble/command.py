@@ -8,6 +8,7 @@ import argparse
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from comparison.analyses.ensemble.limits import (
     check_limits,
     compare_with_stored,
     limits_of,
+    verdicts_of,
     word_check,
     word_checks,
 )
@@ -187,8 +189,10 @@ def write_ensemble(
     cost = results.parts[STAGE].seconds
     run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
     result = build_result(points, run, ensemble.tolerance, target, listed)
+    checks = check(result)
+    result = replace(result, limits=verdicts_of(checks))
     files = {STORED.name: STORED.as_json(result)}
-    files |= {CHECKED: junit_of(checks, run)} if (checks := check(result)) else {}
+    files |= {CHECKED: junit_of(checks, run)} if checks else {}
     if (table := attempt(TABLE, lambda: table_text(points, result).encode())) is not None:
         files[TABLE] = table
     written = write_and_show(

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from comparison.analyses.ensemble.quantities import title_of, unit_of_demand
-from comparison.analyses.ensemble.result import EnsembleResult, Statistic, Stripe, Structure
+from comparison.analyses.ensemble.result import EnsembleResult, LimitVerdict, Statistic, Stripe, Structure
 from comparison.analyses.ensemble.rows import labels, place_of
 from comparison.analyses.ensemble.sentences import count_motions
 from comparison.study.models import EXACT
@@ -85,6 +85,11 @@ def word_checks(checks: Sequence[DemandCheck]) -> list[str]:
     """Return how many demands are met, then a line for every one that is not, the worst last."""
     lines = [word_check(check) for check in sorted(checks, key=_order, reverse=True) if check.verdict != MET]
     return [word_counts(count_verdicts(check.verdict for check in checks), "demand"), *lines] if checks else []
+
+
+def verdicts_of(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
+    """Return the verdicts as file and page have them, in the order of the checks."""
+    return [LimitVerdict(check.key, check.bound, check.verdict, word_check(check)) for check in checks]
 
 
 def _order(check: DemandCheck) -> tuple[int, float, float]:

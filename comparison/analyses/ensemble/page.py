@@ -18,6 +18,7 @@ from comparison.report.plots import Panel
 from comparison.report.section import Section
 from comparison.runner.attempts import attempt
 from comparison.study.models import EXACT
+from comparison.verdicts import count_verdicts, word_counts
 from reference.problem import GRAVITY
 
 Say = Callable[[str], None]
@@ -52,6 +53,10 @@ def _demands(ensemble: EnsembleResult, say: Say) -> Context:
         "missing": [line for each in ensemble.structures for line in sentences.missing_sentences(ensemble, each)],
         "panels": made(panels.isolator_panels(ensemble), say),
     }
+
+
+def _limits(ensemble: EnsembleResult, say: Say) -> Context:
+    return {"counts": word_counts(count_verdicts(each.verdict for each in ensemble.limits), "demand")}
 
 
 def _height(ensemble: EnsembleResult, say: Say) -> Context:
@@ -109,6 +114,7 @@ SECTIONS: tuple[tuple[Section, Callable[[EnsembleResult, Say], Context], Callabl
     (Section("The building as read", folded=False, name="building"), _building, lambda ensemble: True),
     (Section("The motions", folded=False, name="suite"), _suite, lambda ensemble: bool(ensemble.suite)),
     (Section("Demands", folded=False, name="demands"), _demands, lambda ensemble: True),
+    (Section("Limits", folded=False, name="limits"), _limits, lambda ensemble: bool(ensemble.limits)),
     (Section("Over the height", folded=False, name="height"), _height, lambda ensemble: True),
     (Section("Support forces", folded=False, name="supports"), _supports, lambda ensemble: bool(ensemble.supports)),
     (

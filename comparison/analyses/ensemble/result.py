@@ -9,6 +9,7 @@ from comparison.analyses.ensemble.quantities import DEMANDS
 from comparison.json_file import StoredFile
 from comparison.result_types import require, require_size, result
 from comparison.study.models import EXACT
+from comparison.verdicts import Verdict
 from reference.problem.scene import MAX_BODIES
 
 FRACTILES = 3  # 16, 50 and 84 %
@@ -231,6 +232,16 @@ class Target:
 
 
 @result
+class LimitVerdict:
+    """The verdict on a limit, or on a demand against that of a stored ensemble."""
+
+    key: Annotated[str, "of the limit as in the scene file, or of the demand"]
+    bound: Annotated[str, "what tells the structure apart"]
+    verdict: Annotated[Verdict, "met, not met or not compared"]
+    sentence: Annotated[str, "demand, motion, both numbers, and by how much it is not met"]
+
+
+@result
 class EnsembleResult:
     """Content of the file."""
 
@@ -248,6 +259,7 @@ class EnsembleResult:
     target: Annotated[Target | None, "spectrum to which the motions are scaled; null without --target"] = None
     suite: Annotated[Sequence[GroundMotion], "the motions in their order"] = ()
     supports: Annotated[Sequence[SupportExtremes], "by model, structure and support"] = ()
+    limits: Annotated[Sequence[LimitVerdict], "by structure; empty without [acceptance.demands] and --against"] = ()
 
     def __post_init__(self) -> None:
         require(len(self.structures) > 0, "structures must be at least one")

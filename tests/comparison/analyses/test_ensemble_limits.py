@@ -3,15 +3,18 @@
 import re
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from markupsafe import escape
 
 from comparison.analyses.ensemble.command import main
-from comparison.analyses.ensemble.limits import check_limits, compare_with_stored, word_check, word_checks
+from comparison.analyses.ensemble.limits import check_limits, compare_with_stored, verdicts_of, word_check, word_checks
+from comparison.analyses.ensemble.page import page_of
 from comparison.analyses.ensemble.result import (
     SCHEMA,
     DemandCurve,
@@ -164,6 +167,15 @@ def test_a_demand_that_one_of_two_ensembles_lacks_is_not_compared() -> None:
     assert [line.rpartition(": ")[2] for line in lines[2:]] == ["not compared (the stored ensemble lacks it)"] * 2
     ended = ensemble_of({("displacement", None): (0.30, None, 0.43)})
     assert compare_with_stored(ended, ended, 0.01) == [], "neither has mean or largest value"
+
+
+def test_the_report_has_the_verdict_on_every_limit() -> None:
+    ensemble = ensemble_of({**MOVED, ("base_shear", None): (3e5, 6e5, 5e5)})
+    checks = check_limits(ensemble, {"job[upper bound]": DemandLimits(displacement=0.4, base_shear=0.5)})
+    page = page_of(replace(ensemble, limits=verdicts_of(checks)))
+    assert "2 demands: 1 met, 1 not met, 0 not compared." in page
+    assert all(str(escape(word_check(check))) in page for check in checks)
+    assert "not compared." not in page_of(ensemble), "no section without limits"
 
 
 SCENE = """title = "a block"
