@@ -9,6 +9,7 @@ GATE = "tests/comparison/analyses/test_assert_demands.py::test_"
 PLAN = "tests/comparison/cli/test_check_and_plan.py::test_"
 CLOSING = "tests/comparison/cli/test_closing.py::test_"
 DESCRIBED = "tests/reference/test_building.py::test_"
+HAND = "tests/comparison/test_hand_checks.py::test_"
 WRONG = "tests/reference/problem/test_wrong_values.py::test_"
 
 # fmt: off
@@ -90,6 +91,11 @@ MISTAKES = (
     Mistake("reference/building.py", "ends = [min(peaks), max(peaks)]", "ends = [peaks[0], peaks[-1]]",
             "The peaks of the ground are those of the first and the last motion.",
             (DESCRIBED + "buildings_that_are_alike_are_described_once_with_all_peaks",)),
+    Mistake("comparison/cli/closing.py", "checks it\"] if stated else []", "checks it\"] if not stated else []",
+            "run --check says nothing of limits on demands.", (PLAN + "check_says_where_limits_on_demands_are_checked",)),
+    Mistake("reference/problem/friction.py", "share * fast, stated.rate or 0.0", "share * fast, 0.2 * (stated.rate or 0.0)",
+            "Friction grows with the speed at a fifth of its rate.",
+            (HAND + "a_rigid_block_on_velocity_dependent_friction_moves_as_by_hand",)),
     Mistake("comparison/analyses/demands/analysis.py", "seconds_per_motion(scene, model) * len(study.solved(scene, model))",
             "seconds_per_motion(scene, model)", "The plan counts one motion of --also demands.",
             (PLAN + "the_plan_counts_every_motion_of_the_demands",)),
