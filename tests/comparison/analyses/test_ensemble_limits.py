@@ -233,6 +233,16 @@ def test_check_exits_1_and_says_last_which_limit_at_which_bound_and_motion(folde
     assert capsys.readouterr().err == "4 demands: 4 met, 0 not met, 0 not compared\n"
 
 
+def test_plan_and_run_begin_with_the_building_as_it_was_read_once_for_both_bounds(folder: Path, capsys: Any) -> None:
+    Path("block.toml").write_text(SCENE.replace("radius = 2.0", "radius = 60.0"))
+    for words in (("--plan",), ()):
+        assert run("block.toml", *words) == 0
+        said = capsys.readouterr().out
+        assert said.count("Building block[lower bound], block[upper bound]: 1 body, weight 98.1 kN\n") == 1
+        assert said.count("peak of the ground: ") == 1
+        assert said.count("Warning: block[lower bound]: the radius of the isolator is 60 m, above 50 m: mm?") == 1
+
+
 def test_a_check_without_limits_says_that_nothing_was_checked(folder: Path, capsys: Any) -> None:
     assert run("block.toml", "--check") == 0
     assert capsys.readouterr().err == "--check: no scene states [acceptance.demands]: nothing was checked\n"
