@@ -97,6 +97,19 @@ def test_a_demand_that_is_beyond_its_limit_by_its_numerical_error_alone_meets_it
     assert "not met (by +4.2 %)" in said_of(ensemble_of(MOVED, error=0.01), displacement=0.48)[0]
 
 
+def test_a_limit_is_on_the_largest_of_several_scales_and_names_it() -> None:
+    curves = [
+        DemandCurve("job", "displacement", None, "exact", motion, [0.5, 2.0], [0.1, value], [0.0, 0.0])
+        for motion, value in zip(MOTIONS, (0.3, 0.5, 0.4))
+    ]
+    ensemble = replace(ensemble_of(MOVED), scales=[0.5, 2.0], stripes=[], curves=[])
+    ensemble = replace(ensemble, structures=[Structure("job", "Job", 6, WEIGHT)], curves=curves)
+    assert said_of(ensemble, displacement=0.4) == [
+        "job: largest displacement of the isolator, largest of 3 motions at scale 2: 0.5 m (Imperial Valley), "
+        "allowed 0.4 m: not met (by +25 %)"
+    ]
+
+
 def test_base_shear_is_limited_as_a_share_of_the_weight() -> None:
     ensemble = ensemble_of({("base_shear", None): (3e5, 6e5, 5e5)})
     assert said_of(ensemble, base_shear=0.25) == [
