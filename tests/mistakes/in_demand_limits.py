@@ -9,6 +9,7 @@ GATE = "tests/comparison/analyses/test_assert_demands.py::test_"
 PLAN = "tests/comparison/cli/test_check_and_plan.py::test_"
 CLOSING = "tests/comparison/cli/test_closing.py::test_"
 DESCRIBED = "tests/reference/test_building.py::test_"
+HAND = "tests/comparison/test_hand_checks.py::test_"
 WRONG = "tests/reference/problem/test_wrong_values.py::test_"
 
 # fmt: off
@@ -42,6 +43,9 @@ MISTAKES = (
     Mistake(LIMITS, "    if statistic == LARGEST and excess > error:  # whatever the others have\n        reason = \"\"\n", "",
             "A limit that one motion breaks is not compared, as another has no value.",
             (SEEN + "what_a_motion_without_a_value_leaves_open_is_not_called_met",)),
+    Mistake(LIMITS, 'f" at scale {ensemble.top:g}" if len(ensemble.scales) > 1 else ""', '""',
+            "A limit of several scales does not say on which it is.",
+            (SEEN + "a_limit_is_on_the_largest_of_several_scales_and_names_it",)),
     Mistake(LIMITS, 'count = f"{len(known)} of " if len(known) < ensemble.motions else ""', 'count = ""',
             "Two motions of the engine are called all three.",
             (SEEN + "uplift_is_that_of_the_motions_of_the_spatial_engine",)),
@@ -65,6 +69,9 @@ MISTAKES = (
             "check.bound, check.verdict, word_check(check)) for check in checks[:1]]",
             "The report has the verdict on the first limit alone.",
             (SEEN + "the_report_has_the_verdict_on_every_limit",)),
+    Mistake(COMMAND, "    print_buildings(console, [(member.structure, member.scene) for member in members])\n", "",
+            "An ensemble says nothing of the building that it read.",
+            (SEEN + "plan_and_run_begin_with_the_building_as_it_was_read_once_for_both_bounds",)),
     Mistake(COMMAND, "return int(asked and any(check.verdict != MET for check in checks))", "return 0",
             "A broken limit on a demand ends with exit code 0.",
             (SEEN + "check_exits_1_and_says_last_which_limit_at_which_bound_and_motion",)),
@@ -90,6 +97,11 @@ MISTAKES = (
     Mistake("reference/building.py", "ends = [min(peaks), max(peaks)]", "ends = [peaks[0], peaks[-1]]",
             "The peaks of the ground are those of the first and the last motion.",
             (DESCRIBED + "buildings_that_are_alike_are_described_once_with_all_peaks",)),
+    Mistake("comparison/cli/closing.py", "checks it\"] if stated else []", "checks it\"] if not stated else []",
+            "run --check says nothing of limits on demands.", (PLAN + "check_says_where_limits_on_demands_are_checked",)),
+    Mistake("reference/problem/friction.py", "share * fast, stated.rate or 0.0", "share * fast, 0.2 * (stated.rate or 0.0)",
+            "Friction grows with the speed at a fifth of its rate.",
+            (HAND + "a_rigid_block_on_velocity_dependent_friction_moves_as_by_hand",)),
     Mistake("comparison/analyses/demands/analysis.py", "seconds_per_motion(scene, model) * len(study.solved(scene, model))",
             "seconds_per_motion(scene, model)", "The plan counts one motion of --also demands.",
             (PLAN + "the_plan_counts_every_motion_of_the_demands",)),

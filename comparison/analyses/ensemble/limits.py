@@ -137,6 +137,7 @@ def _check_body(
     what = "base shear over the weight" if key == "base_shear" else title_of(key)
     what += f" {place}" if (place := place_of(structure, key, body)) else ""
     what += f", {statistic} of {count}{count_motions(ensemble.motions)}{by}"
+    what += f" at scale {ensemble.top:g}" if len(ensemble.scales) > 1 else ""
     about: tuple[str, str, str] = f"{KEY}{key}", labels(ensemble)[structure.name], what
     lacking = (ensemble.motions if statistic == MEAN else len(values)) - len(known)
     reason = f"{lacking} {'motion has' if lacking == 1 else 'motions have'} no value" if lacking else ""

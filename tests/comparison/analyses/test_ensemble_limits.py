@@ -97,6 +97,19 @@ def test_a_demand_that_is_beyond_its_limit_by_its_numerical_error_alone_meets_it
     assert "not met (by +4.2 %)" in said_of(ensemble_of(MOVED, error=0.01), displacement=0.48)[0]
 
 
+def test_a_limit_is_on_the_largest_of_several_scales_and_names_it() -> None:
+    curves = [
+        DemandCurve("job", "displacement", None, "exact", motion, [0.5, 2.0], [0.1, value], [0.0, 0.0])
+        for motion, value in zip(MOTIONS, (0.3, 0.5, 0.4))
+    ]
+    ensemble = replace(ensemble_of(MOVED), scales=[0.5, 2.0], stripes=[], curves=[])
+    ensemble = replace(ensemble, structures=[Structure("job", "Job", 6, WEIGHT)], curves=curves)
+    assert said_of(ensemble, displacement=0.4) == [
+        "job: largest displacement of the isolator, largest of 3 motions at scale 2: 0.5 m (Imperial Valley), "
+        "allowed 0.4 m: not met (by +25 %)"
+    ]
+
+
 def test_base_shear_is_limited_as_a_share_of_the_weight() -> None:
     ensemble = ensemble_of({("base_shear", None): (3e5, 6e5, 5e5)})
     assert said_of(ensemble, base_shear=0.25) == [
@@ -231,6 +244,16 @@ def test_check_exits_1_and_says_last_which_limit_at_which_bound_and_motion(folde
     limit_file("displacement = 1.0\nbase_shear = 9.0")
     assert run("block.toml", "--check") == 0
     assert capsys.readouterr().err == "4 demands: 4 met, 0 not met, 0 not compared\n"
+
+
+def test_plan_and_run_begin_with_the_building_as_it_was_read_once_for_both_bounds(folder: Path, capsys: Any) -> None:
+    Path("block.toml").write_text(SCENE.replace("radius = 2.0", "radius = 60.0"))
+    for words in (("--plan",), ()):
+        assert run("block.toml", *words) == 0
+        said = capsys.readouterr().out
+        assert said.count("Building block[lower bound], block[upper bound]: 1 body, weight 98.1 kN\n") == 1
+        assert said.count("peak of the ground: ") == 1
+        assert said.count("Warning: block[lower bound]: the radius of the isolator is 60 m, above 50 m: mm?") == 1
 
 
 def test_a_check_without_limits_says_that_nothing_was_checked(folder: Path, capsys: Any) -> None:
