@@ -7,7 +7,6 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter
 from scipy.interpolate import CubicHermiteSpline
 
 import multibody
@@ -134,7 +133,7 @@ STORED = StoredFile("validation.json", Validation, "a table of measured quantiti
 def load_record() -> Validation:
     """The table of the published files, as the command made it; without their motions."""
     file = resources.files("comparison.evidence.validation") / "recorded.json"
-    return TypeAdapter(Validation).validate_json(file.read_bytes())
+    return STORED.read(file.read_bytes())
 
 
 class ComputedValues(NamedTuple):
