@@ -1,7 +1,7 @@
 """Checks of what the paper says about its surfaces: each sees the evidence of its cases and computes its verdict."""
 
 from collections.abc import Callable
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from comparison.evidence.claims.evidence import Evidence
 from comparison.evidence.claims.smoothness import Bend
 from comparison.result_types import Text, result
 from comparison.surfaces.budget import torus_distance
+from comparison.verdicts import MET, NOT_MET, Verdict
 
 EPSILON = 0.1  # the paper's: T_1, T_2 = T_c (1 -+ epsilon)
 ROUNDING = 1e-9  # relative size of what rounding leaves; T_c (1 -+ epsilon) itself is close to T_c
@@ -23,17 +24,12 @@ NEAR = np.pi / 4.0  # rad, from a corner
 CORNER = (0.0, 0.0)  # rad; on the square that closes the four corners are one point
 VIEWS = {"periodic": counting.periodic, "drawn": counting.drawn, "profile": counting.profiled}
 
-Word = Literal["met", "not met", "not compared"]
-MET: Word = "met"
-NOT_MET: Word = "not met"
-NOT_COMPARED: Word = "not compared"
-
 
 @result
 class StatementVerdict:
     """Verdict on a statement of the paper by the surfaces in one reading of (5.1). Raises ValueError for no reason."""
 
-    verdict: Annotated[Word, "met, not met, or not compared"]
+    verdict: Annotated[Verdict, "met, not met, or not compared"]
     reason: Annotated[Text, "the numbers that decide, why it cannot hold, or why nothing was compared"]
 
     def __post_init__(self) -> None:
