@@ -22,7 +22,7 @@ COMPLEX_SHARE = 0.25  # prominence over the range; at 20 % the count of mu_1 dep
 OTHER_SHARES = 0.15, 0.35  # prominences at which the same count may say otherwise
 NEAR = np.pi / 4.0  # rad, from a corner
 CORNER = (0.0, 0.0)  # rad; on the square that closes the four corners are one point
-VIEWS = {"periodic": counting.periodic, "drawn": counting.drawn, "profile": counting.profiled}
+VIEWS = {"periodic": counting.count_periodic, "drawn": counting.count_drawn, "profile": counting.count_profile}
 
 
 @result
@@ -135,7 +135,7 @@ def compare_complexity(case: Evidence) -> StatementVerdict:
     """Check that mu_2 has several peaks and valleys, and more of them than mu_1; the shares that say otherwise."""
 
     def counts(share: float) -> list[counting.Counts]:
-        return [counting.periodic(case.mu[..., body], case.error, share) for body in (0, 1)]
+        return [counting.count_periodic(case.mu[..., body], case.error, share) for body in (0, 1)]
 
     def holds(share: float) -> bool:
         first, second = counts(share)
