@@ -16,7 +16,8 @@ from comparison.evidence.extremes.causes import CAUSES
 from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
 from comparison.evidence.extremes.matrix import CellVerdict
-from comparison.evidence.extremes.rows import rows, scene
+from comparison.evidence.extremes.rows import rows
+from comparison.evidence.extremes.scenes import scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, process_pool
 from comparison.runner.task import TaskResult
 from reference.problem import Outcome
