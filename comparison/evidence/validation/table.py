@@ -15,7 +15,7 @@ from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import Array, require, require_size, result
 from comparison.verdicts import NOT_MET, Verdict, count_verdicts, judge, word_verdict
-from reference.measures.demands import ANSWERED
+from reference.measures.demand_reader import ANSWERED
 from reference.problem import Scene, State, Trajectory
 
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
