@@ -24,7 +24,8 @@ from comparison.evidence.benchmarks import table as benchmarks
 from comparison.evidence.extremes import matrix as extremes
 from comparison.evidence.extremes.columns import ModelColumn
 from comparison.evidence.extremes.matrix import Extreme, Matrix, MatrixEntry
-from comparison.evidence.extremes.rows import ExtremeCase, scene
+from comparison.evidence.extremes.rows import ExtremeCase
+from comparison.evidence.extremes.scenes import scene
 from comparison.evidence.tradeoff import command as tradeoff
 from comparison.evidence.tradeoff import growth
 from comparison.evidence.tradeoff.trade import Answered, MeasuredTrade, Trade, with_pareto_fronts
