@@ -279,7 +279,7 @@ def test_an_unknown_error_explains_no_difference_of_a_users_engine() -> None:
     assert (
         ": agreement within twice the errors not compared, as mine does not state every error. Exudyn (spa" in sentence
     )
-    assert "equations and friction law the equations and Exudyn differ beyond their errors" in sentence
+    assert "equations and friction law the equations and Exudyn differ beyond twice their errors" in sentence
     assert "the two codes" not in sentence, "it would be taken for the engine of the user"
 
 
