@@ -695,5 +695,13 @@ MISTAKES = (
     Mistake(REPORT + "page.py", '"lost": [lost_line(line) for line in lost],', '"lost": [],',
             "The page does not say what it lacks.",
             (TESTS + "report/test_lost_parts.py::test_a_report_of_which_every_part_raises_is_written",)),
+    Mistake(RUNNER + "dask.py", 'f"silent for {LONGEST_KNOCK:g} s"', '"no answer"',
+            "A scheduler that stays silent is not called so.",
+            (TESTS + "runner/test_cluster.py::test_no_scheduler_is_a_wrong_option",)),
+    Mistake(ANALYSES + "records/feature.py", '"phase-resonance run makes it, of scenes with a recorded motion"', '""',
+            "A section that is absent has no reason.",
+            (TESTS + "study/test_selection.py::test_only_leaves_the_sections_asked_for",)),
+    Mistake(EVIDENCE + "trend_feature.py", '"panels": trend_panels(trends, parameter)', '"panels": trend_panels(trends, "")',
+            "The scaling test is drawn over another parameter.", (RECORDED,)),
 )
 # fmt: on
