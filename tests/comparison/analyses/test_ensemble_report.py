@@ -24,10 +24,10 @@ from comparison.analyses.ensemble.quantities import text_of
 from comparison.analyses.ensemble.result import (
     STORED,
     BuildingRead,
+    ChosenMotion,
     DemandCurve,
     DemandFractile,
     Engine,
-    EngineMotion,
     EnsembleResult,
     GroundMotion,
     Statistic,
@@ -256,7 +256,7 @@ def planted(ratios: dict[str, float] | None = None, motions: int = 4) -> Ensembl
     fractiles = [DemandFractile(float(np.quantile(values, share, method="hazen")), 0.0, share) for share in shares]
     stripe = Stripe("b", "displacement", None, "exact", "m", 1.0, motions, numbers[0], fractiles, *numbers[1:],
                     {}, names[-1], names[0])  # fmt: skip
-    chosen = [EngineMotion("b", name, 1.0, ["largest displacement"], {}) for name in names[motions // 2 :]]
+    chosen = [ChosenMotion("b", name, 1.0, ["largest displacement"], {}) for name in names[motions // 2 :]]
     building = BuildingRead(4, 250.0, [[2.0]], [[]], [[]], 2.0, (0.03, 0.06), 0.5, None, ("deck",))
     return EnsembleResult(
         "phase-resonance/ensemble/3", [Structure("b", "A <block>", 1, 1e3, None, building)], (1.0,), motions,
