@@ -1,9 +1,10 @@
-"""JSON files of results: written by one command, and read by another that finds them beside the report."""
+"""JSON files of results: written by one command, and read by another that finds them next to the report."""
 
 import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
@@ -37,18 +38,36 @@ def replace_unstorable(content: Any) -> Any:
     return content
 
 
+@cache
+def _reader(kind: Any) -> TypeAdapter[Any]:
+    return TypeAdapter(kind)  # made once: it takes a hundred times as long as a small file
+
+
 @dataclass(frozen=True)
 class StoredFile(Generic[T]):
-    """A JSON file of results, which one command writes and the next report beside it shows; what: in words."""
+    """A JSON file of results, which one command writes and the next report in the same folder shows; what: in words."""
 
     name: str
     kind: type[T]
     what: str
     command: str
 
+    def word_field(self, meaning: str) -> str:
+        """Return the meaning of the field of the results that shows the file."""
+        return f"{meaning}; null unless {self.command} left it next to the report"
+
+    def word_origin(self, argument: str = "") -> str:
+        """Return what makes the section that shows the file; argument: what the command is given, in words."""
+        return f"{self.command}{argument} makes it, next to the report; the next run of the study shows it"
+
     def as_json(self, results: T) -> bytes:
         """The content of the file, which `load` reads."""
         return json_text(asdict(results)).encode()  # type: ignore[call-overload]
+
+    def read(self, content: bytes) -> T:
+        """Return the results in the content of a file. Raises ValidationError."""
+        results: T = _reader(self.kind).validate_json(content)  # type: ignore[arg-type]
+        return results
 
     def load(self, folder: Path) -> T | None:
         """
@@ -60,7 +79,7 @@ class StoredFile(Generic[T]):
         if not file.exists():
             return None
         try:
-            return TypeAdapter(self.kind).validate_json(read_file(file, LARGEST))
+            return self.read(read_file(file, LARGEST))
         except OSError as error:
             raise ValueError(f"{file}: {error.strerror}: must be {self.what}: run {self.command}") from None
         except ValidationError as error:

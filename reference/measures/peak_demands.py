@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.measures.demands import Demands, Estimate, demands
+from reference.measures.demand_reader import Estimate
+from reference.measures.demands import Demands, demands
 from reference.problem.definition import ground_peak
 from reference.problem.outcome import Outcome
 from reference.problem.phases import flat_phases, phase_coordinates
@@ -27,7 +28,7 @@ QUANTITIES = {  # fields of `Demands` in words, and their units
     "residual": ("residual displacement of the isolator", "m"),
     "cap_share": ("largest displacement over rho", "1"),
     "travel_share": ("largest displacement over the travel", "1"),
-    "acceleration": ("largest absolute acceleration", "m/s^2"),
+    "acceleration": ("largest absolute acceleration (literal supremum where friction sticks)", "m/s^2"),
     "base_shear": ("base shear", "N"),
     "drift": ("drift against the body below", "m"),
     "contact_force_min": ("smallest contact force", "N"),

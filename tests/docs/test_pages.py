@@ -20,7 +20,7 @@ from stated_numbers import STATED, Stated, numbers_of
 
 from comparison.evidence.benchmarks.table import page as benchmarks_page
 from comparison.evidence.validation import statements
-from comparison.evidence.validation.table import recorded
+from comparison.evidence.validation.table import load_record
 from comparison.report.results import VALIDATED, VALIDATED_BRIEFLY
 from comparison.report.verification import CHECKS
 from reference.problem import Scene
@@ -41,6 +41,13 @@ def test_the_readme_is_short_and_has_two_commands_of_one_line() -> None:
     assert all(block.startswith("python3 -m venv .venv && .venv/bin/pip install ") for block in blocks)
     assert blocks[0].endswith("-m comparison.run\n")
     assert blocks[1].endswith("-m pytest -n auto --dist loadfile\n"), "by continuous integration"
+
+
+def test_pages_name_extras_that_can_be_installed() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    for page in PAGES:
+        named = re.findall(r"'\.\[([\w,]+)\]'", page.read_text(encoding="utf-8"))
+        assert {part for words in named for part in words.split(",")} <= {*extras}, page.name
 
 
 def test_the_keys_that_the_guide_shows_make_a_scene() -> None:
@@ -77,12 +84,12 @@ def test_a_page_of_evidence_has_what_its_command_writes(page: Path) -> None:
 
 def test_the_readme_has_the_measurements_of_their_record() -> None:
     assert evidence_table.with_readme_rows(README) == README
-    assert all(row in README for row in statements.readme_rows(recorded()))
+    assert all(row in README for row in statements.readme_rows(load_record()))
 
 
 def test_what_is_said_to_be_validated_is_what_is_recorded() -> None:
-    assert statements.word_validated(recorded()) == VALIDATED
-    assert statements.word_validated_briefly(recorded()) == VALIDATED_BRIEFLY
+    assert statements.word_validated(load_record()) == VALIDATED
+    assert statements.word_validated_briefly(load_record()) == VALIDATED_BRIEFLY
     for page in (README, *(page.read_text(encoding="utf-8") for page in evidence_table.BLOCKS)):
         for line in re.findall(r".*\bvalidated\b.*", page, flags=re.IGNORECASE):
             allowed = ("Validated is one quantity", "what is validated, and what is not", "isolated")

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from pydantic import computed_field
 
-from comparison.evidence.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict, Word
+from comparison.evidence.claims.checks import StatementVerdict
 from comparison.evidence.claims.claims import CLAIMS
 from comparison.evidence.claims.evidence import CaseInReading, Evidence, evidence_of_failure, gather_evidence
 from comparison.evidence.claims.readings import (
@@ -25,11 +25,11 @@ from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import values_of
+from comparison.verdicts import MET, NOT_COMPARED, Verdict, count_verdicts
 from reference.problem import builtin_scenes
 
 GRID = 24  # phases per axis: on 16, 32, 48 and 64 the same statements are met
 COARSE = 2  # every which phase of surfaces that are only correlated with another
-VERDICTS: tuple[Word, ...] = (MET, NOT_MET, NOT_COMPARED)
 
 
 @result
@@ -61,12 +61,10 @@ class ClaimTable:
 
     @computed_field  # type: ignore[prop-decorator]
     @property
-    def counts(self) -> dict[str, dict[str, int]]:
-        """How many statements are met, not met and not compared, by name of the reading."""
+    def counts(self) -> dict[str, dict[Verdict, int]]:
+        """Return the numbers of statements met, not met and not compared, by name of the reading."""
         return {
-            reading.name: {
-                word: sum(each.verdicts[reading.name].verdict == word for each in self.statements) for word in VERDICTS
-            }
+            reading.name: count_verdicts(each.verdicts[reading.name].verdict for each in self.statements)
             for reading in READINGS
         }
 
@@ -98,8 +96,8 @@ def claims_line(table: ClaimTable) -> str:
 def count_met(table: ClaimTable) -> str:
     """Return how many statements are met in each reading, and how many are not compared, in a clause."""
     integrated, supremum = (table.counts[reading.name] for reading in (AS_INTEGRATED, LITERAL_SUPREMUM))
-    lacking = {name: counts[NOT_COMPARED] for name, counts in table.counts.items() if counts[NOT_COMPARED]}
-    rest = "".join(f", {count} {NOT_COMPARED} ({name})" for name, count in lacking.items())
+    uncompared = {name: counts[NOT_COMPARED] for name, counts in table.counts.items() if counts[NOT_COMPARED]}
+    rest = "".join(f", {count} {NOT_COMPARED} ({name})" for name, count in uncompared.items())
     return f"{integrated[MET]} are met {AS_INTEGRATED.name} and {supremum[MET]} as {LITERAL_SUPREMUM.name}{rest}"
 
 

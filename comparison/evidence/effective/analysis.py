@@ -14,7 +14,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
 from comparison.study.models import Model, chain_of
 from comparison.study.study import Study
-from comparison.wording import percent
+from comparison.wording import exception_line, percent
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
 from reference.problem.friction import LEAST_LOAD
 
@@ -55,7 +55,7 @@ def word_effective(values: Sequence[Effective]) -> str:
     return f"largest departures from what the scenes state: {', '.join(parts)}"
 
 
-def stated(scene: Scene) -> Effective:
+def values_of_scene(scene: Scene) -> Effective:
     """Return the values as the scene states them; the platform begins at rest on the plate and moves with it."""
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
     return Effective(
@@ -77,13 +77,12 @@ def read_back(task: tuple[Scene, Model]) -> Effective:
     nothing = Effective(scene.name, model.key)
     lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
     short = scene.with_values({"duration": lasting})
-    settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
-        motion: Trajectory = import_function(model.trajectory)(short, PHASES, **settings)
+        motion: Trajectory = import_function(model.trajectory)(short, PHASES, **model.motion_settings)
         ended = {"error_message": f"the motion ended: {motion.status}"}
         return replace(nothing, **(_read_values(short, motion) if motion.status == Outcome.OK else ended))
     except Exception as error:
-        return replace(nothing, error_message=f"{type(error).__name__}: {error}")
+        return replace(nothing, error_message=exception_line(error))
 
 
 class EffectiveValues(MappedAnalysis[list[Effective]]):
@@ -101,7 +100,9 @@ class EffectiveValues(MappedAnalysis[list[Effective]]):
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effective]:
         """In the order scene, model; what the scene states comes first."""
         read = self.values(study, surfaces, results)
-        of_scenes = ([stated(scene), *(each for each in read if each.scene == scene.name)] for scene in study.scenes)
+        of_scenes = (
+            [values_of_scene(scene), *(each for each in read if each.scene == scene.name)] for scene in study.scenes
+        )
         return [value for values in of_scenes for value in values]
 
 
