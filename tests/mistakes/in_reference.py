@@ -14,6 +14,7 @@ SPECTRA = TESTS + "test_floor_spectra.py::"
 TRAVEL = TESTS + "test_travel.py::"
 HAND, WRONG = "tests/comparison/test_hand_checks.py::", TESTS + "problem/test_wrong_values.py::"
 BUILDING, BOUNDS = TESTS + "test_building.py::", TESTS + "problem/test_bounds_of_friction.py::"
+YIELDING = TESTS + "test_yielding_motion.py::test_"
 READINGS, SLOPES = TESTS + "problem/test_readings.py::", TESTS + "test_sensitivity.py::"
 
 # fmt: off
@@ -422,5 +423,32 @@ MISTAKES = (
     Mistake("reference/measures/story_forces.py", "(heights[body - 1] if body else 0.0)", "0.0",
             "The moment below a floor is that about the contact.",
             (TESTS + "test_story_forces.py::test_overturning_moments_are_those_of_the_floor_forces",)),
+    Mistake(SOLVER + "contact/yielding.py", "turned_x + nx * transport", "turned_x - nx * transport",
+            "The force of elastic friction leaves the tangent plane.",
+            (YIELDING + "factors_are_those_of_the_other_program[deep swing]",)),
+    Mistake(SOLVER + "contact/yielding.py", "turn = system.stiffness * (", "turn = -system.stiffness * (",
+            "The force of friction that slides turns away from the velocity.",
+            (YIELDING + "factors_are_those_of_the_other_program[two directions]",)),
+    Mistake(SOLVER + "phases/yielding.py", "    if slid:\n", "    if False:\n",
+            "Friction that becomes elastic again has the force with which it once yielded.",
+            (YIELDING + "factors_are_those_of_the_other_program[vertical shaking]",)),
+    Mistake(SOLVER + "phases/yielding.py", "values = growth / (h * system.stiffness) - row(shear, ALONG_FORCE)",
+            "values = -row(shear, ALONG_FORCE)", "The bound of friction changes, and the rate of slip does not know.",
+            (YIELDING + "factors_are_those_of_the_other_program[vertical shaking]",)),
+    Mistake(SOLVER + "phases/yielding.py", "if system.rate == 0.0 or gain[0] >= 0.0:", "if True or gain[0] >= 0.0:",
+            "Steps pass the kink of a coefficient of the speed.",
+            (YIELDING + "factors_are_those_of_the_other_program[planar, rising]",)),
+    Mistake(SOLVER + "run_yielding.py", "YIELD_SHARE, UNLOADING_SHARE, MAX_AIMS = 1e-11,",
+            "YIELD_SHARE, UNLOADING_SHARE, MAX_AIMS = 1e-3,", "Friction yields a little before its bound.",
+            (YIELDING + "free_decay_has_the_turning_points_of_a_bilinear_oscillator",)),
+    Mistake(MEASURES + "energy.py", " - float(self.sheared[-1] - self.sheared[0])", "",
+            "The elastic energy of friction counts as dissipated.",
+            (YIELDING + "energy_is_balanced_and_dissipated_as_by_the_other_program",)),
+    Mistake(MEASURES + "demand_reader.py", "stick = stick[-1:] if yields else stick", "stick = stick",
+            "Elastic displacements of all intervals add up in the error of the residual displacement.",
+            (YIELDING + "free_decay_has_the_turning_points_of_a_bilinear_oscillator",)),
+    Mistake(PROBLEM + "friction.py", "stiffness=law.largest * weight", "stiffness=law.slow * weight",
+            "The yield displacement is that of the coefficient at rest.",
+            (TESTS + "problem/test_yielding_friction.py",)),
 )
 # fmt: on

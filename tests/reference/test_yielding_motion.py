@@ -108,7 +108,7 @@ def test_free_decay_has_the_turning_points_of_a_bilinear_oscillator():
     assert motion.stick[-1][1] == pytest.approx(ALONE.duration)
     residual = reference.demands(motion).residual
     last = motion.position[motion.time > motion.stick[-1][0], 0, 0]
-    assert residual.error >= np.ptp(last)
+    assert np.ptp(last) <= residual.error < 2.1 * WAY
     assert residual.value == pytest.approx(abs(expected[-1]), rel=1e-3)
 
 
