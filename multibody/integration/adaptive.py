@@ -33,6 +33,7 @@ from multibody.integration.step_control import (
     gap_rate_at_end,
 )
 from multibody.integration.termination import find_first_row, find_termination
+from multibody.models.friction_springs import Change, FrictionSprings
 from multibody.models.recorded import align_steps
 from multibody.models.state import EngineState
 from reference.problem import Outcome
@@ -50,6 +51,9 @@ FREE_ITERATIONS = 2
 
 # Rows at the end of a chunk that decide whether the step may grow.
 RECENT_ROWS = 8
+
+# Least share of a step that is made on its own before a contact begins or ends to slide.
+SHORTEST_SHARE = 1e-4
 
 # Rounding of the instant at which a run has reached its end, relative.
 TIME_ROUNDING = 1e-12
@@ -139,23 +143,33 @@ class _Progress:
         if openings is not None:
             motion = openings.fill_gaps_of_open_contacts(motion)
         size = absolute_accelerations(self.model, motion, self.integration.ground)
-        step_ratio = self.control.step_ratio(motion, size, self.run.peaks.value, step)
+        step_ratio = self.control.step_ratio(motion, size, self.run.peaks.value, step, at.state)
         last = len(motion.time) - 1
         failing = find_first_row(step_ratio > 1.0)
         rejected = at.divisions < level.max_divisions and failing <= last
         if rejected:
             last = max(failing - 1, 0)
         event = None if openings is None else openings.find_first_event(motion.cut_at(last))
+        change = self._find_change(motion.cut_at(last)) if event is None else None
         if event is not None:
             last, rejected = event.row, False
+        elif change is not None:
+            last, rejected = change.row, False
+        before = at.state
         if last > 0 and not self._accept(motion.cut_at(last), size[: last + 1], settle=rejected):
             return False
         if openings is not None and event is not None:
             return self._pass_event(openings, event, step)
+        springs = self.model.springs
+        if springs is not None:
+            rates = self._rates_of_limits(springs, motion, last)
+            at.state = springs.settle(at.state, before, motion.accelerations[last], rates)
+            if change is not None:
+                return self._pass_change(springs, change, step, rates)
         if rejected:
             at.divisions += 1 if step_ratio[failing] < STEP_RATIO else 2
             at.divisions = min(at.divisions, level.max_divisions)
-        else:
+        elif not self.integration.solver.stopped:
             self._enlarge_steps(motion, step_ratio, asked)
         return True
 
@@ -229,6 +243,40 @@ class _Progress:
         else:
             openings.open_contacts(event)
         at.next_count = MIN_CHUNK_STEPS
+        return True
+
+    def _find_change(self, motion: EngineMotion) -> Change | None:
+        """Find the first contact that begins or ends to slide, where friction yields."""
+        springs, pressed = self.model.springs, self.model.bearing_penetration or self.level.penetration
+        if springs is None:
+            return None
+        rows = motion.time, motion.coordinates, motion.velocities, motion.contact
+        return springs.find_change(*rows, self.at.state, pressed, self.level.slide_end)
+
+    def _rates_of_limits(self, springs: FrictionSprings, motion: EngineMotion, row: int) -> Array:
+        """Rates (K,) of the elastic displacements at which contacts slide, at a row."""
+        near = motion.cut_at(max(row, 1))
+        pressed = self.model.bearing_penetration or self.level.penetration
+        rows = slice(-RECENT_ROWS, None)
+        limits = springs.limits(near.time[rows], near.velocities[rows], near.contact[rows], pressed)
+        slope: Array = np.polyfit(near.time[rows] - near.time[-1], limits, 1)[0]
+        return slope
+
+    def _pass_change(self, springs: FrictionSprings, change: Change, step: float, rates: Array) -> bool:
+        """Let a contact begin or end to slide, a part of the next step ahead; return whether the run goes on."""
+        at, solver, before = self.at, self.integration.solver, self.at.state
+        self.integration.budget.left -= 1.0
+        length = change.share * step
+        motion = solver.run(before, at.time, length, 1) if length > SHORTEST_SHARE * step else None
+        if motion is not None and np.isfinite(motion.accelerations).all():
+            # nothing is read here: the next chunk reads the place of the kink from its side
+            size = absolute_accelerations(self.model, motion, self.integration.ground)
+            if not self._accept(motion, size, read=False):
+                return False
+            at.state = springs.settle(at.state, before, motion.accelerations[-1], rates)
+        assert at.state.accelerations is not None  # settled
+        at.state = springs.settle(at.state, at.state, at.state.accelerations, rates, change.contact)
+        self.run.peaks.restart()
         return True
 
     def _enlarge_steps(self, motion: EngineMotion, step_ratio: Array, asked: int) -> None:

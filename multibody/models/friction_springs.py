@@ -1,0 +1,261 @@
+"""
+Spheres that turn on springs: friction that yields elastically before it slides.
+
+The engine's contact slides between the surfaces of depression and sphere. A sphere that turns about its fixed center
+moves its surface along the depression and nothing else, so that a torsion spring of stiffness k r^2 is a spring k in
+series with friction alone, in the tangent plane and alike in all directions. A sphere that moved on a horizontal spring
+would take the restoring force N x / rho along, and lengthen the pendulum by N / k.
+
+Regularized friction below its limit would creep, and make the spring forget within u_y / v_reg. So every contact either
+rests, with a coefficient far above the scene's, or slides. Where its spring reaches the limit it slides from there on,
+and where its slip comes to zero it rests. v_reg counts in the last moment of a slide, and falls from level to level.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from multibody.models.depressions import Depressions, angular_velocity_matrix
+from multibody.models.engine import BODY_COORDINATES, items
+from multibody.models.state import EngineState
+from multibody.models.units import Units
+from reference.problem import DryFriction, Scene
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+# Moment of inertia of all spheres together over r^2: it adds as much to the mass that vibrates on the springs.
+TURNING_MASS = 1e-9
+
+# Mass and stiffness that hold the center of a sphere: it moves by 1e-10 rho under the weight, and does not resonate.
+HELD_MASS, HELD_STIFFNESS = 1e8, 1e10
+
+# Coefficient of a contact that rests over the scene's: it creeps by that share of v_reg.
+RESTING = 1e6
+
+# Slip speed at which a slide ends at level 0, over sqrt(mu g u_y): noise of the contact force turns a massless sphere
+# by as much in short steps. What is left of the slide takes the spring beyond its limit, which is no yield.
+END_OF_SLIDE = 0.03
+
+# v_reg over that speed.
+REGULARIZED_SHARE = 0.25
+
+# Change of the platform's velocity over the slip speed in one step that counts as much as a change of the springs.
+SHARE_OF_SLIDE = 0.3
+
+# Number of data of a contact, and the place of the slip speed among them.
+DATA, SLIP = 4, 1
+
+# Least elastic displacement that has a direction.
+SMALLEST_DISPLACEMENT = 1e-300
+
+
+class Change(NamedTuple):
+    """A contact that begins or ends to slide behind `row`, at a share of the step there."""
+
+    row: int
+    contact: int
+    share: float
+
+
+@dataclass(frozen=True)
+class FrictionSprings:
+    """
+    The springs that turn the spheres, in units of the model.
+
+    turns: index of the rotations of each sphere, (K, 3). law: friction of the contacts. displacement: elastic one at
+    which they slide under the weight. slide_end: slip speed at which slides end at level 0. damping_ratio: of the contacts.
+    """
+
+    mbs: Any
+    contacts: list[Any]
+    turns: NDArray[np.int_]
+    depressions: Depressions
+    law: DryFriction
+    displacement: float
+    slide_end: float
+    damping_ratio: float
+
+    def begin(self, state: EngineState) -> None:
+        """Give every contact the coefficient with which it rests or slides from a state on."""
+        for contact, factor in zip(self.contacts, self.factors(state)):
+            self.mbs.SetObjectParameter(contact, "dynamicFriction", factor * self.law.largest)
+
+    def factors(self, state: EngineState) -> list[float]:
+        """Coefficients (K,) of the contacts over the scene's: all rest at the start."""
+        return [1.0 if slides else RESTING for slides in self._sliding(state)]
+
+    def set_slide_end(self, end: float) -> None:
+        """Set the slip speed at which slides end."""
+        for contact in self.contacts:
+            self.mbs.SetObjectParameter(contact, "frictionProportionalZone", REGULARIZED_SHARE * end)
+
+    def step_ratio(self, coordinates: Array, velocities: Array, contact: Array, state: EngineState, end: float) -> Array:
+        """
+        Largest change in each step, (T,): of elastic displacements over that of yield, of the velocity over the slip.
+
+        end: slip speed, below which a slide ends.
+        """
+        turned = np.linalg.norm(np.diff(coordinates[:, self.turns], axis=0), axis=2)
+        changes = self.depressions.radius / self.displacement * turned
+        slip = np.maximum(contact[1:, SLIP::DATA], end)[:, self._sliding(state)]
+        turning = np.linalg.norm(np.diff(velocities[:, :3], axis=0), axis=1)[:, None] / slip
+        return np.append(0.0, np.maximum(changes.max(axis=1, initial=0.0), SHARE_OF_SLIDE * turning.max(axis=1, initial=0.0)))
+
+    def find_change(
+        self, time: Array, coordinates: Array, velocities: Array, contact: Array, state: EngineState, penetration: float, end: float
+    ) -> Change | None:
+        """Find the first contact that begins or ends to slide in steps from `state`, (T, ...); None without one."""
+        if len(time) < 2:
+            return None
+        slip = contact[:, SLIP::DATA]
+        limit = self.limits(time, velocities, contact, penetration)
+        excess = self.depressions.radius * np.linalg.norm(coordinates[:, self.turns], axis=2) - limit
+        left = end**2 / (2.0 * self.law.largest)
+        changes = []
+        for number, slides in enumerate(self._sliding(state)):
+            find = _find_rest if slides else _find_yield
+            changes.append(find(number, slip[:, number] / end if slides else excess[:, number] / left))
+        return min((change for change in changes if change is not None), default=None)
+
+    def limits(self, time: Array, velocities: Array, contact: Array, penetration: float) -> Array:
+        """Elastic displacements at which the contacts slide, (T, K)."""
+        gap = contact[:, 0::DATA]
+        lag = 2.0 * self.damping_ratio * math.sqrt(penetration)
+        load = np.maximum(-(gap + lag * np.gradient(gap, time, axis=0)) / penetration, 0.0)
+        speed = np.linalg.norm(velocities[:, :3], axis=1)[:, None]
+        limit: Array = self.displacement * self.law.at(speed, load) / self.law.largest * load
+        return limit
+
+    def settle(
+        self, state: EngineState, before: EngineState, accelerations: Array, rates_of_limits: Array, changed: int = -1
+    ) -> EngineState:
+        """
+        Return the state to go on from after steps from `before`, with accelerations (n,) and rates of limits (K,) there.
+
+        The rates of the spheres are those of contacts that rest or slide: what the steps leave of massless spheres
+        alternates behind every kink. changed: contact that now begins or ends to slide.
+        """
+        sliding = np.array(self._sliding(before))
+        if changed >= 0:
+            sliding[changed] = not sliding[changed]
+        velocities, accelerations, contact = state.velocities.copy(), accelerations.copy(), state.contact.copy()
+        normals, jacobian = self.depressions.contact_normals_and_jacobian(state.coordinates)
+        turning = np.eye(BODY_COORDINATES)
+        turning[3:, 3:] = angular_velocity_matrix(state.coordinates[3:6])
+        speeds, rates = (jacobian @ turning @ values[:BODY_COORDINATES] for values in (velocities, accelerations))
+        if len(self.depressions.vertical):
+            speeds[:, 2] -= velocities[self.depressions.vertical]
+        for number, (turn, normal) in enumerate(zip(self.turns, normals)):
+            slip = np.zeros(3)
+            if sliding[number]:
+                surface = np.cross(state.coordinates[turn], normal)
+                along = surface / max(float(np.linalg.norm(surface)), SMALLEST_DISPLACEMENT)
+                slip, rates[number] = (speeds[number] @ along - rates_of_limits[number]) * along, 0.0
+            contact[DATA * number + SLIP] = np.linalg.norm(slip)
+            velocities[turn] = np.cross(normal, speeds[number] - slip) / self.depressions.radius
+            accelerations[turn] = np.cross(normal, rates[number]) / self.depressions.radius
+        return replace(
+            state, velocities=velocities, contact=contact, accelerations=accelerations, sliding=tuple(sliding.tolist())
+        )
+
+    def _sliding(self, state: EngineState) -> tuple[bool, ...]:
+        """Whether each contact slides: none does at the start."""
+        return state.sliding or (False,) * len(self.contacts)
+
+
+def _find_yield(contact: int, excess: Array) -> Change | None:
+    """Find the step in which the excess (T,) of a spring over its limit, in units of what is no yield, passes zero."""
+    rows = np.flatnonzero((excess[1:] > 1.0) & (excess[1:] > excess[:-1]))
+    if not len(rows):
+        return None
+    before, after = excess[rows[0] : rows[0] + 2].tolist()
+    return Change(int(rows[0]), contact, max(-before, 0.0) / (after - min(before, 0.0)))
+
+
+def _find_rest(contact: int, slip: Array) -> Change | None:
+    """Find the step in which the slip speed (T,), over that of the end, would pass zero if it fell as in the last."""
+    rows = np.flatnonzero((2.0 * slip[1:] <= slip[:-1]) | ((slip[1:] <= 1.0) & (slip[1:] < slip[:-1])))
+    if not len(rows):
+        return None
+    before, after = slip[rows[0] : rows[0] + 2].tolist()
+    return Change(int(rows[0]) + 1, contact, min(after / (before - after), 1.0))
+
+
+def make_friction_springs(
+    mbs: Any, scene: Scene, units: Units, contacts: list[Any], first: int, depressions: Depressions
+) -> FrictionSprings | None:
+    """Return the springs under `contacts` whose spheres have the coordinates from `first` on; None in a rigid scene."""
+    if not scene.dry_friction.elastic:
+        return None
+    turns = first + BODY_COORDINATES * np.arange(len(contacts))[:, None] + np.arange(3, BODY_COORDINATES)
+    law = scene.dry_friction.in_unit_of_speed(units.velocity)
+    stated = scene.isolator.support_damping
+    return FrictionSprings(
+        mbs,
+        contacts,
+        turns,
+        depressions,
+        law,
+        scene.yield_displacement / units.length,
+        end_of_slide(scene, units),
+        1.0 if stated is None else stated,
+    )
+
+
+def end_of_slide(scene: Scene, units: Units) -> float:
+    """Slip speed at which a slide ends at level 0 where friction yields, in units of velocity."""
+    return END_OF_SLIDE * math.sqrt(scene.friction_coefficient * scene.yield_displacement / units.length)
+
+
+@dataclass(frozen=True)
+class TurningSpheres:
+    """Markers of spheres that turn, the engine's object on their coordinates, and the matrices of that, (n, n)."""
+
+    markers: list[Any]
+    bodies: list[Any]
+    stiffness: Array
+    damping: Array
+
+    @property
+    def coordinates(self) -> int:
+        """Number of their coordinates."""
+        return len(self.stiffness)
+
+
+def add_turning_spheres(
+    mbs: Any, scene: Scene, units: Units, places: Array, radius: float, moved: float = 0.0
+) -> TurningSpheres:
+    """
+    Add spheres that turn on springs at places (K, 2), a length of one above the depressions; none in a rigid scene.
+
+    moved: mass of all spheres where they can move vertically, pressed upwards by the weight.
+    """
+    if not scene.dry_friction.elastic:
+        return TurningSpheres([], [], np.zeros((0, 0)), np.zeros((0, 0)))
+    count = len(places)
+    rest = [[*place, 1.0, 0.0, 0.0, 0.0] for place in places]
+    nodes = [mbs.AddNode(items.NodeRigidBodyRxyz(referenceCoordinates=place)) for place in rest]
+    turning = scene.dry_friction.stiffness * units.length / units.force * radius**2 / count
+    mass = np.tile([HELD_MASS] * 3 + [TURNING_MASS * radius**2 / count] * 3, count)
+    stiffness = np.tile([HELD_STIFFNESS] * 3 + [turning] * 3, count)
+    damping = np.tile([2.0 * np.sqrt(HELD_MASS * HELD_STIFFNESS)] * 3 + [0.0] * 3, count)
+    upward = np.zeros(len(mass))
+    if moved:
+        vertical = 2 + BODY_COORDINATES * np.arange(count)
+        mass[vertical], stiffness[vertical], damping[vertical], upward[vertical] = moved / count, 0.0, 0.0, 1.0 / count
+    matrices = np.diag(stiffness), np.diag(damping)
+    spheres = items.ObjectGenericODE2(
+        nodeNumbers=nodes,
+        massMatrix=np.diag(mass),
+        stiffnessMatrix=matrices[0],
+        dampingMatrix=matrices[1],
+        forceVector=upward,
+    )
+    markers = [mbs.AddMarker(items.MarkerNodeRigid(nodeNumber=node)) for node in nodes]
+    return TurningSpheres(markers, [mbs.AddObject(spheres)], *matrices)
