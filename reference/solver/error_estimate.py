@@ -9,12 +9,14 @@ import numpy.typing as npt
 
 from reference.solver.heating import mean_factor, set_factor_by_heat, set_uniform_factor
 from reference.solver.run import integrate_runs
+from reference.solver.run_yielding import integrate_yielding_runs
 from reference.solver.step_control import MIN_SCALE_FRACTION
 from reference.solver.system import (
     CONSISTENT,
     SOLVED,
     STEP_LIMIT,
     UNSOLVED,
+    YIELDING,
     Array,
     RunSettings,
     StepRecord,
@@ -96,7 +98,8 @@ def peaks_from(
     value, error = np.empty((count, bodies)), np.empty((count, bodies))
     ends = np.empty((len(RunPeaks._fields) - 2, count))
     until = np.full(count, system.duration) if until is None else until
-    integrate_runs(system, phases, x, v, settings, record, until, value, error, ends)
+    integrate_all = integrate_yielding_runs if system.law == YIELDING else integrate_runs
+    integrate_all(system, phases, x, v, settings, record, until, value, error, ends)
     return RunPeaks(value, error, *ends)
 
 
@@ -146,8 +149,8 @@ def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole
     # Where the error misses the tolerance, the finer run becomes the coarser one of the next pair. A run that cannot be
     # finished is tried again, too, with a tighter tolerance: it may pass where a looser one stumbled. If the tighter
     # one fails instead, the peaks of the pair before remain, with their error and the status "tolerance not met".
-    # Looking ahead supports only the consistent condition for rest and no heat.
-    early = not whole and system.rest_condition == CONSISTENT and not len(system.heat)
+    # Looking ahead supports only the consistent condition for rest, no heat and no friction that yields.
+    early = not whole and system.rest_condition == CONSISTENT and not len(system.heat) and system.law != YIELDING
     settings = settings._replace(early=early)
     tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * settings.tolerance, MIN_STEP_TOLERANCE))
     if len(system.heat) and len(phases) and not len(system.k_t):  # every pair has its own k_T, first from a coarse run

@@ -18,7 +18,7 @@ from reference.solver.compiled import compiled
 from reference.solver.contact.friction import decay_rate, turning_rate
 from reference.solver.polynomial import POWERS, expand
 from reference.solver.rows import broadcast_like, highest, lowest, put, row
-from reference.solver.system import PLATFORM, REST, SLIDING, STOPPING, System
+from reference.solver.system import PLATFORM, REST, SLIDING, STOPPING, YIELDING, System
 from reference.solver.work import SPEED2, Workspace
 
 # In a step that meets its tolerance a vibration turns by a small part of a wave between two stages: a peak between them
@@ -101,6 +101,8 @@ def link_error_rate(system: System, work: Workspace, h: float, body: int) -> flo
         rate = 0.0
         if body > 0:
             rate += system.below[body, axis] * (velocity_defect(work, body - 1, axis) - own)
+        if body == PLATFORM and system.law == YIELDING:
+            rate -= system.stiffness * own
         if body < last:
             rate += system.above[body, axis] * (velocity_defect(work, body + 1, axis) - own)
         squared += (h * rate) ** 2

@@ -15,13 +15,15 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 # Friction laws (contact/friction.py)
-SET_VALUED, REGULARIZED, LUBRICATED = 0, 1, 2
+SET_VALUED, REGULARIZED, LUBRICATED, YIELDING = 0, 1, 2, 3
 # Conditions for rest: that of the friction cone, or (4.6) as printed in the paper
 CONSISTENT, PRINTED = 0, 1
 # The integers below are numpy's: numba would compile a function once more for every literal that it is called with.
 PLATFORM = np.int64(0)  # index of the platform among the bodies
 # States of the contact
-REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING = cast("tuple[int, ...]", tuple(map(np.int64, range(5))))
+REST, SLIDING, CREEPING, LUBRICATED_SLIDING, STOPPING, ELASTIC, PLASTIC = cast(
+    "tuple[int, ...]", tuple(map(np.int64, range(7)))
+)
 # Outcomes of the equations of one step, or of a whole run
 SOLVED, UNSOLVED, RIM, PAINLEVE, OPEN, STEP_LIMIT, TRAVEL = cast("tuple[int, ...]", tuple(map(np.int64, range(7))))
 
@@ -30,12 +32,13 @@ class System(NamedTuple):
     """The paper's system in accelerations: link stiffness and damping over the mass of the body they act on."""
 
     small: bool  # equations (4.3) instead of (3.9)
-    law: int  # SET_VALUED, REGULARIZED or LUBRICATED
+    law: int  # SET_VALUED, REGULARIZED, LUBRICATED or YIELDING
     rest_condition: int  # CONSISTENT or PRINTED
     friction: float  # mu at vanishing speed, or f_c in s/m of a lubricated contact: read by contact/friction.py alone
     rise: float  # increase of mu from rest to high speed
     rate: float  # s/m, rate of that increase with the speed; 0 where mu is constant
     exponent: Any  # float, exponent n of N / W in mu (contact/load.py); None where mu has neither that nor heating
+    stiffness: float  # 1/s^2, k / m1 of friction that yields (contact/yielding.py); infinite for any other
     v_reg: float  # m/s, speed below which friction is linear under the regularized law
     mass_ratio: float  # m_sum / m1
     radius: float  # m, rho
@@ -118,16 +121,20 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
     damping_rate = float(2.0 * (damping_below + damping_above).max())
     # Without friction the lubricated law with f_c = 0 is the same, and has no corner.
     dry = scene.dry_friction
-    smooth = not scene.has_dry_friction
+    smooth = dry.largest == 0.0
     heat = None if smooth else dry.heat
+    stiffness = float(dry.stiffness / masses[0])
+    shear = stiffness if dry.elastic else 0.0
+    law = YIELDING if dry.elastic else SET_VALUED if v_reg is None else REGULARIZED
     return System(
         small=small,
-        law=LUBRICATED if smooth else (SET_VALUED if v_reg is None else REGULARIZED),
+        law=LUBRICATED if smooth else law,
         rest_condition=PRINTED if printed_rest else CONSISTENT,
         friction=scene.friction_coefficient if scene.lubricated else dry.slow,
         rise=dry.fast - dry.slow if dry.varies else 0.0,
         rate=dry.rate if dry.varies else 0.0,
         exponent=None if smooth or (dry.exponent == 0.0 and dry.heat is None) else dry.exponent,
+        stiffness=stiffness,
         v_reg=0.0 if v_reg is None else float(v_reg),
         mass_ratio=float(scene.total_mass / masses[0]),
         radius=float(scene.radius),
@@ -145,7 +152,7 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         kinks=np.zeros((0, 1)),
         duration=float(scene.duration),
         axes=axes,
-        fastest=float(np.sqrt(2.0 * (below + above).max())) + damping_rate,  # Gershgorin's bounds of the eigenvalues
+        fastest=float(np.sqrt(2.0 * (below + above).max() + shear)) + damping_rate,  # Gershgorin's bounds of the eigenvalues
         damping_rate=damping_rate,
     )
 

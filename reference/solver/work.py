@@ -26,6 +26,10 @@ BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
 (
     DIRECTION, SIGMA, CLOCK, ALONG, ACROSS, ALONG_SLOPE, ACROSS_SLOPE, RATIO, SPEED, COSINE, SINE, ALONG_BY_SIGMA,
 ) = range(12)  # fmt: skip
+# Rows of Workspace.shear of friction that yields (contact/yielding.py), x and y. First what its motion depends on:
+# position, velocity, drive, friction force; then acceleration and rate of the force, each of which has four slopes in
+# Workspace.shear_slopes; at last the excess over the bound, the velocity along the force, m/s, and the bound
+ARGUMENTS, PUSHED, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, BOUND = 0, 4, 6, 8, 10, 12, 13, 14
 MAX_PARTS = 3  # separate parts of one step that count for the peaks
 SERIES_TERMS = 32  # terms of the Taylor series of the ground's harmonics in a step: more than any step needs
 
@@ -96,6 +100,12 @@ class Workspace:
     dense: Array  # (2, L) values at collocation.SEARCH_POINTS
     scale: Array  # (N,) m/s^2, accelerations that errors are relative to
     defect: Array  # (N,) m/s^2, interpolation error at the start of the step
+    force: Array  # (2,) m/s^2, friction that yields, over m1, at the start of the step
+    shear: Array  # (15, L) friction that yields at the stages, in the rows above
+    shear_slopes: Array  # (9, 4, L) derivatives of acceleration and rate by every argument; before them both themselves
+    shear_matrix: Array  # (4 S, 4 S) matrix of Newton's method
+    shear_right: Array  # (4 S,) its right side, then its correction
+    shear_pivots: Array  # (4 S,) row exchanges of the factorized matrix
     # Last step
     last_length: float  # s; 0 where its polynomial is no guess for the next step
     guess: Array  # (2, POWERS) coefficients of the platform's acceleration in the last step
@@ -150,6 +160,12 @@ def _allocate_fields(work: Workspace, bodies: int) -> None:
     work.dense = np.zeros((2, length))
     work.scale = np.zeros(n)
     work.defect = np.zeros(n)
+    work.force = np.zeros(2)
+    work.shear = np.zeros((15, length))
+    work.shear_slopes = np.zeros((9, 4, length))
+    work.shear_matrix = np.zeros((4 * s, 4 * s))
+    work.shear_right = np.zeros(4 * s)
+    work.shear_pivots = np.zeros(4 * s)
     work.guess = np.zeros((2, POWERS))
     work.waves = np.zeros(2, np.complex128)
     work.turns = np.zeros(2, np.complex128)

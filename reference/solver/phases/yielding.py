@@ -1,0 +1,302 @@
+"""
+Motion under friction that yields: one collocation step, elastic or plastic, and the events that end such a phase.
+
+The unknowns of a step are the accelerations of the platform and its friction force at the stages.
+"""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+
+from reference.solver.chain import move_chain, set_chain_acceleration, set_feedback
+from reference.solver.collocation import A2, NODES, STAGES, A
+from reference.solver.compiled import compiled
+from reference.solver.contact.platform import load_in_state
+from reference.solver.contact.yielding import yielding_motion
+from reference.solver.events import LEVEL, NEVER, expand_level, locate_first_event
+from reference.solver.ground import ground_at
+from reference.solver.polynomial import A_COLUMNS, NODES_ROW, expand
+from reference.solver.rows import broadcast_like, highest, lowest, put, row
+from reference.solver.step_control import begin_with_acceleration
+from reference.solver.steps import (
+    MAX_ITERATIONS,
+    ROUNDING_CHANGE,
+    SLOW_CONVERGENCE,
+    place_platform,
+    rim_or_unsolved,
+    set_absolute_accelerations,
+)
+from reference.solver.system import ELASTIC, OPEN, PAINLEVE, PLASTIC, SOLVED, UNSOLVED, Array, Load, System
+from reference.solver.work import (
+    ALONG_FORCE,
+    ARGUMENTS,
+    BOUND,
+    DETERMINANT,
+    DRIVE,
+    EXCESS,
+    FORCE,
+    FORCE_RATE,
+    MOTION,
+    POSITION,
+    PUSHED,
+    REACTION,
+    VELOCITY,
+    Workspace,
+)
+
+# Step of the difference quotients for Newton's method, as a share of radius, speed, gravity or friction force; and that
+# by the velocity of a platform that does not move, m/s
+DIFFERENCE, LEAST_SPEED = 1e-7, 1e-10
+FIRST_NODE = float(NODES[0])
+LATE_EVENT = 1e-10  # share of a step behind which an event counts as one at its end
+
+
+@compiled
+def begin_yielding(system: System, work: Workspace, contact: int, slid: bool) -> None:
+    """Set the accelerations in the state at the start of a phase; after a slide, first the size of the force."""
+    ground = ground_at(system, work, work.time)
+    set_chain_acceleration(system, work, ground)
+    load = load_in_state(system, work, ground)
+    ax, ay, _, _, _, _, limit, size, _ = yielding_motion(
+        system, PLASTIC if slid else contact, load, work.v[0, 0], work.v[0, 1], work.force[0], work.force[1]
+    )
+    if slid:
+        work.force[0] *= limit / size
+        work.force[1] *= limit / size
+    begin_with_acceleration(system, work, ground, ax, ay, contact)
+
+
+@compiled
+def solve_yielding_step(system: System, work: Workspace, contact: int, h: float, tolerance: float) -> int:
+    """
+    Solve for the stage accelerations of the platform and its friction force by Newton's method; return the outcome.
+
+    `load_step` comes before; `a[0]` holds the first guess. The iteration ends as in `solve_moving_step`.
+    """
+    set_feedback(system, work, h)
+    for axis in range(2):
+        rate = 0.0 if contact == PLASTIC else system.stiffness * work.v[0, axis]
+        put(work.shear, FORCE + axis, work.force[axis] + h * rate * row(NODES_ROW, ()))
+    fresh, before = True, 0.0
+    for iteration in range(MAX_ITERATIONS):
+        code, size = set_yielding_residual(system, work, contact, h)
+        if code != SOLVED:
+            return code
+        if fresh:
+            set_yielding_slopes(system, work, contact)
+            set_yielding_matrix(work, h)
+            if not factorize_all(work.shear_matrix, work.shear_pivots):
+                return UNSOLVED
+        solve_all(work.shear_matrix, work.shear_pivots, work.shear_right)
+        change = correct_unknowns(work)
+        settled = change <= max(tolerance, ROUNDING_CHANGE * size)
+        if not change < inf or (iteration > 1 and fresh and change > before and not settled):
+            return UNSOLVED
+        if settled:
+            code, _ = set_yielding_residual(system, work, contact, h)
+            move_chain(system, work, h)
+            set_absolute_accelerations(system, work, contact)
+            return OPEN if code == SOLVED and lowest(row(work.stage, REACTION)) <= 0.0 else code
+        fresh = iteration > 0 and change > SLOW_CONVERGENCE * before
+        before = change
+    return UNSOLVED
+
+
+@compiled
+def set_motion(system: System, work: Workspace, contact: int) -> None:
+    """Set the motion at the stages in `shear` from the arguments there, and reaction and determinant in `stage`."""
+    shear, ground = work.shear, work.ground
+    load = Load(
+        row(shear, ARGUMENTS), row(shear, ARGUMENTS + 1), row(shear, PUSHED), row(shear, PUSHED + 1),
+        row(ground, 0), row(ground, 1), row(ground, 2), row(ground, 3),
+    )  # fmt: skip
+    ax, ay, reaction, determinant, rate_x, rate_y, limit, size, along = yielding_motion(
+        system, contact, load, row(shear, ARGUMENTS + 2), row(shear, ARGUMENTS + 3), row(shear, FORCE),
+        row(shear, FORCE + 1),
+    )  # fmt: skip
+    put(work.stage, REACTION, reaction)
+    put(work.stage, DETERMINANT, determinant)
+    put(shear, MOTION, ax)
+    put(shear, MOTION + 1, ay)
+    put(shear, FORCE_RATE, rate_x)
+    put(shear, FORCE_RATE + 1, rate_y)
+    put(shear, EXCESS, size - limit)
+    put(shear, ALONG_FORCE, along)
+    put(shear, BOUND, limit)
+
+
+@compiled
+def set_yielding_residual(system: System, work: Workspace, contact: int, h: float) -> tuple[int, float]:
+    """Set the residual of accelerations and friction force at the stages; return the outcome and their size, m/s^2."""
+    stage, shear, right = work.stage, work.shear, work.shear_right
+    place_platform(work, h, 2)
+    for axis in range(2):
+        put(shear, ARGUMENTS + axis, row(stage, POSITION + axis))
+        put(shear, ARGUMENTS + 2 + axis, row(stage, VELOCITY + axis))
+        put(shear, PUSHED + axis, row(stage, DRIVE + axis))
+    px, py = row(shear, ARGUMENTS), row(shear, ARGUMENTS + 1)
+    if highest(px * px + py * py) >= system.radius**2:
+        return rim_or_unsolved(system, work), 0.0
+    set_motion(system, work, contact)
+    size = 0.0
+    for axis in range(2):
+        moved = broadcast_like(work.force[axis], px)
+        for m in range(STAGES):
+            moved += row(A_COLUMNS, m) * (h * shear[FORCE_RATE + axis, m])
+        missing_a = row(shear, MOTION + axis) - row(work.a, (0, axis))
+        missing_q = moved - row(shear, FORCE + axis)
+        for m in range(STAGES):
+            right[axis * STAGES + m], right[(2 + axis) * STAGES + m] = missing_a[m], missing_q[m]
+        size += highest(abs(row(shear, MOTION + axis)))
+    return (SOLVED if lowest(row(stage, DETERMINANT)) > 0.0 else PAINLEVE), size
+
+
+@compiled
+def set_yielding_slopes(system: System, work: Workspace, contact: int) -> None:
+    """Set the derivatives of acceleration and force rate by every argument at the stages, by difference quotients."""
+    shear, slopes = work.shear, work.shear_slopes
+    for k in range(4):
+        put(slopes, (8, k), row(shear, MOTION + k))
+    speed = abs(row(shear, ARGUMENTS + 2)) + abs(row(shear, ARGUMENTS + 3)) + LEAST_SPEED / DIFFERENCE
+    bound = row(shear, BOUND)
+    for n in range(8):
+        size = broadcast_like(min(system.radius, 1.0) if n < 2 else system.gravity, speed)
+        if n == 2 or n == 3:
+            size = speed
+        elif n > 5:
+            size = bound
+        step, kept = DIFFERENCE * size, row(shear, ARGUMENTS + n)
+        put(shear, ARGUMENTS + n, kept + step)
+        set_motion(system, work, contact)
+        for k in range(4):
+            put(slopes, (n, k), (row(shear, MOTION + k) - row(slopes, (8, k))) / step)
+        put(shear, ARGUMENTS + n, kept)
+
+
+@compiled
+def set_yielding_matrix(work: Workspace, h: float) -> None:
+    """Set the derivative of the stage equations by the stage accelerations and the friction force at the stages."""
+    # Both, x and y, are the unknowns z; unknown m of a kind is z[kind * STAGES + m]. A change of one acts at stage i on
+    # position, velocity and drive there, and so on the accelerations and on the rates of the force, which the matrix A
+    # of the collocation integrates.
+    matrix, slopes, feedback = work.shear_matrix, work.shear_slopes, work.feedback
+    for kind in range(4):
+        axis = kind % 2
+        for m in range(STAGES):
+            column = kind * STAGES + m
+            for k in range(4):
+                for i in range(STAGES):
+                    change = 0.0
+                    if kind < 2:
+                        change += h * h * A2[i, m] * slopes[axis, k, i] + h * A[i, m] * slopes[2 + axis, k, i]
+                        change += feedback[axis, m, i] * slopes[4 + axis, k, i]
+                    elif i == m:
+                        change += slopes[6 + axis, k, i]
+                    if k < 2:
+                        matrix[k * STAGES + i, column] = -change
+                    else:
+                        for j in range(STAGES):
+                            place = k * STAGES + j
+                            before = 0.0 if i == 0 else matrix[place, column]
+                            matrix[place, column] = before - h * A[j, i] * change
+            matrix[column, column] += 1.0
+
+
+@compiled
+def correct_unknowns(work: Workspace) -> float:
+    """Add Newton's correction to the unknowns; return its largest entry for the accelerations, m/s^2, or infinity."""
+    change = 0.0
+    for axis in range(2):
+        for m in range(STAGES):
+            step, turn = work.shear_right[axis * STAGES + m], work.shear_right[(2 + axis) * STAGES + m]
+            work.a[0, axis, m] += step
+            work.shear[FORCE + axis, m] += turn
+            change = max(change, abs(step)) if abs(step) + abs(turn) < inf else inf
+    return change
+
+
+@compiled
+def factorize_all(matrix: Array, pivots: Array) -> bool:
+    """Overwrite a square matrix by its factors, with row pivoting; return False if it is singular or not finite."""
+    n = matrix.shape[0]
+    for i in range(n):
+        place = i
+        for k in range(i + 1, n):
+            if abs(matrix[k, i]) > abs(matrix[place, i]):
+                place = k
+        pivots[i] = place
+        if place != i:
+            for j in range(n):
+                matrix[i, j], matrix[place, j] = matrix[place, j], matrix[i, j]
+        if not 0.0 < abs(matrix[i, i]) < np.inf:
+            return False
+        inverse = 1.0 / matrix[i, i]
+        for k in range(i + 1, n):
+            factor = matrix[k, i] * inverse
+            matrix[k, i] = factor
+            if factor != 0.0:
+                for j in range(i + 1, n):
+                    matrix[k, j] -= factor * matrix[i, j]
+    return True
+
+
+@compiled
+def solve_all(factors: Array, pivots: Array, right: Array) -> None:
+    """Overwrite the right side by the solution, with the factors of `factorize_all`."""
+    n = factors.shape[0]
+    for i in range(n):
+        place = int(pivots[i])
+        right[i], right[place] = right[place], right[i]
+    for i in range(n):
+        for j in range(i):
+            right[i] -= factors[i, j] * right[j]
+    for i in range(n - 1, -1, -1):
+        for j in range(i + 1, n):
+            right[i] -= factors[i, j] * right[j]
+        right[i] /= factors[i, i]
+
+
+@compiled
+def cut_at_yield_or_unloading(
+    system: System, work: Workspace, contact: int, h: float, begun: bool
+) -> tuple[float, int]:
+    """Return the share of the step up to its first event, 0 for one at its start, and the next contact."""
+    # Elastic friction yields where its force reaches the bound. Plastic friction unloads where the rate of slip,
+    # the velocity along the force less the rate of the bound over k, passes zero. Both are zero at the start of a phase
+    # up to rounding, and the polynomial through the stages misses them there: the first stage decides.
+    shear = work.shear
+    values, following = row(shear, EXCESS) / row(shear, BOUND), PLASTIC
+    if contact == PLASTIC:
+        expand(row(shear, BOUND), work.powers[1])
+        theta = row(NODES_ROW, ())
+        growth = broadcast_like(0.0, theta)
+        for k in range(STAGES - 1, 0, -1):
+            growth = growth * theta + k * work.powers[1, k]
+        values, following = growth / (h * system.stiffness) - row(shear, ALONG_FORCE), ELASTIC
+    if values[0] > 0.0:
+        return (0.0, following) if begun else (FIRST_NODE, contact)
+    expand_level(work, values, 0.0)
+    portion = locate_first_event(system, work, LEVEL, 1.0, FIRST_NODE, values[0])
+    if portion == NEVER:
+        return 1.0, contact
+    return (1.0, following) if portion > 1.0 - LATE_EVENT else (portion, contact)
+
+
+@compiled
+def share_before_reversal(system: System, work: Workspace, contact: int) -> float:
+    """Return the share of the step before the platform turns back, where a coefficient of the speed has a kink."""
+    along = row(work.shear, ALONG_FORCE)
+    if contact == ELASTIC or system.rate == 0.0 or along[0] <= 0.0:
+        return 1.0
+    expand_level(work, -along, 0.0)
+    portion = locate_first_event(system, work, LEVEL, 1.0, FIRST_NODE, -along[0])
+    return 1.0 if portion > 1.0 - LATE_EVENT else portion
+
+
+@compiled
+def commit_force(work: Workspace) -> None:
+    """Make the friction force at the end of the step that of the new state."""
+    for axis in range(2):
+        work.force[axis] = work.shear[FORCE + axis, STAGES - 1]

@@ -1,0 +1,161 @@
+"""
+One run under friction that yields: elastic until its force reaches the bound, plastic until the slip would turn back.
+
+Every change is located; the steps are those of run.py, with their error, peaks and record.
+"""
+
+from __future__ import annotations
+
+from math import inf, sqrt
+
+from reference.solver.compiled import cached_entry_point, compiled
+from reference.solver.phases.follow import (
+    MAX_VIBRATION_ANGLE,
+    MIN_DRIFT_ANGLE,
+    add_drift,
+    vibration_angle,
+)
+from reference.solver.phases.yielding import (
+    FIRST_NODE,
+    begin_yielding,
+    commit_force,
+    cut_at_yield_or_unloading,
+    share_before_reversal,
+    solve_yielding_step,
+)
+from reference.solver.run import FIRST_STEP, HOLDING_TIME, MAX_IDLE_PHASES, NEGLIGIBLE_REMAINDER, RIM_SQUARED_FRACTION
+from reference.solver.step_control import (
+    FAILURE_SHORTENING,
+    MAX_SHORTENING,
+    NEWTON_FRACTION,
+    adapt_length,
+    commit_step,
+    count_step,
+    guess_from_last_step,
+    is_too_short,
+    length_factor,
+    propose_plain_length,
+    remaining_time,
+)
+from reference.solver.steps import load_step, step_error
+from reference.solver.system import (
+    ELASTIC,
+    PLASTIC,
+    RIM,
+    SOLVED,
+    STEP_LIMIT,
+    TRAVEL,
+    UNSOLVED,
+    Array,
+    RunSettings,
+    StepRecord,
+    System,
+)
+from reference.solver.travel import instant_of_travel
+from reference.solver.work import (
+    Workspace,
+    allocate_workspace,
+    record_by_reference,
+    reset_workspace,
+    system_by_reference,
+)
+
+# Length of a step, in units of RunSettings.period, down to which an event within its first stage is searched for
+EVENT_TIME = 1e-9
+
+
+@compiled
+def integrate_yielding(system: System, work: Workspace, settings: RunSettings, record: StepRecord, until: float) -> int:
+    """Follow the motion from the state in work.x, work.v to the first step beyond `until`, s; as `integrate` of run.py."""
+    # The gates of a step are those of `follow_phase`. The friction force is zero at the start. Where two phases end at
+    # once in favor of the other, the next one makes a short step whatever its events.
+    reset_workspace(work, min(FIRST_STEP * settings.period, system.duration), system.duration)
+    work.force[0] = work.force[1] = 0.0
+    contact, idle, shorter, begun, at_event = ELASTIC, 0, inf, False, False
+    begin_yielding(system, work, contact, False)
+    while remaining_time(system, work, settings) > 0.0:
+        if work.time > until:
+            break
+        if not count_step(work, settings):
+            return STEP_LIMIT
+        held = idle > MAX_IDLE_PHASES
+        h = min(propose_plain_length(system, work, settings), shorter)
+        if held:
+            h = min(h, HOLDING_TIME * settings.period)
+        code = UNSOLVED
+        if not is_too_short(work, contact, settings, h, UNSOLVED):
+            load_step(system, work, h)
+            guess_from_last_step(work, h)
+            code = solve_yielding_step(system, work, contact, h, NEWTON_FRACTION * settings.tolerance * work.scale[0])
+        if code != SOLVED:
+            if is_too_short(work, contact, settings, h, code):
+                return classify_end(system, work, settings, code)
+            work.length, shorter = FAILURE_SHORTENING * h, inf
+            continue
+        if not held and share_before_reversal(system, work, contact) < 1.0:
+            shorter = h * share_before_reversal(system, work, contact)
+            continue
+        angle = vibration_angle(system, contact, h)
+        error = step_error(
+            system, work, settings.tolerance, settings.damped_weight if angle > MAX_VIBRATION_ANGLE else 1.0
+        )
+        factor = length_factor(error, settings.tolerance)
+        if not error <= settings.tolerance:
+            work.length, shorter = min(MAX_SHORTENING, factor) * h, inf
+            continue
+        least = h <= EVENT_TIME * settings.period
+        share, following = cut_at_yield_or_unloading(system, work, contact, h, begun or least)
+        if held:
+            share, following = 1.0, contact
+        if 0.0 < share < 1.0:
+            shorter, at_event = h * share, share > FIRST_NODE
+            continue
+        if share > 0.0:
+            work.edges[0], work.edges[1] = 0.0, 1.0
+            reached = instant_of_travel(system, work, contact, h)
+            if angle > MIN_DRIFT_ANGLE:
+                add_drift(system, work, h, angle)
+            commit_step(system, work, record, h, contact, 1)
+            commit_force(work)
+            if reached < inf:
+                work.time = reached
+                return TRAVEL
+            adapt_length(work, h, factor)
+            idle, begun = 0, at_event and h == shorter
+            shorter, at_event = inf, False
+        if following != contact:
+            idle, begun = idle + 1, True
+            begin_yielding(system, work, following, contact == PLASTIC)
+            contact = following
+    return SOLVED
+
+
+@compiled
+def classify_end(system: System, work: Workspace, settings: RunSettings, code: int) -> int:
+    """Return the outcome of a run that cannot go on: nearly its end, the rim (4.1), or `code` itself."""
+    if work.end - work.time < NEGLIGIBLE_REMAINDER * settings.period:
+        return SOLVED
+    far = work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2
+    return RIM if code == UNSOLVED and far else code
+
+
+@cached_entry_point
+def integrate_yielding_runs(
+    system: System, phases: Array, x: Array, v: Array, settings: RunSettings, record: StepRecord,
+    until: Array, peaks: Array, reading_errors: Array, ends: Array,
+) -> None:  # fmt: skip
+    """Follow the motions under friction that yields and fill in what `integrate_runs` (run.py) does."""
+    work = allocate_workspace(peaks.shape[1])
+    system_reference, record_reference = system_by_reference(system), record_by_reference(record)
+    for m in range(phases.shape[0]):
+        work.phase[0], work.phase[1] = phases[m, 0], phases[m, 1]
+        for i in range(x.shape[0]):
+            for axis in range(2):
+                work.x[i, axis] = x[i, axis]
+                work.v[i, axis] = v[i, axis]
+        code = integrate_yielding(system_reference, work, settings, record_reference, until[m])
+        ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.squared_reach)
+        ends[4, m] = work.last_peak
+        for i in range(peaks.shape[1]):
+            peaks[m, i] = sqrt(work.best[i])
+            reading_errors[m, i] = work.reading_error[i]
