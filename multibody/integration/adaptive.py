@@ -275,7 +275,7 @@ class _Progress:
                 return False
             at.state = springs.settle(at.state, before, motion.accelerations[-1], rates)
         assert at.state.accelerations is not None  # settled
-        at.state = springs.settle(at.state, at.state, at.state.accelerations, rates, change.contact)
+        at.state = springs.settle(at.state, at.state, at.state.accelerations, rates, change)
         self.run.peaks.restart()
         return True
 

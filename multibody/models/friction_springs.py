@@ -56,11 +56,16 @@ SMALLEST_DISPLACEMENT = 1e-300
 
 
 class Change(NamedTuple):
-    """A contact that begins or ends to slide behind `row`, at a share of the step there."""
+    """
+    A contact that begins or ends to slide behind `row`, at a share of the step there.
+
+    limit: elastic displacement to which a spring returns that slips more slowly than at the end of a slide; else 0.
+    """
 
     row: int
     contact: int
     share: float
+    limit: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -119,8 +124,15 @@ class FrictionSprings:
         left = end**2 / (2.0 * self.law.largest)
         changes = []
         for number, slides in enumerate(self._sliding(state)):
-            find = _find_rest if slides else _find_yield
-            changes.append(find(number, slip[:, number] / end if slides else excess[:, number] / left))
+            if slides:
+                changes.append(_find_rest(number, slip[:, number] / end))
+                continue
+            change = _find_yield(number, excess[:, number] / left)
+            if change is not None:
+                row = change.row
+                speed = (excess[row + 1, number] - excess[row, number]) / (time[row + 1] - time[row])
+                change = change if speed > end else Change(row + 1, number, 0.0, float(limit[row + 1, number]))
+            changes.append(change)
         return min((change for change in changes if change is not None), default=None)
 
     def limits(self, time: Array, velocities: Array, contact: Array, penetration: float) -> Array:
@@ -133,17 +145,22 @@ class FrictionSprings:
         return limit
 
     def settle(
-        self, state: EngineState, before: EngineState, accelerations: Array, rates_of_limits: Array, changed: int = -1
+        self, state: EngineState, before: EngineState, accelerations: Array, rates_of_limits: Array, change: Change | None = None
     ) -> EngineState:
         """
         Return the state to go on from after steps from `before`, with accelerations (n,) and rates of limits (K,) there.
 
         The rates of the spheres are those of contacts that rest or slide: what the steps leave of massless spheres
-        alternates behind every kink. changed: contact that now begins or ends to slide.
+        alternates behind every kink. change: what happens there.
         """
         sliding = np.array(self._sliding(before))
-        if changed >= 0:
-            sliding[changed] = not sliding[changed]
+        if change is not None and change.limit:
+            turn = self.turns[change.contact]
+            coordinates = state.coordinates.copy()
+            coordinates[turn] *= change.limit / (self.depressions.radius * np.linalg.norm(coordinates[turn]))
+            state = replace(state, coordinates=coordinates)
+        elif change is not None:
+            sliding[change.contact] = not sliding[change.contact]
         velocities, accelerations, contact = state.velocities.copy(), accelerations.copy(), state.contact.copy()
         normals, jacobian = self.depressions.contact_normals_and_jacobian(state.coordinates)
         turning = np.eye(BODY_COORDINATES)
