@@ -52,6 +52,9 @@ FREE_ITERATIONS = 2
 # Rows at the end of a chunk that decide whether the step may grow.
 RECENT_ROWS = 8
 
+# Number of the largest steps in the first chunk after a contact began or ended to slide: the next may follow soon.
+STEPS_BEHIND_CHANGE = 4
+
 # Least share of a step that is made on its own before a contact begins or ends to slide.
 SHORTEST_SHARE = 1e-4
 
@@ -163,7 +166,7 @@ class _Progress:
         springs = self.model.springs
         if springs is not None:
             rates = self._rates_of_limits(springs, motion, last)
-            at.state = springs.settle(at.state, before, motion.accelerations[last], rates)
+            at.state = springs.settle(at.state, before, motion.accelerations[last], rates, level.slide_end)
             if change is not None:
                 return self._pass_change(springs, change, step, rates)
         if rejected:
@@ -273,10 +276,11 @@ class _Progress:
             size = absolute_accelerations(self.model, motion, self.integration.ground)
             if not self._accept(motion, size, read=False):
                 return False
-            at.state = springs.settle(at.state, before, motion.accelerations[-1], rates)
+            at.state = springs.settle(at.state, before, motion.accelerations[-1], rates, self.level.slide_end)
         assert at.state.accelerations is not None  # settled
-        at.state = springs.settle(at.state, at.state, at.state.accelerations, rates, change)
+        at.state = springs.settle(at.state, at.state, at.state.accelerations, rates, self.level.slide_end, change)
         self.run.peaks.restart()
+        at.next_count = STEPS_BEHIND_CHANGE
         return True
 
     def _enlarge_steps(self, motion: EngineMotion, step_ratio: Array, asked: int) -> None:

@@ -40,7 +40,10 @@ RESTING = 1e6
 
 # Slip speed at which a slide ends at level 0, over sqrt(mu g u_y): noise of the contact force turns a massless sphere
 # by as much in short steps. What is left of the slide takes the spring beyond its limit, which is no yield.
-END_OF_SLIDE = 0.03
+END_OF_SLIDE = 0.1
+
+# Excess of a spring over its limit at level 0, in yield displacements, that is no yield.
+EXCESS = 1e-4
 
 # v_reg over that speed.
 REGULARIZED_SHARE = 0.25
@@ -57,7 +60,7 @@ SMALLEST_DISPLACEMENT = 1e-300
 
 class Change(NamedTuple):
     """
-    A contact that begins or ends to slide behind `row`, at a share of the step there.
+    A contact that slides, or rests, from a share of the step behind `row` on.
 
     limit: elastic displacement to which a spring returns that slips more slowly than at the end of a slide; else 0.
     """
@@ -65,6 +68,7 @@ class Change(NamedTuple):
     row: int
     contact: int
     share: float
+    slides: bool
     limit: float = 0.0
 
 
@@ -121,7 +125,7 @@ class FrictionSprings:
         slip = contact[:, SLIP::DATA]
         limit = self.limits(time, velocities, contact, penetration)
         excess = self.depressions.radius * np.linalg.norm(coordinates[:, self.turns], axis=2) - limit
-        left = end**2 / (2.0 * self.law.largest)
+        left = EXCESS * self.displacement * (end / self.slide_end) ** 2
         changes = []
         for number, slides in enumerate(self._sliding(state)):
             if slides:
@@ -131,7 +135,7 @@ class FrictionSprings:
             if change is not None:
                 row = change.row
                 speed = (excess[row + 1, number] - excess[row, number]) / (time[row + 1] - time[row])
-                change = change if speed > end else Change(row + 1, number, 0.0, float(limit[row + 1, number]))
+                change = change if speed > end else Change(row + 1, number, 0.0, False, float(limit[row + 1, number]))
             changes.append(change)
         return min((change for change in changes if change is not None), default=None)
 
@@ -145,7 +149,13 @@ class FrictionSprings:
         return limit
 
     def settle(
-        self, state: EngineState, before: EngineState, accelerations: Array, rates_of_limits: Array, change: Change | None = None
+        self,
+        state: EngineState,
+        before: EngineState,
+        accelerations: Array,
+        rates_of_limits: Array,
+        end: float,
+        change: Change | None = None,
     ) -> EngineState:
         """
         Return the state to go on from after steps from `before`, with accelerations (n,) and rates of limits (K,) there.
@@ -159,8 +169,6 @@ class FrictionSprings:
             coordinates = state.coordinates.copy()
             coordinates[turn] *= change.limit / (self.depressions.radius * np.linalg.norm(coordinates[turn]))
             state = replace(state, coordinates=coordinates)
-        elif change is not None:
-            sliding[change.contact] = not sliding[change.contact]
         velocities, accelerations, contact = state.velocities.copy(), accelerations.copy(), state.contact.copy()
         normals, jacobian = self.depressions.contact_normals_and_jacobian(state.coordinates)
         turning = np.eye(BODY_COORDINATES)
@@ -169,13 +177,17 @@ class FrictionSprings:
         if len(self.depressions.vertical):
             speeds[:, 2] -= velocities[self.depressions.vertical]
         for number, (turn, normal) in enumerate(zip(self.turns, normals)):
-            slip = np.zeros(3)
+            surface = np.cross(state.coordinates[turn], normal)
+            along = surface / max(float(np.linalg.norm(surface)), SMALLEST_DISPLACEMENT)
+            slip = float(speeds[number] @ along - rates_of_limits[number])
+            changes = change is not None and change.contact == number
+            sliding[number] = change.slides if change is not None and changes else sliding[number] and slip > end
             if sliding[number]:
-                surface = np.cross(state.coordinates[turn], normal)
-                along = surface / max(float(np.linalg.norm(surface)), SMALLEST_DISPLACEMENT)
-                slip, rates[number] = (speeds[number] @ along - rates_of_limits[number]) * along, 0.0
-            contact[DATA * number + SLIP] = np.linalg.norm(slip)
-            velocities[turn] = np.cross(normal, speeds[number] - slip) / self.depressions.radius
+                slip, rates[number] = max(slip, end), 0.0
+            else:
+                slip = 0.0
+            contact[DATA * number + SLIP] = slip
+            velocities[turn] = np.cross(normal, speeds[number] - slip * along) / self.depressions.radius
             accelerations[turn] = np.cross(normal, rates[number]) / self.depressions.radius
         return replace(
             state, velocities=velocities, contact=contact, accelerations=accelerations, sliding=tuple(sliding.tolist())
@@ -192,7 +204,7 @@ def _find_yield(contact: int, excess: Array) -> Change | None:
     if not len(rows):
         return None
     before, after = excess[rows[0] : rows[0] + 2].tolist()
-    return Change(int(rows[0]), contact, max(-before, 0.0) / (after - min(before, 0.0)))
+    return Change(int(rows[0]), contact, max(-before, 0.0) / (after - min(before, 0.0)), slides=True)
 
 
 def _find_rest(contact: int, slip: Array) -> Change | None:
@@ -201,7 +213,7 @@ def _find_rest(contact: int, slip: Array) -> Change | None:
     if not len(rows):
         return None
     before, after = slip[rows[0] : rows[0] + 2].tolist()
-    return Change(int(rows[0]) + 1, contact, min(after / (before - after), 1.0))
+    return Change(int(rows[0]) + 1, contact, min(after / (before - after), 1.0), slides=False)
 
 
 def make_friction_springs(
