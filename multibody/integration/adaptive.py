@@ -182,6 +182,8 @@ class _Progress:
         at.divisions = max(at.divisions, level.min_divisions(at.time))
         step = level.step / STEP_RATIO**at.divisions
         asked = at.next_count if at.divisions == 0 else self.control.count_small_steps()
+        if self.model.springs is not None:
+            asked = min(asked, at.next_count)
         asked = min(asked, math.ceil((end - at.time) / step * (1.0 - TIME_ROUNDING)))
         longest = min(step, (end - at.time) / asked)
         return asked, *align_steps(ground.knots, ground.near, at.time, longest, asked)
@@ -291,5 +293,5 @@ class _Progress:
         before = asked if at.divisions == 0 else min(asked, MIN_CHUNK_STEPS)
         if at.divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
             at.divisions -= 1
-        if at.divisions == 0:
+        if at.divisions == 0 or self.model.springs is not None:
             at.next_count = min(self.control.count_largest_steps(motion), CHUNK_GROWTH * before)

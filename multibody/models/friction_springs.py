@@ -62,14 +62,14 @@ class Change(NamedTuple):
     """
     A contact that slides, or rests, from a share of the step behind `row` on.
 
-    limit: elastic displacement to which a spring returns that slips more slowly than at the end of a slide; else 0.
+    limits: elastic displacements (K,) to which springs return that slip more slowly than at the end of a slide; else None.
     """
 
     row: int
     contact: int
     share: float
     slides: bool
-    limit: float = 0.0
+    limits: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ class FrictionSprings:
             if change is not None:
                 row = change.row
                 speed = (excess[row + 1, number] - excess[row, number]) / (time[row + 1] - time[row])
-                change = change if speed > end else Change(row + 1, number, 0.0, False, float(limit[row + 1, number]))
+                change = change if speed > end else Change(row + 1, number, 0.0, False, limit[row + 1])
             changes.append(change)
         return min((change for change in changes if change is not None), default=None)
 
@@ -164,10 +164,12 @@ class FrictionSprings:
         alternates behind every kink. change: what happens there.
         """
         sliding = np.array(self._sliding(before))
-        if change is not None and change.limit:
-            turn = self.turns[change.contact]
+        if change is not None and change.limits is not None:
             coordinates = state.coordinates.copy()
-            coordinates[turn] *= change.limit / (self.depressions.radius * np.linalg.norm(coordinates[turn]))
+            for number in np.flatnonzero(~sliding):
+                surface = self.depressions.radius * np.linalg.norm(coordinates[self.turns[number]])
+                if surface > change.limits[number]:
+                    coordinates[self.turns[number]] *= change.limits[number] / surface
             state = replace(state, coordinates=coordinates)
         velocities, accelerations, contact = state.velocities.copy(), accelerations.copy(), state.contact.copy()
         normals, jacobian = self.depressions.contact_normals_and_jacobian(state.coordinates)
