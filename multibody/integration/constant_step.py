@@ -180,6 +180,8 @@ class EngineSolver:
         if springs is not None:
             springs.begin(state)
         if self.model.friction is not None:
+            if springs is not None:
+                self.model.friction.factors = springs.factors(state)
             self.model.friction.begin(self.model.mbs, state, begin)
         integration = self.integration
         integration.startTime = begin
