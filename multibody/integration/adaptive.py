@@ -52,6 +52,9 @@ FREE_ITERATIONS = 2
 # Rows at the end of a chunk that decide whether the step may grow.
 RECENT_ROWS = 8
 
+# Divisions of the largest step from which on contacts rest where a step from sliding fails.
+DIVISIONS_BEFORE_REST = 3
+
 # Number of the largest steps in the first chunk after a contact began or ended to slide: the next may follow soon.
 STEPS_BEHIND_CHANGE = 4
 
@@ -85,13 +88,14 @@ class Checkpoint:
     The place from which a run goes on.
 
     time: in units of time. divisions: of the largest step by `STEP_RATIO`. next_count: steps of the next chunk at the
-    largest step.
+    largest step. rested_at: the instant at which all contacts were last put to rest where a step failed.
     """
 
     state: EngineState
     time: float = 0.0
     divisions: int = FIRST_DIVISIONS
     next_count: int = MAX_CHUNK_STEPS
+    rested_at: float = -1.0
 
 
 def run_adaptively(integration: Integration, start: EngineState, stop: float = math.inf) -> EngineRun:
@@ -204,6 +208,13 @@ class _Progress:
         """Divide the step that the engine could not solve; return whether the run goes on."""
         if self.run.outcome != Outcome.OK:
             return False
+        if self.at.divisions >= DIVISIONS_BEFORE_REST and any(self.at.state.sliding):
+            # Newton's iteration finds no sliding where a slide ends within any step: it may go on from rest
+            springs, state = self.model.springs, self.at.state
+            assert springs is not None and state.accelerations is not None  # settled
+            self.at.state = springs.rest(state, state.accelerations)
+            self.at.rested_at = self.at.time
+            return True
         if self.at.divisions == self.level.max_divisions:
             self.run.terminate(Outcome.SOLVER_FAILED, self.at.time)
             return False
@@ -256,7 +267,8 @@ class _Progress:
         if springs is None:
             return None
         rows = motion.time, motion.coordinates, motion.velocities, motion.contact
-        return springs.find_change(*rows, self.at.state, pressed, self.level.slide_end)
+        end = math.inf if self.at.rested_at == self.at.time else self.level.slide_end
+        return springs.find_change(*rows, self.at.state, pressed, self.level.slide_end, end)
 
     def _rates_of_limits(self, springs: FrictionSprings, motion: EngineMotion, row: int) -> Array:
         """Rates (K,) of the elastic displacements at which contacts slide, at a row."""

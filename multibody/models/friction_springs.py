@@ -117,7 +117,7 @@ class FrictionSprings:
         return np.append(0.0, np.maximum(changes.max(axis=1, initial=0.0), SHARE_OF_SLIDE * turning.max(axis=1, initial=0.0)))
 
     def find_change(
-        self, time: Array, coordinates: Array, velocities: Array, contact: Array, state: EngineState, penetration: float, end: float
+        self, time: Array, coordinates: Array, velocities: Array, contact: Array, state: EngineState, penetration: float, end: float, begin: float
     ) -> Change | None:
         """Find the first contact that begins or ends to slide in steps from `state`, (T, ...); None without one."""
         if len(time) < 2:
@@ -135,7 +135,7 @@ class FrictionSprings:
             if change is not None:
                 row = change.row
                 speed = (excess[row + 1, number] - excess[row, number]) / (time[row + 1] - time[row])
-                change = change if speed > end else Change(row + 1, number, 0.0, False, limit[row + 1])
+                change = change if speed > begin else Change(row + 1, number, 0.0, False, limit[row + 1])
             changes.append(change)
         return min((change for change in changes if change is not None), default=None)
 
@@ -194,6 +194,11 @@ class FrictionSprings:
         return replace(
             state, velocities=velocities, contact=contact, accelerations=accelerations, sliding=tuple(sliding.tolist())
         )
+
+    def rest(self, state: EngineState, accelerations: Array) -> EngineState:
+        """Return the state with all contacts at rest."""
+        resting = replace(state, sliding=(False,) * len(self.contacts))
+        return self.settle(resting, resting, accelerations, np.zeros(len(self.contacts)), math.inf)
 
     def _sliding(self, state: EngineState) -> tuple[bool, ...]:
         """Whether each contact slides: none does at the start."""
