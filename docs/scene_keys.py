@@ -26,9 +26,9 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         " regularized law is mu(v) min(1, v / v_reg). `load_exponent` n multiplies the coefficient by (N / N_ref)^n of"
         " the normal force N. In the spatial model N is the force of one support and N_ref its share. `slow` may then"
         " stand alone. With `initial_stiffness` k or `yield_displacement` friction yields elastically before it slides,"
-        " as in elements of codes for buildings: `friction = {slow = 0.05, yield_displacement = 0.001}`. Friction is then"
-        " k times an elastic displacement, bounded by mu N, and speed is that of the platform. Each number may run over a"
-        " range.",
+        " as in elements of codes for buildings: `friction = {slow = 0.05, yield_displacement = 0.001}`. Friction is"
+        " then k times an elastic displacement, bounded by mu N, and the speed in mu is that of the platform. Each"
+        " number may run over a range.",
     ),
     (
         "`heating` of `isolator.friction`",

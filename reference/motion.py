@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from reference.defaults import DEFAULT_TOLERANCE
+from reference.measures.energy import friction_force
 from reference.problem import (
-    GRAVITY,
     Accuracy,
     Outcome,
     Scene,
@@ -169,12 +169,9 @@ def _sample_trajectory(
 
 
 def _friction_power(scene: Scene, place: Array, velocity: Array, motion: SampledMotion) -> Array:
-    """Return the power that friction dissipates, (T,), W: friction is the force on all bodies less the normal force."""
-    force = np.einsum("i,tia->ta", scene.masses, motion.total)
-    force[:, 2] += scene.total_mass * GRAVITY
-    normal = np.array([0.0, 0.0, 1.0]) - place / scene.radius
-    friction = force - scene.masses[0] * motion.reaction[:, None] * normal
-    power: Array = -(friction * velocity).sum(axis=1)
+    """Return the power that friction takes, (T,), W."""
+    force = friction_force(scene, place, motion.total, scene.masses[0] * motion.reaction)
+    power: Array = -(force * velocity).sum(axis=1)
     return power
 
 

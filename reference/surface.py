@@ -90,7 +90,8 @@ def amplification(
     equations : {"exact", "small"}
         (3.9)-(3.13), or the equations of small vibration (4.3)-(4.4).
     regularization : float, optional, m/s
-        v_reg: dry friction is linear below this speed. None takes the set-valued law. A lubricated scene needs none.
+        v_reg: dry friction is linear below this speed. None takes the set-valued law. A lubricated scene needs none;
+        friction that yields elastically has no v_reg.
     tolerance : float
         Relative error asked of every mu; 1e-06 (`DEFAULT_TOLERANCE`) if not given.
     cutoff : float, optional, m/s

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from reference.problem.result import Array, Trajectory
+from reference.problem.scene import Scene
 from reference.support.constants import GRAVITY
 
 
@@ -14,14 +15,15 @@ class Energy(NamedTuple):
     """Powers and stored energy at T instants; NaN where the motion does not determine them."""
 
     time: Array  # (T,) s
-    friction: Array  # (T,) W, power that friction dissipates
+    friction: Array  # (T,) W, power that friction takes: it dissipates this, but for what its elastic part keeps
     dampers: Array  # (T,) W, power that the dampers of the links dissipate
     ground: Array  # (T,) W, power of the inertial forces in the plate's frame
     stored: Array  # (T,) J, kinetic and elastic energy of the bodies, and that of gravity
+    sheared: Array  # (T,) J, elastic energy of friction that yields, which is a part of the work of `friction`
 
     def friction_energy(self) -> float:
         """Return the energy that friction has dissipated at the end, J."""
-        return float(np.trapezoid(self.friction, self.time))
+        return float(np.trapezoid(self.friction, self.time)) - float(self.sheared[-1] - self.sheared[0])
 
     def damping_energy(self) -> float:
         """Return the energy that the dampers of the links have dissipated at the end, J."""
@@ -37,6 +39,15 @@ class Energy(NamedTuple):
         last = len(self.time) - 1
         kept = [np.unique(np.r_[0, first:last:step, last]) for first in range(step)]
         return [Energy(*(part[rows] for part in self)) for rows in kept]
+
+
+def friction_force(scene: Scene, place: Array, total: Array, contact: Array) -> Array:
+    """Return the force of friction, (T, 3), N: that on all bodies less the normal force of the contact."""
+    force = np.einsum("i,tia->ta", scene.masses, total)
+    force[:, 2] += scene.total_mass * GRAVITY
+    normal = np.array([0.0, 0.0, 1.0]) - place / scene.radius
+    friction: Array = force - contact[:, None] * normal
+    return friction
 
 
 def energy_of(motion: Trajectory) -> Energy:
@@ -57,4 +68,8 @@ def energy_of(motion: Trajectory) -> Energy:
     ground = -np.einsum("i,tia,ta->t", masses, shaking, motion.ground)
     if "turns" in motion.extra:
         stored, ground, dampers = np.full((3, len(motion.time)), np.nan)
-    return Energy(motion.time, motion.friction_power, dampers, ground, stored)
+    sheared = np.zeros(len(motion.time))
+    if scene.dry_friction.elastic:
+        force = friction_force(scene, place[:, 0], motion.absolute_acceleration, motion.contact_force)
+        sheared = (force**2).sum(axis=1) / (2.0 * scene.dry_friction.stiffness)
+    return Energy(motion.time, motion.friction_power, dampers, ground, stored, sheared)

@@ -20,7 +20,7 @@ FINER = 0.1
 
 
 def reading_of(scene: Scene, regularization: float | None, cutoff: float | None = None) -> str:
-    """Return the reading of (5.1) that a factor has; "" without dry friction, where both readings agree."""
+    """Return the reading of (5.1) that a factor has; "" without rigid dry friction, where both readings agree."""
     if not scene.has_dry_friction:
         return ""
     return LITERAL_SUPREMUM if regularization is None and cutoff is None else AS_INTEGRATED
@@ -57,6 +57,9 @@ def describe_law(
         return "no friction"
     if scene.lubricated:
         return "viscous friction (3.14)"
+    if scene.dry_friction.elastic:
+        kind, way = scene.dry_friction.kind, scene.yield_displacement
+        return f"{kind} friction that yields elastically before it slides, by {way:.3g} m under the weight"
     if regularization is None:
         peak = LITERAL_SUPREMUM if cutoff is None else f"{AS_INTEGRATED}, v_c = {cutoff:g} m/s"
         return f"set-valued {scene.dry_friction.kind} friction; {peak}"

@@ -236,7 +236,7 @@ class Trajectory:
     contact_force : ndarray, (T,), N
         Normal reaction of the isolator.
     stick : list of (float, float), s
-        Start and end of every interval of rest.
+        Start and end of every interval of rest; of elastic friction where that yields before it slides.
     status : str
     instant : float, s
         As in `Amplification`.

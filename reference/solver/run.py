@@ -142,6 +142,26 @@ def integrate(system: System, work: Workspace, settings: RunSettings, record: St
     return SOLVED
 
 
+@compiled
+def set_start(work: Workspace, phases: Array, x: Array, v: Array, m: int) -> None:
+    """Set the state x, v at the start of the motion of phase pair m."""
+    work.phase[0], work.phase[1] = phases[m, 0], phases[m, 1]
+    for i in range(x.shape[0]):
+        for axis in range(2):
+            work.x[i, axis] = x[i, axis]
+            work.v[i, axis] = v[i, axis]
+
+
+@compiled
+def set_results(work: Workspace, code: int, peaks: Array, reading_errors: Array, ends: Array, m: int) -> None:
+    """Fill in what the run of phase pair m has found."""
+    ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.squared_reach)
+    ends[4, m] = work.last_peak
+    for i in range(peaks.shape[1]):
+        peaks[m, i] = sqrt(work.best[i])
+        reading_errors[m, i] = work.reading_error[i]
+
+
 @cached_entry_point
 def integrate_runs(
     system: System, phases: Array, x: Array, v: Array, settings: RunSettings, record: StepRecord,
@@ -158,14 +178,6 @@ def integrate_runs(
     work = allocate_workspace(peaks.shape[1])
     system_reference, record_reference = system_by_reference(system), record_by_reference(record)
     for m in range(phases.shape[0]):
-        work.phase[0], work.phase[1] = phases[m, 0], phases[m, 1]
-        for i in range(x.shape[0]):
-            for axis in range(2):
-                work.x[i, axis] = x[i, axis]
-                work.v[i, axis] = v[i, axis]
+        set_start(work, phases, x, v, m)
         code = integrate(system_reference, work, settings, record_reference, until[m])
-        ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.squared_reach)
-        ends[4, m] = work.last_peak
-        for i in range(peaks.shape[1]):
-            peaks[m, i] = sqrt(work.best[i])
-            reading_errors[m, i] = work.reading_error[i]
+        set_results(work, code, peaks, reading_errors, ends, m)

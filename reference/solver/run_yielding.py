@@ -6,24 +6,27 @@ Every change is located; the steps are those of run.py, with their error, peaks 
 
 from __future__ import annotations
 
-from math import inf, sqrt
+from math import inf
 
 from reference.solver.compiled import cached_entry_point, compiled
-from reference.solver.phases.follow import (
-    MAX_VIBRATION_ANGLE,
-    MIN_DRIFT_ANGLE,
-    add_drift,
-    vibration_angle,
-)
+from reference.solver.phases.follow import MAX_VIBRATION_ANGLE, MIN_DRIFT_ANGLE, add_drift, vibration_angle
 from reference.solver.phases.yielding import (
     FIRST_NODE,
     begin_yielding,
     commit_force,
     cut_at_yield_or_unloading,
-    share_before_reversal,
+    share_before_slowest,
     solve_yielding_step,
 )
-from reference.solver.run import FIRST_STEP, HOLDING_TIME, MAX_IDLE_PHASES, NEGLIGIBLE_REMAINDER, RIM_SQUARED_FRACTION
+from reference.solver.record import record_stick
+from reference.solver.run import (
+    FIRST_STEP,
+    HOLDING_TIME,
+    MAX_IDLE_PHASES,
+    classify_failure,
+    set_results,
+    set_start,
+)
 from reference.solver.step_control import (
     FAILURE_SHORTENING,
     MAX_SHORTENING,
@@ -41,7 +44,6 @@ from reference.solver.steps import load_step, step_error
 from reference.solver.system import (
     ELASTIC,
     PLASTIC,
-    RIM,
     SOLVED,
     STEP_LIMIT,
     TRAVEL,
@@ -66,20 +68,18 @@ EVENT_TIME = 1e-9
 
 @compiled
 def integrate_yielding(system: System, work: Workspace, settings: RunSettings, record: StepRecord, until: float) -> int:
-    """Follow the motion from the state in work.x, work.v to the first step beyond `until`, s; as `integrate` of run.py."""
+    """Follow the motion from the state in work.x, work.v to the first step beyond `until`, s, as `integrate` does."""
     # The gates of a step are those of `follow_phase`. The friction force is zero at the start. Where two phases end at
     # once in favor of the other, the next one makes a short step whatever its events.
     reset_workspace(work, min(FIRST_STEP * settings.period, system.duration), system.duration)
     work.force[0] = work.force[1] = 0.0
-    contact, idle, shorter, begun, at_event = ELASTIC, 0, inf, False, False
+    contact, idle, shorter, begun, at_event, since = ELASTIC, 0, inf, False, False, work.time
     begin_yielding(system, work, contact, False)
-    while remaining_time(system, work, settings) > 0.0:
-        if work.time > until:
-            break
+    while remaining_time(system, work, settings) > 0.0 and work.time <= until:
         if not count_step(work, settings):
             return STEP_LIMIT
-        held = idle > MAX_IDLE_PHASES
         h = min(propose_plain_length(system, work, settings), shorter)
+        held = idle > MAX_IDLE_PHASES
         if held:
             h = min(h, HOLDING_TIME * settings.period)
         code = UNSOLVED
@@ -89,24 +89,24 @@ def integrate_yielding(system: System, work: Workspace, settings: RunSettings, r
             code = solve_yielding_step(system, work, contact, h, NEWTON_FRACTION * settings.tolerance * work.scale[0])
         if code != SOLVED:
             if is_too_short(work, contact, settings, h, code):
-                return classify_end(system, work, settings, code)
+                return classify_failure(system, work, contact, settings, code)
             work.length, shorter = FAILURE_SHORTENING * h, inf
             continue
-        if not held and share_before_reversal(system, work, contact) < 1.0:
-            shorter = h * share_before_reversal(system, work, contact)
+        smooth = 1.0 if held else share_before_slowest(system, work)
+        if smooth < 1.0:
+            shorter, at_event = h * smooth, False
             continue
         angle = vibration_angle(system, contact, h)
-        error = step_error(
-            system, work, settings.tolerance, settings.damped_weight if angle > MAX_VIBRATION_ANGLE else 1.0
-        )
+        weight = settings.damped_weight if angle > MAX_VIBRATION_ANGLE else 1.0
+        error = step_error(system, work, settings.tolerance, weight)
         factor = length_factor(error, settings.tolerance)
         if not error <= settings.tolerance:
             work.length, shorter = min(MAX_SHORTENING, factor) * h, inf
             continue
-        least = h <= EVENT_TIME * settings.period
-        share, following = cut_at_yield_or_unloading(system, work, contact, h, begun or least)
-        if held:
-            share, following = 1.0, contact
+        share, following = 1.0, contact
+        if not held:
+            begun = begun or h <= EVENT_TIME * settings.period
+            share, following = cut_at_yield_or_unloading(system, work, contact, h, begun)
         if 0.0 < share < 1.0:
             shorter, at_event = h * share, share > FIRST_NODE
             continue
@@ -124,19 +124,13 @@ def integrate_yielding(system: System, work: Workspace, settings: RunSettings, r
             idle, begun = 0, at_event and h == shorter
             shorter, at_event = inf, False
         if following != contact:
-            idle, begun = idle + 1, True
+            if contact == ELASTIC:
+                record_stick(record, since, work.time)
             begin_yielding(system, work, following, contact == PLASTIC)
-            contact = following
+            contact, idle, begun, since = following, idle + 1, True, work.time
+    if contact == ELASTIC:
+        record_stick(record, since, work.time)
     return SOLVED
-
-
-@compiled
-def classify_end(system: System, work: Workspace, settings: RunSettings, code: int) -> int:
-    """Return the outcome of a run that cannot go on: nearly its end, the rim (4.1), or `code` itself."""
-    if work.end - work.time < NEGLIGIBLE_REMAINDER * settings.period:
-        return SOLVED
-    far = work.x[0, 0] ** 2 + work.x[0, 1] ** 2 > RIM_SQUARED_FRACTION * system.radius**2
-    return RIM if code == UNSOLVED and far else code
 
 
 @cached_entry_point
@@ -148,14 +142,6 @@ def integrate_yielding_runs(
     work = allocate_workspace(peaks.shape[1])
     system_reference, record_reference = system_by_reference(system), record_by_reference(record)
     for m in range(phases.shape[0]):
-        work.phase[0], work.phase[1] = phases[m, 0], phases[m, 1]
-        for i in range(x.shape[0]):
-            for axis in range(2):
-                work.x[i, axis] = x[i, axis]
-                work.v[i, axis] = v[i, axis]
+        set_start(work, phases, x, v, m)
         code = integrate_yielding(system_reference, work, settings, record_reference, until[m])
-        ends[0, m], ends[1, m], ends[2, m], ends[3, m] = code, work.time, work.steps, sqrt(work.squared_reach)
-        ends[4, m] = work.last_peak
-        for i in range(peaks.shape[1]):
-            peaks[m, i] = sqrt(work.best[i])
-            reading_errors[m, i] = work.reading_error[i]
+        set_results(work, code, peaks, reading_errors, ends, m)

@@ -152,7 +152,8 @@ def pack(scene: Scene, small: bool, v_reg: float | None, printed_rest: bool = Fa
         kinks=np.zeros((0, 1)),
         duration=float(scene.duration),
         axes=axes,
-        fastest=float(np.sqrt(2.0 * (below + above).max() + shear)) + damping_rate,  # Gershgorin's bounds of the eigenvalues
+        fastest=float(np.sqrt(2.0 * (below + above).max() + shear))
+        + damping_rate,  # Gershgorin's bounds of the eigenvalues
         damping_rate=damping_rate,
     )
 

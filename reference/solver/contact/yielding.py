@@ -6,7 +6,8 @@ by its horizontal part, and kappa = k / m1.
   elastic  q' = kappa v + transport            while |q| < mu R
   plastic  |q| = mu R, and e' = v - lambda q / |q| with lambda >= 0: slip along the force turns q by the part of the
            velocity across it. q is kept up to its size.
-Transport along the sphere, n (v . q) / rho, keeps q in the tangent plane. v is the velocity of the platform, also in mu.
+Transport along the sphere, n (v . q) / rho, keeps q in the tangent plane. v is the velocity of the platform, also
+in mu.
 The bound mu R of friction, its dependence on speed and load, and the equations of motion are those of sliding friction.
 """
 

@@ -285,13 +285,14 @@ def cut_at_yield_or_unloading(
 
 
 @compiled
-def share_before_reversal(system: System, work: Workspace, contact: int) -> float:
-    """Return the share of the step before the platform turns back, where a coefficient of the speed has a kink."""
-    along = row(work.shear, ALONG_FORCE)
-    if contact == ELASTIC or system.rate == 0.0 or along[0] <= 0.0:
+def share_before_slowest(system: System, work: Workspace) -> float:
+    """Return the share of the step before the platform is slowest: there a coefficient of the speed may have a kink."""
+    shear = work.shear
+    gain = row(shear, ARGUMENTS + 2) * row(shear, MOTION) + row(shear, ARGUMENTS + 3) * row(shear, MOTION + 1)
+    if system.rate == 0.0 or gain[0] >= 0.0:
         return 1.0
-    expand_level(work, -along, 0.0)
-    portion = locate_first_event(system, work, LEVEL, 1.0, FIRST_NODE, -along[0])
+    expand_level(work, gain, 0.0)
+    portion = locate_first_event(system, work, LEVEL, 1.0, FIRST_NODE, gain[0])
     return 1.0 if portion > 1.0 - LATE_EVENT else portion
 
 
