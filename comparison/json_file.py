@@ -1,4 +1,4 @@
-"""JSON files of results: written by one command, and read by another that finds them beside the report."""
+"""JSON files of results: written by one command, and read by another that finds them next to the report."""
 
 import json
 import math
@@ -39,12 +39,20 @@ def replace_unstorable(content: Any) -> Any:
 
 @dataclass(frozen=True)
 class StoredFile(Generic[T]):
-    """A JSON file of results, which one command writes and the next report beside it shows; what: in words."""
+    """A JSON file of results, which one command writes and the next report in the same folder shows; what: in words."""
 
     name: str
     kind: type[T]
     what: str
     command: str
+
+    def word_field(self, meaning: str) -> str:
+        """Return the meaning of the field of the results that shows the file."""
+        return f"{meaning}; null unless {self.command} left it next to the report"
+
+    def word_origin(self, argument: str = "") -> str:
+        """Return what makes the section that shows the file; argument: what the command is given, in words."""
+        return f"{self.command}{argument} makes it, next to the report; the next run of the study shows it"
 
     def as_json(self, results: T) -> bytes:
         """The content of the file, which `load` reads."""

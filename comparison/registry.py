@@ -18,7 +18,6 @@ from comparison.report.results import Results
 from comparison.report.scene_result import SceneResult
 from comparison.runner.analysis import Analysis
 from comparison.runner.task import Task
-from comparison.study.costs import seconds_of_analysis
 from comparison.study.levels import StudyLevel, levels_of
 from comparison.study.selection import Selection
 from comparison.study.study import Study
@@ -31,11 +30,11 @@ def _feature(folder: str) -> Feature:
 
 FEATURES: tuple[Feature, ...] = (
     core.SURFACES,
+    _feature("analyses.records"),
     _feature("analyses.motions"),
     _feature("analyses.families"),
     _feature("analyses.worst_phases"),
     _feature("analyses.demands"),
-    _feature("analyses.ensemble"),
     core.DIFFERENCES,
     core.BUDGET,
     _feature("analyses.conditioning"),
@@ -91,8 +90,7 @@ def select_analyses(study: Study) -> list[Analysis[Any]]:
 
 def seconds_by_stage(study: Study) -> dict[str, float]:
     """Rough processor time of every stage of the analyses of a study, s."""
-    analyses = select_analyses(study)
-    return {each.stage: seconds_of_analysis(study, each.key, each.seconds) for each in analyses}
+    return {each.stage: each.estimate_seconds(study.selecting(each.key)) for each in select_analyses(study)}
 
 
 def first_tasks(study: Study, analyses: Sequence[Analysis[Any]]) -> list[Task]:

@@ -1,7 +1,7 @@
 """
 What every part of the results is made of.
 
-Three types hold what JSON cannot: `Number` writes NaN as null, `Radius` writes infinity as "inf" besides, and `Text`
+Three types hold what JSON cannot: `Number` writes NaN as null, `Radius` also writes infinity as "inf", and `Text`
 replaces what UTF-8 does not know.
 """
 
@@ -64,7 +64,7 @@ def require(holds: bool, rule: str) -> None:
 
 
 def require_size(what: str, values: Sized, count: int) -> None:
-    """Raise ValueError unless there are so many values."""
+    """Raise ValueError unless there are `count` values."""
     require(len(values) == count, f"{what} must be {count} values, not {len(values)}")
 
 
@@ -80,7 +80,7 @@ def result(cls: type[Class]) -> type[Class]:
     """
     A frozen dataclass that summary.json or a file of its own holds as it is; unknown keys of a file are refused.
 
-    The text beside the type of a field, or below the field, is its meaning, with the unit. What a property adds to the
+    The text after the type of a field, or below the field, is its meaning, with the unit. What a property adds to the
     file is a `computed_field`.
     """
     for base in filter(is_dataclass, cls.__bases__):

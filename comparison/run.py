@@ -31,7 +31,7 @@ from comparison.cli.start import Clock, start_time
 from comparison.cli.terminal import print_models_left_out, print_plan, print_stored
 from comparison.cli.user_models import Engines, as_words
 from comparison.registry import first_tasks, levels, seconds_by_stage, select_analyses
-from comparison.runner.cache import Cache, store_beside
+from comparison.runner.cache import Cache, locate_store
 from comparison.runner.output import clear_dead
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Deadline, TimeUpError, progress, wide_console
@@ -83,9 +83,9 @@ def main(
 
 
 def _tighter(options: Options, words: Sequence[str]) -> list[str]:
-    """Return the command that computes the differences at a tenth of the tolerance, its report beside the first."""
-    beside = options.out.with_name(f"{options.out.name}-tighter")
-    tighter = ["--tolerance", f"{options.tolerance / 10.0:g}", "--out", str(beside), "--only", "differences,budget"]
+    """Return the command that computes the differences at a tenth of the tolerance, its report next to the first."""
+    place = options.out.with_name(f"{options.out.name}-tighter")
+    tighter = ["--tolerance", f"{options.tolerance / 10.0:g}", "--out", str(place), "--only", "differences,budget"]
     return edit_command_line(words, tighter, options=["--tolerance", "--out", "--only", "--skip", "--also"])
 
 
@@ -108,7 +108,7 @@ class StudyRun:
     def __init__(self, options: Options, words: Sequence[str], hierarchy: Sequence[Model], began: Clock) -> None:
         self._options, self._words, self._began = options, words, began
         self._study, self._console = _study(options, hierarchy), wide_console()
-        self._cache = Cache(store_beside(options.out))
+        self._cache = Cache(locate_store(options.out))
         print_models_left_out(self._console, self._study)
 
     def plan(self) -> None:
@@ -143,7 +143,7 @@ class StudyRun:
             print_faults(found)
             print_closing(self._console, found, options, self._words, reports.place)
             if options.check:
-                print_check(found)
+                print_check(found, options.scenes)
         if stop is not None:
             raise stop
         if found is None:

@@ -1,6 +1,9 @@
-"""A gate for the tests of users: do the equations and an engine, Exudyn or the user's own, agree about a scene?"""
+"""
+Gates for the tests of users: do the equations and an engine, Exudyn or the user's own, agree about a scene? Do the
+demands of a building meet their limits?
+"""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,11 +18,14 @@ from comparison.study.user_models import LAWS, user_model
 from comparison.surfaces.model_difference import difference_of
 from comparison.surfaces.surfaces import label_surfaces
 from comparison.surfaces.unanswered import unanswered
-from reference.problem import Scene, load_scene
+from reference.problem import Scene, load_family
+from reference.problem.acceptance import DemandLimits
+from reference.problem.keys import range_of
 from reference.problem.ranges import TOLERANCE
 from reference.support.arguments import Range, check_choice, check_number, check_whole_number
 
 LIMIT, GRID, FAILED = Range(0.0, 1e6), Range(1, 512), Range(0, 512**2)
+STATISTICS = ("largest", "mean")
 ENGINE, ENGINE_TITLE = "engine", "your engine"  # key and title of the user's engine
 
 
@@ -42,7 +48,7 @@ def assert_consistent(
     Parameters
     ----------
     scene : Scene, str or Path
-        A scene, the name of a built-in one, or a scene file.
+        A scene, the name of a built-in one, or a scene file; of a file in which values run every scene.
     like_for_like, like_for_like_maximum : float, optional
         Limits on the relative difference of mu_i with the same geometry and friction law on both sides: on its median
         over the phases, and on its largest value, for each body.
@@ -93,7 +99,22 @@ def assert_consistent(
     failed = check_whole_number("failed", failed, FAILED)
     tolerance = check_number("tolerance", tolerance, TOLERANCE)
     law = check_choice("law", law, LAWS)
-    scene = scene if isinstance(scene, Scene) else load_scene(scene)
+    scenes = [scene] if isinstance(scene, Scene) else load_family(scene).scenes
+    broken = [line for each in scenes for line in _broken_limits(each, stated, grid, tolerance, engine, law, failed)]
+    if broken:
+        raise AssertionError("\n".join(broken))
+
+
+def _broken_limits(
+    scene: Scene,
+    stated: Mapping[str, float],
+    grid: int,
+    tolerance: float,
+    engine: Callable[..., Any] | None,
+    law: str,
+    failed: int,
+) -> list[str]:
+    """Return a line for each limit that one scene breaks, and for missing values."""
     with_total = any(name.startswith("total") for name in stated)
     hierarchy = [*(with_softened_bars(MODEL_HIERARCHY, (scene,)) if with_total else MODEL_HIERARCHY)]
     if engine is not None:
@@ -116,8 +137,74 @@ def assert_consistent(
     if sum(gap.points + gap.unusable for gap in gaps) > failed:
         why = dict.fromkeys(answer.error_message for answer in answers if answer.error_message)
         broken += [f"{gap.sentence.removesuffix('.')}; {failed} allowed" for gap in gaps] + list(why)
-    if broken:
-        raise AssertionError("\n".join(broken))
+    return broken
+
+
+def assert_demands(
+    source: str | Path,
+    *,
+    suite: str | Path | None = None,
+    bounds: tuple[float, float] | None = None,
+    displacement: float | None = None,
+    drift_ratio: float | None = None,
+    uplift: float | None = None,
+    base_shear: float | None = None,
+    statistic: str | None = None,
+    stored: str | Path | None = None,
+    within: float = 0.01,
+) -> None:
+    """
+    Raise AssertionError where demands under recorded motions do not meet their limits, or are not those of before.
+
+    Parameters
+    ----------
+    source : str or Path
+        A scene file, or the name of an example with a record. Motions, scales and other values may run in it.
+    suite : str or Path, optional
+        Motions in place of those of the file, as after ``phase-resonance ensemble --suite``.
+    bounds : tuple of two floats, optional
+        Factors of friction of a lower and an upper bound, in place of `isolator.bounds` of the file.
+    displacement, uplift : float, optional, m
+        Limits of the displacement of the isolator and of the gap of a support.
+    drift_ratio, base_shear : float, optional
+        Limits of the drift over the height of its story, and of the base shear over the weight.
+    statistic : {"largest", "mean"}, optional
+        What the limits are on, over the motions.
+    stored : str or Path, optional
+        Folder of an ensemble of before, which ``phase-resonance ensemble --out`` wrote: its demands are those of now.
+    within : float
+        Share of a demand by which it may differ from the stored one besides both numerical errors.
+
+    Raises
+    ------
+    AssertionError
+        With a line for every demand that is not met, or not compared: bound, motion, both numbers, by how much.
+    SceneError, ValueError
+        For a scene that cannot be used, a folder without an ensemble, or no limit at all.
+
+    Notes
+    -----
+    Limits that are not given are those of ``[acceptance.demands]`` in the file. Everything is computed in this process,
+    by the exact equations. With a limit on the uplift the spatial engine computes the motions that govern.
+
+    Examples
+    --------
+    >>> from comparison.testing import assert_demands
+    >>> assert_demands("synthetic-pair", displacement=0.2, base_shear=0.6)
+    """
+    __tracebackhide__ = True  # pytest shows the line of the test
+    from comparison.analyses.ensemble.gate import check_demands  # loaded on first use
+
+    limits = {"displacement": displacement, "drift_ratio": drift_ratio, "uplift": uplift, "base_shear": base_shear}
+    given: dict[str, Any] = {
+        name: check_number(name, limit, range_of(DemandLimits, name))
+        for name, limit in limits.items()
+        if limit is not None
+    }
+    given |= {} if statistic is None else {"statistic": check_choice("statistic", statistic, STATISTICS)}
+    lines = check_demands(source, suite, bounds, given, stored, check_number("within", within, LIMIT))
+    if lines:
+        raise AssertionError("\n".join(lines))
 
 
 def _word_breaches(

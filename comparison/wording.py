@@ -68,7 +68,7 @@ def _decimals(size: float, error: float) -> int | None:
 
 
 def shorten_text(text: str, letters: int) -> str:
-    """A text of at most so many letters; of a longer one the end is three dots."""
+    """Return a text of at most `letters` letters; of a longer one the end is three dots."""
     return text if len(text) <= letters else text[: letters - 1] + "…"
 
 
@@ -88,7 +88,7 @@ def degrees(phase: float) -> str:
 
 
 def symbols(text: str) -> Markup:
-    """Return names such as v_reg, l^3 and rho with indices, powers and Greek letters; % stays beside its number."""
+    """Return names such as v_reg, l^3 and rho with indices, powers and Greek letters; % stays next to its number."""
     greek = _with_greek(str(escape(PERCENT.sub("\u00a0%", text))))
     return Markup(SUBSCRIPTS.sub(r"<sub>\1</sub>", POWERS.sub(r"<sup>\1</sup>", greek)))
 

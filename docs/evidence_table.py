@@ -24,9 +24,9 @@ from comparison.evidence.benchmarks.table import STORED as PUBLISHED
 from comparison.evidence.benchmarks.table import Benchmarks, page
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import statements
-from comparison.evidence.validation.command import compared
+from comparison.evidence.validation.command import compare_folder
 from comparison.evidence.validation.table import STORED as MEASURED
-from comparison.evidence.validation.table import recorded
+from comparison.evidence.validation.table import load_record
 from comparison.report.verification import CHECKS, Check
 from comparison.verdicts import NOT_COMPARED, NOT_MET, count_verdicts, judge, word_counts, word_verdict
 
@@ -58,7 +58,7 @@ def published() -> Benchmarks:
 
 def measured_rows() -> list[str]:
     """Return one row for each quantity of LEADING: the comparison error of both codes against u_val."""
-    stored = recorded()
+    stored = load_record()
     commit = stored.run["provenance"]["commit"][:7]
     known = {(each.experiment, each.name): each for each in stored.quantities}
     rows = []
@@ -115,7 +115,7 @@ def measure(word: str) -> None:
 def record_measured(folder: Path) -> None:
     """Compute the measured motions and keep all but the curves, which are of the files of others."""
     place = ROOT / "comparison/evidence/validation/recorded.json"
-    place.write_bytes(MEASURED.as_json(replace(compared(folder), curves=[])))
+    place.write_bytes(MEASURED.as_json(replace(compare_folder(folder), curves=[])))
 
 
 def check_row(check: Check) -> str:
@@ -140,7 +140,7 @@ def evidence() -> str:
 def quantities() -> str:
     """Return the table of all measured quantities."""
     rows = []
-    for each in recorded().quantities:
+    for each in load_record().quantities:
         sides = [each.sides[side] for side in (EQUATIONS, ENGINE)]
         errors = [number for side in sides for number in (side.error, side.numerical)]
         shown = ["none" if n is None else f"{n:.2g}" for n in (each.data, each.inputs, *errors, sides[0].validation)]
@@ -152,7 +152,7 @@ def quantities() -> str:
 def explanations() -> str:
     """Return what is not met, by its explanation."""
     lines = []
-    for cause, rows in recorded().explanations().items():
+    for cause, rows in load_record().explanations().items():
         lines.append(f"- {cause[0].upper()}{cause[1:]}.")
         lines += [f"  - {each.experiment}: {each.name}, {each.word_both()}" for each in rows]
     return "\n".join(lines)
@@ -160,18 +160,18 @@ def explanations() -> str:
 
 def counts() -> str:
     """Return the counts of the verdicts on measured quantities."""
-    return f"{statements.verdict_line(recorded())}."
+    return f"{statements.verdict_line(load_record())}."
 
 
 def facts() -> str:
     """Return inputs and facts, as recorded."""
-    table = recorded()
+    table = load_record()
     return "\n".join(f"- {text[0].upper()}{text[1:]}." for text in (*table.inputs, *table.facts))
 
 
 def limits() -> str:
     """Return what the measured motions validate, and what they hide."""
-    table = recorded()
+    table = load_record()
     sentences = [statements.word_validated(table), statements.word_calibrated(table)]
     sentences += [f"{statements.word_fit(table, law)}: {statements.word_motions(table, law)}" for law in (True, False)]
     sentences += [statements.word_instants(table), statements.word_predicted_pendulum(table)]
@@ -180,7 +180,7 @@ def limits() -> str:
 
 def findings() -> str:
     """Return what the errors of several quantities have in common."""
-    table = recorded()
+    table = load_record()
     words = (statements.word_farther_off, statements.word_last_swings, statements.word_large_angles)
     return "\n".join(f"- {text[0].upper()}{text[1:]}." for text in (word(table) for word in words))
 
@@ -205,7 +205,7 @@ def with_readme_rows(text: str) -> str:
     """Return the text of README with the rows about measurements and the published numbers in their places."""
     lines = text.split("\n")
     measured = [k for k, line in enumerate(lines) if line.startswith("|") and "**measured**" in line]
-    lines[measured[0] : measured[-1] + 1] = statements.readme_rows(recorded())
+    lines[measured[0] : measured[-1] + 1] = statements.readme_rows(load_record())
     begin = next(k for k, line in enumerate(lines) if line.startswith("| benchmark |"))
     lines[begin : lines.index("", begin)] = published_short()
     return "\n".join(lines)

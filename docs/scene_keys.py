@@ -13,7 +13,7 @@ from reference.support.arguments import Range
 
 PAGE = Path(__file__).with_name("scene.md")
 SET_BY_THE_READER = {"name", "origin", "samples"}  # fields of the models that are no keys of a file
-NESTED = {"isolator", "bodies", "excitation", "acceptance", "analyses", "measured"}
+NESTED = {"isolator", "bodies", "excitation", "acceptance", "analyses", "measured", "superstructure"}
 TABLES = (  # heading, model in the schema, dotted name, introduction
     ("At the top of the file", "", "", ""),
     ("`[isolator]`", "Isolator", "isolator", "The spherical gravity-friction isolator under the platform."),
@@ -58,6 +58,13 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         " P = pi^2 EJ / l^2, are refused. In the spatial model `axial_stiffness` makes the link a clamped beam in"
         " every direction. Bars that could not hold the bodies upright are refused.",
     ),
+    (
+        "`[superstructure]`",
+        "Superstructure",
+        "superstructure",
+        "All bodies above the platform together. The mode is that of the links in sway, on a platform that is held;"
+        " higher modes have ratios in proportion to their frequencies. `phase-resonance run NAME --plan` prints them.",
+    ),
     ("`[excitation]`, two frequencies", "Excitation", "excitation", "Ground acceleration (5.2)-(5.4)."),
     ("`[excitation]`, recorded motion", "Record", "excitation", "A record in place of the two frequencies."),
     (
@@ -68,6 +75,13 @@ TABLES = (  # heading, model in the schema, dotted name, introduction
         " `total`, `translational` and `like_for_like` take the same three keys. So does the table of an engine that"
         " `--model NAME=...` adds, such as `[acceptance.mine]`; it limits the difference from the equations"
         " that the engine solves. Without such a table the limit is `ratio = 2.0`.",
+    ),
+    (
+        "`[acceptance.demands]`",
+        "DemandLimits",
+        "acceptance.demands",
+        "Limits of what the motions of an ensemble demand. `phase-resonance ensemble --check` exits with 1 where one is"
+        " not met. `statistic` says whether they are on the mean or on the largest value over the motions.",
     ),
     (
         "`[analyses]`",
@@ -98,6 +112,8 @@ One number of a scene may run over a range, which makes one scene for each value
 `friction = {{range = [0.02, 0.2], steps = 10}}` or `friction = {{values = [0.05, 0.1]}}`. Several keys may run if the
 file begins with `combine`. `combine = "product"` makes a scene for each combination of the values. `combine = "zip"`
 makes a scene of the first values, one of the second, and so on. `motion = "all"` runs over the motions of a suite.
+`bounds = [0.8, 1.5]` in `[isolator]` makes two scenes of each, "lower bound" and "upper bound": both coefficients of
+friction times these factors. It needs no `combine`.
 
 The duration is at most {MAX_CYCLES:g} times the shortest period of the loading and the pendulum.
 
@@ -128,7 +144,7 @@ def _rows(table: dict[str, Any], dotted: str) -> Iterator[str]:
 
 
 def _literal(default: Any) -> str:
-    return "none" if default is None else f"{default:g}"
+    return "none" if default is None else f'"{default}"' if isinstance(default, str) else f"{default:g}"
 
 
 def _limits(field: dict[str, Any]) -> str:

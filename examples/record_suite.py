@@ -47,5 +47,5 @@ if __name__ == "__main__":  # the worker processes of a study import this script
     write_suite(Path("suite"))
     words = "fig3-I --suite suite --scales 0.5 3 6 --engine 0 --out ensemble"
     code = main(words.split())
-    draw(Path("ensemble/ensemble.json"), "record_suite.png")
+    draw(Path("ensemble/summary.json"), "record_suite.png")
     raise SystemExit(code)

@@ -14,6 +14,7 @@ factor_for_spectrum  factor of a ground motion for a target spectrum
 response_spectrum  pseudo-accelerations of a ground motion
 modes           natural frequencies and modes of the frictionless chain (4.8)-(4.11)
 damped_modes    complex modes and damping ratios of the chain with the dampers of its links
+describe_building  weight, periods, modal damping and peak of the ground of a scene
 describe_record  what was read of a recorded motion, with warnings
 load_scene      a scene from a built-in name or a TOML file
 load_family     all scenes of a file in which values run
@@ -29,6 +30,7 @@ Scene           the system, its loading and the duration
 Family          the scenes of one file, and their results as one data set
 State           displacement and velocity at the start of a trajectory
 Amplification   what `amplification` returns
+Building        what `describe_building` returns
 Trajectory      what `trajectory` returns
 PhaseMaximum    what `worst_phases` returns
 Demands         what `demands` returns
@@ -95,6 +97,7 @@ from reference.problem import (
 from reference.support.version import __version__ as __version__
 
 if TYPE_CHECKING:
+    from reference.building import Building, describe_building
     from reference.demand_surface import peak_demands
     from reference.derivatives import Sensitivity, sensitivity
     from reference.motion import trajectory
@@ -103,10 +106,12 @@ if TYPE_CHECKING:
     from reference.surface import amplification
 
 LOADED_ON_FIRST_USE = {
+    "Building": "reference.building",
     "PhaseMaximum": "reference.phase_maximum",
     "Sensitivity": "reference.derivatives",
     "amplification": "reference.surface",
     "damped_modes": "reference.natural_modes",
+    "describe_building": "reference.building",
     "modes": "reference.natural_modes",
     "peak_demands": "reference.demand_surface",
     "sensitivity": "reference.derivatives",
@@ -116,6 +121,7 @@ LOADED_ON_FIRST_USE = {
 
 __all__ = [
     "Amplification",
+    "Building",
     "Demands",
     "EffectiveIsolator",
     "Estimate",
@@ -134,6 +140,7 @@ __all__ = [
     "builtin_scenes",
     "damped_modes",
     "demands",
+    "describe_building",
     "describe_record",
     "effective_isolator",
     "example_scenes",

@@ -165,7 +165,7 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
             scene.with_values({key: value})  # refuses an unknown key with the nearest ones
             raise ValueError(f"keys: {key} is {value!r} in this scene: must be a number other than zero")
         values[key] = float(value)
-    progress = _Progress(RUNS_PER_KEY * len(values))
+    progress = _ProgressLines(RUNS_PER_KEY * len(values))
     middle = _numbers_of(quantity(scene)) if values else None
     found = {}
     for number, (key, value) in enumerate(values.items(), start=1):
@@ -175,7 +175,7 @@ def sensitivity(scene: Scene, keys: Sequence[str], quantity: Quantity) -> dict[s
     return found
 
 
-class _Progress:
+class _ProgressLines:
     """A line on standard error for each key, with the time that is left, once all have taken PROGRESS_AFTER."""
 
     def __init__(self, runs: int) -> None:
@@ -199,7 +199,7 @@ class _Line:
     """Quantity along one key of the scene: its computed numbers by the value of the key."""
 
     def __init__(
-        self, scene: Scene, key: str, value: float, quantity: Quantity, middle: _Numbers, progress: _Progress
+        self, scene: Scene, key: str, value: float, quantity: Quantity, middle: _Numbers, progress: _ProgressLines
     ) -> None:
         self.scene, self.key, self.value, self.middle = scene, key, value, middle
         self._quantity, self._progress = quantity, progress

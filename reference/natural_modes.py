@@ -2,16 +2,12 @@
 Natural frequencies and modes of small vibration (4.8)-(4.11), undamped and damped, each axis on its own.
 
 Per axis the linearized (4.3)-(4.4) is M0 q'' + C0 q = 0: a chain of N masses whose first link is the pendulum stiffness
-of the isolator. A general eigensolver gets the low frequencies of a long or stiff chain wrong by eps * condition, so
-the chain is kept as its factor: C0 = D^T diag(k) D with D the elongation of each link, hence
-M0^-1/2 C0 M0^-1/2 = L^T L with L = diag(k)^1/2 D M0^-1/2 bidiagonal, its entries free of subtraction. The frequencies
-are the singular values of L, and the entries of a bidiagonal matrix determine every one of them to full relative
-precision (Demmel and Kahan, SIAM J. Sci. Stat. Comput. 11, 1990). They are found by bisection on the Golub-Kahan
-matrix, which couples link, mass, link, mass, ... along the chain: zero diagonal, the entries of L next to it. A flat
-slider has no first link, so the chain is free: its first mode is the motion of all bodies as one, of frequency zero.
+of the isolator; `reference.problem.chain_modes` solves it. A flat slider has no first link, so the chain is free: its
+first mode is the motion of all bodies as one, of frequency zero.
 
 With dampers M0 q'' + D0 q' + C0 q = 0 has complex modes q = X exp(lambda t), also where D0 is not proportional to C0.
-With y = M0^1/2 q' and s = L M0^1/2 q, one entry per link, they are the eigenvectors of
+With L = diag(k)^1/2 D M0^-1/2, D the elongation of each link, y = M0^1/2 q' and s = L M0^1/2 q, one entry per link,
+they are the eigenvectors of
     [s' y']^T = [[0, L], [-L^T, -M0^-1/2 D0 M0^-1/2]] [s y]^T,
 in which damping is added to a skew matrix: no eigenvalue has a positive real part.
 """
@@ -22,9 +18,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eig, eigh_tridiagonal
+from scipy.linalg import eig
 
 from reference.problem import GRAVITY, Scene
+from reference.problem.chain_modes import solve_chain
 from reference.problem.result import Array
 from reference.problem.scene import takes_scene
 
@@ -194,27 +191,7 @@ def _solve_damped_axis(
 
 def _solve_axis(masses: Array, stiffness: Array) -> tuple[Array, Array, Array]:
     """Return frequencies (N,), shapes (N, N) and participation factors (N,) along one axis."""
-    count = len(masses)
-    couplings = np.empty(2 * count - 1)
-    couplings[0::2] = np.sqrt(stiffness / masses)  # link and the mass above it
-    couplings[1::2] = -np.sqrt(stiffness[1:] / masses[:-1])  # link and the mass below it
-    free = stiffness[0] == 0.0
-    couplings = couplings[1:] if free else couplings
-    size = len(couplings) + 1
-    scale = np.abs(couplings).max(initial=np.finfo(float).tiny)
-    values, vectors = eigh_tridiagonal(
-        np.zeros(size),
-        couplings / scale,
-        select="i",
-        select_range=(size - count, size - 1),  # the positive half of the spectrum +-omega
-        lapack_driver="stebz",
-        tol=2.0 * np.finfo(float).tiny,  # bisection to the last bit of each value, not of the largest
-    )
-    frequency = values * scale
-    if free:
-        frequency[0] = 0.0
-    symmetric = vectors[0 if free else 1 :: 2]  # rows of the masses: M0^1/2 times the shape
-    symmetric = symmetric / np.linalg.norm(symmetric, axis=0)
-    participation = np.sqrt(masses) @ symmetric
+    frequency, shape = solve_chain(masses, stiffness)
+    participation = masses @ shape
     sign = np.where(participation < 0.0, -1.0, 1.0)
-    return frequency, symmetric * sign / np.sqrt(masses)[:, None], participation * sign
+    return frequency, shape * sign, participation * sign

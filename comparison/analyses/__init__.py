@@ -1,1 +1,1 @@
-"""What answers the question of a user: one folder for each analysis beside the surfaces, shown in index.html."""
+"""What answers the question of a user: one folder for each analysis other than the surfaces, shown in index.html."""

@@ -1,1 +1,1 @@
-"""The command line: the options, and the commands beside the study."""
+"""The command line: the options, and the commands other than the study."""

@@ -19,11 +19,13 @@ from comparison.runner.cache import Cache
 from comparison.runner.processes import cores
 from comparison.runner.task import BATCH, RESULT
 from reference.problem import SceneError
+from reference.problem.families import BOUND_FACTOR
 from reference.support.command import OneLineParser, UsageError
 
 Rest = ParamSpec("Rest")
 Value = TypeVar("Value", int, float)
 
+BOUND_FACTORS = BOUND_FACTOR.lowest, BOUND_FACTOR.highest
 STORED_RESULTS = "report whose stored results, in DIR.tiles, are used and added to"  # --out of what writes nothing else
 
 
@@ -46,10 +48,20 @@ class CommandParser(OneLineParser):
         help_text = f"TOML files or built-in names (default: {default})"
         self.add_argument("scenes", nargs="*", metavar="SCENE", help=help_text)
 
-    def add_out(self, content: str) -> None:
+    def add_out(self, content: str, default: str = "report") -> None:
         """The folder that the command writes into; content: what goes there, in words."""
         self.add_argument(
-            "--out", default=Path("report"), type=Path, metavar="DIR", help=f"{content} (default %(default)s)"
+            "--out", default=Path(default), type=Path, metavar="DIR", help=f"{content} (default %(default)s)"
+        )
+
+    def add_bounds(self) -> None:
+        """Add the option that makes both bounds of every scene."""
+        self.add_argument(
+            "--bounds",
+            nargs=2,
+            metavar=("LOW", "HIGH"),
+            help="compute every scene twice, as lower and as upper bound: its coefficients of friction times these "
+            "factors",
         )
 
     def add_computing(self) -> None:
@@ -69,6 +81,16 @@ def number_of_jobs(options: argparse.Namespace) -> int:
         rule = "counts processes of this machine, --scheduler takes all workers of a cluster: give one of the two"
         raise SceneError("command line", "--jobs", options.jobs, rule)
     return cores() if options.jobs is None else read_whole_number("--jobs", options.jobs, 1, 1024)
+
+
+def read_bounds(options: argparse.Namespace) -> tuple[float, float] | None:
+    """Factors of friction that `--bounds` asks for, None without. Raises SceneError."""
+    if options.bounds is None:
+        return None
+    low, high = (read_number("--bounds", text, *BOUND_FACTORS, "factors of friction") for text in options.bounds)
+    if not low < high:
+        raise SceneError("command line", "--bounds", " ".join(options.bounds), "the smaller factor must be the first")
+    return low, high
 
 
 def read_whole_number(option: str, text: str, least: int, most: int) -> int:

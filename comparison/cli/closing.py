@@ -17,7 +17,7 @@ from comparison.study.levels import StudyLevel
 from comparison.surfaces.headline import Headline
 from comparison.surfaces.statements import word_unchecked
 from comparison.wording import percent, signed
-from reference.problem import builtin_scenes, example_scenes
+from reference.problem import Scene, builtin_scenes, example_scenes
 
 FIRST_SENTENCES = 8  # sentences that the terminal shows after a level
 FILMED = ("translational", "spatial")  # models that multibody.animate knows, by their keys
@@ -37,9 +37,10 @@ def print_faults(results: Results) -> None:
         print(f"{LABELS['fault']}: {line}", file=sys.stderr)
 
 
-def print_check(results: Results) -> None:
+def print_check(results: Results, scenes: Sequence[Scene]) -> None:
     """On standard error, as the last lines of a run with --check: broken limits, and what has no limit."""
-    lines = [f"limit broken: {alert.scene}: {alert.text}" for alert in results.broken]
+    lines = [f"--check: {line}" for line in word_demands_elsewhere(scenes)]
+    lines += [f"limit broken: {alert.scene}: {alert.text}" for alert in results.broken]
     rest = word_unchecked(results.unchecked)
     if not results.limits:
         lines.append("--check: no scene states [acceptance] limits: nothing was checked")
@@ -48,6 +49,13 @@ def print_check(results: Results) -> None:
     sys.stdout.flush()  # in a file that takes both outputs, too, these lines are the last
     for line in lines:
         print(line, file=sys.stderr)
+
+
+def word_demands_elsewhere(scenes: Sequence[Scene]) -> list[str]:
+    """Return a line that says where limits on demands are checked; none without such limits."""
+    stated = [scene.name for scene in scenes if scene.acceptance.demands is not None]
+    names = f"{stated[0]} and {len(stated) - 1} more" if len(stated) > 1 else "".join(stated)
+    return [f"[acceptance.demands] of {names}: phase-resonance ensemble --check checks it"] if stated else []
 
 
 def print_closing(console: Console, results: Results, options: Options, words: Sequence[str], report: Path) -> None:

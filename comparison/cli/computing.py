@@ -1,7 +1,7 @@
 """
 How the commands that compute tasks do it: stored results first, the others on the workers that the options name.
 
-Every result is stored as it arrives, in DIR.tiles beside `--out DIR`, so that the same command goes on where it
+Every result is stored as it arrives, in DIR.tiles next to `--out DIR`, so that the same command goes on where it
 stopped.
 """
 
@@ -17,7 +17,7 @@ from typing import Any
 from rich.console import Console
 
 from comparison.cli.arguments import EndedEarlyError, command_line, edit_command_line, number_of_jobs, resume_hint
-from comparison.runner.cache import Cache, StoreError, refuse_foreign_store, store_beside
+from comparison.runner.cache import Cache, StoreError, locate_store, refuse_foreign_store
 from comparison.runner.dask import cluster
 from comparison.runner.environment import provenance
 from comparison.runner.output import destination
@@ -51,18 +51,17 @@ def compute_tasks(
     models: set[str],
     console: Console,
     executor: Pool,
-    first: Sequence[Task] = (),
-    after_first: Callable[[TaskResults, Display], None] = lambda results, display: None,
+    then: Callable[[TaskResults, Display], Sequence[Task]] = lambda results, display: (),
 ) -> TaskResults:
     """
     The results of all tasks of a command: stored ones, and others computed. Raises SceneError, EndedEarlyError.
 
-    first: tasks that are computed before the others; `after_first` is called between, unless no others are missing.
+    then: returns the tasks that follow from the results of the others.
     """
     width = number_of_jobs(options)
     out = destination(options.out)
     refuse_foreign_store(out)
-    cache = Cache(store_beside(out))
+    cache = Cache(locate_store(out))
     if options.fresh:
         cache.remove(task.key for task in tasks)
     results = TaskResults(cache)
@@ -76,10 +75,8 @@ def compute_tasks(
         progress(console, sum(task.seconds for task in missing), count) as display,
     ):
         runner = Runner(results, count, pool, display)
-        runner.run(first, compiling_task)
-        if first and results.missing(missing):
-            after_first(results, display)
         runner.run(missing, compiling_task)
+        runner.run(then(results, display), compiling_task)
     return results
 
 

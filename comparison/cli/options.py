@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from comparison.cli.arguments import CommandParser, number_of_jobs, read_number, read_whole_number
+from comparison.cli.arguments import CommandParser, number_of_jobs, read_bounds, read_number, read_whole_number
 from comparison.cli.user_models import add_models, user_models
 from comparison.registry import EVERYTHING, FEATURES, SELECTABLE
 from comparison.runner.cache import refuse_foreign_store
@@ -51,7 +51,7 @@ def parse_options(argv: Sequence[str]) -> Options:
     words = _parser().parse_args(argv)
     names: list[str] = words.scenes or builtin_scenes()
     amplitude = None if words.amplitude is None else read_number("--amplitude", words.amplitude, 1e-12, 1e6, "m/s^2")
-    families = tuple(load_family(name, amplitude) for name in names)
+    families = tuple(load_family(name, amplitude, read_bounds(words)) for name in names)
     only, skip, also = (_analyses(f"--{name}", getattr(words, name)) for name in ("only", "skip", "also"))
     if only is not None and skip is not None:
         raise SceneError("command line", "--skip", words.skip, "names what --only leaves out anyway: give one of them")
@@ -79,16 +79,20 @@ def parse_options(argv: Sequence[str]) -> Options:
     if options.budget is not None and not hasattr(signal, "setitimer"):
         raise SceneError("command line", "--budget", words.budget, "needs a timer that this system does not have")
     if not options.plan:
-        try:
-            for field in (field for feature in FEATURES for field in feature.stored):
-                assert field.load is not None
-                field.load(options.out)
-        except (OSError, ValueError) as error:
-            rule = f"the report cannot show {error}"
-            raise SceneError("command line", "--out", str(options.out), rule) from None
-        refuse_foreign_report(options.out)
-        refuse_foreign_store(options.out)
+        _refuse_unusable_folder(options.out)
     return options
+
+
+def _refuse_unusable_folder(out: Path) -> None:
+    """Refuse a folder that keeps the report from being written or shown. Raises SceneError."""
+    try:
+        for field in (field for feature in FEATURES for field in feature.stored):
+            assert field.load is not None
+            field.load(out)
+    except (OSError, ValueError) as error:
+        raise SceneError("command line", "--out", str(out), f"the report cannot show {error}") from None
+    refuse_foreign_report(out)
+    refuse_foreign_store(out)
 
 
 def _refuse_limits_of_no_engine(scenes: Sequence[Scene], engines: Sequence[str]) -> None:
@@ -135,11 +139,12 @@ def _parser() -> CommandParser:
         help="most steps that Exudyn may take for a phase pair (default 2e6); a scene that needs more is refused "
         "before any step",
     )
+    parser.add_bounds()
     add_models(parser)
     names, on_request = ", ".join(EVERYTHING.names), ", ".join(each.name for each in SELECTABLE if each.on_request)
     parser.add_argument("--only", metavar="LIST", help=f"make these analyses only, separated by commas: {names}")
     parser.add_argument("--skip", metavar="LIST", help="make all analyses but these")
-    parser.add_argument("--also", metavar="LIST", help=f"make these analyses besides: {on_request}")
+    parser.add_argument("--also", metavar="LIST", help=f"make these analyses, too: {on_request}")
     parser.add_argument("--check", action="store_true", help="exit 1 if a scene's acceptance limits are broken")
     parser.add_argument(
         "--plan", action="store_true", help="print what would be computed and roughly how long it takes; run nothing"

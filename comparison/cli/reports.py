@@ -44,7 +44,7 @@ class CompleteLevel:
 
 
 def compute_level(level: StudyLevel, runner: Runner) -> CompleteLevel:
-    """Compute what a level still lacks: its surfaces with the analyses beside them, then what the surfaces choose."""
+    """Compute what a level still lacks: its surfaces and the analyses that need none, then what the surfaces choose."""
     analyses = select_analyses(level.study)
     tasks = surface_tasks(level.study)
     runner.run([*tasks, *first_tasks(level.study, analyses)], compiling_task)
@@ -60,7 +60,7 @@ class Reports:
     """
     Writes the reports of a run.
 
-    jobs: workers. began: when the run began. place: where the reports are: beside the folder of the options if that
+    jobs: workers. began: when the run began. place: where the reports are: next to the folder of the options if that
     holds something else. results: what the last one says; None before the first. level: whose report it is. seconds:
     the longest time that one took to write, s.
     """
@@ -153,7 +153,7 @@ def _faults(tasks: Sequence[Task], results: TaskResults) -> list[Alert]:
 
 
 def _load(field: ResultField[Any], out: Path) -> Any:
-    """Return what another command left beside the report; None for a file that has come since and cannot be read."""
+    """Return what another command left next to the report; None for a file that has come since and cannot be read."""
     assert field.load is not None
     try:
         return field.load(out)

@@ -1,7 +1,8 @@
 """What the terminal says before a run: what would be computed, and roughly how long it would take."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -9,19 +10,20 @@ from rich.table import Table
 
 from comparison.cli.options import Options
 from comparison.registry import first_tasks, levels, seconds_by_stage, select_analyses
-from comparison.runner.cache import Cache, store_beside
+from comparison.runner.analysis import Analysis
+from comparison.runner.cache import Cache, locate_store
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import refusal_of
 from comparison.study.costs import COMPILING, STARTING, WRITING, seconds_of_model
 from comparison.study.models import models_of, why_not_spatial
+from comparison.study.records import describe_records
 from comparison.study.reductions import reductions
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import surface_tasks
-from reference.problem import Scene, describe_record
-from reference.problem.plausibility import implausible_values
-from reference.problem.tables import Record
-from reference.records.description import RecordDescription
+from reference.building import describe_building, word_buildings
+from reference.plausibility import implausible_values
+from reference.problem import Family, Scene
 
 NAMES = 4  # names of a list that the terminal shows
 
@@ -30,8 +32,30 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
     """Print what would be computed, and roughly how long it would take."""
     for reason, of in _refusals(study).items():
         console.print(f"{_list_names(of)}: {reason}.", soft_wrap=True)
+    _print_models(console, study, options.families)
+    analyses = select_analyses(study)
+    _print_analyses(console, study, analyses)
+    _print_levels(console, study)
+    _print_reductions(console, study)
+    if study.absent:
+        reasons = ", ".join(f"{analysis} ({reason})" for analysis, reason in study.absent.items())
+        console.print(f"Not in the report: {reasons}.", soft_wrap=True)
+    if len(study.phased) < len(study.scenes):
+        console.print("A recorded motion has no phases: one point per model.")
+    results = TaskResults(Cache(locate_store(options.out)), options.fresh)
+    print_stored(console, results, surface_tasks(study), first_tasks(study, analyses))
+    seconds = sum(seconds_of_model(study, model) for model in study.hierarchy)
+    seconds += sum(seconds_by_stage(study).values())
+    wall = STARTING + seconds / options.jobs + WRITING
+    first = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
+    console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{first}; nothing was computed.")
+    console.print(f"The report would go to {options.out}.", soft_wrap=True)
+
+
+def _print_models(console: Console, study: Study, families: Sequence[Family]) -> None:
+    """Print a table of the models of every file, with their phase pairs."""
     table = new_table("file", "scenes", "model", "phase pairs", "computed", "tolerance")
-    for family in options.families:
+    for family in families:
         for model in study.hierarchy:
             scenes = [scene for scene in family.scenes if model.applies(scene)]
             if scenes:
@@ -40,31 +64,24 @@ def print_plan(console: Console, study: Study, options: Options) -> None:
                 counts = f"{points:,}", f"{computed:,}", f"{model.tolerance(study.tolerance):.0e}"
                 table.add_row(family.name, str(len(scenes)), model.title, *counts)
     console.print(table)
-    analyses = select_analyses(study)
+
+
+def _print_analyses(console: Console, study: Study, analyses: Sequence[Analysis[Any]]) -> None:
+    """Print the number of tasks of every analysis, where it is known before the surfaces are."""
     counted = {
         each.stage: "chosen by the surfaces" if each.needs_surfaces else len(each.tasks(study.selecting(each.key)))
         for each in analyses
     }
     console.print(f"Analyses (tasks): {', '.join(f'{name} ({count})' for name, count in counted.items()) or 'none'}.")
+
+
+def _print_levels(console: Console, study: Study) -> None:
+    """Print the grids of phases of every level; a study without phases has none."""
     for level in levels(study) if study.phased else ():
-        of_level = level.study
-        kinds = {"equations" if m.side == "reference" else m.title: len(of_level.axis(m)) for m in of_level.hierarchy}
+        models = level.study.hierarchy
+        kinds = {"equations" if m.side == "reference" else m.title: len(level.study.axis(m)) for m in models}
         grids = ", ".join(f"{kind} {count} x {count} phases" for kind, count in kinds.items())
         console.print(f"{level.title.capitalize()}: {grids}.")
-    _print_reductions(console, study)
-    if study.absent:
-        reasons = ", ".join(f"{analysis} ({reason})" for analysis, reason in study.absent.items())
-        console.print(f"Not in the report: {reasons}.", soft_wrap=True)
-    if len(study.phased) < len(study.scenes):
-        console.print("A recorded motion has no phases: one point per model.")
-    results = TaskResults(Cache(store_beside(options.out)), options.fresh)
-    print_stored(console, results, surface_tasks(study), first_tasks(study, analyses))
-    seconds = sum(seconds_of_model(study, model) for model in study.hierarchy)
-    seconds += sum(seconds_by_stage(study).values())
-    wall = STARTING + seconds / options.jobs + WRITING
-    first = f" and {COMPILING:.0f} s for compiling on a new installation" if study.hierarchy else ""
-    console.print(f"Roughly {wall:.0f} s with {options.jobs} workers{first}; nothing was computed.")
-    console.print(f"The report would go to {options.out}.", soft_wrap=True)
 
 
 def _list_names(names: Sequence[str]) -> str:
@@ -82,31 +99,32 @@ def print_stored(console: Console, results: TaskResults, batches: Sequence[Task]
         console.print(line, soft_wrap=True)  # a path is copied whole
 
 
-def print_implausible_values(console: Console, scenes: Sequence[Scene]) -> None:
-    """A line for every value that is hardly meant, with the first scene that has it."""
-    said = {line: scene.name for scene in reversed(scenes) for line in implausible_values(scene)}
+def print_buildings(console: Console, named: Sequence[tuple[str, Scene]]) -> None:
+    """Print what was read of the buildings; then a line for every kind of value that is hardly meant, once for each."""
+    buildings = [replace(describe_building(scene), name=name) for name, scene in named]
+    for line in word_buildings(buildings):
+        console.print(line, soft_wrap=True, markup=False, highlight=False)
+    strongest: dict[str, tuple[float, Scene]] = {}
+    for building, (name, scene) in zip(buildings, named):
+        if name not in strongest or building.ground_peak > strongest[name][0]:
+            strongest[name] = building.ground_peak, scene
+    said = {line: name for name in reversed(strongest) for line in implausible_values(strongest[name][1])}
     for line, name in said.items():
         console.print(f"Warning: {name}: {line}", soft_wrap=True, markup=False)
 
 
-def print_records(console: Console, scenes: Sequence[Scene]) -> None:
-    """Say once of every recorded motion what was read."""
-    read: dict[Hashable, RecordDescription] = {}
-    for scene in scenes:
-        if isinstance(record := scene.excitation, Record):
-            what = record.files, tuple(record.origin), record.detrend
-            if what not in read:
-                read[what] = describe_record(scene)
-            elif record.scale != read[what].scale:  # a study of many factors
-                read[what] = replace(read[what], scale=1.0)
-    for one in read.values():
-        console.print(str(one), soft_wrap=True, markup=False, highlight=False)
+def print_records(console: Console, named: Sequence[tuple[str, Scene]], short: bool = False) -> None:
+    """Say once of every recorded motion what was read, in a line where short; named: by motion, "" for its files."""
+    names, scenes = zip(*named) if named else ((), ())
+    for one in describe_records(scenes, names):
+        for line in one.short_lines if short else one.lines:
+            console.print(line, soft_wrap=True, markup=False, highlight=False)
 
 
 def print_models_left_out(console: Console, study: Study) -> None:
-    """A line for every scene with hardly meant values, or that states only a part of what a model needs."""
-    print_records(console, study.scenes)
-    print_implausible_values(console, study.scenes)
+    """Print what was read and what is hardly meant; say which scenes state only a part of what a model needs."""
+    print_records(console, [("", scene) for scene in study.scenes])
+    print_buildings(console, [(scene.name, scene) for scene in study.scenes])
     for scene in study.scenes:
         if reason := why_not_spatial(scene):
             console.print(f"{scene.name}: {reason}.", soft_wrap=True)
@@ -138,7 +156,7 @@ def new_table(*headings: str) -> Table:
     """An empty table: words to the left, numbers to the right. Where it is too wide words are folded, never numbers."""
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for heading in headings:
-        words = heading in ("file", "scene", "model", "difference", "step", "quantity", "verdict")
+        words = heading in ("file", "scene", "model", "motion", "difference", "step", "quantity", "verdict", "bound")
         whole = heading == "difference" or not words
         table.add_column(heading, justify="left" if words else "right", no_wrap=whole, overflow="fold")
     return table

@@ -1,5 +1,5 @@
 """
-How a difference falls with what causes it: an exponent fitted through values that have error bars.
+Fall of a difference with its cause: an exponent fitted through values that have error bars.
 
 A value enters the fit only where it is known to a fifth of itself: a slope through noise is not a slope. All phase
 pairs of a surface share one exponent and have a size of their own. Its uncertainty is two standard errors, of the
@@ -34,7 +34,7 @@ class Slope(NamedTuple):
 
 @result
 class Trend:
-    """How a difference falls with what causes it."""
+    """Fall of a difference with its cause."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]

@@ -29,10 +29,10 @@ GLOSSARY = {
     "other phases": "Exudyn is computed on fewer phases than the equations. This is what the means of the "
     "effects on their finer grids leave of the total: sampling, no effect.",
     "two codes": "Equations and Exudyn, given the same geometry and the same friction law: the largest difference "
-    "over all phases. Met: within the errors that both state.",
+    "over all phases. Met: within twice the errors that both state, together.",
     "validated": "Compared with a measurement and met within the uncertainties. Two codes that agree are only "
     "verified.",
-    "not resolved": "Not beyond its error: nothing is claimed of it.",
+    "not resolved": "Within its sampling error, or less than five times the numerical error: nothing is claimed of it.",
     "ill-conditioned": "More than 0.1 % of it depends on speeds below 1e-6 m/s.",
     "well-conditioned": "Less than 0.1 % of it depends on speeds below 1e-6 m/s.",
     "limits": "Largest values that a scene file states as acceptable.",

@@ -4,32 +4,70 @@ each pair of models without a limit.
 """
 
 import re
+from collections.abc import Sequence
+from dataclasses import dataclass
 from xml.etree import ElementTree
 
 from comparison.report.results import Results
+from comparison.report.scene_result import SceneResult
 
 FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
 
+UNCHECKED = "not checked, as no limit is stated"
 OUTCOMES = {"failures": "failure", "skipped": "skipped"}  # attribute that counts the elements of this name
+
+
+@dataclass(frozen=True)
+class JUnitCase:
+    """One check. failures: a line for each place where it fails; skipped: why nothing was checked, "" otherwise."""
+
+    name: str
+    failures: Sequence[str] = ()
+    skipped: str = ""
+
+
+@dataclass(frozen=True)
+class JUnitSuite:
+    """The checks of one scene, which took so many seconds from a timestamp on; said: what else is said of it."""
+
+    name: str
+    seconds: float
+    timestamp: str
+    cases: Sequence[JUnitCase]
+    said: str = ""
 
 
 def junit(results: Results) -> str:
     """The acceptance limits of every scene as JUnit XML; a broken limit is a failure with its line as the message."""
+    return junit_text([_suite_of(scene, results.run.began) for scene in results.scenes])
+
+
+def _suite_of(scene: SceneResult, began: str) -> JUnitSuite:
+    """The limits of a scene, and what has none."""
+    cases = []
+    for limit in scene.limits:
+        key = f"acceptance.{limit.key} = {limit.allowed:g}{' by default' if limit.default else ''}"
+        cases.append(JUnitCase(key, limit.broken))
+    cases += [JUnitCase(f"acceptance: {pair}", skipped=UNCHECKED) for pair in scene.unchecked]
+    seconds, said = sum(model.cost for model in scene.models.values()), "\n".join(h.statement for h in scene.headlines)
+    return JUnitSuite(scene.name, seconds, began, cases, said)
+
+
+def junit_text(scenes: Sequence[JUnitSuite]) -> str:
+    """Return suites of checks as JUnit XML."""
     suites = ElementTree.Element("testsuites", name="phase-resonance acceptance limits")
-    for scene in results.scenes:
-        seconds, name = sum(model.cost for model in scene.models.values()), _limit_text(scene.name)
-        about = {"name": name, "time": f"{seconds:.1f}", "timestamp": results.run.began}
+    for scene in scenes:
+        name = _limit_text(scene.name)
+        about = {"name": name, "time": f"{scene.seconds:.1f}", "timestamp": scene.timestamp}
         suite = ElementTree.SubElement(suites, "testsuite", about)
-        for limit in scene.limits:
-            key = f"acceptance.{limit.key} = {limit.allowed:g}{' by default' if limit.default else ''}"
-            case = ElementTree.SubElement(suite, "testcase", classname=name, name=key)
-            if limit.broken:
-                lines = [_limit_text(line) for line in limit.broken]
+        for each in scene.cases:
+            case = ElementTree.SubElement(suite, "testcase", classname=name, name=_limit_text(each.name))
+            if each.failures:
+                lines = [_limit_text(line) for line in each.failures]
                 ElementTree.SubElement(case, "failure", message=lines[0]).text = "\n".join(lines)
-        for pair in scene.unchecked:
-            case = ElementTree.SubElement(suite, "testcase", classname=name, name=f"acceptance: {pair}")
-            ElementTree.SubElement(case, "skipped", message="not checked, as no limit is stated")
-        ElementTree.SubElement(suite, "system-out").text = _limit_text("\n".join(h.statement for h in scene.headlines))
+            if each.skipped:
+                ElementTree.SubElement(case, "skipped", message=each.skipped)
+        ElementTree.SubElement(suite, "system-out").text = _limit_text(scene.said)
         counts: dict[str, int] = {"tests": len(suite.findall("testcase")), "errors": 0}
         counts |= {kind: len(suite.findall(f"testcase/{tag}")) for kind, tag in OUTCOMES.items()}
         suite.attrib |= {kind: str(count) for kind, count in counts.items()}

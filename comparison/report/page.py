@@ -2,7 +2,7 @@
 
 import base64
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from importlib import resources
 from typing import Any
@@ -17,6 +17,7 @@ from comparison.report.results import VALIDATED_BRIEFLY, Results
 from comparison.report.section import Report, Section
 from comparison.report.surface_sections import models_in_use
 from comparison.runner.attempts import attempt
+from comparison.study.study import Study
 from comparison.surfaces.alerts import Alert
 from comparison.surfaces.statements import CELLS, word_verdict
 from comparison.surfaces.waterfall import PHASES, Waterfall
@@ -48,7 +49,7 @@ def pages(report: Report) -> dict[str, str]:
         "lead_lines": part("sentences of sections", partial(lead_lines, report)) or [],
         "alerts": part("alerts", partial(render_alerts, report)) or "",
         "summary": part("summary", partial(render_summary, report)) or "",
-        "data": part("surfaces", lambda: pack(page_data(report).encode())) or nothing,
+        "data": part("surfaces", lambda: pack(page_data(report, partial(note_lost, lost)).encode())) or nothing,
         "packed": {key: numbers or "" for key, numbers in packed.items()},
     }
     verification = {"data": nothing, "packed": {}}
@@ -70,8 +71,8 @@ def word_answer(results: Results) -> str:
 def render_alerts(report: Report) -> Markup:
     """Return what to know before trusting a number."""
     has_engine = any(model.side == "engine" for model in models_in_use(report.study))
-    template = _environment().get_template("sections/alerts.html.j2")
-    return Markup(template.render(alerts=_alert_groups(report.results), has_engine=has_engine))
+    context = {"alerts": _alert_groups(report.results), "has_engine": has_engine}
+    return render_template("sections/alerts.html.j2", context)
 
 
 def render_summary(report: Report) -> Markup:
@@ -81,7 +82,7 @@ def render_summary(report: Report) -> Markup:
     drawn = [(bars, line) for bars, line in waterfalls if is_drawn(bars)]
     context = {
         "results": results,
-        "second_title": "Exudyn" if any(model.side == "engine" for model in models_in_use(study)) else "the last model",
+        "second_title": name_second(study),
         "cells": CELLS,
         "drawn": drawn,
         "hidden_bodies": len(waterfalls) - len(drawn),
@@ -92,7 +93,12 @@ def render_summary(report: Report) -> Markup:
         },
         "effects": {PHASES: "other phases", **{model.key: model.effect or model.title for model in study.hierarchy}},
     }
-    return Markup(_environment().get_template("sections/summary.html.j2").render(context))
+    return render_template("sections/summary.html.j2", context)
+
+
+def name_second(study: Study) -> str:
+    """Return what the answers compare with the paper's equations."""
+    return "Exudyn" if any(model.side == "engine" for model in models_in_use(study)) else "the last model"
 
 
 def is_drawn(bars: Waterfall) -> bool:
@@ -123,9 +129,6 @@ def _page(
 ) -> str:
     """Return one page with its sections; what raises is left out, with a line in `lost`."""
     study, results = report.study, report.results
-    templates = resources.files("comparison.report") / "templates"
-    style = (templates / "report.css").read_text(encoding="utf-8")
-    script = "\n".join((templates / name).read_text(encoding="utf-8") for name in SCRIPTS)
     sections = [section for section in report.sections if section.verifies == verifies]
     shown = [section for section in sections if section.present(results)]
     absent = [
@@ -139,22 +142,46 @@ def _page(
         "titles": {"scene": "as stated", **{model.key: model.title for model in study.hierarchy}},
         "has_surfaces": lambda scene: "surfaces" in scene.analyses,
     }
-    load = _environment().get_template
     parts = []
     for section in shown:
         say = partial(note_lost, lost)
         verdict = attempt(f"verdict of section {section.name}", partial(word_section, section, results), say)
         body = attempt(f"section {section.name}", partial(_render, section, common, report), say)
         parts.append((section, lost_line(lost[-1]) if body is None else body, verdict or ""))
-    return load(template).render(
-        {**common, **context},
-        policy=content_policy(script, style),
-        style=style,
-        script=script,
-        sections=parts,
-        absent=absent,
-        lost=[lost_line(line) for line in lost],
+    return render_page(template, {**common, **context, "absent": absent}, parts, lost)
+
+
+def render_page(
+    template: str, context: Mapping[str, Any], sections: Sequence[tuple[Section, Markup, str]], lost: Sequence[str]
+) -> str:
+    """
+    Return a page that is whole by itself: style, script and data inside it.
+
+    sections: each with what stands below its heading and the line beside that. lost: a line for every part that could
+    not be made.
+    """
+    templates = resources.files("comparison.report") / "templates"
+    style = (templates / "report.css").read_text(encoding="utf-8")
+    script = "\n".join((templates / name).read_text(encoding="utf-8") for name in SCRIPTS)
+    return str(
+        render_template(
+            template,
+            {
+                "absent": (),
+                **context,
+                "policy": content_policy(script, style),
+                "style": style,
+                "script": script,
+                "sections": sections,
+                "lost": [lost_line(line) for line in lost],
+            },
+        )
     )
+
+
+def render_template(template: str, context: Mapping[str, Any]) -> Markup:
+    """Return a template of the report, or of the folder of a feature, with its context."""
+    return Markup(_environment().get_template(template).render(context))
 
 
 def word_section(section: Section, results: Results) -> str:
@@ -164,7 +191,7 @@ def word_section(section: Section, results: Results) -> str:
 
 def _render(section: Section, common: Mapping[str, Any], report: Report) -> Markup:
     """Return what stands below the heading of a section."""
-    return Markup(_environment().get_template(section.template).render({**common, **section.context(report)}))
+    return render_template(section.template, {**common, **section.context(report)})
 
 
 def lost_line(line: str) -> Markup:

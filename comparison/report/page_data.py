@@ -3,6 +3,8 @@
 import base64
 import gzip
 import json
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import contourpy
@@ -10,6 +12,8 @@ import numpy as np
 
 from comparison.report.section import Report
 from comparison.result_types import Array
+from comparison.runner.attempts import attempt
+from comparison.runner.output import on_stderr
 from comparison.study.models import Model, Pair, label_of, models_of
 from comparison.surfaces.completion import Completion
 from comparison.surfaces.model_difference import difference_of
@@ -22,9 +26,9 @@ DIGITS, ERROR_DIGITS = 7, 2  # significant, of mu and of an error
 LEVEL = 6  # level of compression: the next one takes half as long again for 2 % less
 
 
-def page_data(report: Report) -> str:
+def page_data(report: Report, say: Callable[[str], object] = on_stderr) -> str:
     """
-    JSON of all that is drawn; NaN is null.
+    JSON of all that is drawn; NaN is null. What a feature adds and cannot be made is left out, which `say` is told.
 
     grid: phases per axis of the study. titles: by model. scenes, each: name, title, labels (by model, with the reading
     of mu), bodies, duration (s), recorded, flat (whether it is a flat slider); pairs, each: key, title, sentence,
@@ -34,7 +38,6 @@ def page_data(report: Report) -> str:
     feature adds. A surface is a list of rows, one per alpha1, of values, one per alpha2.
     """
     study = report.study
-    hooks = [feature.page_data for feature in report.features if feature.page_data]
     data = {
         "grid": study.grid,
         "titles": {model.key: model.title for model in study.hierarchy},
@@ -49,11 +52,30 @@ def page_data(report: Report) -> str:
                 "flat": scene.flat,
                 "pairs": [_pair(report, scene, pair) for pair in study.pairs(scene)],
                 "models": {model.key: _model(report, scene, model) for model in models_of(scene, study.hierarchy)},
-                **{name: part for hook in hooks for name, part in hook(report, scene).items()},
+                **_data_of_features(report, scene, say),
             }
             for scene in study.scenes
         ],
     }
+    return _json_text(data)
+
+
+def _data_of_features(report: Report, scene: Scene, say: Callable[[str], object]) -> dict[str, Any]:
+    """Return what the features add to a scene."""
+    added: dict[str, Any] = {}
+    for feature in report.features:
+        if feature.page_data:
+            read = partial(_as_json, feature.page_data, report, scene)
+            added |= json.loads(attempt(f"data of {feature.key} on the page", read, say) or "{}")
+    return added
+
+
+def _as_json(read: Callable[[Report, Scene], Mapping[str, Any]], report: Report, scene: Scene) -> str:
+    """Return what a feature adds as text, so that what no text can hold costs the feature alone."""
+    return _json_text(dict(read(report, scene)))
+
+
+def _json_text(data: Any) -> str:
     return json.dumps(data, allow_nan=False, separators=(",", ":"))
 
 

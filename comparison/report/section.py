@@ -47,7 +47,7 @@ class Section:
 
     absent: where the results hold nothing of it, which command makes it. context: what the template reads.
     folded: whether the reader opens it. verifies: whether it judges the tool or the paper rather than answers the
-    question, and so stands in verification.html. verdict: one line beside the title. lead: one sentence for the first
+    question, and so stands in verification.html. verdict: one line next to the title. lead: one sentence for the first
     screen, "" for none. template: in comparison/report/templates, unless it is section.html.j2 of the folder. name,
     shows: key and fields of the feature, which enters them.
     """

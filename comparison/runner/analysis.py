@@ -1,4 +1,4 @@
-"""The one shape of everything that is computed beside the surfaces."""
+"""The one shape of everything that is computed in addition to the surfaces."""
 
 from abc import abstractmethod
 from typing import ClassVar, Protocol, TypeVar
@@ -26,6 +26,10 @@ class Analysis(Protocol[Result]):
     seconds: ClassVar[float] = 1.0  # rough s of processor time for one scene
     needs_surfaces: ClassVar[bool] = False  # whether the surfaces choose its tasks
     level: ClassVar[int] = LAST  # the first level of the study whose report has it
+
+    def estimate_seconds(self, study: Study) -> float:
+        """Return the rough processor time of a study, s."""
+        return self.seconds * len(study.scenes)
 
     @abstractmethod
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:

@@ -1,7 +1,7 @@
 """
 The one place where an error of a part costs that part alone: a section, a picture, a table, one file of several.
 
-A command computes, then writes tables and JSON, then draws. What raises beside the results becomes one line, and the
+A command computes, then writes tables and JSON, then draws. What raises outside the results becomes one line, and the
 exit code is as without it.
 """
 

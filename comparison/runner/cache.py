@@ -44,9 +44,9 @@ class StoreError(OSError):
 
 
 @dataclass(frozen=True)
-class Key:
+class CacheKey:
     """
-    What a result is found by. about: all that the results of its group depend on in common, as text; item: what
+    Key of a stored result. about: all that the results of its group depend on in common, as text; item: what
     distinguishes this one, as a hash; kind: the suffix of its file, which the counts go by.
     """
 
@@ -72,7 +72,7 @@ class Cache:
         self.folder = folder
         self.kept: Counter[str] = Counter()
 
-    def get(self, key: Key, declared: Any) -> Any | None:
+    def get(self, key: CacheKey, declared: Any) -> Any | None:
         """The stored result to the last bit, of type `declared`; None if there is none that is whole and fits."""
         try:
             file = read_file(self.folder / key.name, LIMIT)
@@ -87,11 +87,11 @@ class Cache:
             os.utime(self.folder / key.group)  # lately used
         return value
 
-    def holds(self, key: Key) -> bool:
+    def holds(self, key: CacheKey) -> bool:
         """Return whether there is a file for it, whatever its state."""
         return (self.folder / key.name).exists()
 
-    def put(self, key: Key, value: Any) -> None:
+    def put(self, key: CacheKey, value: Any) -> None:
         """Store a result, unless it names a fault. Raises StoreError, and leaves what is stored as it was."""
         if faulty(value):
             return
@@ -104,7 +104,7 @@ class Cache:
             raise StoreError(f"{str(self.folder)!r}: a result could not be stored: {error.strerror}") from None
         self.kept[key.kind] += 1
 
-    def remove(self, keys: Iterable[Key]) -> None:
+    def remove(self, keys: Iterable[CacheKey]) -> None:
         """Drop these results and no others."""
         wanted = {key.name for key in keys}
         for group in {Path(name).parent.name for name in wanted}:
@@ -113,20 +113,20 @@ class Cache:
                     if f"{group}/{entry.name}" in wanted and _is_result(entry):
                         os.unlink(entry.path)
 
-    def trim(self, keys: Iterable[Key], limit: int = LIMIT) -> None:
-        """Drop groups other than those of `keys`, least recently used first, while all take more than `limit`."""
+    def trim(self, keys: Iterable[CacheKey]) -> None:
+        """Drop groups other than those of `keys`, least recently used first, while all take more than LIMIT."""
         needed = {key.group for key in keys}
         with suppress(OSError):  # a store that cannot be looked through is not worth ending a run for
             groups = [Path(entry.path) for entry in os.scandir(self.folder) if entry.is_dir(follow_symlinks=False)]
             groups.sort(key=lambda group: (group.stat().st_mtime, group.name))
             sizes = {group: _size(group) for group in groups}
             for group in groups:
-                if sum(sizes.values()) > limit and group.name not in needed:
+                if sum(sizes.values()) > LIMIT and group.name not in needed:
                     _drop(group)
                     del sizes[group]
 
 
-def store_beside(out: Path) -> Path:
+def locate_store(out: Path) -> Path:
     """Return where the results of a report are kept."""
     return out.with_name(f"{out.name}.tiles")
 
@@ -135,9 +135,9 @@ def refuse_foreign_store(out: Path) -> None:
     """Raise SceneError, one line, if something that is no folder of results is where that of the report belongs."""
 
     def refusal(rule: str) -> SceneError:
-        return SceneError("command line", "--out", str(out), f"{folder.name!r} beside it {rule}")
+        return SceneError("command line", "--out", str(out), f"{folder.name!r} next to it {rule}")
 
-    folder = store_beside(out)
+    folder = locate_store(out)
     try:
         if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
             raise refusal("is not the folder that keeps results of this study: move it away")
@@ -157,7 +157,7 @@ def faulty(result: Any) -> bool:
     return bool(getattr(result, "error_message", ""))
 
 
-def _checksum(key: Key, content: bytes) -> bytes:
+def _checksum(key: CacheKey, content: bytes) -> bytes:
     return hashlib.sha256(key.name.encode() + b"\0" + content).digest()
 
 
@@ -205,7 +205,7 @@ def _pack(about: Any, value: Any) -> bytes:
     arrays = BytesIO()
     count = 0
 
-    def beside_json(part: Any) -> Any:
+    def convert_to_json(part: Any) -> Any:
         nonlocal count
         if isinstance(part, bytes | np.ndarray):
             array = np.frombuffer(part, np.uint8) if isinstance(part, bytes) else part
@@ -222,7 +222,7 @@ def _pack(about: Any, value: Any) -> bytes:
             return {each.name: getattr(part, each.name) for each in fields(part)}
         raise TypeError(f"{type(part).__name__} cannot be stored")
 
-    text = json.dumps({"about": about, "value": value}, default=beside_json)
+    text = json.dumps({"about": about, "value": value}, default=convert_to_json)
     return text.encode() + b"\n" + arrays.getvalue()
 
 

@@ -104,13 +104,13 @@ class ClusterExecutor(Executor):
         return max(self._count, 1)
 
     def start(self, call: Call, seconds: float | None = None, group: str = "") -> Future[Any]:
-        """Make a call on a worker; with a limit in a process beside it, so that it lives on when that ends the call."""
+        """Make a call on a worker; with a limit in a process of its own, so that the worker outlives the call."""
         if self._client.status != "running":
             raise ExecutorLostError(GONE)
         answer: Future[Any] = Future()
         answer.set_running_or_notify_cancel()
         remote = self._inner.submit(_one_at_a_time, call, seconds)
-        remote.add_done_callback(lambda arrived: _arrived(arrived, answer))
+        remote.add_done_callback(lambda arrived: _pass_on(arrived, answer))
         return answer
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
@@ -138,7 +138,7 @@ def _child() -> Workers:
     return Workers(1)
 
 
-def _arrived(remote: Future[Any], answer: Future[Any]) -> None:
+def _pass_on(remote: Future[Any], answer: Future[Any]) -> None:
     from distributed import KilledWorker
 
     try:

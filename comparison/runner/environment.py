@@ -1,4 +1,4 @@
-"""What a computed number depends on besides the question: code and versions; and what a report says of them."""
+"""What a computed number depends on in addition to the question: code and versions; and what a report says of them."""
 
 import ast
 import hashlib
@@ -31,7 +31,7 @@ def environment_fingerprint(model: str) -> dict[str, str]:
 
 
 def task_environment_fingerprint(module: str) -> dict[str, str]:
-    """Return the fingerprint of what is computed beside the surfaces: it asks both sides and may draw."""
+    """Return the fingerprint of what is computed in addition to the surfaces: it asks both sides and may draw."""
     return _environment((*PACKAGES, *DRAWING), (*ANSWERING, module.rpartition(".")[0] or module))
 
 

@@ -3,13 +3,11 @@ The folders that commands write for the user: reports, tables, figures.
 
 Every such folder holds a manifest of the files that this study wrote there, with a hash of each. A file is the study's
 own if it is as the manifest says, and everything else is the user's. Only the study's own files are replaced or
-removed; where something else is in the way the new ones go beside under a new name.
+removed; where something else is in the way the new ones go to a new name next to it.
 """
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import sys
 import tempfile
@@ -21,7 +19,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from comparison.runner.cache import store_beside
+from comparison.runner.cache import locate_store
 from reference.problem import SceneError
 from reference.support.files import (
     NEW,
@@ -30,7 +28,6 @@ from reference.support.files import (
     find_abandoned_staging,
     hold_lock,
     iterate_names,
-    read_file,
     staging_directory,
     write_atomically,
     write_new,
@@ -38,24 +35,25 @@ from reference.support.files import (
 
 if TYPE_CHECKING:
     import xarray as xr
+from comparison.runner.manifest import (
+    MANIFEST,
+    Own,
+    hash_of,
+    is_own,
+    list_foreign_files,
+    manifest_json,
+    read_manifest,
+    walk_folder,
+)
 
-MANIFEST, SCHEMA = "manifest.json", "phase-resonance/manifest"
 REPORT = "comparison.run"  # the command whose files make up a report; those of others in the folder stay
-LARGEST = 2**30  # bytes of a file that may be the study's own
+PAGE = "index.html"
 FULL_NAME = 240  # bytes of a name: the names made from it are longer
 
 
 def on_stderr(line: str) -> None:
     """Say a line where it does not mix with results."""
     print(line, file=sys.stderr)
-
-
-@dataclass(frozen=True)
-class Own:
-    """A file of the study: the command that wrote it, and the hashes it may have, two while it is being replaced."""
-
-    command: str
-    hashes: tuple[str, ...]
 
 
 def destination(path: Path, option: str = "--out") -> Path:
@@ -83,7 +81,7 @@ def destination(path: Path, option: str = "--out") -> Path:
         raise refusal("is a symbolic link that leads back to itself: give another directory") from None
     except OSError as error:
         raise refusal(f"cannot be used: {error.strerror}: give another directory") from None
-    # a path that means what it says stays as it was typed, for the messages; "." has no name to put a store beside
+    # a path that means what it says stays as it was typed, for the messages; "." has no name for the store
     return path if path.name and Path(os.path.abspath(path)) == place and ".." not in path.parts else place
 
 
@@ -91,13 +89,14 @@ def refuse_foreign_report(out: Path) -> None:
     """Raise SceneError, one line, if a report cannot take the place of what is at `out`, a `destination`."""
     refusal = partial(SceneError, "command line", "--out", str(out))
     place = out.resolve()
+    refuse_other_page(out, REPORT)
     if place.exists():
         if Path.cwd().resolve().is_relative_to(place):
             raise refusal("is the directory you work in: give one inside it")
         if os.path.ismount(place):
             raise refusal("is a mount point, which cannot be replaced: give a directory inside it")
         try:
-            foreign_files = foreign(place)
+            foreign_files = list_foreign_files(place)
         except OSError as error:
             raise refusal(f"cannot be read: {error.strerror}: give another directory") from None
         if foreign_files and not read_manifest(place):
@@ -107,14 +106,23 @@ def refuse_foreign_report(out: Path) -> None:
     refuse_unwritable(out, place.parent)
 
 
-def refuse_foreign_files(out: Path, names: Sequence[str], option: str = "--out") -> None:
+def refuse_foreign_files(out: Path, names: Sequence[str]) -> None:
     """Raise SceneError, one line, if files of these names in `out`, a `destination`, would replace ones of the user."""
     manifest = read_manifest(out)
     for name in names if manifest else (MANIFEST, *names):
-        if os.path.lexists(out / name) and not _is_own(out / name, manifest.get(name)):
+        if os.path.lexists(out / name) and not is_own(out / name, manifest.get(name)):
             rule = f"holds {name!r}, which this study did not write: move it away, or give another directory"
-            raise SceneError("command line", option, str(out), rule)
-    refuse_unwritable(out, out, option)
+            raise SceneError("command line", "--out", str(out), rule)
+    refuse_unwritable(out, out)
+
+
+def refuse_other_page(out: Path, command: str) -> None:
+    """Raise SceneError, one line, if the page in `out` is that of another command: two answers need two folders."""
+    page = read_manifest(out).get(PAGE)
+    if page is not None and page.command != command:
+        name = page.command.rpartition(".")[2]
+        rule = f"holds the page of `{name}`, of this building or another: give a directory of its own"
+        raise SceneError("command line", "--out", str(out), rule)
 
 
 def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
@@ -122,7 +130,7 @@ def refuse_unwritable(out: Path, folder: Path, option: str = "--out") -> None:
     try:
         existing = next(parent for parent in (folder, *folder.absolute().parents) if parent.exists())
         tempfile.TemporaryDirectory(dir=existing, prefix=TEMPORARY).cleanup()
-        store_beside(out.absolute()).exists()
+        locate_store(out.absolute()).exists()
     except OSError as error:
         raise SceneError("command line", option, str(out), f"cannot be written: {error.strerror}") from None
 
@@ -136,13 +144,13 @@ class StagedReport:
 
 
 @contextmanager
-def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterator[StagedReport]:
+def replace_report(out: Path) -> Iterator[StagedReport]:
     """
     A new folder to write a report into; if the block ends without exception its files go to `out`, each whole.
 
     What the report there has no more is removed, and files of other commands are kept. If anything but the study's own
-    files is there by then all of it stays as it is and the report goes beside, which `say` is told. `place` of the
-    report says after the block where it is.
+    files is there by then all of it stays and the report goes to a new name, which a line on standard error says. After
+    the block `place` of the report is where it is.
     """
     place = out.resolve()
     made = make_parents(place.parent)
@@ -152,7 +160,7 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
             yield report
             # a thread of its own: what interrupts this one interrupts no move
             with hold_lock(place.parent), ThreadPoolExecutor(1) as mover:
-                report.place = mover.submit(_install_report, report.folder, place, say).result()
+                report.place = mover.submit(_install_report, report.folder, place).result()
     except BaseException:
         with suppress(OSError):
             for parent in made:
@@ -161,30 +169,28 @@ def replace_report(out: Path, say: Callable[[str], None] = on_stderr) -> Iterato
 
 
 def clear_dead(out: Path) -> None:
-    """Remove the unfinished reports that killed runs left beside `out`."""
+    """Remove the unfinished reports that killed runs left next to `out`."""
     for staging_folder in find_abandoned_staging(out.resolve()):
         clear_staging(staging_folder)
 
 
-def publish(
-    folder: Path, files: Mapping[str, bytes], command: str, say: Callable[[str], None] = on_stderr
-) -> list[Path]:
-    """Write files of a command into a folder; one that is not the study's stays, and `say` is told. Raises OSError."""
+def publish(folder: Path, files: Mapping[str, bytes], command: str) -> list[Path]:
+    """Write files of a command into a folder; one that is not the study's stays, and is said. Raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     written = []
     with hold_lock(folder.resolve().parent):
         for name, content in files.items():
-            file, digest, manifest = folder / name, _hash(content), read_manifest(folder)
-            ours = _is_own(file, manifest.get(name))
+            file, digest, manifest = folder / name, hash_of(content), read_manifest(folder)
+            ours = is_own(file, manifest.get(name))
             if ours or not os.path.lexists(file):  # noted before: whatever ends the writing, the file remains ours
-                _note(folder, manifest | {name: _old_or_new(manifest.get(name), Own(command, (digest,)))}, say)
+                _note(folder, manifest | {name: _old_or_new(manifest.get(name), Own(command, (digest,)))})
             if ours:
                 write_atomically(file, content)
             else:
                 file = write_new(file, content)
             if file.name != name:
-                say(f"{str(folder / name)!r} is not a file of this study and stays: see {file.name!r} beside it")
-                _note(folder, manifest | {file.name: Own(command, (digest,))}, say)
+                on_stderr(f"{str(folder / name)!r} is not a file of this study and stays: see {file.name!r} next to it")
+                _note(folder, manifest | {file.name: Own(command, (digest,))})
             written.append(file)
     return written
 
@@ -194,10 +200,12 @@ def _old_or_new(old: Own | None, new: Own) -> Own:
     return Own(new.command, (*(old.hashes[-1:] if old else ()), *new.hashes))
 
 
-def _note(folder: Path, manifest: Mapping[str, Own], say: Callable[[str], None]) -> None:
+def _note(folder: Path, manifest: Mapping[str, Own]) -> None:
     """Write the manifest, unless something else has its name."""
     if os.path.lexists(folder / MANIFEST) and not read_manifest(folder):
-        say(f"{str(folder / MANIFEST)!r} is not a file of this study and stays: the next run does not know these files")
+        on_stderr(
+            f"{str(folder / MANIFEST)!r} is not a file of this study and stays: the next run does not know these files"
+        )
     else:
         write_atomically(folder / MANIFEST, manifest_json(manifest))
 
@@ -215,46 +223,11 @@ def files_written_by(*writers: Callable[[Path], object]) -> dict[str, bytes]:
         return {file.name: file.read_bytes() for file in sorted(Path(name).iterdir())}
 
 
-def foreign(folder: Path) -> list[str]:
-    """Return what is in a folder and is not the study's own, as paths below it, sorted. Raises OSError."""
-    manifest = read_manifest(folder)
-    if not manifest:
-        return sorted(os.listdir(folder))
-    folders = {str(parent) for name in manifest for parent in Path(name).parents}
-    foreign_files = []
-    for path, is_folder in _walk_folder(folder):
-        name = path.relative_to(folder).as_posix()
-        if name != MANIFEST and not (name in folders if is_folder else _is_own(path, manifest.get(name))):
-            foreign_files.append(name)
-    # the files in a folder that is not ours say more than its name
-    return sorted(name for name in foreign_files if not any(other.startswith(f"{name}/") for other in foreign_files))
-
-
-def read_manifest(folder: Path) -> dict[str, Own]:
-    """The files that the study wrote into a folder, by their paths below it; empty without a manifest of ours."""
-    try:
-        data = json.loads(read_file(folder / MANIFEST, LARGEST))
-        if data["schema"] != SCHEMA:
-            return {}
-        files = {name: Own(entry["command"], tuple(entry["sha256"])) for name, entry in data["files"].items()}
-        return {name: own for name, own in files.items() if ".." not in Path(name).parts and name[:1] != "/"}
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        return {}
-
-
-def manifest_json(manifest: Mapping[str, Own]) -> bytes:
-    """The list of a report's files as it is stored."""
-    files = {
-        name: {"command": manifest[name].command, "sha256": list(manifest[name].hashes)} for name in sorted(manifest)
-    }
-    return json.dumps({"schema": SCHEMA, "files": files}, indent=1).encode()
-
-
-def _install_report(new: Path, place: Path, say: Callable[[str], None]) -> Path:
-    """Move the files of a new report to their place, or beside it; the place."""
+def _install_report(new: Path, place: Path) -> Path:
+    """Move the files of a new report to their place, or next to it; return the place."""
     mine = {
-        path.relative_to(new).as_posix(): Own(REPORT, (_hash(path.read_bytes()),))
-        for path, is_folder in _walk_folder(new)
+        path.relative_to(new).as_posix(): Own(REPORT, (hash_of(path.read_bytes()),))
+        for path, is_folder in walk_folder(new)
         if not is_folder
     }
     why = _in_the_way(place)
@@ -263,7 +236,7 @@ def _install_report(new: Path, place: Path, say: Callable[[str], None]) -> Path:
     old = read_manifest(there)
     kept = {name: own for name, own in old.items() if own.command != REPORT and name not in mine}
     for name in old.keys() - kept.keys() - mine.keys():
-        if _is_own(there / name, old[name]):
+        if is_own(there / name, old[name]):
             (there / name).unlink()
         with suppress(OSError):
             (there / name).parent.rmdir()
@@ -274,7 +247,7 @@ def _install_report(new: Path, place: Path, say: Callable[[str], None]) -> Path:
         (there / name).parent.mkdir(parents=True, exist_ok=True)
         os.replace(new / name, there / name)
     if why:
-        say(f"{str(place)!r} stays as it is ({why}): the report is in {str(there)!r}")
+        on_stderr(f"{str(place)!r} stays as it is ({why}): the report is in {str(there)!r}")
     return there
 
 
@@ -285,36 +258,10 @@ def _in_the_way(place: Path) -> str:
     if place.is_symlink() or not place.is_dir():
         return "it is no directory"
     try:
-        found = foreign(place)
+        found = list_foreign_files(place)
     except OSError as error:
         return error.strerror or str(error)
     return f"{found[0]!r} there is not a file of this study" if found else ""
-
-
-def _walk_folder(folder: Path) -> Iterator[tuple[Path, bool]]:
-    """
-    Return all that is below a folder, and whether it is a folder itself, these before what they hold.
-
-    Raises OSError.
-    """
-    for entry in sorted(os.scandir(folder), key=lambda entry: entry.name):
-        is_folder = entry.is_dir(follow_symlinks=False)
-        yield Path(entry.path), is_folder
-        if is_folder:
-            yield from _walk_folder(Path(entry.path))
-
-
-def _is_own(file: Path, entry: Own | None) -> bool:
-    if entry is None or file.is_symlink() or not file.is_file():
-        return False
-    try:
-        return _hash(read_file(file, LARGEST)) in entry.hashes
-    except OSError:
-        return False
-
-
-def _hash(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()
 
 
 def make_parents(folder: Path) -> list[Path]:

@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 EVERY = 15.0  # s between plain lines
-TRUSTED = 0.1  # share of the work, that the rough costs count beside the work done
+TRUSTED = 0.1  # share of the work, that the rough costs count against the work done
 PLAIN_WIDTH = 120  # columns of a table that goes to a file or a pipe
 EARLY = 0.3  # s: the process takes so long to end
 SOON = 1e-3  # s
@@ -54,13 +54,17 @@ class Display:
         """Work of rough `seconds` need not be done."""
         self.total -= seconds
 
+    def extend(self, seconds: float) -> None:
+        """Work of rough `seconds` is added."""
+        self.total += seconds
+
     @property
     def text(self) -> str:
         """Return what is done last, and the time left."""
-        return f"{self._what}, about {self.left:.0f} s left"
+        return f"{self._what}, about {self.seconds_left:.0f} s left"
 
     @property
-    def left(self) -> float:
+    def seconds_left(self) -> float:
         """Time left, s."""
         work, now = max(self.total - self.done, 0.0), time.monotonic()
         before, earlier = self._first or (now, self.done)

@@ -19,6 +19,7 @@ from comparison.runner.processes import ExecutorLostError, Pool, TimeLimitError,
 from comparison.runner.progress import Display
 from comparison.runner.task import GIVEN_UP, GIVEN_UP_AFTER, Task, TaskResult, execute, result_without_value
 from comparison.runner.task_results import TaskResults
+from comparison.wording import exception_line
 from reference.problem import Outcome, Scene, load_scene
 
 LOOK = 1.0  # s: how often an executor is asked for its width while no result arrives
@@ -117,7 +118,7 @@ class Runner:
                 return
             self._queue.remove(work)
             if work.task.batch and self.hung[work.task.group] >= GIVEN_UP_AFTER:
-                self._keep(work, result_without_value(Outcome.TIME_LIMIT, GIVEN_UP))
+                self._keep(work, result_without_value(Outcome.NOT_ASKED, GIVEN_UP))
             else:
                 self._at_work[_start_task(work.task, executor)] = work
 
@@ -134,7 +135,7 @@ class Runner:
         elif isinstance(error, LOST):
             raise ExecutorLostError(f"the executor is broken: {error}")
         else:
-            self._keep(work, result_without_value(Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}"))
+            self._keep(work, result_without_value(Outcome.SOLVER_FAILED, exception_line(error)))
 
     def _answer_for_death(self, work: _Work, error: WorkerDiedError) -> None:
         work.deaths += error.times

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from comparison.runner.cache import Key
+from comparison.runner.cache import CacheKey
 from comparison.runner.environment import environment_fingerprint, task_environment_fingerprint
 from comparison.study.batches import Batch
 from comparison.study.models import Model
@@ -32,7 +32,7 @@ class Task:
     function: Callable[[Any], Any]
     argument: Any
     stage: str  # its name on the terminal and in the table of costs
-    seconds: float = 1.0  # what it weighs beside other tasks of its stage
+    seconds: float = 1.0  # its weight among the tasks of its stage
     about: Any = None  # what its directory in the cache belongs to
     needs_compiled_reference: bool = True  # on a new installation it waits until one worker has compiled the reference
     timeout: float | None = None  # most processor time, s, rounded up; what takes longer is ended: Outcome.TIME_LIMIT
@@ -40,11 +40,11 @@ class Task:
     model: str = ""  # "package:name" of the only model that it asks: no other source changes its value
 
     @cached_property
-    def key(self) -> Key:
+    def key(self) -> CacheKey:
         """
         Return what it is found by: the function, all that its argument holds, versions and the source that computes it.
         """
-        function = named(self.function)
+        function = name_of_function(self.function)
         about = {
             "function": function,
             "about": fingerprint(self.about),
@@ -54,7 +54,7 @@ class Task:
         }
         item = json.dumps([function, fingerprint(self.argument)])
         digest = hashlib.sha256(item.encode()).hexdigest()
-        return Key(json.dumps(about, indent=1, sort_keys=True), digest, BATCH if self.batch else RESULT)
+        return CacheKey(json.dumps(about, indent=1, sort_keys=True), digest, BATCH if self.batch else RESULT)
 
     @cached_property
     def batch(self) -> Batch | None:
@@ -84,7 +84,7 @@ class Task:
 
 @dataclass(frozen=True)
 class TaskResult:
-    """What a task returned, or why it returned nothing."""
+    """Value that a task returned, or the reason why it returned nothing."""
 
     value: Any  # for a batch also where a part of its points is lost; otherwise None unless `outcome` is OK
     cost: float  # s of processor time
@@ -109,7 +109,7 @@ def result_without_value(outcome: Outcome, error_message: str) -> TaskResult:
     return TaskResult(None, 0.0, outcome, error_message)
 
 
-def named(function: Callable[..., Any]) -> str:
+def name_of_function(function: Callable[..., Any]) -> str:
     """ "module:name" of a function."""
     return f"{function.__module__}:{function.__qualname__}"
 
@@ -148,5 +148,5 @@ def fingerprint(value: Any) -> Any:
         source = environment_fingerprint(value.amplification) if isinstance(value, Model) else {}
         return [type(value).__qualname__, fingerprint(source), fingerprint(held)]
     if callable(value):
-        return named(value)
+        return name_of_function(value)
     raise TypeError(f"a task that holds {type(value).__name__} has no name in the store")

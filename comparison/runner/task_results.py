@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, get_type_hints
 
-from comparison.runner.cache import Cache, Key
-from comparison.runner.task import GIVEN_UP, Task, TaskResult, result_without_value
+from comparison.runner.cache import Cache, CacheKey
+from comparison.runner.task import Task, TaskResult, result_without_value
 from reference.problem import Outcome
 
 
@@ -36,9 +36,9 @@ class TaskResults:
 
     def __init__(self, cache: Cache | None = None, fresh: bool = False) -> None:
         self.cache, self._fresh = cache, fresh
-        self._results: dict[Key, TaskResult] = {}
+        self._results: dict[CacheKey, TaskResult] = {}
         self.parts: dict[str, StageCost] = defaultdict(StageCost)
-        self.stored: set[Key] = set()
+        self.stored: set[CacheKey] = set()
 
     def __getitem__(self, task: Task) -> TaskResult:
         return self._results[task.key]
@@ -72,7 +72,7 @@ class TaskResults:
         self._remember(task, result)
         if self.cache is None:
             return
-        overrun = result.outcome == Outcome.TIME_LIMIT and result.value is None and result.error_message != GIVEN_UP
+        overrun = result.outcome == Outcome.TIME_LIMIT and result.value is None
         if overrun and task.timeout is not None:
             self.cache.put(task.key, Overrun(task.timeout, result.error_message))
         elif not result.error_message:

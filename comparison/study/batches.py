@@ -43,7 +43,7 @@ class Batch:
         return {"scene": self.scene.digest(), "model": self.amplification, "settings": self.settings}
 
     def identity(self) -> dict[str, object]:
-        """Return all that its numbers depend on besides the code."""
+        """Return all that its numbers depend on in addition to the code."""
         return {**self.question, "phases": self.phases}
 
     def halves(self) -> list[Batch]:

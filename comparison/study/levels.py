@@ -71,7 +71,7 @@ def _coarser(study: Study, most: Mapping[str, float]) -> Study:
 
 
 def _stride(study: Study, model: Model, most: float) -> int:
-    """Every which of the study's phases a model has at a level with at most so many per axis."""
+    """Return every which of the study's phases a model has at a level with at most `most` per axis."""
     stride, phases = study.strides[model.key], len(study.axis(model))
     if stride * phases != study.grid:  # the last phase and the first are closer than the others: no grid is nested
         return stride

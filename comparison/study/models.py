@@ -119,6 +119,11 @@ class Model:
         """Return whether bodies turn in it."""
         return self.settings.get("model") == "spatial"
 
+    @property
+    def motion_settings(self) -> dict[str, object]:
+        """Keyword arguments of its trajectory; a cutoff is a way to read a motion, not to move."""
+        return {key: value for key, value in self.settings.items() if key != "cutoff"}
+
     def arguments(self, tolerance: float, full: bool) -> dict[str, object]:
         """Keyword arguments of its amplification in a study of this tolerance."""
         asked = {"full": True} if full else {}
@@ -221,7 +226,7 @@ def partner_of(engine: Model, scene: Scene, hierarchy: Sequence[Model]) -> Model
 
 def effect_pairs_of(scene: Scene, hierarchy: Sequence[Model], left_out: Collection[str] = ()) -> list[Pair]:
     """
-    Return a pair for each effect of the chain, then the same effects where other models stand beside the chain, then
+    Return a pair for each effect of the chain, then the same effects where other models stand outside the chain, then
     the two readings of (5.1).
 
     An effect as integrated is a share of mu of the first model of the chain, so that the effects of the chain add up to

@@ -26,7 +26,7 @@ LEFT_OUT = (
 )
 
 
-class Row(NamedTuple):
+class Omission(NamedTuple):
     """One thing that is left out: what, of which models, why, and in which scenes."""
 
     what: str
@@ -35,13 +35,13 @@ class Row(NamedTuple):
     scenes: tuple[str, ...]
 
 
-def reductions(study: Study) -> list[Row]:
+def reductions(study: Study) -> list[Omission]:
     """Everything that the scenes of the study do not require and that is therefore not computed."""
     scenes: dict[tuple[str, str, str], list[str]] = {}
     for scene in () if study.full else study.scenes:
         for row in _of(study, scene):
             scenes.setdefault(row, []).append(scene.name)
-    return [Row(*row, tuple(names)) for row, names in scenes.items()]
+    return [Omission(*row, tuple(names)) for row, names in scenes.items()]
 
 
 def _of(study: Study, scene: Scene) -> Iterator[tuple[str, str, str]]:

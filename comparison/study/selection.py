@@ -1,4 +1,4 @@
-"""The analyses that a study makes of a scene beside its amplification factors, and which it makes of which scene."""
+"""The analyses that a study makes of a scene after its amplification factors, and which it makes of which scene."""
 
 from __future__ import annotations
 
@@ -116,15 +116,15 @@ def select(
             except ValueError as error:
                 raise SceneError(scene.name, f"analyses.{key}", listed, str(error)) from None
         asked = (only, skip) if (only, skip) != (None, None) else (scene.analyses.only, scene.analyses.skip)
-        besides = (scene.analyses.also if also is None else also) or ()
-        names = select_names(analyses, *asked, besides)
+        added = (scene.analyses.also if also is None else also) or ()
+        names = select_names(analyses, *asked, added)
         on_request = set() if asked[0] is not None else on_request - {*names, *(asked[1] or ())}
         if asked[0] is None and scene.name not in builtin_scenes():
-            by_scene[scene.name] = tuple(name for name in names if name not in of_the_paper or name in besides)
+            by_scene[scene.name] = tuple(name for name in names if name not in of_the_paper or name in added)
         else:
             by_scene[scene.name] = names
             unnamed.clear()
-        unnamed -= {*(asked[1] or ()), *besides}
+        unnamed -= {*(asked[1] or ()), *added}
     return Selection(
         tuple(analyses), by_scene, of_the_paper=tuple(sorted(unnamed)), on_request=tuple(sorted(on_request))
     )

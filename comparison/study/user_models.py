@@ -1,5 +1,5 @@
 """
-Engines that a user enters beside the models of the hierarchy: a function of theirs becomes a model of the study.
+Engines that a user enters after the models of the hierarchy: a function of theirs becomes a model of the study.
 
 Every call goes through `amplification` here, in a worker process of its own kind: whatever the function prints is
 dropped, and what it returns is read into the arrays of `reference.problem.Amplification` or refused with a reason.
@@ -34,7 +34,7 @@ MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call 
 TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
 ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it
 OURS, INSTALLED = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
-UNKNOWN_ERROR = np.nan  # time limit, s, of an engine that states none
+UNKNOWN_ERROR = np.nan  # error of an engine that states none
 LONGEST_STATUS = 60  # letters of a status of its own words that a message repeats
 
 
@@ -64,7 +64,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
 
 
 def note_line(error: BaseException, file: Path | None) -> None:
-    """Add to an exception where in the user's files, those beside the engine's, it arose."""
+    """Add to an exception where in the user's files, those in the folder of the engine's, it arose."""
     if file is None:
         return
     folder = file.parent
@@ -168,12 +168,12 @@ def _read(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer
     error[~(error >= 0.0)] = UNKNOWN_ERROR
     status, error_message = _outcomes(outcomes, points)
     drop_unusable(mu, error, status, own=False)
-    lacking = np.isnan(mu).any(axis=1)
-    for point in np.flatnonzero(lacking).tolist():
+    missing = np.isnan(mu).any(axis=1)
+    for point in np.flatnonzero(missing).tolist():
         status[point] = Outcome.SOLVER_FAILED.value if status[point] == Outcome.OK else status[point]
     for name in ("instant", "displacement"):
         arrays[name][~((arrays[name] >= 0.0) & (arrays[name] <= LARGEST_MU))] = np.nan
-    arrays["displacement"][lacking] = np.nan
+    arrays["displacement"][missing] = np.nan
     return EngineAnswer(status=np.array(status), cost=seconds, error_message=error_message, **arrays)
 
 

@@ -12,9 +12,9 @@ from comparison.surfaces.differences import Difference
 from comparison.surfaces.statements import name_engine, word_engine, word_engine_without_values, word_headline
 from comparison.surfaces.surfaces import outcome_counts
 from comparison.surfaces.waterfall import NAN, Waterfall
+from reference.problem.readings import BOTH_READINGS
 
 NAMED = 0.2  # share of the total: an effect above it is named as a cause; share of an effect: an interaction is stated
-BOTH_READINGS = "in both readings"  # both readings of (5.1) are the same where no friction is dry
 # the same effect in another order: key of the pair in the chain; of the pair beside it, and what is different there
 ELSEWHERE = {
     "geometry": ("geometry-regularized", "under regularized friction"),
@@ -77,6 +77,7 @@ class Headline:
     points: Annotated[int, "phase pairs of this grid where both models have a value"]
     independent: Annotated[int, "of these, not related by a symmetry of the scene"]
     resolved_share: Annotated[Number, "fraction of these where the difference exceeds five times its error estimate"]
+    beyond_error: Annotated[Number, "fraction of these where the difference exceeds both error estimates together"]
     maximum: Number
     """signed; the largest absolute difference of the first and any engine model, at any phase pair where both have a
     value"""
@@ -93,6 +94,7 @@ class Headline:
     """largest absolute difference of the two codes given the same equations and friction law, relative to the
     equations"""
     like_for_like_met: Annotated[bool | None, "whether it is within twice both error estimates; null without one"]
+    like_for_like_ratio: Annotated[Number, "largest of it in units of both error estimates together; null without one"]
     supremum_mean: Annotated[Number, "mean by which the literal supremum of the first model's equations is higher"]
     supremum_error: Annotated[Number, "error of that mean; null where the grid does not tell"]
     supremum_maximum: Annotated[Number, "largest of it over the phases"]
@@ -104,6 +106,11 @@ class Headline:
     def statement(self) -> str:
         """The sentence below a heading that names the scene."""
         return self.sentence.removeprefix(f"{self.scene}, ")
+
+    @property
+    def within_error(self) -> bool:
+        """Return whether the mean is within its error."""
+        return abs(self.mean) <= self.error
 
     def effect_named(self, name: str) -> Effect:
         """Return the effect of this name."""
@@ -140,6 +147,7 @@ def headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
         points=total.asked - total.unanswered,
         independent=total.independent,
         resolved_share=total.resolved,
+        beyond_error=total.beyond_error,
         maximum=largest.total.size,
         maximum_error=largest.total.error,
         maximum_phases=largest.phases,
@@ -149,6 +157,7 @@ def headline(comparison: BodyComparison, bars: Waterfall) -> Headline:
         main_cause=main_cause_of(effects, causes),
         like_for_like=alike.maximum if alike else NAN,
         like_for_like_met=alike.agrees if alike else None,
+        like_for_like_ratio=alike.ratio if alike else NAN,
         supremum_mean=supremum.mean if supremum else NAN,
         supremum_error=supremum.error if supremum else NAN,
         supremum_maximum=supremum.high if supremum else NAN,

@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 from comparison.wording import degrees, difference, more_or_less, percent, signed
+from reference.problem.readings import BOTH_READINGS
 
 if TYPE_CHECKING:
     from comparison.surfaces.acceptance import Breach, Limit
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
 
 SAME = 1e-6  # share of mu: the error asked of the equations
+UNRESOLVED = "less than five times the numerical error"
 NAMED = 4  # scenes that a sentence names one by one
 
 
@@ -40,7 +42,9 @@ def word_total(numbers: Headline) -> str:
     if numbers.phases_per_axis == 1:
         if numbers.resolved:
             return f"{second} gives {more_or_less(numbers.mean, numbers.error)} than {first} under the record."
-        return f"{second} and {first} agree within the numerical error under the record (difference {size})."
+        if numbers.within_error:
+            return f"{second} and {first} agree within the numerical error under the record (difference {size})."
+        return f"{second} and {first} differ by {size} under the record, {UNRESOLVED}."
     grid = f"{numbers.phases_per_axis} × {numbers.phases_per_axis} initial phases"
     over = grid if numbers.points == numbers.phases_per_axis**2 else f"{numbers.points} of {grid}"
     ends = word_range(numbers)
@@ -51,8 +55,12 @@ def word_total(numbers: Headline) -> str:
         few = f"{numbers.independent} independent of {numbers.points} phase pairs do not tell the mean over all phases"
         return f"{second} against {first}: {few} (mean of these {signed(numbers.mean)}, {ends})."
     if numbers.resolved_share > 0.0:
-        return f"{second} and {first} have no mean difference beyond its error over {over} ({size}; {ends})."
-    return f"{second} and {first} agree within the numerical error over {over} (mean {size}; {ends})."
+        if numbers.within_error:
+            return f"{second} and {first} have no mean difference beyond its error over {over} ({size}; {ends})."
+        return f"{second} and {first} differ in the mean over {over} by {size}, {UNRESOLVED} ({ends})."
+    if numbers.within_error and numbers.beyond_error == 0.0:
+        return f"{second} and {first} agree within the numerical error over {over} (mean {size}; {ends})."
+    return f"{second} and {first} differ by {UNRESOLVED} over {over} (mean {size}; {ends})."
 
 
 def word_range(numbers: Headline) -> str:
@@ -92,12 +100,17 @@ def word_agreement(numbers: Headline) -> str:
     if math.isnan(numbers.like_for_like):
         return ""
     verdict = {
-        True: "agree within their errors, to",
-        False: "differ beyond their errors, by up to",
+        True: f"agree within {_word_multiple(numbers.like_for_like_ratio)}their errors, to",
+        False: "differ beyond twice their errors, by up to",
         None: "differ, with an unknown error, by up to",
     }[numbers.like_for_like_met]
     codes = "the equations and Exudyn" if numbers.engines else "the two codes"
     return f"Given the same equations and friction law {codes} {verdict} {percent(numbers.like_for_like)}."
+
+
+def _word_multiple(ratio: float) -> str:
+    """Return in which multiple of both errors a difference lies that agrees."""
+    return "" if ratio <= 1.0 else "twice "
 
 
 def word_supremum(numbers: Headline) -> str:
@@ -154,13 +167,19 @@ def word_engine_without_values(title: str, like: str, lacking: str, outcomes: Ma
 def word_breach(limit: Limit, breach: Breach) -> str:
     """Return where, by which value and how a limit is broken; without the scene."""
     body = f"body {breach.body}: " if breach.body else ""
-    found = breach.reason or f"{breach.found:.3g} found"
+    found = breach.reason or f"{_digits_above(breach.found, limit.allowed)} found"
     text = f"{body}acceptance.{limit.key}: {found}, {limit.allowed:g} allowed"
     if not limit.default:
         return text
     where = "" if math.isnan(breach.phases[0]) else f" at ({', '.join(map(degrees, breach.phases))})"
     largest = "" if math.isnan(breach.largest) else f"; largest difference {signed(breach.largest)}{where}"
     return f"{text} by default{largest}"
+
+
+def _digits_above(found: float, allowed: float) -> str:
+    """Return a value with three digits, or with as many as show that it exceeds the limit."""
+    texts = (f"{found:.{digits}g}" for digits in range(3, 18))
+    return next((text for text in texts if float(text) > allowed), f"{found:.3g}")
 
 
 def word_gate(limits: int, broken: int, unchecked: Mapping[str, Sequence[str]]) -> str:
@@ -212,19 +231,23 @@ def word_verdict(headlines: Sequence[Headline], measured: str) -> str:
 def _word_largest(known: Sequence[Headline]) -> str:
     """Return the largest mean difference of all bodies, the next one, and the ends over the phases."""
     largest, *others = sorted(known, key=lambda each: -abs(each.mean))
-    phased = largest.phases_per_axis > 1
+    phased = [each for each in known if each.phases_per_axis > 1]
     size = difference(abs(largest.mean), largest.error).removeprefix("+")
-    over = " in the mean over the initial phases" if phased else " under the record"
+    over = " in the mean over the initial phases" if largest.phases_per_axis > 1 else " under the record"
     than = "lower" if largest.mean < 0.0 else "higher"
     rest = f"; every other body: at most {percent(abs(others[0].mean))}" if others else ""
-    ends = [*((each.low, each.low_error) for each in known), *((each.high, each.high_error) for each in known)]
-    low, high = min(ends), max(ends)
-    single = f", and by {difference(*low)} to {difference(*high)} at single phase pairs" if phased else ""
-    names = {each.second_name for each in known}
-    models = largest.second_name if len(names) == 1 else " or ".join(sorted(names))
+    single = ""
+    if phased:
+        low = min((each.low, each.low_error) for each in phased)
+        high = max((each.high, each.high_error) for each in phased)
+        single = f", and by {difference(*low)} to {difference(*high)} at single phase pairs"
+    first = " or ".join(sorted({each.first_name for each in known}))
+    second = " or ".join(sorted({each.second_name for each in known}))
+    # what is the same in both readings is also that of the others
+    readings = sorted({each.reading for each in known} - {BOTH_READINGS}) or [BOTH_READINGS]
     return (
-        f"The largest accelerations that {largest.first_name} give, read {largest.reading}, differ from those of "
-        f"{models} by at most {size}{over} ({largest.scene}, {largest.name}: {largest.second_name} is "
+        f"The largest accelerations that {first} give, read {' or '.join(readings)}, differ from those of "
+        f"{second} by at most {size}{over} ({largest.scene}, {largest.name}: {largest.second_name} is "
         f"{than}{rest}){single}."
     )
 
@@ -237,19 +260,20 @@ def _word_codes(known: Sequence[Headline]) -> str:
         worst = max(each.like_for_like for each in alike)
         errors = [
             f"{words} for {', '.join(places)}"
-            for met, words in ((False, "not within the errors that both state"), (None, "with an unknown error"))
+            for met, words in ((False, "not within twice the errors that both state"), (None, "with an unknown error"))
             if (places := [f"{each.scene}, {each.name}" for each in alike if each.like_for_like_met is met])
         ]
-        verdict = ", ".join(errors) or "within the errors that both state"
+        within = f"within {_word_multiple(max(each.like_for_like_ratio for each in alike))}the errors that both state"
+        verdict = ", ".join(errors) or within
         parts.append(f"given the same equations and friction law the two codes agree to {percent(worst)}, {verdict}")
     higher = [each for each in known if math.isfinite(each.supremum_mean)]
     if higher:
         mean = max(higher, key=lambda each: each.supremum_mean)
-        most = max(higher, key=lambda each: each.supremum_maximum)
-        size = f"up to {percent(mean.supremum_mean)} higher ({mean.scene}, {mean.name})"
-        if mean.phases_per_axis > 1:
-            size = f"up to {percent(mean.supremum_mean)} higher in the mean ({mean.scene}, {mean.name}) and up to "
-            size += f"{percent(most.supremum_maximum)} at single phase pairs ({most.scene}, {most.name})"
+        over = " in the mean" if mean.phases_per_axis > 1 else ""
+        size = f"up to {percent(mean.supremum_mean)} higher{over} ({mean.scene}, {mean.name})"
+        if phased := [each for each in higher if each.phases_per_axis > 1]:
+            most = max(phased, key=lambda each: each.supremum_maximum)
+            size += f" and up to {percent(most.supremum_maximum)} at single phase pairs ({most.scene}, {most.name})"
         parts.append(
             f"their literal supremum is {size}" if not alike else f"the literal supremum of the equations is {size}"
         )
@@ -277,7 +301,7 @@ def word_range_cell(numbers: Headline) -> str:
 def word_causes_cell(numbers: Headline) -> str:
     """Return the causes of the first screen's table."""
     if not numbers.resolved:
-        return "the mean is not beyond its error"
+        return "the mean is not beyond its error" if numbers.within_error else f"the mean is {UNRESOLVED}"
     words = word_causes(numbers).removeprefix("Cause").removeprefix("s").removeprefix(": ").removesuffix(".")
     return words.replace(" of it", "")
 
@@ -293,7 +317,7 @@ def word_agreement_cell(numbers: Headline) -> str:
 def word_supremum_cell(numbers: Headline) -> str:
     """Return by how much the literal supremum is higher, in the first screen's table."""
     if math.isnan(numbers.supremum_mean):
-        return "no difference" if numbers.reading == "in both readings" else "not compared"
+        return "no difference" if numbers.reading == BOTH_READINGS else "not compared"
     if numbers.supremum_maximum < SAME:
         return "no difference"
     if numbers.phases_per_axis == 1:

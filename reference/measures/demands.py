@@ -216,6 +216,7 @@ class DemandSamples(NamedTuple):
     support: Array  # (T, K) N, normal forces of the supports; K = 0 in a model without single supports
     rotation: Array  # (T, N) rad, about the vertical; (T, 0) in a model whose bodies do not turn
     uplift: Array  # (T, K) m, gaps of the supports
+    acceleration: Array  # (T, N, 2) m/s^2, absolute and horizontal
 
     @staticmethod
     def from_motion(motion: Trajectory) -> DemandSamples:
@@ -223,8 +224,9 @@ class DemandSamples(NamedTuple):
         support = motion.support_force
         uplift = motion.extra.get("uplift", np.zeros_like(support))
         return DemandSamples(
-            *moving, motion.isolator_force, motion.contact_force, support, motion.vertical_rotation, uplift
-        )
+            *moving, motion.isolator_force, motion.contact_force, support, motion.vertical_rotation, uplift,
+            motion.absolute_acceleration[:, :, :2],
+        )  # fmt: skip
 
     def decimate(self) -> list[DemandSamples]:
         """Return one of DECIMATION samples from the first on, from the second on, ..."""

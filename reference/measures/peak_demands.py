@@ -27,7 +27,7 @@ QUANTITIES = {  # fields of `Demands` in words, and their units
     "residual": ("residual displacement of the isolator", "m"),
     "cap_share": ("largest displacement over rho", "1"),
     "travel_share": ("largest displacement over the travel", "1"),
-    "acceleration": ("largest absolute acceleration", "m/s^2"),
+    "acceleration": ("largest absolute acceleration (literal supremum where friction sticks)", "m/s^2"),
     "base_shear": ("base shear", "N"),
     "drift": ("drift against the body below", "m"),
     "contact_force_min": ("smallest contact force", "N"),

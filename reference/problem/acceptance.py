@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from reference.problem.keys import STUDY, Positive, Table, key
+from reference.problem.keys import ENSEMBLE, STUDY, NonNegative, Positive, Table, key
+from reference.support.arguments import Range
 from reference.support.scene_error import MisfitError
 
 ENGINE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9-]{0,29}")  # name of an engine of the user
@@ -27,6 +28,31 @@ class Limits(Table):
         """Return the limits that are present, by key."""
         limits = {"median": self.median, "maximum": self.maximum, "ratio": self.ratio}
         return {key: limit for key, limit in limits.items() if limit is not None}
+
+
+class DemandLimits(Table):
+    """Limits of the demands under the motions of an ensemble, for `phase-resonance ensemble --check`."""
+
+    displacement: NonNegative | None = key(
+        "largest displacement of the isolator", Range(0.0, 1e6, "m"), models=ENSEMBLE
+    )
+    drift_ratio: NonNegative | None = key(
+        "largest drift of any story over its height, the distance of the centers of mass",
+        Range(0.0, 10.0),
+        models=ENSEMBLE,
+    )
+    uplift: NonNegative | None = key(
+        "largest gap of a support; the spatial engine alone has it", Range(0.0, 1e6, "m"), models=ENSEMBLE
+    )
+    base_shear: NonNegative | None = key("largest base shear over the weight", Range(0.0, 1e3), models=ENSEMBLE)
+    statistic: Literal["mean", "largest"] = key(
+        '"mean" or "largest" over the motions: what the limits are on', models=ENSEMBLE, default="largest"
+    )
+
+    def limits_by_key(self) -> dict[str, float]:
+        """Return the limits that are present, by key."""
+        limits = {name: getattr(self, name) for name in DemandLimits.model_fields if name != "statistic"}
+        return {name: limit for name, limit in limits.items() if limit is not None}
 
 
 def _check_table(value: Any) -> Any:
@@ -63,6 +89,10 @@ class Acceptance(Limits):
         models=STUDY,
     )
 
+    demands: DemandLimits | None = key(
+        "table of limits on demands under recorded motions, checked by `phase-resonance ensemble --check`",
+        models=ENSEMBLE,
+    )
     confirm: bool | None = key(
         "true: --check computes the study again at a tenth of the tolerance, where the limits hold, too", models=STUDY
     )

@@ -139,7 +139,7 @@ def _index_of(
         rule = f"{table} is {brief(place)} and no table: give {table} = {{{' = ..., '.join(valid)} = ...}}"
         raise SceneError(scene, key, value, rule)
     if isinstance(place, dict) and (part in valid or f"{table}.*" in keys):
-        if not last and keys_of(f"{table}.{part}", keys):
+        if not last and keys_of(f"{table}.{part}".lstrip("."), keys):
             place.setdefault(part, {})  # an optional table that is not there yet
         if last or part in place:
             return part

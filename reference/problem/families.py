@@ -8,6 +8,9 @@ suite: `record = {suite = "fema-p695:farfield", motion = "all"}`.
 
 Several keys may run. `combine = "product"` at the top of the file makes a scene of every combination of their values,
 `combine = "zip"` one of the first values, one of the second, and so on.
+
+`bounds = [0.8, 1.5]` in [isolator] makes every scene twice, as "lower bound" and "upper bound": with its coefficients
+of friction times these factors.
 """
 
 from __future__ import annotations
@@ -34,8 +37,9 @@ from reference.problem.scene_file import (
     scene_tables,
     scene_text,
 )
-from reference.records.suites import SuiteError, motion_names, suite_motions
-from reference.support.arguments import as_float, takes
+from reference.records.pairing import SuiteError
+from reference.records.suites import motion_names, suite_motions
+from reference.support.arguments import Range, as_float, brief, takes
 from reference.support.scene_error import SceneError, printable
 
 if TYPE_CHECKING:
@@ -47,6 +51,10 @@ COMBINE = ("product", "zip")
 MAX_SCENES = 1000  # scenes of one family
 MAX_BODIES_IN_ALL = 50_000  # bodies of all scenes of a family together
 MAX_KEYS = 20  # keys that run
+BOUNDS = "isolator.bounds"
+BOUND_NAMES = ("lower bound", "upper bound")
+BOUND_FACTOR = Range(0.01, 100.0)
+BOUND_DIGITS = 12  # of a coefficient of a bound: 0.075, not 0.07500000000000001
 
 Value = float | int | str
 Files = dict[str, str]  # names of the files of a record by direction
@@ -72,7 +80,7 @@ class Family:
     columns : dict of str to tuple
         By each key that runs its values, in the order of the scenes.
     labels : dict of str to tuple
-        By each key that runs its values as names show them: motions of a folder by their files.
+        By each key that runs its values as names show them: motions of a folder by their files, bounds by their names.
     """
 
     name: str
@@ -137,7 +145,9 @@ class Family:
 
 
 @takes(str | Path, "must be the name of a built-in scene or the path of a scene file")
-def load_family(source: str | Path, amplitude: float | None = None) -> Family:
+def load_family(
+    source: str | Path, amplitude: float | None = None, bounds: tuple[float, float] | None = None
+) -> Family:
     """
     Return every scene of a built-in name or a TOML file in which one value may run.
 
@@ -147,6 +157,9 @@ def load_family(source: str | Path, amplitude: float | None = None) -> Family:
         As in `load_scene`.
     amplitude : float, optional, m/s^2
         As in `load_scene`.
+    bounds : tuple of two floats, optional
+        Factors of the coefficients of friction, of the lower bound and of the upper one: every scene is made twice.
+        They take the place of `isolator.bounds` in the file.
 
     Returns
     -------
@@ -163,7 +176,15 @@ def load_family(source: str | Path, amplitude: float | None = None) -> Family:
     2
     """
     label = str(source)
-    return family_of(scene_tables(scene_text(source), label), label, amplitude)
+    return family_of(with_bounds(scene_tables(scene_text(source), label), bounds), label, amplitude)
+
+
+def with_bounds(data: dict[str, Any], bounds: tuple[float, float] | None) -> dict[str, Any]:
+    """Return the tables of a file with these factors of friction as `isolator.bounds`; as they are without any."""
+    isolator = data.get("isolator")
+    if bounds is None or not isinstance(isolator, dict):
+        return data
+    return {**data, "isolator": {**isolator, "bounds": [*bounds]}}
 
 
 def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) -> Family:
@@ -171,6 +192,7 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
     name = Path(label).stem
     combine = data.get("combine")
     data = _expand_motions({key: value for key, value in data.items() if key != "combine"}, label)
+    data, bounds = _take_bounds(data, label)
     places = list(islice(running_values((), data), MAX_KEYS + 1))
     if len(places) > MAX_KEYS:
         path, table = places[-1]
@@ -178,18 +200,20 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
     motions = _motion_names(data, label)
     running = [_Key(label, path, table, motions) for path, table in places]
     _check_combine(label, combine, running)
-    if not running:
+    if not running and not bounds:
         scene = make_scene(data, label, name)
         return Family(name, (scale_loading(scene, amplitude),))
     steps = [range(len(key.values)) for key in running]
-    rows = list(product(*steps) if combine == "product" else zip(*steps))
+    inner = list(product(*steps) if combine == "product" or not running else zip(*steps))
+    rows = [(*outer, *row) for outer in product(*(range(len(key.values)) for key in bounds)) for row in inner]
+    running = [*bounds, *running]
     _check_bodies(label, data.get("bodies"), len(rows))
     scenes = []
     for row in rows:
         tables = data
         for key, step in zip(running, row):
             tables = _replace_value(tables, key.path, key.listed[step])
-        texts = ", ".join(f"{key.short}={key.texts[step]}" for key, step in zip(running, row))
+        texts = ", ".join(key.entries[step] for key, step in zip(running, row))
         member = make_scene(tables, label, f"{name}[{texts}]")
         scenes.append(scale_loading(member, amplitude))
     columns = {key.name: tuple(key.values[row[n]] for row in rows) for n, key in enumerate(running)}
@@ -218,6 +242,41 @@ class _Key:
         self.texts = [printable(text) for text in _texts_of_values(label, self.name, self.listed)]
         named = path == MOTION and set(self.values) <= set(motions)
         self.labels = [printable(motions[value]) for value in self.values] if named else self.texts
+        self.entries = [f"{self.short}={text}" for text in self.texts]  # parts of the names of scenes
+
+
+class _Bounds(_Key):
+    """Both bounds of friction: a key that is none of the scene, with the friction of either."""
+
+    def __init__(self, factors: Sequence[float], frictions: Sequence[Any]) -> None:
+        self.path, self.name, self.listed = ("isolator", "friction"), BOUNDS, frictions
+        self.values = [*factors]
+        self.texts = self.labels = self.entries = [*BOUND_NAMES]
+
+
+def _take_bounds(data: dict[str, Any], label: str) -> tuple[dict[str, Any], list[_Key]]:
+    """Return the tables without `isolator.bounds`, and these bounds, none or one. Raises SceneError."""
+    isolator = data.get("isolator")
+    if not isinstance(isolator, dict) or "bounds" not in isolator:
+        return data, []
+    factors, friction = isolator["bounds"], isolator.get("friction")
+    pair = isinstance(factors, list) and len(factors) == 2 and all(_is_number(factor) for factor in factors)
+    if not (pair and factors[0] < factors[1] and all(factor in BOUND_FACTOR for factor in factors)):
+        rule = "must be two factors of friction, the smaller first, from 0.01 to 100, as [0.8, 1.5]"
+        raise SceneError(label, BOUNDS, factors, rule)
+    if not (_is_number(friction) or isinstance(friction, dict)) or any(running_values(("friction",), friction)):
+        rule = f"multiplies one friction: isolator.friction is {brief(friction)}, give a number or slow, fast and rate"
+        raise SceneError(label, BOUNDS, factors, rule)
+    own = {**data, "isolator": {key: value for key, value in isolator.items() if key != "bounds"}}
+    return own, [_Bounds(factors, [_scale_friction(friction, factor) for factor in factors])]
+
+
+def _scale_friction(friction: Any, factor: float) -> Any:
+    """Return a friction with its coefficients times a factor; what else its table holds stays."""
+    if not isinstance(friction, dict):
+        return float(f"{friction * factor:.{BOUND_DIGITS}g}")
+    coefficients = {key: friction[key] for key in ("slow", "fast") if _is_number(friction.get(key))}
+    return {**friction, **{key: _scale_friction(value, factor) for key, value in coefficients.items()}}
 
 
 def _check_combine(label: str, combine: Any, running: Sequence[_Key]) -> None:

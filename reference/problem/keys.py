@@ -26,6 +26,7 @@ from reference.support.plain_values import hashable, plain
 USE_WITH_VALUES = "values are not validated by model_copy: use Scene.with_values({'isolator.friction': 0.1})"
 # Models, or others, that read a key
 ALL, SPATIAL, STUDY, REPORT, NONE = "all", "spatial", "`--check`", "the report", "none"
+ENSEMBLE = "`ensemble --check`"
 REQUIRED = ...  # default of a key that a file must have
 
 

@@ -30,6 +30,7 @@ class Outcome(StrEnum):
     SOLVER_FAILED = "solver failed"
     WORKER_DIED = "worker died"
     TIME_LIMIT = "time limit"
+    NOT_ASKED = "not asked"
     VALUE_OUT_OF_RANGE = "value out of range"
 
 
@@ -50,6 +51,7 @@ ADVICE: dict[Outcome, str] = {
     Outcome.SOLVER_FAILED: "the equations of a step could not be solved: loosen the tolerance or change v_reg",
     Outcome.WORKER_DIED: "the process that computed this point died: run the point alone",
     Outcome.TIME_LIMIT: "the processor time that one task may take was spent: allow more, or shorten the duration",
+    Outcome.NOT_ASKED: "the engine hung or ended its process twice before: see what the solvers reported",
     Outcome.VALUE_OUT_OF_RANGE: "a value is negative, infinite or above 1e12, or its error is infinite or above that: "
     "correct the model",
 }

@@ -11,6 +11,8 @@ AS_INTEGRATED = "as integrated"
 """The resolved peak at v_c, 1 mm/s by default of the comparison, or what a run with regularized friction reaches."""
 LITERAL_SUPREMUM = "literal supremum"
 """The limit of vanishing slip speed under the set-valued law, which no integration reaches."""
+BOTH_READINGS = "in both readings"
+"""What is the same as integrated and as literal supremum, as no friction is dry."""
 DEFAULT_V_REG = 1e-3
 """Slip speed v_reg, m/s, below which dry friction grows linearly with the slip velocity, on both sides alike."""
 DEFAULT_V_C = 1e-3

@@ -13,17 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 
-from reference.problem.acceptance import Acceptance, Limits
+from reference.problem.acceptance import Acceptance, DemandLimits, Limits
 from reference.problem.analyses import Analyses
 from reference.problem.bar_links import BarLink, bar_links, stands_upright
 from reference.problem.beam_column import buckling_load
+from reference.problem.chain_modes import solve_chain
 from reference.problem.changed_values import change_of, name_with_changes, put_value, value_at
 from reference.problem.friction import DryFriction, Heating, VelocityFriction, law_of_friction
 from reference.problem.keys import NONE, REQUIRED, Positive, Table, Text, exactly_one, key, range_of
 from reference.problem.measured import Measured
 from reference.problem.ranges import MAX_CYCLES
 from reference.problem.supports import on_one_line, ring_places, static_shares
-from reference.problem.tables import LINKS, Bars, Body, Excitation, Isolator, Record, kind_of_excitation
+from reference.problem.tables import LINKS, Bars, Body, Excitation, Isolator, Record, Superstructure, kind_of_excitation
 from reference.problem.validation import EXCITATIONS, FRICTIONS, first_scene_error
 from reference.records.loading import with_samples
 from reference.records.samples import take_zero_line
@@ -81,6 +82,7 @@ class Scene(Table):
     )
     isolator: Isolator
     bodies: Annotated[list[Body], Field(min_length=1, max_length=MAX_BODIES)]
+    superstructure: Superstructure | None = None
     excitation: Annotated[
         Annotated[Excitation, Tag(EXCITATIONS[0])] | Annotated[Record, Tag(EXCITATIONS[1])],
         Discriminator(kind_of_excitation),
@@ -114,6 +116,7 @@ class Scene(Table):
             except ValueError as error:
                 raise MisfitError(f"bodies.{number}", body.model_dump(exclude_none=True), str(error)) from None
         self._check_bars()
+        self._check_superstructure()
         self._check_derived()
         self._check_supports()
         self._check_measured()
@@ -134,6 +137,18 @@ class Scene(Table):
                     "take more, stiffer or shorter bars"
                 )
                 raise MisfitError(f"bodies.{number}.bars: weight on each bar in N", each, rule)
+
+    def _check_superstructure(self) -> None:
+        """Check that there are links for the damping of the superstructure, and that no body states its own."""
+        ratio, (_, *others) = self._first_mode_ratio, self.bodies
+        if ratio is None:
+            return
+        if not others:
+            raise MisfitError("superstructure.damping", ratio, "no body stands on the platform: remove this key")
+        for number, body in enumerate(others, start=1):
+            if body.damping is not None:
+                rule = f"superstructure.damping = {ratio:g} damps all links: remove one of the two keys"
+                raise MisfitError(f"bodies.{number}.damping", body.damping, rule)
 
     def _check_derived(self) -> None:
         """Check that values which follow from several others are within their ranges."""
@@ -336,11 +351,21 @@ class Scene(Table):
     @cached_property
     def damping(self) -> NDArray[np.float64]:
         """Link damping c_{i+1,i} in x and y, (N-1, 2), N s/m; row i links body i and body i + 1."""
+        if (ratio := self._first_mode_ratio) is not None:
+            # D0 = beta C0 has the modal damping ratios beta omega / 2
+            first = [solve_chain(self.masses[1:], links, 1)[0][0] for links in self.stiffness.T]
+            proportional: NDArray[np.float64] = 2.0 * ratio / np.array(first) * self.stiffness
+            return proportional
         rows = [
             body.damping if isinstance(body.damping, list) else 2.0 * (body.damping or 0.0) * np.sqrt(link * body.mass)
             for body, link in zip(self.bodies[1:], self.stiffness)
         ]
         return np.array(rows, dtype=float).reshape(-1, 2)
+
+    @property
+    def _first_mode_ratio(self) -> float | None:
+        """Damping ratio of the first fixed-base mode that the scene states; None without one."""
+        return None if self.superstructure is None else self.superstructure.damping
 
     @property
     def support_places(self) -> NDArray[np.float64] | None:
@@ -531,7 +556,7 @@ class Scene(Table):
     def _digest(self) -> str:
         content = self.model_dump_json(
             exclude=dict.fromkeys(("title", "name", "acceptance", "analyses", "measured"), True)
-            | {"excitation": {"record": True, "origin": True}},
+            | {"excitation": {"record": True, "origin": True}, "bodies": {"__all__": {"floor": True}}},
             exclude_none=True,  # a key that is not given changes no result
         )
         return hashlib.sha256(content.encode()).hexdigest()[:16]
@@ -559,9 +584,11 @@ KEYS: dict[str, tuple[str, ...]] = {
     f"isolator.friction.{FRICTIONS[1]}.heating": tuple(Heating.model_fields),
     "bodies": tuple(Body.model_fields),
     "bodies.bars": tuple(Bars.model_fields),
+    "superstructure": tuple(Superstructure.model_fields),
     "acceptance": tuple(Acceptance.model_fields),
     "analyses": tuple(Analyses.model_fields),
     "measured": tuple(Measured.model_fields),
+    "acceptance.demands": tuple(DemandLimits.model_fields),
     **{f"acceptance.{pair}": tuple(Limits.model_fields) for pair in ("like_for_like", "total", "translational", "*")},
     "excitation": (*Excitation.model_fields, "record", "detrend"),
     f"excitation.{EXCITATIONS[0]}": tuple(Excitation.model_fields),

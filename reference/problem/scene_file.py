@@ -150,6 +150,8 @@ def parse_scene(text: bytes, label: str) -> Scene:
     if "combine" in data:
         remedy = rule.format("remove this key and give every key one value")
         raise SceneError(label, "combine", data["combine"], remedy)
+    if isinstance(isolator := data.get("isolator"), dict) and "bounds" in isolator:
+        raise SceneError(label, "isolator.bounds", isolator["bounds"], rule.format("remove this key"))
     for path, table in running_values((), data):
         raise SceneError(label, ".".join(map(str, path)), table, rule.format("give one value"))
     return make_scene(data, label, Path(label).stem)

@@ -22,6 +22,7 @@ from pydantic import (
 from reference.problem.beam_column import LoadFactors, load_factors
 from reference.problem.friction import Friction
 from reference.problem.keys import (
+    NONE,
     REQUIRED,
     SPATIAL,
     NonNegative,
@@ -76,7 +77,8 @@ class Isolator(Table):
         "natural period T_c of one mass alone on the isolator; give this or radius", Range(1e-3, 1e6, "s")
     )
     radius: Radius | None = key(
-        "rho = R - r, depression's radius less that of the sphere; inf for a flat slider; give this or period",
+        "effective radius rho = R - r, depression's radius less that of the sphere; inf for a flat slider; give this "
+        "or period",
         Range(1e-7, 1e12, "m", or_infinite=True),
     )
     friction: Friction | None = key(
@@ -203,7 +205,8 @@ class Body(Table):
         other_form=True,
     )
     height: NonNegative | None = key(
-        "height of the center of mass above the centers of the depressions, or above the plane of a flat slider",
+        "height of the center of mass above the centers of the depressions, which lie radius + sphere_radius below the "
+        "sliding contact; above the plane of a flat slider",
         Range(0.0, 1e6, "m"),
         models=SPATIAL,
     )
@@ -221,6 +224,17 @@ class Body(Table):
         "`period`, `stiffness` and `damping` of its link act",
         Range(-2.0 * math.pi, 2.0 * math.pi, "rad"),
         models=SPATIAL,
+    )
+    floor: Text | None = key("name of its floor in the report of an ensemble", models=NONE)
+
+
+class Superstructure(Table):
+    """All bodies above the platform together."""
+
+    damping: NonNegative | None = key(
+        "damping ratio of the first mode above a fixed base, of x and of y: c = 2 zeta k / omega_1 of every link, "
+        "in proportion to its stiffness; in place of `damping` of every body",
+        Range(0.0, 1.0),
     )
 
 

@@ -12,7 +12,7 @@ from reference.support.constants import GRAVITY
 
 LARGEST_PEAK, SMALLEST_PEAK = 3.0, 0.001  # g
 UNEVEN = 0.01  # relative, of the steps of a column of times
-FEW_SAMPLES = 100  # below so many, no zero line is judged
+FEW_SAMPLES = 100  # samples, below which no zero line is judged
 SHARE_OF_PEAK_VELOCITY = 0.2  # with which a record may end: at most 0.07 in 289 public records
 CLIPPED = 4  # equal samples in a row at the largest size
 FLAT = 1e-9  # relative, of samples that are equal
@@ -52,7 +52,7 @@ class DirectionRead:
 @dataclass(frozen=True)
 class RecordDescription:
     """
-    What was read of a recorded motion.
+    Description of a recorded motion as it was read.
 
     Attributes
     ----------
@@ -89,12 +89,9 @@ class RecordDescription:
     @property
     def lines(self) -> list[str]:
         """The description as lines of text."""
-        taken = f", times {self.scale:g}" if self.scale != 1.0 else ""
-        taken += f', detrend = "{self.detrend}"' if self.detrend else ""
-        head = f"Record {self.title}: {self.samples} samples, step {self.step:.6g} s, {self.duration:.6g} s{taken}"
         along = {line[0]: line[3:] for line in self.origin if line[1:3] == ": " and line[0] in AXES}
         return [
-            head,
+            self._head,
             *(f"  {line}" for line in self.origin if line[3:] not in along.values()),
             *(
                 f"  {one.axis}: {f'{along[one.axis]}: ' if one.axis in along else ''}peak {one.peak:.4g} m/s^2 = "
@@ -104,6 +101,18 @@ class RecordDescription:
             ),
             *(f"  Warning: {line}" for line in self.warnings),
         ]
+
+    @property
+    def short_lines(self) -> list[str]:
+        """The description as one line of text, and one for every warning."""
+        peaks = ", ".join(f"{one.axis} {one.peak / GRAVITY:.3g} g" for one in self.directions)
+        return [f"{self._head}, peaks {peaks or 'none'}", *(f"  Warning: {line}" for line in self.warnings)]
+
+    @property
+    def _head(self) -> str:
+        taken = f", times {self.scale:g}" if self.scale != 1.0 else ""
+        taken += f', detrend = "{self.detrend}"' if self.detrend else ""
+        return f"Record {self.title}: {self.samples} samples, step {self.step:.6g} s, {self.duration:.6g} s{taken}"
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
@@ -138,7 +147,7 @@ def describe_samples(
 
 
 def _warnings_of(one: DirectionRead, values: Array, velocity: Array, time: Array, detrend: str | None) -> list[str]:
-    """What of one direction is hardly meant."""
+    """Return warnings of what is hardly meant in one direction."""
     warnings = []
     # Velocity less its chord is what remains when the mean is taken off. Noise, a walk from rest, ends about as far
     # from zero as it strays from the chord; a zero line that was left in ends far beyond: its velocity grows with time.

@@ -85,6 +85,6 @@ def assign_axes(directions: Sequence[Direction]) -> Mapping[str, int] | None:
         first, second = sorted(level, key=lambda number: (directions[number].azimuth, directions[number].word))
     elif one.axis == other.axis:
         return None
-    elif "" in (one.axis, other.axis):  # an azimuth beside a word
+    elif "" in (one.axis, other.axis):  # an azimuth and a word
         first, second = sorted(level, key=lambda number: directions[number].word.upper())
     return dict(zip("xyz", (first, second, *upright)))

@@ -16,17 +16,18 @@ from pathlib import Path
 from typing import Any
 
 from reference.records.formats import OPTIONS, read_record
+from reference.records.pairing import SuiteError
 from reference.records.samples import (
     AXES,
     LARGEST,
     Array,
-    Reading,
     RecordError,
+    RecordSamples,
     join_directions,
     origin_of,
     samples_of_arrays,
 )
-from reference.records.suites import SuiteError, suite_samples
+from reference.records.suites import suite_samples
 from reference.support.files import read_file
 from reference.support.scene_error import SceneError, unknown_key
 
@@ -39,7 +40,7 @@ RECORD_RULE = (
 SUITE = ("suite", "motion", "normalized", "components")
 ARRAYS = {"time", "acceleration"}
 FROM_ARRAYS = "arrays"  # in place of the files of a record that was given as arrays
-SET_BY_THE_READER = ("samples", "origin")  # what the excitation holds beside the keys of a file
+SET_BY_THE_READER = ("samples", "origin")  # what the excitation holds in addition to the keys of a file
 OF_TWO_FREQUENCIES = ("amplitudes", "periods", "decay")
 
 
@@ -93,7 +94,7 @@ def _is_example(name: str) -> bool:
     return any(entry.name == f"{name}.toml" for entry in EXAMPLES.iterdir())
 
 
-def _read(label: str, key: str, file: Any) -> tuple[str, Reading]:
+def _read(label: str, key: str, file: Any) -> tuple[str, RecordSamples]:
     """The name of a file, given as a text or as a table with what the file does not state, and what it holds."""
     options: Mapping[str, Any] = file if isinstance(file, dict) else {"file": file}
     for option, value in options.items():
@@ -123,7 +124,7 @@ def _of_suite(record: dict[str, Any], label: str) -> tuple[Array, list[str]]:
 
 
 def _content(label: str, key: str, name: str) -> bytes:
-    """The content of a file beside the scene, or of one that is shipped. Raises SceneError."""
+    """The content of a file in the folder of the scene, or of one that is shipped. Raises SceneError."""
     path, shipped = Path(label).parent / name, EXAMPLES / name
     try:
         ours = (EXAMPLES / f"{label}.toml").is_file() or not path.exists()

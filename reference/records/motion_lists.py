@@ -17,17 +17,24 @@ from reference.support.scene_error import one_line
 
 FILE = "motions.csv"
 COLUMNS = ("name", *AXES, "factor")
+MAGNITUDE = "magnitude"  # column that a list may have, too
 LARGEST = 2**20  # bytes
 MAX_FACTOR = 1e6
+MAX_MAGNITUDE = 10.0
 
 
 @dataclass(frozen=True)
 class Motion:
-    """One motion of a suite: its name, its files by axis, "" where one file holds all directions, and its factor."""
+    """
+    One motion of a suite: its name, its files by axis, "" where one file holds all directions, and its factor.
+
+    magnitude: of the earthquake, None where the list does not state it.
+    """
 
     name: str
     files: Mapping[str, Path]
     factor: float = 1.0
+    magnitude: float | None = None
 
 
 @dataclass(frozen=True)
@@ -40,7 +47,7 @@ class MotionList:
 
     @property
     def sentence(self) -> str:
-        """What the folder holds, with an example of how components were paired."""
+        """Return the content of the folder in words, with an example of how components were paired."""
         first = self.motions[0].files
         how = f"as {FILE} lists them" if self.listed else "" if "" in first else "paired by name"
         if not self.listed and list(first) == ["x"]:
@@ -72,8 +79,9 @@ def read_motion_list(folder: Path) -> MotionList | None:
     mark = next((mark for mark in "\t;," if mark in lines[0]), ",")
     rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=mark)]
     heads = [head.lower() for head in rows[0]]
-    if "name" not in heads or "x" not in heads or not set(heads) <= {*COLUMNS, ""}:
-        raise RecordError(f"{FILE}: line 1: {brief(lines[0])}: must have the columns {', '.join(COLUMNS)}")
+    if "name" not in heads or "x" not in heads or not set(heads) <= {*COLUMNS, MAGNITUDE, ""}:
+        rule = f"must have the columns {', '.join(COLUMNS)}, and may have {MAGNITUDE}"
+        raise RecordError(f"{FILE}: line 1: {brief(lines[0])}: {rule}")
     motions = [_motion(number, dict(zip(heads, row)), folder) for number, row in enumerate(rows[1:], 2)]
     if not motions:
         raise RecordError(f"{FILE}: no motions: must have a line for each")
@@ -92,16 +100,23 @@ def _motion(number: int, row: Mapping[str, str], folder: Path) -> Motion:
     for file in files.values():
         if not file.is_file():
             raise RecordError(f"{FILE}: line {number}: {brief(file.name)}: no such file in the folder")
-    text = (row.get("factor") or "1").replace(",", ".")
+    factor = _number(number, row, "factor", MAX_FACTOR) or 1.0
+    magnitude = _number(number, row, MAGNITUDE, MAX_MAGNITUDE)
+    return Motion(row["name"], {"": files["x"]} if list(files) == ["x"] else files, factor, magnitude)
+
+
+def _number(number: int, row: Mapping[str, str], name: str, most: float) -> float | None:
+    """A number of a line, None where it has none. Raises RecordError."""
+    text = (row.get(name) or "").replace(",", ".")
+    if not text:
+        return None
     try:
-        factor = float(text)
+        value = float(text)
     except ValueError:
-        factor = math.nan
-    if not 0.0 < abs(factor) <= MAX_FACTOR:
-        raise RecordError(
-            f"{FILE}: line {number}: factor = {brief(text)}: must be a number up to {MAX_FACTOR:g}, not 0"
-        )
-    return Motion(row["name"], {"": files["x"]} if list(files) == ["x"] else files, factor)
+        value = math.nan
+    if not 0.0 < abs(value) <= most:
+        raise RecordError(f"{FILE}: line {number}: {name} = {brief(text)}: must be a number up to {most:g}, not 0")
+    return value
 
 
 def motion_list_text(motions: Iterable[Motion]) -> str:

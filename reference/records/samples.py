@@ -34,9 +34,9 @@ class RecordError(ValueError):
 
 
 @dataclass(frozen=True)
-class Reading:
+class RecordSamples:
     """
-    What one file holds.
+    Samples of one file.
 
     format: name of its format. time: (K,), s, as the file has it. directions: accelerations (K,), m/s^2, by axis, or
     under "" where the file does not say along which. names: what the file calls them. step: s, where the file states
@@ -51,20 +51,20 @@ class Reading:
     notes: tuple[str, ...] = ()
 
 
-def evenly_spaced(format: str, step: float, values: Array, axis: str = "", **others: Any) -> Reading:
+def evenly_spaced(format: str, step: float, values: Array, axis: str = "", **others: Any) -> RecordSamples:
     """Return the reading of a file that states its step, s, and has one direction, m/s^2. Raises RecordError."""
     if not step >= MIN_INTERVAL:
         raise RecordError(f"step = {step:g} s: must be at least {MIN_INTERVAL:g} s")
-    return Reading(format, step * np.arange(len(values), dtype=float), {axis: values}, step=step, **others)
+    return RecordSamples(format, step * np.arange(len(values), dtype=float), {axis: values}, step=step, **others)
 
 
-def join_directions(readings: Mapping[str, Reading]) -> Array:
+def join_directions(readings: Mapping[str, RecordSamples]) -> Array:
     """
     Return the samples (K, 4) of files by axis, or of one file under "". Raises RecordError.
 
     A direction that the only file does not name is x. A file that ends early is at rest from there on.
     """
-    columns: dict[str, tuple[Reading, Array]] = {}
+    columns: dict[str, tuple[RecordSamples, Array]] = {}
     for axis, reading in readings.items():
         if axis and len(reading.directions) > 1:
             held = ", ".join(f"{one} = {reading.names.get(one, one)}" for one in reading.directions)
@@ -81,7 +81,7 @@ def join_directions(readings: Mapping[str, Reading]) -> Array:
     return finish_samples(samples)
 
 
-def _check_same_steps(readings: Mapping[str, Reading]) -> None:
+def _check_same_steps(readings: Mapping[str, RecordSamples]) -> None:
     """Raise RecordError unless all directions were sampled at the same instants."""
     for (first, one), (second, other) in pairwise(readings.items()):
         if one.step is not None and other.step is not None:
@@ -141,7 +141,7 @@ def finish_samples(samples: Array) -> Array:
     return samples
 
 
-def origin_of(files: Mapping[str, tuple[str, Reading]]) -> list[str]:
+def origin_of(files: Mapping[str, tuple[str, RecordSamples]]) -> list[str]:
     """Return where samples are from: a line for every file, by axis, and one for everything that was noticed in it."""
     lines = []
     for axis, (name, reading) in files.items():

@@ -18,15 +18,16 @@ from typing import Any
 
 import numpy as np
 
-from reference.records.directions import TRIED, Direction, assign_axes, split_name
+from reference.records.directions import split_name
 from reference.records.formats import read_record, recognize_format
 from reference.records.motion_lists import FILE, Motion, MotionList, read_motion_list
 from reference.records.numerals import decode_text
+from reference.records.pairing import SuiteError, find_vertical_components, pair_files
 from reference.records.samples import (
     LARGEST,
     Array,
-    Reading,
     RecordError,
+    RecordSamples,
     check_samples,
     join_directions,
     origin_of,
@@ -44,16 +45,7 @@ RECORDS = (".csv", ".at2")  # suffixes of files that are records, whatever is in
 NO_RECORDS = {".vt2": "velocity or displacement files", ".dt2": "velocity or displacement files"}
 SEARCH_RESULTS = re.compile(r"search[_ -]?results|flatfile", re.IGNORECASE)
 TEXTS = (".txt", ".md", ".rst", ".pdf", ".html", ".htm", ".doc", ".docx", ".log")
-MAX_NAMED = 20  # files that an error names one by one
 MAX_FILES = 10_000  # in a folder
-
-
-class SuiteError(ValueError):
-    """A motion that no suite has: the key of the record, as "suite" or "motion", and the rule."""
-
-    def __init__(self, key: str, rule: str) -> None:
-        super().__init__(f"{key}: {rule}")
-        self.key, self.rule = key, rule
 
 
 def suite_motions(suite: Any, folder: Path, components: Any = None) -> list[int]:
@@ -97,7 +89,7 @@ def suite_samples(record: Mapping[str, Any], folder: Path) -> tuple[Array, list[
 
 def _read_motion_of_files(motion: Motion) -> tuple[Array, list[str]]:
     """The samples of a motion of a folder, and where they are from. Raises SuiteError."""
-    readings: dict[str, Reading] = {}
+    readings: dict[str, RecordSamples] = {}
     for axis, file in motion.files.items():
         try:
             readings[axis] = read_record(read_file(file, LARGEST), file.name)
@@ -139,25 +131,16 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
     """
     if components not in (None, 1, 2) or isinstance(components, bool):
         raise SuiteError("components", "must be 1, every component a motion of its own, or 2, pairs")
-    place = folder / suite
-    try:
-        if (listed := read_motion_list(place)) is not None:
-            return listed
-        files = sorted(place.iterdir())
-    except (OSError, ValueError) as error:
-        if isinstance(error, RecordError):
-            raise SuiteError("suite", str(error)) from None
-        reason = getattr(error, "strerror", None) or error
-        raise SuiteError("suite", f"{reason}; {SUITE_RULE}, relative to the scene file") from None
-    if len(files) > MAX_FILES:
-        raise SuiteError("suite", f"{len(files)} files: must be at most {MAX_FILES}")
-    kinds = {file: _kind(file) for file in files}
+    found = _read_directory(folder / suite)
+    if isinstance(found, MotionList):
+        return found
+    kinds = {file: _kind(file) for file in found}
     records = [file for file, kind in kinds.items() if not kind]
     ignored = Counter(kind for kind in kinds.values() if kind)
     if not records:
         raise SuiteError("suite", f"has no CSV or .AT2 files: {SUITE_RULE}")
     if components == 1:
-        upright = _vertical(records)
+        upright = find_vertical_components(records)
         if upright:
             ignored["vertical components"] = len(upright)
         single = [Motion(file.stem, {"x": file}) for file in records if file not in upright]
@@ -167,12 +150,28 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
     if whole and parts:
         shown = f"{brief(whole[0].name)} holds whole motions, {brief(parts[0].name)} a component"
         raise SuiteError("suite", f"has CSV and .AT2 files: {shown}: take one kind, or list the motions in {FILE}")
-    motions = _paired(parts) if parts else [Motion(file.stem, {"": file}) for file in whole]
+    motions = pair_files(parts) if parts else [Motion(file.stem, {"": file}) for file in whole]
     return MotionList(_with_own_names(motions), ignored)
 
 
+def _read_directory(place: Path) -> MotionList | list[Path]:
+    """Return the list of motions that a directory holds, or else its files. Raises SuiteError."""
+    try:
+        if (listed := read_motion_list(place)) is not None:
+            return listed
+        files = sorted(place.iterdir())
+    except RecordError as error:
+        raise SuiteError("suite", str(error)) from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise SuiteError("suite", f"{reason}; {SUITE_RULE}, relative to the scene file") from None
+    if len(files) > MAX_FILES:
+        raise SuiteError("suite", f"{len(files)} files: must be at most {MAX_FILES}")
+    return files
+
+
 def _kind(file: Path) -> str:
-    """What a file of a folder is that is no record; "" for a record."""
+    """Return the kind of a file that is no record, "" for a record."""
     suffix = file.suffix.lower()
     if file.name.startswith("."):
         return "hidden files"
@@ -191,13 +190,13 @@ def _is_recognized(file: Path) -> bool:
     """Tell whether the content of a file is that of a record."""
     try:
         status = file.stat()
-        return status.st_size <= LARGEST and _recognized(file, status.st_mtime_ns, status.st_size)
+        return status.st_size <= LARGEST and _is_record(file, status.st_mtime_ns, status.st_size)
     except OSError:
         return False
 
 
 @lru_cache(maxsize=4096)
-def _recognized(file: Path, changed: int, size: int) -> bool:
+def _is_record(file: Path, changed: int, size: int) -> bool:
     try:
         return recognize_format(decode_text(read_file(file, LARGEST)), file.suffix) is not None
     except (OSError, RecordError):
@@ -223,73 +222,6 @@ def _with_own_names(motions: Sequence[Motion]) -> tuple[Motion, ...]:
             files = [brief(next(iter(one.files.values())).name) for one in (first, motion)]
             raise SuiteError("suite", f"{files[0]} and {files[1]} have one name: rename one of them")
     return tuple(motions)
-
-
-def _groups(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direction]]]:
-    """Files by what each name may have in common with others; the longest spelling of a direction counts."""
-    groups: dict[str, dict[Path, tuple[str, Direction]]] = {}
-    for file in files:
-        for base, direction in split_name(file.stem, file.suffix):
-            groups.setdefault(base.upper(), {}).setdefault(file, (base, direction))
-    return groups
-
-
-def _paired(files: Sequence[Path]) -> list[Motion]:
-    """The components of motions, by what their names have in common. Raises SuiteError for all that are left alone."""
-    groups, left, motions = _groups(files), set(files), []
-    for base in sorted(groups, key=lambda base: (-len(groups[base]), len(base))):
-        members = [file for file in groups[base] if file in left]
-        axes = assign_axes([groups[base][file][1] for file in members])
-        if axes is not None:
-            paired = {axis: members[number] for axis, number in axes.items()}
-            motions.append(Motion(groups[base][paired["x"]][0], paired))
-            left -= set(members)
-    if left:
-        raise SuiteError("suite", _not_understood([file for file in files if file in left], groups))
-    return sorted(motions, key=lambda motion: min(motion.files.values()))
-
-
-def _not_understood(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tuple[str, Direction]]]) -> str:
-    """What is said of all components that make no motion, in one message."""
-    shares: dict[str, list[Path]] = {}
-    for file in files:
-        bases = [base.upper() for base, _ in split_name(file.stem, file.suffix)]
-        shared = max(bases, key=lambda base: (len(groups[base]), -len(base)), default="")
-        shares.setdefault(shared, []).append(file)
-    said: list[str] = []
-    lone: dict[str, list[str]] = {}
-    for base, alone in shares.items():
-        told = [groups[base][file][1] for file in alone] if base else []
-        angles = [f"{one.azimuth:g}" for one in told if one.azimuth is not None]
-        upright = sum(one.axis == "z" for one in told)
-        if not base:
-            said.append(f"{_listed([file.name for file in alone])}: no direction at the end of the name")
-        elif len(angles) == len(told) >= 2:
-            numbers = f"numbers {', '.join(angles[:3])}"
-            said.append(f"{_listed([file.name for file in alone])}: {numbers} are no azimuths across each other")
-        else:
-            found = f"{len(told) - upright} horizontal and {upright} vertical"
-            lone.setdefault(found, []).append(groups[base][alone[0]][0])
-    for found, names in lone.items():
-        said.append(
-            f"{_listed(names)} {'has' if len(names) == 1 else 'have'} {found} components: must have 2, and 0 or 1"
-        )
-    return (
-        f"{'; '.join(said[:MAX_NAMED])}{f'; and {len(said) - MAX_NAMED} more' if len(said) > MAX_NAMED else ''}. "
-        f"Tried {TRIED}. Complete the motions, list them in {FILE} ({', '.join(('name', 'x', 'y', 'z', 'factor'))}), "
-        "or take every file as a motion along x: components = 1"
-    )
-
-
-def _listed(names: Sequence[str]) -> str:
-    shown = ", ".join(brief(name) for name in names[:MAX_NAMED])
-    return shown if len(names) <= MAX_NAMED else f"{shown} and {len(names) - MAX_NAMED} more"
-
-
-def _vertical(files: Sequence[Path]) -> set[Path]:
-    """The files that are the vertical component of a motion of which others are there."""
-    groups = _groups(files).values()
-    return {file for members in groups if len(members) > 1 for file, (_, one) in members.items() if one.axis == "z"}
 
 
 def _load_record_set(name: str) -> Any:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Rest = ParamSpec("Rest")
 Result = TypeVar("Result")
+LONGEST = 80  # letters of a value in an error
 MISSING = object()  # stands for an argument that is not given
 
 
@@ -122,11 +123,11 @@ def _is_masked(values: Any) -> bool:
     return bool(np.ma.is_masked(values))
 
 
-def brief(value: Any, longest: int = 80) -> str:
-    """Return the `repr` of a value in one line of at most `longest` letters."""
+def brief(value: Any) -> str:
+    """Return the `repr` of a value in one line of at most LONGEST letters."""
     try:
-        text = repr(value[: 2 * longest] if isinstance(value, str) else value)
+        text = repr(value[: 2 * LONGEST] if isinstance(value, str) else value)
     except (ValueError, RecursionError):  # an integer of more digits than Python prints, tables thousands deep
         text = f"<{type(value).__name__}>"
     text = " ".join(text.split())
-    return text if len(text) <= longest else text[: longest - 3] + "..."
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."

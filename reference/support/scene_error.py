@@ -38,6 +38,10 @@ HINTS = {  # what a key of other programs is here, by its letters and digits, in
     **dict.fromkeys(("isolator.mu", "frictioncoefficient", "coefficientoffriction"), "write friction, without unit"),
     **dict.fromkeys(("displacementcapacity", "dmax", "umax", "maxdisplacement"), "write travel, m"),
     **dict.fromkeys(("bodies.dampingratio", "bodies.zeta", "bodies.xi"), "write damping, as a ratio of critical"),
+    **dict.fromkeys(
+        ("dampingratio", "modaldamping", "superstructuredamping", "structuraldamping", "rayleigh"),
+        "write [superstructure] damping = 0.05, the ratio of critical of the first fixed-base mode",
+    ),
     "bodies.weight": "write mass, kg: the weight in N over 9.81",
     **dict.fromkeys(("excitation.file", "excitation.accelerogram", "excitation.csv"), 'write record = "motion.csv"'),
     **dict.fromkeys(("excitation.factor", "excitation.scalefactor", "excitation.pga"), "write scale, a factor"),

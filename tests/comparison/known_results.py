@@ -22,12 +22,13 @@ from comparison.analyses.measured.analysis import ComputedPeak, MeasuredPeak
 from comparison.analyses.worst_phases.analysis import Worst
 from comparison.evidence.benchmarks import table as benchmarks
 from comparison.evidence.extremes import matrix as extremes
-from comparison.evidence.extremes.matrix import Entry, Extreme, Matrix
-from comparison.evidence.extremes.rows import Column, Row, scene
+from comparison.evidence.extremes.columns import ModelColumn
+from comparison.evidence.extremes.matrix import Extreme, Matrix, MatrixEntry
+from comparison.evidence.extremes.rows import ExtremeCase, scene
 from comparison.evidence.tradeoff import command as tradeoff
 from comparison.evidence.tradeoff import growth
 from comparison.evidence.tradeoff.trade import Answered, MeasuredTrade, Trade, with_pareto_fronts
-from comparison.evidence.tradeoff.trade import Entry as Setting
+from comparison.evidence.tradeoff.trade import MeasuredSetting as Setting
 from comparison.evidence.validation import table as validation
 from comparison.runner.output import publish
 from reference.problem import load_scene
@@ -35,13 +36,15 @@ from reference.problem.readings import AS_INTEGRATED
 
 MADE = {"command": "made <by a test>", "began": "then", "seconds": 1.0, "compute_seconds": 1.0, "jobs": 1,
         "quick": True, "provenance": {"commit": "abc", "processor": "one"}}  # fmt: skip
-PLAIN = Row("anything", "plain", scene(), ("fake",))
+PLAIN = ExtremeCase("anything", "plain", scene(), ("fake",))
 FOUND = Matrix(
     {"small": "small equations", "spatial": "spatial engine"},
     [
-        Extreme("friction", "1e-9", {"small": Entry("converged", "error 2e-07 confirmed", "ok", 2e-7, 0.25, 0.5)}),
-        Extreme("friction", "10", {"spatial": Entry("limit", "step limit", "step limit", None, 0.25, 0.5)}),
-        Extreme("rho, m", "1e3", {"small": Entry("FAILED", "hangs: <forever>", "time limit", None, None, None)}),
+        Extreme(
+            "friction", "1e-9", {"small": MatrixEntry("converged", "error 2e-07 confirmed", "ok", 2e-7, 0.25, 0.5)}
+        ),
+        Extreme("friction", "10", {"spatial": MatrixEntry("limit", "step limit", "step limit", None, 0.25, 0.5)}),
+        Extreme("rho, m", "1e3", {"small": MatrixEntry("FAILED", "hangs: <forever>", "time limit", None, None, None)}),
     ],
     {"command": "made by a test", "began": "then", "seconds": 1.0, "cpu_seconds": 2.0, "jobs": 1, "limit": 90.0,
      "reduced": False, "provenance": {"commit": "abc"}},
@@ -81,10 +84,10 @@ def known_assumptions() -> Validity:
     return Validity(ASSUMPTIONS, AS_INTEGRATED, PHASES, DURATION, tuple(cells), tuple(directions), of_scene)
 
 
-def fake(model: str, finer: str = "") -> Column:
+def fake(model: str, finer: str = "") -> ModelColumn:
     """A column whose model, and the finer one that confirms it, are from extreme_models."""
     path = f"extreme_models:{model}"
-    return Column("fake", model, path, {}, 1e-3, ((f"extreme_models:{finer or model}", {}, 1e-5),))
+    return ModelColumn("fake", model, path, {}, 1e-3, ((f"extreme_models:{finer or model}", {}, 1e-5),))
 
 
 def known_trade(name: str) -> Trade:
@@ -104,7 +107,7 @@ def known_benchmarks() -> benchmarks.Benchmarks:
         "smoothed": benchmarks.Number(2.02425, 3e-8, "met"),
         "engine": benchmarks.Number(None, None, "not compared"),
     }
-    rows = [benchmarks.Row("isolation period", "s", 2.0242, 5e-5, numbers)]
+    rows = [benchmarks.PublishedNumber("isolation period", "s", 2.0242, 5e-5, numbers)]
     about = "frame", "a <frame>", "a book", "links", 1e-4, "theirs is heated"
     return benchmarks.Benchmarks([benchmarks.Benchmark(*about, rows, {"engine": "it broke"}, {"engine": 1.0})], MADE)
 
@@ -123,15 +126,15 @@ def known_ensemble() -> ensemble.EnsembleResult:
     """Displacements of three motions at two scales: the third reaches the rim at the larger one."""
     known = {"motion 1": (0.1, 0.2), "motion 2": (0.2, 0.5), "motion 3": (0.3, None)}
     curves = [
-        ensemble.Curve(
+        ensemble.DemandCurve(
             "tower", "displacement", None, "exact", motion, (1.0, 2.0), values, (0.0, 0.0 if values[1] else None)
         )
         for motion, values in known.items()
     ]
-    engine = ensemble.Curve("tower", "displacement", None, "translational", "motion 2", (2.0,), (0.51,), (1e-3,))
+    engine = ensemble.DemandCurve("tower", "displacement", None, "translational", "motion 2", (2.0,), (0.51,), (1e-3,))
     low, high = (
         [
-            ensemble.Fractile(value, None if value is None else 0.0, share)
+            ensemble.DemandFractile(value, None if value is None else 0.0, share)
             for share, value in zip((0.16, 0.5, 0.84), values)
         ]
         for values in ((0.132, 0.2, 0.268), (0.296, 0.5, None))
@@ -141,12 +144,13 @@ def known_ensemble() -> ensemble.EnsembleResult:
     stripes = [ensemble.Stripe(*named, 1.0, 3, mean, low, largest, smallest),
                ensemble.Stripe(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
     spectrum = ensemble.Spectrum("tower", 1, 2.0, 0.05, (0.1, 1.0), (mean,) * 2, [(mean,) * 2] * 3, (largest,) * 2)
-    difference = ensemble.Difference("tower", "displacement", None, 0.02, 1e-4, 2e-3, 1)
+    moved = ensemble.EngineMotion("tower", "motion 2", 2.0, ["largest displacement"], {"translational": "ok"})
     return ensemble.EnsembleResult(
         schema=ensemble.SCHEMA, structures=[ensemble.Structure("tower", "Tower & <town>", 1, 9.81e3)],
         scales=(1.0, 2.0), spectra=[spectrum],
         motions=3, outcomes={"ok": 5, "rim reached": 1}, stripes=stripes, curves=[*curves, engine],
-        engine=ensemble.Engine("translational", [{"scene": "tower[2]", "status": "ok"}], [difference]), run=MADE,
+        engine=ensemble.Engine("translational", [moved]), run=MADE,
+        suite=[ensemble.GroundMotion(motion, 20.0, 1.5) for motion in known],
     )  # fmt: skip
 
 
@@ -154,8 +158,7 @@ FILES: Mapping[str, bytes] = {
     extremes.FILE: extremes.STORED.as_json(FOUND),
     benchmarks.FILE: benchmarks.STORED.as_json(known_benchmarks()),
     growth.FILE: growth.STORED.as_json(known_growth()),
-    ensemble.FILE: ensemble.STORED.as_json(known_ensemble()),
-    validation.STORED.name: validation.STORED.as_json(replace(validation.recorded(), facts=["a <fact>"])),
+    validation.STORED.name: validation.STORED.as_json(replace(validation.load_record(), facts=["a <fact>"])),
 }
 
 

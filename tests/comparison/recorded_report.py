@@ -16,9 +16,8 @@ import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import redirect_stderr, redirect_stdout
-from dataclasses import replace
 from html import unescape
-from itertools import count, groupby
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -27,20 +26,17 @@ import xarray as xr
 from browsers import CHROMIUM
 from distinct_models import GRID, distinct_hierarchy, distinct_motions, known_demand_surfaces, lacking_hierarchy
 from known_analyses import analyses_are, known_others
-from known_results import FILES, MEASURED, SEARCHED, known_assumptions, known_ensemble, leave_beside
+from known_results import FILES, MEASURED, SEARCHED, known_assumptions, leave_beside
 from places import HELPERS, scene_text
 from recorded_figures import figures_are_told
 from report_texts import page_of, schema_errors
 from runs import Here, quick_figures
 
 import comparison.run
-from comparison.analyses.ensemble import result as ensemble
-from comparison.analyses.ensemble.analysis import FRACTILES
 from comparison.cli import reports, user_models
 from comparison.runner import progress
 from comparison.study import user_models as called
 from comparison.study.levels import StudyLevel, levels_of
-from reference.measures.peak_demands import unit_of
 
 RECORD = Path(__file__).parent / "report" / "recorded_report.txt"
 HIDDEN = re.compile(r'<(script|style)\b.*?</\1>|<th scope="row">phase-resonance.*?</table>', re.DOTALL)
@@ -68,10 +64,6 @@ ROW = re.compile(r"<tr|\||  ?\S.* $")  # of a table on the page, in Markdown and
 ROWS = 8  # of a table: the others are written by the same lines of a template
 # what scripts draw: plots, but not those of families, whose descriptions stand on the page; and one body of one scene
 OF_ONE = re.compile(r"drawn index.html: (plot (?!.* over isolator.friction)|scene 1 body 1 )")
-DEMANDS: list[tuple[str, int | None]] = [
-    *((name, None) for name in ("displacement", "base_shear", "residual", "support_force_min", "uplift")),
-    *((name, body) for name in ("acceleration", "drift", "torsion") for body in (1, 2)),
-]
 FAMILY = "friction = {range = [0.1, 0.2], steps = 2}"
 LIMITS = """[acceptance]
 median = 1e-6
@@ -105,32 +97,6 @@ class Early(StudyLevel):
     """A level before the last whose report is as complete as that of the last."""
 
     last = True  # type: ignore[assignment]
-
-
-def full_ensemble() -> ensemble.EnsembleResult:
-    """Two structures of two bodies with every demand, profiles, floor spectra and a target; all numbers differ."""
-    known, number = known_ensemble(), count(1)
-
-    def next_number() -> ensemble.Statistic:
-        return ensemble.Statistic(0.0137 * next(number), 0.0001 * next(number))
-
-    def fractiles() -> list[ensemble.Fractile]:
-        each = [next_number() for _ in FRACTILES]
-        return [ensemble.Fractile(one.value, one.error, share) for one, share in zip(each, FRACTILES)]
-
-    structures, stripes, spectra = [], [], []
-    for name in ("tower", "office"):
-        isolator = ensemble.Isolator(*(next_number().value for _ in range(4)))  # type: ignore[arg-type]
-        structures.append(ensemble.Structure(name, f"The {name}", 2, 9.81e3, isolator))
-        for quantity, body in DEMANDS:
-            of = name, quantity, body, "exact", unit_of(quantity), 2.0, next(number)
-            stripes.append(ensemble.Stripe(*of, next_number(), fractiles(), next_number(), next_number(), {"rim": 1}))
-        for body in (1, 2):
-            rows = [[next_number(), next_number()] for _ in range(5)]
-            spectra.append(ensemble.Spectrum(name, body, 2.0, 0.05, (0.1, 1.0), rows[0], rows[1:4], rows[4]))
-    motions = [ensemble.MatchedMotion(motion, 0.31 * next(number), (1.5, 2.5)) for motion in ("motion 1", "motion 2")]
-    target = ensemble.Target(0.2, 1.7, (0.1, 1.0), (3.5, 4.5), motions)
-    return replace(known, structures=structures, stripes=[*known.stripes, *stripes], spectra=spectra, target=target)
 
 
 def lines_of(place: Path) -> list[str]:
@@ -205,7 +171,7 @@ def recorded_lines(folder: Path) -> list[str]:
         patch.setattr(reports, "PATIENCE", math.inf)  # no level before the last has a report, and no line tells the
         patch.setattr(progress, "EVERY", math.inf)  # time left, however slow the machine
         full = folder / "full" / "report"
-        leave_beside(full, {**FILES, ensemble.FILE: ensemble.STORED.as_json(full_ensemble())}, "fig3-I")
+        leave_beside(full, FILES, "fig3-I")
         (full.parent / "family.toml").write_text(scene_text().replace("friction = 0.1", FAMILY), encoding="utf-8")
         scenes = ["synthetic-pair", "fig3-I", str(full.parent / "family.toml")]
         words = [*scenes, "--grid", str(GRID), "--also", "demands", "--tolerance", "5e-3"]

@@ -4,6 +4,7 @@ import base64
 import gzip
 import json
 import re
+from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -50,3 +51,33 @@ def text_of(path: Path) -> tuple[int, str]:
 def flat(text: str) -> str:
     """The letters alone: where lines break, a reader of the file may add or lose a space or a hyphen."""
     return "".join(letter for letter in text if letter.isalnum())
+
+
+class Tables(HTMLParser):
+    """The rows of every table by the heads of its columns."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tables: list[list[list[str]]] = []
+        self.inside = False
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: Any) -> None:
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append([])
+        elif tag in ("td", "th"):
+            self.tables[-1][-1].append("")
+            self.inside = True
+
+    def handle_endtag(self, tag: str) -> None:
+        self.inside = self.inside and tag not in ("td", "th")
+
+    def handle_data(self, data: str) -> None:
+        if self.inside:
+            self.tables[-1][-1][-1] += data
+
+    def rows(self, number: int) -> list[dict[str, str]]:
+        heads, *rows = self.tables[number]
+        return [dict(zip(heads, [" ".join(cell.split()) for cell in row])) for row in rows]

@@ -46,12 +46,6 @@ def quick_figure(path: Path, *rest: object) -> None:
     Image.new("RGB", (1, 1)).save(path, "PNG")
 
 
-def no_picture(path: Path, *rest: object) -> None:
-    """Both files of a picture, empty."""
-    for each in (path, path.with_suffix(".pdf")):
-        each.write_bytes(b"")
-
-
 def quick_figures(patch: pytest.MonkeyPatch) -> None:
     """Every picture of the surfaces is one dot."""
     patch.setattr(pairs, "draw_pair", quick_figure)

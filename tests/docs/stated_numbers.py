@@ -15,7 +15,7 @@ import evidence_table
 
 from comparison.evidence.sides import EQUATIONS
 from comparison.evidence.validation.frame import Setup
-from comparison.evidence.validation.table import recorded
+from comparison.evidence.validation.table import load_record
 from comparison.verdicts import NOT_MET
 
 
@@ -34,7 +34,7 @@ def numbers_of(stated: Stated, texts: Mapping[Path, str]) -> list[tuple[Path, st
 
 
 STORE = json.loads(evidence_table.STORE.read_text(encoding="utf-8"))
-FACTS = "\n".join((*recorded().inputs, *recorded().facts))
+FACTS = "\n".join((*load_record().inputs, *load_record().facts))
 CLOSED_FORMS = ("free_coulomb_decay", "swing_down", "conical_pendulum_turns", "den_hartog", "circles_over")
 CONTACT = ("the_weight_presses", "held_platform", "sliding_stops", "planar_sliding", "conical_pendulum_keeps")
 SETUP = Setup()

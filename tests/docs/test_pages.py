@@ -20,7 +20,7 @@ from stated_numbers import STATED, Stated, numbers_of
 
 from comparison.evidence.benchmarks.table import page as benchmarks_page
 from comparison.evidence.validation import statements
-from comparison.evidence.validation.table import recorded
+from comparison.evidence.validation.table import load_record
 from comparison.report.results import VALIDATED, VALIDATED_BRIEFLY
 from comparison.report.verification import CHECKS
 from reference.problem import Scene
@@ -77,12 +77,12 @@ def test_a_page_of_evidence_has_what_its_command_writes(page: Path) -> None:
 
 def test_the_readme_has_the_measurements_of_their_record() -> None:
     assert evidence_table.with_readme_rows(README) == README
-    assert all(row in README for row in statements.readme_rows(recorded()))
+    assert all(row in README for row in statements.readme_rows(load_record()))
 
 
 def test_what_is_said_to_be_validated_is_what_is_recorded() -> None:
-    assert statements.word_validated(recorded()) == VALIDATED
-    assert statements.word_validated_briefly(recorded()) == VALIDATED_BRIEFLY
+    assert statements.word_validated(load_record()) == VALIDATED
+    assert statements.word_validated_briefly(load_record()) == VALIDATED_BRIEFLY
     for page in (README, *(page.read_text(encoding="utf-8") for page in evidence_table.BLOCKS)):
         for line in re.findall(r".*\bvalidated\b.*", page, flags=re.IGNORECASE):
             allowed = ("Validated is one quantity", "what is validated, and what is not", "isolated")

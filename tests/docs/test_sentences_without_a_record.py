@@ -8,7 +8,7 @@ import pytest
 from pages import ROOT
 from scipy.stats import beta
 
-from comparison.evidence.validation.table import recorded
+from comparison.evidence.validation.table import load_record
 from reference.problem import builtin_scenes, load_scene
 
 EVIDENCE, CLAIMS, VALIDATION = (
@@ -75,7 +75,7 @@ def test_the_self_assessment_has_eight_levels_and_what_is_not_met() -> None:
     rows = re.findall(r"^\| ([a-z ]+) \| (\d) \| (.*) \|$", VALIDATION, re.M)
     assert len(rows) == 8
     assert all(0 <= int(level) <= 4 for _, level, _ in rows)
-    counts = recorded().counts()
+    counts = load_record().counts()
     assert ("most values not met" in {name: why for name, _, why in rows}["validation"]) == (
         counts["not met"] > counts["met"]
     )

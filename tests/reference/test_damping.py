@@ -3,10 +3,11 @@
 from typing import Any
 
 import numpy as np
-from chains import chain
+import pytest
+from chains import chain, refusal
 
 import reference
-from reference.problem import Scene, State, load_scene
+from reference.problem import Scene, SceneError, State, load_scene
 
 PHASES = [(0.3, 1.1), (2.0, 0.7)]
 THREE: dict[str, Any] = {"masses": (2.0, 1.0, 0.5), "stiffness": [(150.0, 110.0), (180.0, 240.0)]}
@@ -31,6 +32,31 @@ def test_a_frictionless_chain_swings_in_its_complex_modes() -> None:
         motion = reference.trajectory(scene, PHASES[0], "small", times=times, initial=start, tolerance=1e-10)
         expected = (shape * np.exp(root * times)[:, None]).real
         np.testing.assert_allclose(motion.position[:, :, 0], expected, atol=1e-9 * np.abs(shape).max())
+
+
+@pytest.mark.parametrize(
+    ("values", "key", "rule"),
+    [
+        ({"bodies.1.damping": 0.02}, "bodies.1.damping", "superstructure.damping = 0.05 damps all links: remove one"),
+        ({"bodies.1.damping": [1.0, 2.0]}, "bodies.1.damping", "remove one of the two keys"),
+        ({"bodies": [{"mass": 1.0}]}, "superstructure.damping", "no body stands on the platform: remove this key"),
+        ({"superstructure.damping": 5.0}, "superstructure.damping", "must be finite, from 0 to 1"),
+        ({"superstructure.ratio": 5.0}, "superstructure.ratio", "unknown key; the keys here are damping"),
+    ],
+)
+def test_damping_of_the_superstructure_stands_alone(values: dict[str, Any], key: str, rule: str) -> None:
+    said = refusal(load_scene("fig3-I").with_values, {"superstructure": {"damping": 0.05}} | values, kind=SceneError)
+    assert said.key == key
+    assert rule in said.rule
+
+
+def test_damping_of_the_superstructure_follows_bars_that_the_weight_softens() -> None:
+    bars = {"count": 4, "bending_stiffness": 2.0, "length": 1.0}
+    scene = load_scene("fig3-I").with_values({"bodies.1.period": None, "bodies.1.bars": bars})
+    softened = scene.with_values({"superstructure.damping": 0.05}).softened()
+    assert softened.stiffness[0, 0] < 0.9 * scene.stiffness[0, 0]
+    np.testing.assert_allclose(softened.damping, 0.1 * np.sqrt(softened.stiffness * softened.masses[1]), rtol=1e-12)
+    assert softened.digest() != scene.softened().digest()
 
 
 def test_the_ratio_and_the_coefficients_say_the_same() -> None:

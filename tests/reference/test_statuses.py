@@ -103,6 +103,7 @@ WORDS = {  # of the advice for every outcome
     "solver failed": "loosen the tolerance or change v_reg",
     "worker died": "run the point alone",
     "time limit": "allow more, or shorten the duration",
+    "not asked": "see what the solvers reported",
     "value out of range": "negative, infinite or above 1e12",
 }
 

@@ -74,7 +74,7 @@ def section_context(report: Report) -> Mapping[str, Any]:
 
 
 def assumption_verdict(results: Results) -> str:
-    """Return the line beside the title of the section."""
+    """Return the line next to the title of the section."""
     return describe_verdict(FOUND.of(results))
 
 

@@ -63,8 +63,8 @@ class DirectionTrial:
 
 
 @dataclass(frozen=True)
-class Answer:
-    """What one task found: its trials, the directions that it tried first, and what went wrong, or ""."""
+class TaskTrials:
+    """Findings of one task: its trials, the directions that it tried first, and what went wrong, or ""."""
 
     trials: tuple[Trial, ...]
     directions: tuple[DirectionTrial, ...] = ()
@@ -75,22 +75,24 @@ class Answer:
 Arguments = tuple[Scene, tuple[Model, Model], Variation | tuple[Axis, ...] | None, float, tuple[Phases, ...], int]
 
 
-def answer_trials(task: Arguments) -> Answer:
+def answer_trials(task: Arguments) -> TaskTrials:
     """Try one variation, or sizes of some axes in their worst directions. Runs inside a worker process."""
     scene, (translational, spatial), what, tolerance, phases, sizes = task
     short = scene.with_values({"duration": min(scene.duration, DURATION), "name": scene.name})  # found again by name
     pairs = np.array(phases)
     if what is None:
-        return Answer((amplification_of(short, translational, None, tolerance, pairs),))
+        return TaskTrials((amplification_of(short, translational, None, tolerance, pairs),))
     if isinstance(what, Variation):
         checked = pairs[:1] if blind_by_symmetry(short, what) else pairs  # one pair controls what symmetry says
-        return Answer((amplification_of(short, spatial, what, tolerance, checked),))
+        return TaskTrials((amplification_of(short, spatial, what, tolerance, checked),))
     plain = amplification_of(short, translational, None, tolerance, pairs)
     directions = find_worst_directions(short, spatial, what)
     trials: list[Trial] = []
     for key, worst in ((each.key, each.variation) for each in directions if each.worst):
         trials += follow_direction(short, spatial, key, worst, plain, tolerance, pairs, sizes)
-    return Answer(tuple(trials), directions, next((each.error_message for each in trials if each.error_message), ""))
+    return TaskTrials(
+        tuple(trials), directions, next((each.error_message for each in trials if each.error_message), "")
+    )
 
 
 def amplification_of(
@@ -178,10 +180,10 @@ def change_of(trial: Trial, plain: Trial) -> tuple[Array, Array]:
     return trial.mu / base - 1.0, np.hypot(trial.error, error) / base
 
 
-def without_answer(task: Arguments, failed: TaskResult) -> Answer:
+def without_answer(task: Arguments, failed: TaskResult) -> TaskTrials:
     """Return a trial without values that says why."""
     scene, _, what, _, phases, _ = task
     tried = [trials_of(scene, key)[-1] for key in what] if isinstance(what, tuple) else [what]
     nothing, statuses = np.full((len(phases), len(scene.bodies)), np.nan), (failed.outcome.value,) * len(phases)
     lost = (Trial(each, nothing, nothing, statuses, failed.error_message, 0.0) for each in tried)
-    return Answer(tuple(lost), (), failed.error_message)
+    return TaskTrials(tuple(lost), (), failed.error_message)

@@ -12,9 +12,9 @@ from comparison.analyses.assumptions.trials import (
     CLOSE_ENOUGH,
     DURATION,
     WITHIN,
-    Answer,
     Arguments,
     DirectionTrial,
+    TaskTrials,
     Trial,
     answer_trials,
     change_of,
@@ -70,7 +70,7 @@ class AssumptionCell:
 
 @result
 class ValidityRange:
-    """Where mu of one body stays within a fraction of the translational result, on one line of variations."""
+    """Range of one line of variations in which mu of one body stays within a fraction of the translational result."""
 
     scene: Annotated[Text, "name of the scene"]
     body: Annotated[int, "number of the body; 1 is the platform"]
@@ -175,7 +175,7 @@ ASSUMPTIONS = (
     Assumption(
         "(iv)",
         "flexible bars that neither stretch nor move vertically",
-        "Bars stretch by 1e-5 rho under the weight of all bodies and bend likewise, so that every body has its own "
+        "Bars stretch by 1e-5 rho under the weight of all bodies and bend by as much, so that every body has its own "
         "vertical motion. Real clamped bars shorten by 0.6 u^2/l when they sway by u, ten times the rise of the "
         "pendulum, and become softer by the weight. The spatial model has both where a scene states the "
         "axial stiffness of its bars; else it is the weakest assumption of the study.",
@@ -205,7 +205,7 @@ ASSUMPTIONS = (
 
 @result
 class Validity:
-    """How far the paper's assumptions hold."""
+    """Evidence on the paper's assumptions."""
 
     assumptions: Annotated[tuple[Assumption, ...], "what the paper assumes"]
     reading: Annotated[str, "reading of (5.1) in which mu is compared"]
@@ -250,7 +250,7 @@ class Assumptions(MappedAnalysis[Validity]):
         """Return the cells and what they allow to say; None if no scene has both models of the engine."""
         cells: list[AssumptionCell] = []
         directions: list[DirectionTrial] = []
-        answers: list[Answer] = self.values(study, surfaces, results)
+        answers: list[TaskTrials] = self.values(study, surfaces, results)
         for (scene, _, what, *_), answer in zip(self.arguments(study), answers):
             if what is None:  # before the variations of its scene
                 (plain,) = answer.trials

@@ -16,6 +16,7 @@ from comparison.result_types import Array, Number, Phases, UncertainNumber, resu
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
+from comparison.study.costs import seconds_per_motion
 from comparison.study.models import SMALL_REGULARIZED, Model, models_of
 from comparison.study.study import Study
 from comparison.surfaces.distribution import CURVE, Fractile
@@ -74,9 +75,16 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
     """Demands at every phase pair of every model's surface."""
 
     key, stage, level = "demands", "demands", 2
-    seconds = 10.0
     function = staticmethod(compute_demands)
     without_value = staticmethod(lambda task, failed: ({}, [failed.outcome.value] * len(task[3])))
+
+    def estimate_seconds(self, study: Study) -> float:
+        """Return the rough processor time of all motions, s."""
+        return sum(
+            seconds_per_motion(scene, model) * len(study.solved(scene, model))
+            for scene in study.scenes
+            for model in _moving(study, scene)
+        )
 
     def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """Motions of about two seconds each."""
@@ -143,7 +151,7 @@ def _batches(study: Study) -> Iterator[tuple[Scene, Model, NDArray[np.intp]]]:
 
 
 def with_demands(surfaces: xr.Dataset, demands: xr.Dataset | None) -> xr.Dataset:
-    """The surfaces with those of the demands beside them, as surfaces.nc has them."""
+    """The surfaces and those of the demands, as surfaces.nc has them."""
     if demands is None:
         return surfaces
     renamed = demands.rename({name: f"{PREFIX}{name}" for name in demands.data_vars})

@@ -1,15 +1,13 @@
 """
 Demands under a suite: `phase-resonance ensemble SCENE [SCENE ...] --suite SUITE --scales LOW HIGH COUNT`.
 
-Exit codes: 0 done; 2 a wrong scene or option; others as in `run_command`.
+Exit codes: 0 done; 1 a limit of --check is not met; 2 a wrong scene or option; others as in `run_command`.
 """
 
 import argparse
-import csv
-import io
-import math
+import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -17,54 +15,65 @@ from typing import Any
 
 from rich.console import Console
 
-from comparison.analyses.ensemble.analysis import FRACTILES, SCALE, Ensemble, Points, as_rows, members_of, refuse_unfit
-from comparison.analyses.ensemble.feature import (
-    agreement_sentence,
-    demand_rows,
-    draw_ensemble,
-    heading,
-    isolator_sentence,
-    largest_differences,
-    target_sentence,
+from comparison.analyses.ensemble.analysis import STAGE, Ensemble, Points
+from comparison.analyses.ensemble.build import build_result
+from comparison.analyses.ensemble.governing import ALL, MOST, Asked, Choice, choose_motions, expected_count, read_engine
+from comparison.analyses.ensemble.limits import (
+    NO_LIMITS,
+    WITHIN,
+    DemandCheck,
+    check_limits,
+    compare_with_stored,
+    limits_of,
+    verdicts_of,
+    word_check,
+    word_checks,
 )
-from comparison.analyses.ensemble.result import PICTURE, STORED, EnsembleResult
+from comparison.analyses.ensemble.members import SCALE, Member, group_by, members_of, refuse_unfit, with_suite
+from comparison.analyses.ensemble.page import page_of
+from comparison.analyses.ensemble.result import STORED, EnsembleResult, Target
+from comparison.analyses.ensemble.table import table_text
 from comparison.analyses.ensemble.target import match_spectrum
+from comparison.analyses.ensemble.terminal import print_engine, print_equations
 from comparison.cli.arguments import (
     CommandParser,
     command,
     number_of_jobs,
+    read_bounds,
     read_number,
     read_whole_number,
     report_write_errors,
     write_and_show,
 )
 from comparison.cli.computing import compute_tasks, run_facts
-from comparison.cli.terminal import new_table, print_implausible_values, print_records
+from comparison.cli.start import start_time
+from comparison.cli.terminal import print_buildings, print_records
+from comparison.report.junit import JUnitCase, JUnitSuite, junit_text
 from comparison.runner.attempts import attempt
-from comparison.runner.output import destination, files_written_by, publish, refuse_foreign_files
+from comparison.runner.output import destination, publish, refuse_foreign_files, refuse_other_page
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import Display, wide_console
+from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
-from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL
-from comparison.wording import percent
+from comparison.study.costs import STARTING, WRITING
+from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, has_spatial_data, why_not_spatial
+from comparison.verdicts import MET
 from reference.problem import Family, SceneError
-from reference.problem.families import family_of
+from reference.problem.families import family_of, with_bounds
 from reference.problem.scene_file import scene_tables, scene_text
 from reference.records.motion_lists import FILE as MOTIONS
-from reference.records.motion_lists import motion_list_text
+from reference.records.motion_lists import Motion, motion_list_text
 from reference.records.suites import list_motions
 from reference.support.files import write_new
 
 COMMAND = "comparison.ensemble"
 TABLE = "ensemble.csv"
-FORMULA = ("=", "+", "-", "@")  # begin formulas in a spreadsheet, behind white space, too
-CONTROLS = ("\t", "\r", "\n")  # begin no plain cell
-FILES = (STORED.name, TABLE, PICTURE, "ensemble.pdf")
+PAGE = "index.html"
+CHECKED = "junit.xml"
+FILES = (STORED.name, TABLE, PAGE, CHECKED)
 MODELS = {EXACT.trajectory, TRANSLATIONAL.trajectory}  # what the workers ask
-SUBSET = 2  # motions of every scene that the engine computes, unless the command says otherwise
 ENGINES = {model.key: model for model in (TRANSLATIONAL, SPATIAL)}
 MAX_SCALES = 100
-NAMED = 12  # motions that are named one by one
 
 
 @command
@@ -72,52 +81,172 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     """Compute the ensemble that the command line names, and write what it shows; the exit code."""
     options = _parser().parse_args(argv)
     number_of_jobs(options)  # refused before anything else is looked at
-    subset = None if options.engine == "all" else read_whole_number("--engine", options.engine, 0, 1000)
-    members, model = members_of([family_of_options(options, scene) for scene in options.scenes]), ENGINES[options.model]
+    members = members_of([family_of_options(options, scene) for scene in options.scenes])
+    asked = read_engine(options.engine, members)
     target = None
     if options.target is not None:
         members, target = match_spectrum(members, options.target, options.periods)
     elif options.periods is not None:
         raise SceneError("command line", "--periods", " ".join(options.periods), "needs --target")
-    if subset != 0:
-        refuse_unfit(members, model)
+    if options.model is not None and asked != 0:
+        refuse_unfit(members, ENGINES[options.model])
+    check = demand_check(options, members)
     out = destination(options.out)
+    refuse_other_page(out, COMMAND)
     refuse_foreign_files(out, FILES)
-    console, ensemble = wide_console(), Ensemble(members, subset, model, target=target)
+    console, ensemble = wide_console(), Ensemble(members, spatial=options.model != TRANSLATIONAL.key)
     if options.suite is not None and ":" not in options.suite:
         print_suite(console, options)
-    print_records(console, [member.scene for member in members])
-    print_implausible_values(console, [member.scene for member in members])
-    tasks, engine = ensemble.tasks(), len(ensemble.chosen())
-    seconds = sum(task.seconds for task in tasks)
-    console.print(f"{len(members)} motions by the equations, {engine} by the engine: {seconds:.0f} s of compute.")
+    print_records(console, [(member.motion, member.scene) for member in members], short=not options.plan)
+    print_buildings(console, [(member.structure, member.scene) for member in members])
+    tasks = ensemble.equation_tasks()
+    first = expected_choices(members, asked)
+    later = sum(task.seconds for task in ensemble.engine_tasks([Choice(member, ()) for member in first]))
+    seconds = sum(task.seconds for task in tasks) + later
+    count = f"{len(members)} motions by the equations, about {len(first)} by the engine"
+    jobs = number_of_jobs(options)
+    wall = f"about {STARTING + seconds / jobs + WRITING:.0f} s with {jobs} worker{'' if jobs == 1 else 's'}"
+    console.print(f"{count}: {wall}.")
+    if ensemble.spatial and asked != 0:
+        for line in dict.fromkeys(f"{m.structure}: {why}" for m in first if (why := why_not_spatial(m.scene))):
+            console.print(f"{line}.", soft_wrap=True, markup=False)
     if options.plan:
         lengths = [member.scene.duration for member in members]
         console.print(f"The motions last {min(lengths):g} to {max(lengths):g} s. Nothing was computed.")
         return 0
-    begin, equations = time.monotonic(), replace(ensemble, subset=0)
+    begin = start_time().wall
+    write = partial(write_ensemble, console, options, argv, begin, ensemble, target, listed_motions(options), check)
 
-    def show(part: Ensemble, results: TaskResults) -> None:
-        points, cost = part.collect(None, None, results), results.parts[part.stage].seconds
-        run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
-        result = part.result(points, run)
-        files = {STORED.name: STORED.as_json(result), TABLE: table_text(points).encode()}
-        written = write_and_show(
-            out, partial(publish, out, files, COMMAND), partial(print_ensemble, console, result, cost)
+    def then(results: TaskResults, display: Display) -> Sequence[Task]:
+        chosen = [] if asked == 0 else choose_motions(ensemble.points(results).equations, asked)
+        further = results.missing(ensemble.engine_tasks(chosen))
+        if further:
+            write(results, ensemble.points(results), print_equations)
+            display.extend(sum(task.seconds for task in further))
+            turning = ensemble.spatial and any(has_spatial_data(each.member.scene) for each in chosen)
+            engine = SPATIAL if turning else TRANSLATIONAL
+            count = f"{len(chosen)} of {len(members)} motions"
+            console.print(f"Next: {count} by the {engine.title}, about {display.seconds_left:.0f} s.")
+        shown.append((chosen, bool(further)))
+        return further
+
+    shown: list[tuple[list[Choice], bool]] = []
+    results = compute_tasks("ensemble", options, argv, tasks, MODELS, console, executor, then)
+    ((chosen, said),) = shown
+    if not said:
+        written = write(results, ensemble.points(results, chosen), print_equations)
+    if chosen:
+        written = write(results, ensemble.points(results, chosen), print_engine)
+    console.print(f"The ensemble took {time.monotonic() - begin:.0f} s.")
+    return print_checks(check(written), asked=options.check or options.against is not None)
+
+
+def demand_check(
+    options: argparse.Namespace, members: Sequence[Member]
+) -> Callable[[EnsembleResult], list[DemandCheck]]:
+    """Return what checks the demands of the ensemble that the command line asks for. Raises SceneError."""
+    limits = limits_of({member.structure: member.scene for member in members})
+    within = read_number("--within", options.within, WITHIN.lowest, WITHIN.highest, "a share of the stored demand")
+    try:
+        stored = None if options.against is None else STORED.load(Path(options.against))
+    except ValueError as error:
+        raise SceneError("command line", "--against", options.against, str(error)) from None
+    if options.against is not None and stored is None:
+        rule = f"has no {STORED.name}: give a folder that phase-resonance ensemble wrote"
+        raise SceneError("command line", "--against", options.against, rule)
+
+    def check(result: EnsembleResult) -> list[DemandCheck]:
+        compared = [] if stored is None else compare_with_stored(result, stored, within)
+        return [*check_limits(result, limits), *compared]
+
+    return check
+
+
+def print_checks(checks: Sequence[DemandCheck], asked: bool) -> int:
+    """Say on standard error, as the last lines, which demands are not met; the exit code."""
+    sys.stdout.flush()  # in a file that takes both outputs, too, these lines are the last
+    lines = word_checks(checks)
+    if asked:
+        for line in lines or [f"--check: {NO_LIMITS}"]:
+            print(line, file=sys.stderr)
+    return int(asked and any(check.verdict != MET for check in checks))
+
+
+def write_ensemble(
+    console: Console,
+    options: argparse.Namespace,
+    argv: Sequence[str],
+    begin: float,
+    ensemble: Ensemble,
+    target: Target | None,
+    listed: Mapping[str, Motion],
+    check: Callable[[EnsembleResult], list[DemandCheck]],
+    results: TaskResults,
+    points: Points,
+    show: Callable[[Console, EnsembleResult], None],
+) -> EnsembleResult:
+    """Write the files of the ensemble, show on the terminal what they hold, write the page; return the result."""
+    cost = results.parts[STAGE].seconds
+    run = {**run_facts("ensemble", options, argv, begin), "compute_seconds": round(cost, 1)}
+    result = build_result(points, run, ensemble.tolerance, target, listed)
+    checks = check(result)
+    result = replace(result, limits=verdicts_of(checks))
+    files = {STORED.name: STORED.as_json(result)}
+    files |= {CHECKED: junit_of(checks, run)} if checks else {}
+    if (table := attempt(TABLE, lambda: table_text(points, result).encode())) is not None:
+        files[TABLE] = table
+    written = write_and_show(
+        options.out, partial(publish, destination(options.out), files, COMMAND), partial(show, console, result)
+    )
+    page = attempt(PAGE, lambda: page_of(result).encode())
+    with report_write_errors(options.out):
+        written += publish(destination(options.out), {} if page is None else {PAGE: page}, COMMAND)
+    console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
+    return result
+
+
+def junit_of(checks: Sequence[DemandCheck], run: Mapping[str, Any]) -> bytes:
+    """junit.xml of the checks of demands, a suite for every bound; what is not met, or not compared, is a failure."""
+    suites = [
+        JUnitSuite(
+            bound,
+            run["compute_seconds"],
+            run["began"],
+            [
+                JUnitCase(f"{each.key}: {each.what}", [] if each.verdict == MET else [word_check(each)])
+                for each in checks
+                if each.bound == bound
+            ],
         )
-        with report_write_errors(out):
-            draw = partial(files_written_by, lambda folder: draw_ensemble(folder / PICTURE, result))
-            written += publish(out, attempt("picture", draw) or {}, COMMAND)
-        console.print(f"Ensemble: {', '.join(map(str, written))}", soft_wrap=True)
+        for bound in dict.fromkeys(each.bound for each in checks)
+    ]
+    return junit_text(suites).encode()
 
-    def show_equations(results: TaskResults, display: Display) -> None:
-        show(equations, results)
-        count = f"{engine} of {len(members)} motions"
-        console.print(f"Next: {count} by the {model.title}, about {display.left:.0f} s; then all tables again.")
 
-    first = equations.tasks(), show_equations
-    show(ensemble, compute_tasks("ensemble", options, argv, tasks, MODELS, console, executor, *first))
-    return 0
+def expected_choices(members: Sequence[Member], asked: Asked) -> list[Member]:
+    """Members in place of those that the engine will compute, whose cost is alike."""
+    top = max(member.scale for member in members)
+    if asked == MOST:
+        return list(members)
+    chosen = []
+    for own in group_by([member for member in members if member.scale == top], "structure").values():
+        chosen += own[: expected_count(asked, len(own))]
+    return chosen
+
+
+def listed_motions(options: argparse.Namespace) -> dict[str, Motion]:
+    """Motions of the folders of suites by name: of `--suite`, or of the scene files."""
+    suites = [(Path(), options.suite)]
+    if options.suite is None:
+        loadings = [(source, scene_tables(scene_text(source), source).get("excitation")) for source in options.scenes]
+        records = [(Path(source).parent, loading.get("record")) for source, loading in loadings if loading]
+        suites = [(folder, record.get("suite")) for folder, record in records if isinstance(record, dict)]
+    found = [
+        list_motions(suite, folder, options.components).motions
+        for folder, suite in suites
+        if isinstance(suite, str) and ":" not in suite
+    ]
+    return {motion.name: motion for motions in found for motion in motions}
 
 
 def print_suite(console: Console, options: argparse.Namespace) -> None:
@@ -135,88 +264,15 @@ def family_of_options(options: argparse.Namespace, source: str) -> Family:
     data = scene_tables(scene_text(source), source)
     loading: Any = data.get("excitation")
     if options.suite is not None:
-        name = options.suite if ":" in options.suite else str(Path(options.suite).absolute())
-        record: dict[str, Any] = {"suite": name, "motion": "all"} | ({"normalized": True} if options.normalized else {})
-        record |= {} if options.components is None else {"components": options.components}
-        scale = loading.get("scale", 1.0) if isinstance(loading, dict) else 1.0
-        data = {key: value for key, value in data.items() if key != "duration"}  # as long as each motion
-        detrend = {"detrend": loading["detrend"]} if isinstance(loading, dict) and "detrend" in loading else {}
-        loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}, **detrend}
-        data.setdefault("combine", "product")
+        data = with_suite(data, options.suite, options.components, options.normalized)
+        loading = data["excitation"]
     if options.scales is not None:
         low, high = (read_number("--scales", text, 1e-6, 1e6, "LOW and HIGH") for text in options.scales[:2])
         count = read_whole_number("--scales", options.scales[2], 1, MAX_SCALES)
         asked: Any = {"range": [low, high], "steps": count} if count > 1 else {"values": [low]}
         loading = {**loading, "scale": asked} if isinstance(loading, dict) else loading
     data["excitation"] = loading
-    return family_of(data, source)
-
-
-def table_text(points: Points) -> str:
-    """ensemble.csv: a row for every motion, scale and model; what begins like a formula stands behind an apostrophe."""
-
-    def cell(value: object) -> object:
-        formula = isinstance(value, str) and (value[:1] in CONTROLS or value.lstrip().startswith(FORMULA))
-        return f"'{value}" if formula else value
-
-    rows, stream = as_rows(points), io.StringIO()
-    writer = csv.DictWriter(stream, list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows({key: cell(value) for key, value in row.items()} for row in rows)
-    return stream.getvalue()
-
-
-def print_ensemble(console: Console, result: EnsembleResult, seconds: float) -> None:
-    """The demands at the largest scale, outcomes, and how far the engine is."""
-    top = max(result.scales)
-    if result.target:
-        console.print(target_sentence(result.target), soft_wrap=True, markup=False)
-        table = new_table("motion", "factor")
-        for one in result.target.motions:
-            table.add_row(one.motion, f"{one.factor:.4g}")
-        console.print(table)
-    for structure in result.structures:
-        own = demand_rows(result, structure, top)
-        console.print(f"{heading(result, structure, top)}:", soft_wrap=True, markup=False)
-        shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
-        table = new_table("quantity", "unit", "mean", *shares, "largest", "motions")
-        for row in own:
-            mean, *others, _ = row["cells"]
-            values = [cell.partition(" ±")[0] for cell in others]
-            table.add_row(row["name"], row["unit"], mean, *values, str(row["stripe"].answered))
-        console.print(table)
-        for line in (*missing_sentences(own, result, structure.name), isolator_sentence(structure)):
-            if line:
-                console.print(line, soft_wrap=True, markup=False)
-    ended = ", ".join(f"{count} {name}" for name, count in result.outcomes.items())
-    console.print(f"Outcomes by the equations: {ended}. {seconds:.0f} s of compute in all.", soft_wrap=True)
-    if result.engine.points:
-        table = new_table("quantity", "largest difference", "like for like", "errors")
-        for name, *sizes in largest_differences(result):
-            table.add_row(name, *(percent(math.nan if size is None else size) for size in sizes))
-        console.print(table)
-        console.print(
-            "Difference: from the equations above. Like for like: from the equations with the engine's friction law. "
-            "Errors: those of both codes; that of the residual displacement includes creep.",
-            soft_wrap=True,
-        )
-        console.print(agreement_sentence(result), soft_wrap=True, markup=False)
-
-
-def missing_sentences(rows: Sequence[dict[str, Any]], result: EnsembleResult, structure: str) -> list[str]:
-    """Return which motions of a structure lack which demands at the largest scale, and why."""
-    lacking: dict[tuple[str, int], list[str]] = {}
-    for row in rows:
-        for reason in row["stripe"].reasons.items():
-            lacking.setdefault(reason, []).append(row["name"])
-    ended = [curve.motion for curve in result.curves_of(structure, "displacement")[0] if curve.values[-1] is None]
-    lines = []
-    for (reason, count), names in lacking.items():
-        every = len(names) == len(rows)
-        which = f" ({', '.join(ended)})" if every and count == len(ended) <= NAMED else ""
-        what = "every demand" if every else ", ".join(names)
-        lines.append(f"Without a value for {count} {'motion' if count == 1 else 'motions'}{which}: {what} ({reason}).")
-    return lines
+    return family_of(with_bounds(data, read_bounds(options)), source)
 
 
 def _parser() -> CommandParser:
@@ -251,17 +307,33 @@ def _parser() -> CommandParser:
         metavar=("A", "B"),
         help="with --target: periods between which the spectra are compared, s (default: all of the file)",
     )
+    parser.add_bounds()
     parser.add_argument("--scales", nargs=3, metavar=("LOW", "HIGH", "COUNT"), help="scale factors of every motion")
     parser.add_argument(
         "--engine",
-        default=str(SUBSET),
-        metavar="N",
-        help="motions of every scene by the engine, or all (default %(default)s)",
+        nargs="+",
+        metavar="MOTION",
+        help=f"motions by the engine: {ALL}, their number, or their names (default: those that govern by the "
+        "equations, and the one nearest the median)",
     )
     parser.add_argument(
-        "--model", default=TRANSLATIONAL.key, choices=list(ENGINES), help="of the engine (default %(default)s)"
+        "--model",
+        choices=list(ENGINES),
+        help="most complete model of the engine (default: spatial where the scene states what it needs)",
     )
     parser.add_argument("--plan", action="store_true", help="print what would be computed and its cost; run nothing")
-    parser.add_out(f"where {STORED.name}, {TABLE} and {PICTURE} go; the next report there shows them")
+    parser.add_argument(
+        "--check", action="store_true", help="exit 1 if a limit of [acceptance.demands] is not met, or not compared"
+    )
+    parser.add_argument(
+        "--against", metavar="DIR", help="exit 1 if a demand is not that of the ensemble that DIR has from earlier"
+    )
+    parser.add_argument(
+        "--within",
+        default="0.01",
+        metavar="X",
+        help="with --against: share of a demand by which it may differ besides its errors (default %(default)s)",
+    )
+    parser.add_out(f"where {', '.join(FILES)} go", default="ensemble")
     parser.add_computing()
     return parser

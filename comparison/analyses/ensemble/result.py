@@ -1,19 +1,20 @@
-"""The file in which an ensemble is kept beside a report: fractiles, the curve of every motion, the engine's subset."""
+"""The file of an ensemble, summary.json: building, motions, fractiles, the curve of every motion, supports."""
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 from typing import Annotated, Any, Literal
 
+from comparison.analyses.ensemble.quantities import DEMANDS
 from comparison.json_file import StoredFile
 from comparison.result_types import require, require_size, result
 from comparison.study.models import EXACT
-from reference.measures.peak_demands import QUANTITIES
+from comparison.verdicts import Verdict
 from reference.problem.scene import MAX_BODIES
 
 FRACTILES = 3  # 16, 50 and 84 %
-FILE, PICTURE = "ensemble.json", "ensemble.png"
-SCHEMA: Literal["phase-resonance/ensemble/2"] = "phase-resonance/ensemble/2"
+FILE = "summary.json"
+SCHEMA: Literal["phase-resonance/ensemble/3"] = "phase-resonance/ensemble/3"
 
 
 @result
@@ -25,14 +26,14 @@ class Statistic:
 
 
 @result
-class Fractile(Statistic):
+class DemandFractile(Statistic):
     """A fractile of a demand over the motions."""
 
     share: Annotated[float, "part of the motions below it"] = 0.5
 
 
 @result
-class Isolator:
+class LinearIsolator:
     """The linear isolator that design codes put in the place of the bearing; see `reference.effective_isolator`."""
 
     displacement: float
@@ -41,6 +42,24 @@ class Isolator:
     damping: Annotated[float, "effective damping ratio at that displacement"]
     restoring: Annotated[float, "re-centering ratio: restoring force over friction force at that displacement"]
     statistic: Annotated[str, "mean, or median where a motion without a value leaves no mean"] = "mean"
+    friction: Annotated[float, "coefficient at high speed, at which damping and period are taken"] = 0.0
+
+
+@result
+class BuildingRead:
+    """The building as it was read; axis 0 is x, 1 is y."""
+
+    supports: Annotated[int | None, "number of supports; null where the scene states none"]
+    load_per_support: Annotated[float | None, "weight over their number, N: all carry the same"]
+    isolated_period: Annotated[Sequence[Sequence[float | None]], "periods on the isolator without friction, s"]
+    fixed_base_period: Annotated[Sequence[Sequence[float]], "periods of the bodies above a platform that is held, s"]
+    modal_damping: Annotated[Sequence[Sequence[float]], "damping ratio of each of these modes, from the links"]
+    radius: Annotated[float | None, "effective radius, m; null of a flat slider"]
+    friction: Annotated[Sequence[float], "coefficients at rest and at high speed, under the weight; none if lubricated"]
+    travel: Annotated[float | None, "m; null where the scene states none"]
+    heights: Sequence[float] | None
+    """heights of the centers of mass above the sliding contact, m; null unless the scene states all"""
+    floors: Annotated[Sequence[str], "names of the bodies, empty where the scene gives none"] = ()
 
 
 @result
@@ -51,8 +70,10 @@ class Structure:
     title: Annotated[str, "title of its scenes"]
     bodies: Annotated[int, "number of bodies"]
     weight: Annotated[float, "N"]
-    isolator: Isolator | None = None
+    isolator: LinearIsolator | None = None
     """null without dry friction, on a plane, and where neither mean nor median of the displacement is known"""
+    building: BuildingRead | None = None
+    """null in a file of which it is not known"""
 
     def __post_init__(self) -> None:
         require(1 <= self.bodies <= MAX_BODIES, f"bodies must be from 1 to {MAX_BODIES}, not {self.bodies}")
@@ -87,7 +108,7 @@ class Demand:
     body: Annotated[int | None, "from 1, counted from the platform; null for the isolator"]
 
     def __post_init__(self) -> None:
-        require(self.quantity in QUANTITIES, f"quantity must be a demand, not {self.quantity[:40]!r}")
+        require(self.quantity in DEMANDS, f"quantity must be a demand, not {self.quantity[:40]!r}")
 
 
 @result
@@ -99,11 +120,13 @@ class Stripe(Demand):
     scale: Annotated[float, "factor of the motions"]
     answered: Annotated[int, "motions that have the demand"]
     mean: Annotated[Statistic, "mean over the motions"]
-    fractiles: Annotated[Sequence[Fractile], "from small to large shares"]
+    fractiles: Annotated[Sequence[DemandFractile], "from small to large shares"]
     largest: Annotated[Statistic, "largest over the motions"]
     smallest: Annotated[Statistic, "smallest over the motions"]
     reasons: Mapping[str, int] = field(default_factory=dict)
     """why the other motions do not have it, and how many each"""
+    largest_motion: Annotated[str, "motion of the largest value"] = ""
+    smallest_motion: Annotated[str, "motion of the smallest value"] = ""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -116,7 +139,7 @@ class Stripe(Demand):
 
 
 @result
-class Curve(Demand):
+class DemandCurve(Demand):
     """A demand of one motion over its scale factors."""
 
     model: Annotated[str, "key of the model"]
@@ -132,24 +155,51 @@ class Curve(Demand):
 
 
 @result
-class Difference(Demand):
-    """How far the engine is from the equations in one demand."""
+class SupportExtremes:
+    """Extremes of one support over the motions at the largest scale, by one model."""
 
-    largest: float | None
-    """relative difference from the equations of the ensemble; null without a common point"""
-    like_for_like: Annotated[float | None, "relative difference from the equations with the engine's friction law"]
-    errors: Annotated[float | None, "the two error estimates together, relative"]
-    points: Annotated[int, "motions that both sides have"]
+    structure: Annotated[str, "name"]
+    support: Annotated[int, "from 1"]
+    x: Annotated[float, "place, m"]
+    y: Annotated[float, "place, m"]
+    model: Annotated[str, "key of the model; of the equations by statics"]
+    motions: Annotated[int, "motions that have it"]
+    smallest: Annotated[Statistic, "smallest force, N"]
+    smallest_motion: Annotated[str, "its motion"]
+    largest: Annotated[Statistic, "largest force, N"]
+    largest_motion: Annotated[str, "its motion"]
+    uplift: Annotated[Statistic, "largest gap, m; null where the model has no single supports"]
+
+
+@result
+class EngineMotion:
+    """A motion that the engine computed."""
+
+    structure: Annotated[str, "name"]
+    motion: Annotated[str, "name"]
+    scale: Annotated[float, "factor of the motion"]
+    reasons: Annotated[Sequence[str], "why it was chosen"]
+    statuses: Annotated[Mapping[str, str], "how it ended, by key of the model"]
 
 
 @result
 class Engine:
-    """The engine at its subset."""
+    """The engine and its motions; `curves` have their demands by every model."""
 
-    model: Annotated[str, "key of the model"]
-    points: Annotated[Sequence[Mapping[str, str]], "scene, motion and status of every motion"]
-    differences: Annotated[Sequence[Difference], "one for each demand"]
-    tolerance: Annotated[float, "relative error asked of its largest accelerations"] = 1e-3
+    model: Annotated[str, "key of the model that gives the engine's demands"]
+    motions: Annotated[Sequence[EngineMotion], "by structure"]
+    tolerance: Annotated[float, "relative error asked of its largest accelerations"] = 1e-2
+
+
+@result
+class GroundMotion:
+    """A motion of the suite at scale 1."""
+
+    motion: Annotated[str, "name"]
+    duration: Annotated[float, "s"]
+    peak: Annotated[float, "largest horizontal acceleration with the factor, resultant of x and y, m/s^2"]
+    factor: Annotated[float, "factor of the motion as it was recorded"] = 1.0
+    magnitude: Annotated[float | None, "of the earthquake; null where it is not known"] = None
 
 
 @result
@@ -182,21 +232,34 @@ class Target:
 
 
 @result
+class LimitVerdict:
+    """The verdict on a limit, or on a demand against that of a stored ensemble."""
+
+    key: Annotated[str, "of the limit as in the scene file, or of the demand"]
+    bound: Annotated[str, "what tells the structure apart"]
+    verdict: Annotated[Verdict, "met, not met or not compared"]
+    sentence: Annotated[str, "demand, motion, both numbers, and by how much it is not met"]
+
+
+@result
 class EnsembleResult:
     """Content of the file."""
 
-    schema: Annotated[Literal["phase-resonance/ensemble/2"], "what the file is"]
+    schema: Annotated[Literal["phase-resonance/ensemble/3"], "what the file is"]
     structures: Annotated[Sequence[Structure], "what the statistics are of"]
     scales: Annotated[Sequence[float], "scale factors"]
     motions: Annotated[int, "number of motions"]
     outcomes: Annotated[Mapping[str, int], "motions by the equations with every status"]
     stripes: Sequence[Stripe]
-    """by structure, demand and scale; by the equations, then by the engine over its subset"""
-    curves: Annotated[Sequence[Curve], "by structure, demand, model and motion"]
+    """by structure, demand and scale; by the equations, then by every model that computed every motion"""
+    curves: Annotated[Sequence[DemandCurve], "by structure, demand, model and motion"]
     spectra: Annotated[Sequence[Spectrum], "by structure and body"]
-    engine: Annotated[Engine, "the engine's subset"]
+    engine: Annotated[Engine, "the engine's motions"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
     target: Annotated[Target | None, "spectrum to which the motions are scaled; null without --target"] = None
+    suite: Annotated[Sequence[GroundMotion], "the motions in their order"] = ()
+    supports: Annotated[Sequence[SupportExtremes], "by model, structure and support"] = ()
+    limits: Annotated[Sequence[LimitVerdict], "by structure; empty without [acceptance.demands] and --against"] = ()
 
     def __post_init__(self) -> None:
         require(len(self.structures) > 0, "structures must be at least one")
@@ -204,7 +267,7 @@ class EnsembleResult:
         require(self.motions >= 1, f"motions must be at least 1, not {self.motions}")
         bodies = {each.name: each.bodies for each in self.structures}
         require(len(bodies) == len(self.structures), "structures must have different names")
-        named: list[Demand | Spectrum] = [*self.stripes, *self.curves, *self.spectra, *self.engine.differences]
+        named: list[Demand | Spectrum] = [*self.stripes, *self.curves, *self.spectra]
         for each in named:
             name = each.structure[:40]
             require(each.structure in bodies, f"structure {name!r} is none of the structures")
@@ -213,20 +276,40 @@ class EnsembleResult:
         for stripe in self.stripes:
             require(stripe.scale in self.scales, f"scale {stripe.scale:g} of a stripe is none of the scales")
 
+    @property
+    def top(self) -> float:
+        """The largest scale, at which the demands are shown."""
+        return max(self.scales)
+
+    def stripe(self, structure: str, quantity: str, body: int | None = None, model: str = EXACT.key) -> Stripe | None:
+        """Return one demand at the largest scale; None where it was not computed."""
+        asked = structure, quantity, body, model, self.top
+        return next((s for s in self.stripes if (s.structure, s.quantity, s.body, s.model, s.scale) == asked), None)
+
     def stripes_of(self, structure: str, quantity: str) -> list[Stripe]:
         """Return the stripes of one demand of the isolator over the scales, by the equations, or else by the engine."""
         own = [each for each in self.stripes if (each.structure, each.quantity) == (structure, quantity)]
         return [each for each in own if each.model == EXACT.key] or own
 
-    def profile(self, structure: str, quantity: str) -> list[Stripe]:
-        """Return the profile of one demand of every body at the largest scale, by the equations."""
-        asked = structure, quantity, EXACT.key, max(self.scales)
+    def profile(self, structure: str, quantity: str, scale: float | None = None) -> list[Stripe]:
+        """Return one demand of every body by the equations, at the largest scale or at another."""
+        asked = structure, quantity, EXACT.key, self.top if scale is None else scale
         return [each for each in self.stripes if (each.structure, each.quantity, each.model, each.scale) == asked]
 
-    def curves_of(self, structure: str, quantity: str) -> tuple[list[Curve], list[Curve]]:
-        """Return the curves of one demand of the isolator, by the equations and by the engine."""
-        own = [each for each in self.curves if (each.structure, each.quantity) == (structure, quantity)]
-        return [each for each in own if each.model == EXACT.key], [each for each in own if each.model != EXACT.key]
+    def curves_of(self, structure: str, quantity: str, model: str = EXACT.key) -> list[DemandCurve]:
+        """Return the curves of one demand of the isolator by one model."""
+        asked = structure, quantity, model
+        return [each for each in self.curves if (each.structure, each.quantity, each.model) == asked]
+
+    def values_at_top(self, structure: str, quantity: str, body: int | None, model: str) -> dict[str, Statistic]:
+        """Return one demand at the largest scale by motion, by one model."""
+        asked = structure, quantity, body, model
+        found = {}
+        for curve in self.curves:
+            if (curve.structure, curve.quantity, curve.body, curve.model) == asked and self.top in curve.scales:
+                at = list(curve.scales).index(self.top)
+                found[curve.motion] = Statistic(curve.values[at], curve.errors[at])
+        return found
 
 
 STORED = StoredFile(FILE, EnsembleResult, "an ensemble", "phase-resonance ensemble")

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from comparison.analyses.ensemble.analysis import SCALE, Member
+from comparison.analyses.ensemble.members import SCALE, Member
 from comparison.analyses.ensemble.result import MatchedMotion, Target
 from comparison.cli.arguments import read_number
 from comparison.result_types import Array

@@ -1,1 +1,1 @@
-"""Measured peaks beside the models."""
+"""Measured peaks compared with the models."""

@@ -1,5 +1,5 @@
 """
-Measured peaks of the scenes beside what every model computes at the phases of the test, with both errors.
+Measured peaks of the scenes, compared with what every model computes at the phases of the test, with both errors.
 
 A measured peak is met where |D| <= u + e: D is the computed less the measured value, u the uncertainty of the
 measurement, e the error of the computation. That of the input (motion, masses, stiffness, friction) is not in either.
@@ -62,7 +62,7 @@ class ComputedPeak:
 
 @result
 class MeasuredPeak:
-    """A peak that an experiment measured, beside the models."""
+    """A peak that an experiment measured, compared with the models."""
 
     scene: Annotated[Text, "name of the scene"]
     quantity: Annotated[str, "mu, or a key in `demands` with the unit stated there"]
@@ -162,10 +162,10 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
         for (scene, model, _, phases, asked), peaks in zip(self.arguments(study), values, strict=True):
             known.setdefault((scene.name, phases), []).append((model.key, dict(zip(asked, peaks, strict=True))))
         scenes = [(scene, peak) for scene in study.scenes for peak in scene.measured or ()]
-        return [_beside(scene, peak, known[scene.name, phases_of(peak)]) for scene, peak in scenes] or None
+        return [_compare_peak(scene, peak, known[scene.name, phases_of(peak)]) for scene, peak in scenes] or None
 
 
-def _beside(scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[Asked, Peak]]]) -> MeasuredPeak:
+def _compare_peak(scene: Scene, peak: Measured, models: Sequence[tuple[str, Mapping[Asked, Peak]]]) -> MeasuredPeak:
     computed, asked = [], (peak.quantity, peak.body or 0)
     for model, known in models:
         if asked in known:

@@ -13,6 +13,7 @@ from comparison.study.batches import import_function
 from comparison.study.models import Model
 from comparison.study.study import Study
 from comparison.surfaces.model_difference import difference_of
+from comparison.wording import exception_line
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
 from reference.measures.demands import ANSWERED
 from reference.problem import Outcome, Scene, Trajectory
@@ -31,16 +32,16 @@ def swing(values: Array) -> Array:
     return np.where(scale > 0.0, scale, 1.0)
 
 
-def decimate(time: Array, values: Array, peaks: NDArray[np.intp], share: float = SHARE) -> NDArray[np.intp]:
+def decimate(time: Array, values: Array, peaks: NDArray[np.intp]) -> NDArray[np.intp]:
     """
     Indices to keep of `values` (T, C) at `time` (T,): both ends, `peaks`, and as many more as it takes for straight
-    lines between them to miss no value by more than `share` of its component's `swing`.
+    lines between them to miss no value by more than SHARE of its component's `swing`.
     """
     if len(time) < 3:
         return np.arange(len(time))
     kept = np.zeros(len(time), bool)
     kept[[0, len(time) - 1]] = kept[peaks] = True
-    _keep_corners(np.ascontiguousarray(time), np.ascontiguousarray(values / swing(values)), share, kept)
+    _keep_corners(np.ascontiguousarray(time), np.ascontiguousarray(values / swing(values)), SHARE, kept)
     return np.flatnonzero(kept)
 
 
@@ -91,7 +92,7 @@ class StoredMotion:
     arrays below are empty in a motion that lacks them. isolator_force: (T, 2), N, horizontal force of the bodies on the
     isolator. support_force: (T, K), N, normal force of every support of the spatial model. yaw: (T,), rad, turn of the
     platform about the vertical, of the spatial model. demands: of the motion before it was decimated; None if it was
-    not computed. spectra: likewise.
+    not computed. spectra: floor spectra of the motion, or None.
     """
 
     place: Place
@@ -156,14 +157,15 @@ def models_to_show(study: Study, scene: Scene) -> list[Model]:
 def compute_motion(task: Arguments) -> StoredMotion:
     """The motion of one task, decimated; what goes wrong is said in `error_message`."""
     scene, model, tolerance, place, phase = task
-    settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
-        motion: Trajectory = import_function(model.trajectory)(scene, phase, tolerance=tolerance, **settings)
+        motion: Trajectory = import_function(model.trajectory)(
+            scene, phase, tolerance=tolerance, **model.motion_settings
+        )
         if len(motion.time) == 0:  # refused before its first step
             return replace(_nothing(place, model.key, Outcome(motion.status), ""), demands=demands(motion))
         return _store_motion(place, model, motion)
     except Exception as error:
-        return _nothing(place, model.key, Outcome.SOLVER_FAILED, f"{type(error).__name__}: {error}")
+        return _nothing(place, model.key, Outcome.SOLVER_FAILED, exception_line(error))
 
 
 def _store_motion(place: Place, model: Model, motion: Trajectory) -> StoredMotion:

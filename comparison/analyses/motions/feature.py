@@ -11,20 +11,19 @@ from comparison.analyses.motions.analysis import Motions, StoredMotion
 from comparison.analyses.motions.page_data import motion_data, motion_numbers, significant_digits
 from comparison.report.feature import Feature, Findings, SceneField
 from comparison.result_types import Number, Part, Phases, Text, UncertainNumber
-from reference.measures import Demands
-from reference.measures import FloorSpectra as SpectraOfMotion
+from reference.measures import Demands, FloorSpectra
 from reference.measures.peak_demands import PER_BODY, QUANTITIES
 from reference.problem import Scene
 
 
-class Residual(UncertainNumber):
+class ResidualDisplacement(UncertainNumber):
     """A displacement at rest, which a motion may not have."""
 
     reason: Text
     """why there is no value although the motion lasts as long as the scene; empty otherwise"""
 
 
-class FloorSpectra(Part):
+class MotionSpectra(Part):
     """Floor response spectra of one motion: largest displacement of an oscillator times its squared frequency."""
 
     period: list[float]
@@ -37,8 +36,8 @@ class FloorSpectra(Part):
     """estimated absolute error"""
 
 
-class _Motion(Part):
-    """What one stored motion demands of isolator and structure; no value where the motion ended early."""
+class _MotionOfScene(Part):
+    """Demands of one stored motion on isolator and structure; no value where the motion ended early."""
 
     model: str
     """key of the model"""
@@ -63,12 +62,12 @@ def _describe(name: str) -> Any:
 
 
 _DEMANDS: dict[str, Any] = {
-    each.name: (Residual if each.name == "residual" else _kind(str(each.type)), _describe(each.name))
+    each.name: (ResidualDisplacement if each.name == "residual" else _kind(str(each.type)), _describe(each.name))
     for each in fields(Demands)
     if each.name in QUANTITIES
 }
-_DEMANDS["spectra"] = FloorSpectra | None, Field(description="null where the motion ended early")
-MotionDemands: Any = create_model("MotionDemands", __base__=_Motion, __doc__=_Motion.__doc__, **_DEMANDS)
+_DEMANDS["spectra"] = MotionSpectra | None, Field(description="null where the motion ended early")
+MotionDemands: Any = create_model("MotionDemands", __base__=_MotionOfScene, __doc__=_MotionOfScene.__doc__, **_DEMANDS)
 
 
 def _demands(findings: Findings, scene: Scene) -> list[MotionDemands]:
@@ -85,11 +84,11 @@ def _demands(findings: Findings, scene: Scene) -> list[MotionDemands]:
     return listed
 
 
-def _spectra(spectra: SpectraOfMotion | None) -> FloorSpectra | None:
+def _spectra(spectra: FloorSpectra | None) -> MotionSpectra | None:
     """Six digits of the values, two of their errors."""
     if spectra is None:
         return None
-    return FloorSpectra(
+    return MotionSpectra(
         period=significant_digits(spectra.period, 6),
         damping=spectra.damping,
         acceleration=significant_digits(spectra.acceleration, 6),

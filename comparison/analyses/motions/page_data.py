@@ -20,7 +20,7 @@ it are changes: value i is the sum of the numbers up to i, times 2^exponent.
 |---|---|---|
 | time | 1 | s |
 | position | x and y of body 1, of body 2, ...: relative to the plate | m |
-| acceleration | likewise, absolute | m/s^2 |
+| acceleration | columns as of position: absolute | m/s^2 |
 | contact_force | 1, the normal force of the isolator | N |
 | isolator_force | x and y: horizontal force of the bodies on the isolator | N |
 | support_force | one for each support of the spatial model | N |
@@ -152,7 +152,7 @@ def _blocks(motion: StoredMotion) -> dict[str, list[int]]:
 
 
 def significant_digits(values: NDArray[np.float64], digits: int) -> list[Any]:
-    """Nested lists of numbers with so many significant digits."""
+    """Return nested lists of numbers with that number of significant digits."""
     if values.ndim > 1:
         return [significant_digits(part, digits) for part in values]
     return [float(f"{value:.{digits}g}") for value in values]

@@ -52,9 +52,9 @@ class Worst:
     error: Annotated[Number, "estimated absolute error of it"] = math.nan
     phases: Annotated[Phases, "(alpha1, alpha2), rad"] = NOWHERE
     kind: Literal["smooth", "kink", "jump", "nearby", "grid", ""] = ""
-    """what the surface has there; "nearby": the largest of an engine beside the worst phases of the equations; "grid":
+    """what the surface has there; "nearby": the largest of an engine near the worst phases of the equations; "grid":
     of its grid"""
-    side: Annotated[Phases, "direction from a jump to the large values beside it; null otherwise"] = NOWHERE
+    side: Annotated[Phases, "direction from a jump to the large values next to it; null otherwise"] = NOWHERE
     runner_up: Annotated[Number, "the highest other value at which a local search ended"] = math.nan
     climbs: Annotated[int, "local maxima from which a search started"] = 0
     reached: Annotated[int, "searches that ended at the maximum"] = 0
@@ -66,7 +66,7 @@ class Worst:
 
 # an engine model that is not searched, its largest value on its grid with error, and phases of that
 OnGrid = tuple[Model, float, float, tuple[float, float]]
-# scene, model, engine beside it, engine that is not searched, quantity, body, tolerance of the engines, starts (K, 2)
+# scene, model, its engine, engine that is not searched, quantity, body, tolerance of the engines, starts (K, 2)
 Arguments = tuple[Scene, Model, Model | None, OnGrid | None, Quantity, int, float, Array | None]
 
 
@@ -83,7 +83,7 @@ def nearest_search(found: Sequence[Any], models: Sequence[str], scene: str, mode
 
 
 def _searches(study: Study, scene: Scene) -> list[tuple[Model, Model | None, Quantity, int]]:
-    """Model, engine beside it, quantity and body."""
+    """Return model, engine of the same equations, quantity and body of every search."""
     equations = [model for model in models_of(scene, study.hierarchy) if model.amplification == SOLVED_BY]
     engines = {pair.first.key: pair.second for pair in pairs_of(scene, study.hierarchy) if pair.key == "like-for-like"}
     bodies = range(1, len(scene.bodies) + 1)
@@ -107,7 +107,7 @@ def _starts(
 
 
 def search_worst(task: Arguments) -> list[Worst]:
-    """Return the largest value of the equations, and of the engine models beside it. Runs inside a worker process."""
+    """Return the largest value of the equations, and of the engine models near it. Runs inside a worker process."""
     scene, model, engine, on_grid, quantity, body, tolerance, starts = task
     settings: dict[str, Any] = dict(model.settings)
     maximum = reference.worst_phases(scene, body, quantity, tolerance=TOLERANCE, starts=starts, **settings)
@@ -115,7 +115,7 @@ def search_worst(task: Arguments) -> list[Worst]:
     worst = Worst(scene.name, model.key, quantity, body, **stated)
     found = [worst]
     if engine is not None:
-        found.append(_engine_beside(worst, scene, model, engine, tolerance))
+        found.append(_compute_engine_nearby(worst, scene, model, engine, tolerance))
     if on_grid is not None:
         found.append(_larger_of_grid_and_worst(worst, scene, on_grid, tolerance))
     return found
@@ -143,7 +143,7 @@ class WorstPhases(MappedAnalysis[list[Worst]]):
                 yield scene, model, engine, on_grid, quantity, body, study.tolerance, starts
 
 
-def _engine_beside(worst: Worst, scene: Scene, like: Model, model: Model, tolerance: float) -> Worst:
+def _compute_engine_nearby(worst: Worst, scene: Scene, like: Model, model: Model, tolerance: float) -> Worst:
     """The engine at the worst phases of the equations `like` it, and its largest value in a square around them."""
     engine = _surface(scene, model, model.tolerance(tolerance), worst.body)
     start = engine.compute(np.array([worst.phases]))

@@ -12,8 +12,8 @@ from comparison.report.plots import fractile_heads
 from comparison.report.scene_result import SceneResult
 from comparison.report.section import Report, Section
 from comparison.study.models import SMALL, SMALL_RESOLVED, models_of, smooth
-from comparison.surfaces.headline import BOTH_READINGS
 from reference.problem import Scene
+from reference.problem.readings import BOTH_READINGS
 
 
 def _kind(worst: Worst) -> str:

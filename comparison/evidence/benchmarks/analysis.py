@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from comparison.evidence.benchmarks.cases import Case, Reading
-from comparison.evidence.benchmarks.table import FRICTION, MODEL, Benchmark, Benchmarks, Number, Row
+from comparison.evidence.benchmarks.cases import Case, MotionReading
+from comparison.evidence.benchmarks.table import FRICTION, MODEL, Benchmark, Benchmarks, Number, PublishedNumber
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import finite_or_none
 from comparison.runner.analysis import Analysis
@@ -30,7 +30,7 @@ LIMIT = 300.0  # s of processor time of one task
 
 
 @dataclass(frozen=True)
-class Answer:
+class SideNumbers:
     """The numbers of one side with their errors, and how the motion ended."""
 
     values: list[float]
@@ -62,7 +62,7 @@ class BenchmarkTable(Analysis[Benchmarks]):
         return Task(solve, (case, side), self.stage, seconds, case.scene, side != ENGINE, timeout=LIMIT)
 
 
-def solve(question: tuple[Case, str]) -> Answer:
+def solve(question: tuple[Case, str]) -> SideNumbers:
     """The numbers of one side. Runs inside a worker process."""
     case, side = question
     settings = dict(MODELS[side].settings)
@@ -76,10 +76,10 @@ def solve(question: tuple[Case, str]) -> Answer:
     clock = time.process_time()
     trajectory = import_function(MODELS[side].trajectory)
     motion: Trajectory = trajectory(case.scene, case.phases, tolerance=TOLERANCES[side], **settings)
-    return Answer(*_read(case.reading, motion), str(motion.status), time.process_time() - clock)
+    return SideNumbers(*_read(case.reading, motion), str(motion.status), time.process_time() - clock)
 
 
-def _read(reading: Reading, motion: Trajectory) -> tuple[list[float], list[float]]:
+def _read(reading: MotionReading, motion: Trajectory) -> tuple[list[float], list[float]]:
     """The numbers and their estimated absolute errors; none of a motion that ended early."""
     if motion.status not in ANSWERED or len(motion.time) < 2:
         return [], []
@@ -98,7 +98,7 @@ def decimate(motion: Trajectory) -> Trajectory:
     return replace(motion, **arrays)
 
 
-def _benchmark(case: Case, answers: Mapping[str, Answer]) -> Benchmark:
+def _benchmark(case: Case, answers: Mapping[str, SideNumbers]) -> Benchmark:
     return Benchmark(
         name=case.scene.name,
         title=case.title,
@@ -112,7 +112,7 @@ def _benchmark(case: Case, answers: Mapping[str, Answer]) -> Benchmark:
     )
 
 
-def _row(case: Case, place: int, answers: Mapping[str, Answer]) -> Row:
+def _row(case: Case, place: int, answers: Mapping[str, SideNumbers]) -> PublishedNumber:
     """A published number with that of every side, NaN where a side has not as many values as are published."""
     row = case.published[place]
     numbers = dict.fromkeys(answers, (math.nan, math.nan))
@@ -135,5 +135,5 @@ def _row(case: Case, place: int, answers: Mapping[str, Answer]) -> Row:
     return replace(row, numbers={side: read_number(side) for side in numbers})
 
 
-def _answer_of_failure(question: tuple[Case, str], failed: TaskResult) -> Answer:
-    return Answer([], [], failed.reason, 0.0)
+def _answer_of_failure(question: tuple[Case, str], failed: TaskResult) -> SideNumbers:
+    return SideNumbers([], [], failed.reason, 0.0)

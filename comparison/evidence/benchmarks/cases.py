@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from comparison.evidence.benchmarks import readings
-from comparison.evidence.benchmarks.table import Row
+from comparison.evidence.benchmarks.table import PublishedNumber
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, SceneError, Trajectory, load_scene
 from reference.problem.readings import DEFAULT_V_REG
@@ -30,8 +30,8 @@ RAMP = 2e-7  # m, what it changes that Newmark's pulse ends within 1 ms
 
 
 @dataclass(frozen=True)
-class Reading:
-    """How a motion is read: `factor` times `function(motion, **arguments)`, one number or several."""
+class MotionReading:
+    """Number read off a motion: `factor` times `function(motion, **arguments)`, one number or several."""
 
     function: Callable[..., float | Sequence[float] | Array]
     arguments: Mapping[str, Any] = field(default_factory=dict)
@@ -43,9 +43,9 @@ class Reading:
         return [self.factor * float(value) for value in values]
 
 
-def published(quantity: str, value: float, uncertainty: float, unit: str = "") -> Row:
+def published(quantity: str, value: float, uncertainty: float, unit: str = "") -> PublishedNumber:
     """A published number; uncertainty: absolute, as published or half of the last digit."""
-    return Row(quantity, unit, value, uncertainty)
+    return PublishedNumber(quantity, unit, value, uncertainty)
 
 
 @dataclass(frozen=True)
@@ -62,8 +62,8 @@ class Case:
     title: str
     source: str
     evidence: str
-    published: Sequence[Row]
-    reading: Reading
+    published: Sequence[PublishedNumber]
+    reading: MotionReading
     scene: Scene
     phases: tuple[float, float] = (0.0, 0.0)
     start: Sequence[tuple[float, float]] = ()
@@ -90,7 +90,7 @@ def _wear_power() -> list[Case]:
             source="code_aster, test SDND104 (V5.01.104): closed form; its integrators are within 5e-4, 5e-3 at 1.01",
             evidence="friction energy of stick and slip under harmonic shaking",
             published=[published("power of friction", power, digits, "W")],
-            reading=Reading(readings.path_length, {"begin": 4.0, "end": 12.0}, WEIGHT / 8.0),
+            reading=MotionReading(readings.path_length, {"begin": 4.0, "end": 12.0}, WEIGHT / 8.0),
             scene=shipped("sdnd104", {"excitation.scale": amplitude, "name": f"sdnd104-{amplitude:g}"}),
             phases=(-0.5 * math.pi, 0.0),
         )
@@ -107,7 +107,7 @@ def _release() -> Case:
             published(f"turning point {number}", place, 0.0, "mm")
             for number, place in enumerate((-0.65, 0.45, -0.25, 0.05), start=1)
         ],
-        reading=Reading(readings.turning_points, factor=1e3),
+        reading=MotionReading(readings.turning_points, factor=1e3),
         scene=shipped("sdnd100"),
         start=((0.85e-3, 0.0),),
         regularization=1e-7,
@@ -125,7 +125,7 @@ def _coulomb_damping() -> Case:
             published(f"place at {time:g} s", value, 5e-6, "in")
             for time, value in zip(times, (0.87208, 0.83132, -0.74874))
         ],
-        reading=Reading(readings.positions_at, {"times": [stretch * time for time in times]}, 1.0 / INCH),
+        reading=MotionReading(readings.positions_at, {"times": [stretch * time for time in times]}, 1.0 / INCH),
         scene=shipped("vm73"),
         start=((-INCH, 0.0),),
         regularization=1e-7,
@@ -140,7 +140,7 @@ def _den_hartog() -> Case:
         source="J. P. Den Hartog, Forced vibrations with combined Coulomb and viscous friction, 1931: closed form",
         evidence="steady sliding oscillation beside resonance",
         published=[published("amplitude over static one", 1.535602, 5e-7)],
-        reading=Reading(readings.half_range, {"begin": scene.duration * 5.0 / 6.0}, 1.0 / unit),
+        reading=MotionReading(readings.half_range, {"begin": scene.duration * 5.0 / 6.0}, 1.0 / unit),
         scene=scene,
         phases=(0.18581959993316782, 0.0),
         start=((1.5356018092808652 * unit, 0.0),),
@@ -156,7 +156,7 @@ def _harmonic_block() -> Case:
         source="B. Westermo and F. Udwadia, Earthquake Engineering and Structural Dynamics 11, 1983: closed form",
         evidence="steady sliding on a plane, reached from rest",
         published=[published("amplitude over ground's", round(amplitude, 6), 5e-7)],
-        reading=Reading(readings.half_range, {"begin": 11.0}, (2.0 * math.pi) ** 2 / 2.5),
+        reading=MotionReading(readings.half_range, {"begin": 11.0}, (2.0 * math.pi) ** 2 / 2.5),
         scene=shipped("harmonic"),
         phases=(-0.5 * math.pi, 0.0),
     )
@@ -168,7 +168,7 @@ def _pulse() -> Case:
         source="N. M. Newmark, Géotechnique 15, 1965: V² / (2 N g) (1 - N / A)",
         evidence="residual displacement after a pulse; a recorded motion",
         published=[published("displacement", 0.75, RAMP, "m")],
-        reading=Reading(readings.positions_at, {"times": [3.0]}),
+        reading=MotionReading(readings.positions_at, {"times": [3.0]}),
         scene=shipped("newmark"),
     )
 
@@ -184,7 +184,7 @@ def _linear() -> list[Case]:
                 published("isolation period", 2.0242, 5e-5, "s"),
                 published("structural period", 0.2500, 5e-5, "s"),
             ],
-            reading=Reading(readings.natural_periods),
+            reading=MotionReading(readings.natural_periods),
             scene=shipped("frame"),
             start=((1e-4, 0.0), (0.0, 0.0)),
         ),
@@ -196,7 +196,7 @@ def _linear() -> list[Case]:
                 published(f"natural period {number}", period, 5e-5, "s")
                 for number, period in enumerate(stories, start=1)
             ],
-            reading=Reading(readings.natural_periods),
+            reading=MotionReading(readings.natural_periods),
             scene=shipped("stories"),
             start=(*((0.0, 0.0),) * 5, (1e-4, 0.0)),
             regularization=DEFAULT_V_REG,
@@ -206,7 +206,7 @@ def _linear() -> list[Case]:
             source="M. Abramowitz and I. A. Stegun, Handbook of Mathematical Functions, table 17.1: K(sin² 30°)",
             evidence="exact geometry of the sphere at large displacement",
             published=[published("period over small one's", 1.073182, 5e-7)],
-            reading=Reading(readings.period, factor=math.sqrt(GRAVITY) / (2.0 * math.pi)),
+            reading=MotionReading(readings.period, factor=math.sqrt(GRAVITY) / (2.0 * math.pi)),
             scene=shipped("pendulum"),
             start=((math.sin(math.pi / 3.0), 0.0),),
         ),
@@ -258,7 +258,7 @@ def mastodon(path: Path) -> Case:
         "loops of both programs",
         evidence="a recorded motion in three directions with friction that depends on velocity, pressure and heat",
         published=[published(name, value, READ_TO, "mm") for name, value in zip(names, LIMITS)],
-        reading=Reading(readings.ranges, factor=1e3),
+        reading=MotionReading(readings.ranges, factor=1e3),
         scene=scene,
         regularization=DEFAULT_V_REG,
         difference="their bearing is elastic up to 1 mm, and its restoring force N y / sqrt(R² - y²) lies between "

@@ -8,8 +8,7 @@ from comparison.verdicts import CLASSES
 FOUND = ResultField(
     "benchmarks",
     Benchmarks,
-    "numbers published elsewhere beside what both sides compute; null unless phase-resonance benchmarks left it "
-    "beside the report",
+    STORED.word_field("numbers published elsewhere, compared with what both sides compute"),
     load=STORED.load,
 )
 FEATURE = Feature(
@@ -17,7 +16,7 @@ FEATURE = Feature(
     (FOUND,),
     section=Section(
         "External benchmarks",
-        "phase-resonance benchmarks makes it, beside the report; the next run of the study shows it",
+        STORED.word_origin(),
         lambda report: {
             "benchmark_sentences": word_explanations,
             "benchmark_colors": CLASSES,

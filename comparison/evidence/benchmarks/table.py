@@ -1,4 +1,4 @@
-"""Published numbers beside what both sides compute, as data: a file, and what the report needs of it."""
+"""Published numbers compared with what both sides compute, as data: a file, and what the report needs of it."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -31,7 +31,7 @@ MODEL = "the source models something else, which its benchmark names"
 
 @result
 class Number:
-    """What one side computes of a published number."""
+    """Number that one side computes for a published one."""
 
     value: Annotated[float | None, "in the unit of the published number; null without an answer"]
     error: Annotated[float | None, "estimated absolute error; null where it is not known"]
@@ -40,7 +40,7 @@ class Number:
 
 
 @result
-class Row:
+class PublishedNumber:
     """One published number."""
 
     quantity: Annotated[str, "what it is"]
@@ -85,7 +85,7 @@ class Benchmark:
     evidence: Annotated[str, "for what it is evidence"]
     regularization: Annotated[float, "v_reg of the engine, m/s"]
     difference: Annotated[str, "what the source models and this project does not; empty where the models are the same"]
-    rows: Annotated[Sequence[Row], "one per published number"]
+    rows: Annotated[Sequence[PublishedNumber], "one per published number"]
     endings: Annotated[Mapping[str, str], "by side: how the motion ended"]
     seconds: Annotated[Mapping[str, float], "by side: processor time, s"]
 
@@ -103,14 +103,14 @@ class Benchmarks:
 
     def counts(self) -> dict[Verdict, int]:
         """Numbers of the equations and of the engine by verdict."""
-        return count_verdicts(number.verdict for _, _, _, number in self.judged())
+        return count_verdicts(number.verdict for _, _, _, number in self.judged_numbers())
 
     def explained(self) -> dict[str, int]:
         """Return how many of the numbers that are not met each explanation has, "" for those that have none."""
-        found = [number.explanation for _, _, _, number in self.judged() if number.verdict == NOT_MET]
+        found = [number.explanation for _, _, _, number in self.judged_numbers() if number.verdict == NOT_MET]
         return {why: found.count(why) for why in (FRICTION, MODEL, "")}
 
-    def judged(self) -> Iterator[tuple[Benchmark, Row, str, Number]]:
+    def judged_numbers(self) -> Iterator[tuple[Benchmark, PublishedNumber, str, Number]]:
         """Every number that has a verdict: of the equations and of the engine."""
         for each in self.benchmarks:
             for row in each.rows:
@@ -120,7 +120,7 @@ class Benchmarks:
 
 def verdict_line(table: Benchmarks) -> str:
     """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
-    off = [(row, side, each) for each, row, side, number in table.judged() if number.verdict == NOT_MET]
+    off = [(row, side, each) for each, row, side, number in table.judged_numbers() if number.verdict == NOT_MET]
     off = [each for each in off if each[0].published]
     largest = max(off, key=lambda each: abs((each[0].error_of(each[1]) or 0.0) / each[0].published), default=None)
     where = ""
@@ -164,6 +164,6 @@ def with_error(number: Number, digits: int = MOST_DIGITS) -> str:
     return f"{number.value:.{max(1, min(digits, known))}g} ± {number.error:.0e}"
 
 
-def stated(row: Row) -> str:
+def stated(row: PublishedNumber) -> str:
     """The published number with its unit and uncertainty."""
     return f"{row.published:.7g} {row.unit}".rstrip() + (f" ± {row.uncertainty:g}" if row.uncertainty else "")

@@ -31,7 +31,7 @@ NOT_COMPARED: Word = "not compared"
 
 @result
 class StatementVerdict:
-    """What the surfaces in one reading of (5.1) say about a statement of the paper. Raises ValueError for no reason."""
+    """Verdict on a statement of the paper by the surfaces in one reading of (5.1). Raises ValueError for no reason."""
 
     verdict: Annotated[Word, "met, not met, or not compared"]
     reason: Annotated[Text, "the numbers that decide, why it cannot hold, or why nothing was compared"]

@@ -84,7 +84,7 @@ def relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: bool = T
     into = list(range(len(height)))  # for lesser maxima, the one across their saddle
     tops = []
     for node in order:
-        islands: dict[int, int] = {}  # beside this node, with their highest node beside it
+        islands: dict[int, int] = {}  # adjacent to this node, and their highest node
         for other in sorted(around[node], key=rank.__getitem__):
             if parent[other] >= 0:
                 islands.setdefault(_root(parent, other), other)

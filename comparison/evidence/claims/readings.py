@@ -11,7 +11,7 @@ from reference.problem import Scene, load_scene, readings
 
 @dataclass(frozen=True)
 class PeakReading:
-    """How the maximum of (5.1) is read. model: key of the study's model; cutoff: v_c, m/s, None for the supremum."""
+    """Reading of the maximum of (5.1). model: key of the study's model; cutoff: v_c, m/s, None for the supremum."""
 
     name: str
     model: str

@@ -24,7 +24,7 @@ FOLD, JUMP = 1.5, 0.5  # exponents below these are a fold, a jump
 @dataclass(frozen=True)
 class Bend:
     """
-    Where a surface bends most: phases (alpha1, alpha2), rad; exponent of its second difference there, NaN unless a
+    Place where a surface bends most: phases (alpha1, alpha2), rad; exponent of its second difference, NaN unless a
     value is missing; the lowest of the places looked at.
     """
 
@@ -76,7 +76,7 @@ def _second(values: Array) -> Array:
 
 
 def _sharpest(mu: Array) -> list[tuple[NDArray[np.int_], NDArray[np.int_]]]:
-    """The PLACES of largest second difference, not beside each other: index pair and direction."""
+    """The PLACES of largest second difference, no two of them adjacent: index pair and direction."""
     size = np.array(
         [np.abs(np.roll(mu, -way, (0, 1)) - 2.0 * mu + np.roll(mu, way, (0, 1))) / (way @ way) for way in DIRECTIONS]
     )

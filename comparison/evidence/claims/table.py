@@ -62,7 +62,7 @@ class ClaimTable:
     @computed_field  # type: ignore[prop-decorator]
     @property
     def counts(self) -> dict[str, dict[str, int]]:
-        """How many statements are met, not met and not compared, by name of the reading."""
+        """Return the numbers of statements met, not met and not compared, by name of the reading."""
         return {
             reading.name: {
                 word: sum(each.verdicts[reading.name].verdict == word for each in self.statements) for word in VERDICTS
@@ -98,8 +98,8 @@ def claims_line(table: ClaimTable) -> str:
 def count_met(table: ClaimTable) -> str:
     """Return how many statements are met in each reading, and how many are not compared, in a clause."""
     integrated, supremum = (table.counts[reading.name] for reading in (AS_INTEGRATED, LITERAL_SUPREMUM))
-    lacking = {name: counts[NOT_COMPARED] for name, counts in table.counts.items() if counts[NOT_COMPARED]}
-    rest = "".join(f", {count} {NOT_COMPARED} ({name})" for name, count in lacking.items())
+    uncompared = {name: counts[NOT_COMPARED] for name, counts in table.counts.items() if counts[NOT_COMPARED]}
+    rest = "".join(f", {count} {NOT_COMPARED} ({name})" for name, count in uncompared.items())
     return f"{integrated[MET]} are met {AS_INTEGRATED.name} and {supremum[MET]} as {LITERAL_SUPREMUM.name}{rest}"
 
 

@@ -94,7 +94,7 @@ def _at_constant_step(scene: Scene, v_reg: float | None, penetration: float, fac
     return mu
 
 
-class Limit(NamedTuple):
+class LimitCase(NamedTuple):
     """One row for each body of the table: what tends to what, with which parameter, like which power of it."""
 
     what: str
@@ -108,10 +108,12 @@ _by_equations = partial(_against, reference, PHASES, PERIODS, REFERENCE_TOLERANC
 _by_engine = partial(_against, multibody, FEW, FEW_PERIODS, ENGINE_TOLERANCE, ENGINE_REGULARIZATIONS, True)
 
 LIMITS = (
-    Limit("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, partial(_by_equations, True), dry),
-    Limit("exact equations: regularized against supremum", REGULARIZATIONS, None, partial(_by_equations, False), dry),
-    Limit("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, dry),
-    Limit("elastic contact against rigid", PENETRATIONS, 1.0, _stiffen, lambda scene: True),
+    LimitCase("exact equations: regularized against resolved", REGULARIZATIONS, 1.0, partial(_by_equations, True), dry),
+    LimitCase(
+        "exact equations: regularized against supremum", REGULARIZATIONS, None, partial(_by_equations, False), dry
+    ),
+    LimitCase("engine against resolved", ENGINE_REGULARIZATIONS, 1.0, _by_engine, dry),
+    LimitCase("elastic contact against rigid", PENETRATIONS, 1.0, _stiffen, lambda scene: True),
 )
 
 Arguments = tuple[Scene, int]  # and the number of the limit

@@ -14,7 +14,7 @@ from comparison.runner.task_results import TaskResults
 from comparison.study.batches import import_function
 from comparison.study.models import Model, chain_of
 from comparison.study.study import Study
-from comparison.wording import percent
+from comparison.wording import exception_line, percent
 from reference.problem import GRAVITY, Outcome, Scene, Trajectory, ground_acceleration
 from reference.problem.friction import LEAST_LOAD
 
@@ -77,13 +77,12 @@ def read_back(task: tuple[Scene, Model]) -> Effective:
     nothing = Effective(scene.name, model.key)
     lasting = scene.duration if scene.recorded else min(scene.duration, DURATION)
     short = scene.with_values({"duration": lasting})
-    settings = {key: value for key, value in model.settings.items() if key != "cutoff"}  # a way to read, not to move
     try:
-        motion: Trajectory = import_function(model.trajectory)(short, PHASES, **settings)
+        motion: Trajectory = import_function(model.trajectory)(short, PHASES, **model.motion_settings)
         ended = {"error_message": f"the motion ended: {motion.status}"}
         return replace(nothing, **(_read_values(short, motion) if motion.status == Outcome.OK else ended))
     except Exception as error:
-        return replace(nothing, error_message=f"{type(error).__name__}: {error}")
+        return replace(nothing, error_message=exception_line(error))
 
 
 class EffectiveValues(MappedAnalysis[list[Effective]]):

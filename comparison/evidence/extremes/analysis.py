@@ -10,8 +10,10 @@ import numpy as np
 import xarray as xr
 from pydantic import ValidationError
 
-from comparison.evidence.extremes.matrix import Entry, Extreme, Matrix, Verdict
-from comparison.evidence.extremes.rows import CAUSES, COLUMNS, EQUATIONS, REFERENCE, Column, Row
+from comparison.evidence.extremes.causes import CAUSES
+from comparison.evidence.extremes.columns import COLUMNS, EQUATIONS, REFERENCE, ModelColumn
+from comparison.evidence.extremes.matrix import Extreme, Matrix, MatrixEntry, Verdict
+from comparison.evidence.extremes.rows import ExtremeCase
 from comparison.json_file import finite_or_none
 from comparison.result_types import Array
 from comparison.runner.analysis import Analysis
@@ -40,7 +42,7 @@ STRICTEST = 1e-10  # relative error that a model can be asked for
 
 @dataclass(frozen=True)
 class Reply:
-    """What a model answered: as `reference.problem.Amplification`, or `invalid` (its rule) or `raised` (what)."""
+    """Answer of a model: as `reference.problem.Amplification`, or `invalid` (its rule) or `raised` (what)."""
 
     mu: Array
     error: Array
@@ -49,68 +51,70 @@ class Reply:
     raised: str = ""
 
 
-def judged(reply: Reply, finer: Sequence[Reply], tolerance: float, invalid: bool, right: Sequence[str]) -> Entry:
+def judge_reply(
+    reply: Reply, finer: Sequence[Reply], tolerance: float, invalid: bool, right: Sequence[str]
+) -> MatrixEntry:
     """The verdict on the worst phase pair of an answer; finer: answers to the same question, the most trusted first."""
     if reply.raised:
-        return Entry(Verdict.FAILED, f"raises {reply.raised}")
+        return MatrixEntry(Verdict.FAILED, f"raises {reply.raised}")
     if reply.invalid:
-        return Entry(Verdict.REFUSED if invalid else Verdict.FAILED, reply.invalid)
+        return MatrixEntry(Verdict.REFUSED if invalid else Verdict.FAILED, reply.invalid)
     if invalid:
-        return Entry(Verdict.FAILED, "accepts an input that is against the rules")
+        return MatrixEntry(Verdict.FAILED, "accepts an input that is against the rules")
     points = [_point(reply, m, finer, tolerance, right) for m in range(len(reply.status))]
     order = list(Verdict)
     return max(points, key=lambda point: (order.index(point.verdict), point.error or 0.0))
 
 
-def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right: Sequence[str]) -> Entry:
+def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right: Sequence[str]) -> MatrixEntry:
     status, mu, error = reply.status[m], reply.mu[m], reply.error[m]
     replies = [(other.status[m], other.mu[m], other.error[m]) for other in finer if len(other.status) > m]
     if status not in (PHYSICS | NUMERICS | {Outcome.OK}):
-        return Entry(Verdict.FAILED, f"status {status!r} is no answer of a model", status)
+        return MatrixEntry(Verdict.FAILED, f"status {status!r} is no answer of a model", status)
     if right and status != Outcome.OK and status not in right:
-        return Entry(Verdict.FAILED, f"refused as {status!r} instead of {' or '.join(right)}", status)
+        return MatrixEntry(Verdict.FAILED, f"refused as {status!r} instead of {' or '.join(right)}", status)
     if status in (Outcome.OK, Outcome.TOLERANCE_NOT_MET):
         return _value(status, mu, error, replies, tolerance)
     if not np.isnan(mu).all():
-        return Entry(Verdict.FAILED, f"{status}, and yet a value", status)
+        return MatrixEntry(Verdict.FAILED, f"{status}, and yet a value", status)
     if status in NUMERICS:
-        return Entry(Verdict.LIMIT, status, status)
+        return MatrixEntry(Verdict.LIMIT, status, status)
     answered = next((other for other, _, _ in replies if other not in NUMERICS), status)
     if answered != status and status not in right:
-        return Entry(Verdict.FAILED, f"{status}, but a finer run: {answered}", status)
-    return Entry(Verdict.REFUSED, status, status)
+        return MatrixEntry(Verdict.FAILED, f"{status}, but a finer run: {answered}", status)
+    return MatrixEntry(Verdict.REFUSED, status, status)
 
 
-def _value(status: str, mu: Array, error: Array, finer: Sequence[Finer], tolerance: float) -> Entry:
+def _value(status: str, mu: Array, error: Array, finer: Sequence[Finer], tolerance: float) -> MatrixEntry:
     """Judge a value with its error estimate; one that claims nothing, by whether it is as good as asked."""
     known = [(value, estimate) for _, value, estimate in finer if np.isfinite(value).all()]
     refused = next((other for other, _, _ in finer), "none")
-    unconfirmed = Entry(Verdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
+    unconfirmed = MatrixEntry(Verdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
     if np.isfinite(mu).all() and np.isnan(error).all():
         if not known:
             return unconfirmed
         with np.errstate(divide="ignore", invalid="ignore"):
             difference = float(np.nan_to_num(np.abs(mu - known[0][0]) / np.abs(known[0][0]), nan=0.0).max())
         verdict = Verdict.CONVERGED if difference <= tolerance else Verdict.LIMIT
-        return Entry(verdict, f"states no error, off by {difference:.1e}", status)
+        return MatrixEntry(verdict, f"states no error, off by {difference:.1e}", status)
     if not (np.isfinite(mu).all() and np.isfinite(error).all()):
-        return Entry(Verdict.FAILED, f"{status}, but no finite number", status)
+        return MatrixEntry(Verdict.FAILED, f"{status}, but no finite number", status)
     share = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
     claimed = finite_or_none(share)
     if (error < 0.0).any() or (status == Outcome.OK and share > tolerance * (1.0 + ROUNDING)):
         reason = f"{status} with an error estimate of {share:.1e}, asked: {tolerance:g}"
-        return Entry(Verdict.FAILED, reason, status, claimed)
+        return MatrixEntry(Verdict.FAILED, reason, status, claimed)
     for value, estimate in known:
         off, allowed = np.abs(mu - value), error + estimate + ROUNDING * np.abs(mu)
         worst = int((off / allowed).argmax())
         if off[worst] > allowed[worst]:
             times = off[worst] / allowed[worst]
             reason = f"mu_{worst + 1} is off by {off[worst] / abs(mu[worst]):.1e}, {times:.2g} times what is claimed"
-            return Entry(Verdict.FAILED, reason, status, claimed)
+            return MatrixEntry(Verdict.FAILED, reason, status, claimed)
         if status == Outcome.OK and (estimate <= np.maximum(error, FINE * tolerance * np.abs(mu))).all():
-            return Entry(Verdict.CONVERGED, f"error {share:.1e} confirmed", status, claimed)
+            return MatrixEntry(Verdict.CONVERGED, f"error {share:.1e} confirmed", status, claimed)
     if status == Outcome.TOLERANCE_NOT_MET:
-        return Entry(Verdict.LIMIT, f"{status}: {share:.1e}", status, claimed)
+        return MatrixEntry(Verdict.LIMIT, f"{status}: {share:.1e}", status, claimed)
     return replace(unconfirmed, error=claimed)
 
 
@@ -118,17 +122,17 @@ def _value(status: str, mu: Array, error: Array, finer: Sequence[Finer], toleran
 class Cell:
     """An extreme and the model that meets it."""
 
-    row: Row
-    column: Column
+    row: ExtremeCase
+    column: ModelColumn
 
 
-def cells(rows: Sequence[Row], columns: Sequence[Column] = COLUMNS) -> list[Cell]:
+def cells(rows: Sequence[ExtremeCase], columns: Sequence[ModelColumn] = COLUMNS) -> list[Cell]:
     """Every model that each extreme concerns; of the numerics of our engine none is for an engine of the user."""
     pairs = [(row, column) for row in rows for column in columns if (column.like or column.key) in row.columns]
     return [Cell(row, column) for row, column in pairs if not (column.like and row.amplification)]
 
 
-def solve_cell(cell: Cell) -> Entry:
+def solve_cell(cell: Cell) -> MatrixEntry:
     """Ask the model, ask for more accuracy until that confirms or contradicts the answer, and judge."""
     row, column = cell.row, cell.column
     tolerance = float(row.settings.get("tolerance", column.tolerance))
@@ -146,7 +150,7 @@ def solve_cell(cell: Cell) -> Entry:
             finer.append(_ask(row, other, {**settings, **known, "tolerance": strict}))
             if finer[-1].status and NUMERICS.isdisjoint(finer[-1].status):  # an answer, be it a refusal, at every point
                 break
-    entry = judged(reply, finer, tolerance, row.invalid, row.right)
+    entry = judge_reply(reply, finer, tolerance, row.invalid, row.right)
     cause = CAUSES.get((row.group, row.title), {}).get(column.key) if entry.verdict == Verdict.LIMIT else None
     reason = " ".join(": ".join(filter(None, (entry.reason, cause))).split())
     total = time.process_time() - begin
@@ -163,7 +167,7 @@ def answers(reply: Reply) -> bool:
     )
 
 
-def _ask(row: Row, function: str, settings: Mapping[str, Any]) -> Reply:
+def _ask(row: ExtremeCase, function: str, settings: Mapping[str, Any]) -> Reply:
     """Return what a function replies at the row's phase pairs; one of the engine does the work that the row allows."""
     nothing = np.empty((0, 0))
     settings = {key: row.max_work if key == "max_work" else value for key, value in settings.items()}
@@ -192,8 +196,8 @@ class Extremes(Analysis[Matrix]):
     """Every model at every extreme, in scenes of their own; limit: most processor time of one cell, s, rounded up."""
 
     key, stage = "extremes", "extremes"
-    rows: Sequence[Row]
-    columns: Sequence[Column] = COLUMNS
+    rows: Sequence[ExtremeCase]
+    columns: Sequence[ModelColumn] = COLUMNS
     limit: float = LIMIT
 
     def tasks(self, study: Study | None = None, surfaces: xr.Dataset | None = None) -> list[Task]:
@@ -202,7 +206,7 @@ class Extremes(Analysis[Matrix]):
 
     def collect(self, study: Study | None, surfaces: xr.Dataset | None, results: TaskResults) -> Matrix:
         """The matrix, without what the command knows of the run."""
-        entries: dict[tuple[str, str], dict[str, Entry]] = {}
+        entries: dict[tuple[str, str], dict[str, MatrixEntry]] = {}
         for cell in cells(self.rows, self.columns):
             row = entries.setdefault((cell.row.group, cell.row.title), {})
             row[cell.column.key] = results.value(self._task(cell), _entry_of_failure)
@@ -219,12 +223,12 @@ class Extremes(Analysis[Matrix]):
         return Task(solve_cell, cell, self.stage, seconds, None, compiled, self.limit, group)
 
 
-def _entry_of_failure(cell: Cell, failed: TaskResult) -> Entry:
+def _entry_of_failure(cell: Cell, failed: TaskResult) -> MatrixEntry:
     reason = f"{FAILURES.get(failed.outcome, 'raises')} {failed.error_message}"
-    return Entry(Verdict.FAILED, reason, failed.outcome.value)
+    return MatrixEntry(Verdict.FAILED, reason, failed.outcome.value)
 
 
-def reduced(every: Sequence[Row]) -> list[Row]:
+def select_quick(every: Sequence[ExtremeCase]) -> list[ExtremeCase]:
     """The extremes that take a fraction of a second, mostly without the models of the engine."""
     chosen = [
         replace(row, columns=tuple(key for key in row.columns if key in REFERENCE or row.group in BRIEF))

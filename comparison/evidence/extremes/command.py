@@ -16,9 +16,10 @@ from rich.console import Console
 from comparison.cli.arguments import CommandParser, command, number_of_jobs, read_number, write_and_show
 from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.user_models import add_models, user_models
-from comparison.evidence.extremes.analysis import LIMIT, Extremes, cells, reduced
+from comparison.evidence.extremes.analysis import LIMIT, Extremes, cells, select_quick
+from comparison.evidence.extremes.columns import COLUMNS, ENGINE, EQUATIONS, STATED, user_column
 from comparison.evidence.extremes.matrix import FILE, STORED, Matrix, Verdict
-from comparison.evidence.extremes.rows import COLUMNS, ENGINE, EQUATIONS, STATED, rows, user_column
+from comparison.evidence.extremes.rows import rows
 from comparison.runner.output import destination, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
@@ -51,7 +52,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 
     def show() -> None:
         for verdict in (Verdict.LIMIT, Verdict.FAILED):
-            for row, title, entry in matrix.listed(verdict):
+            for row, title, entry in matrix.cells_of(verdict):
                 console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
 
     (file,) = write_and_show(out, partial(publish, out, {FILE: STORED.as_json(matrix)}, "comparison.extremes"), show)
@@ -90,7 +91,7 @@ def _choose_cells(options: argparse.Namespace) -> Extremes:
     number_of_jobs(options)  # refused before anything else is looked at
     supplied = user_models(options.model, options.model_limit, options.scheduler)
     every = list(rows())
-    kept = [row for row in (reduced(every) if options.reduced else every) if options.rows in row.name]
+    kept = [row for row in (select_quick(every) if options.reduced else every) if options.rows in row.name]
     columns = [column for column in COLUMNS if not options.models or column.key in options.models]
     columns += [user_column(model) for model in supplied]
     if not cells(kept, columns):

@@ -36,7 +36,7 @@ def amplification(
         for number, level in enumerate(levels):  # a penetration between that of the first level and its own
             share = min(number / LEVELS_TO_USUAL_CONTACT, 1.0)
             levels[number] = replace(level, penetration=first ** (1.0 - share) * level.penetration**share)
-    if step is not None:  # the largest one is so many times as long, the smallest stays what it is
+    if step is not None:  # the largest one is `factor` times as long, the smallest stays what it is
         factor = step / math.sqrt(scene.radius / GRAVITY) / levels[0].step
         more, error = math.ceil(math.log(factor, STEP_RATIO)), max(factor, 1.0) ** 2  # a method of second order
         for number, level in enumerate(levels):

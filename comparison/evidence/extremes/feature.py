@@ -7,7 +7,7 @@ from comparison.report.section import Section
 FOUND = ResultField(
     "extremes",
     Matrix,
-    "every model at the extremes of every quantity; null unless phase-resonance extremes left it beside the report",
+    STORED.word_field("every model at the extremes of every quantity"),
     load=STORED.load,
 )
 FEATURE = Feature(
@@ -15,7 +15,7 @@ FEATURE = Feature(
     (FOUND,),
     section=Section(
         "Stability at the extremes",
-        "phase-resonance extremes makes it, beside the report; the next run of the study shows it",
+        STORED.word_origin(),
         lambda report: {
             "verdicts": [(verdict.value, MEANING[verdict]) for verdict in Verdict],
             "describe": describe,

@@ -30,7 +30,7 @@ MEANING = {
 
 
 @result
-class Entry:
+class MatrixEntry:
     """One cell of the matrix."""
 
     verdict: Verdict
@@ -51,7 +51,9 @@ class Extreme:
 
     group: Annotated[str, "the quantity"]
     title: Annotated[str, "its extreme value"]
-    entries: Annotated[Mapping[str, Entry], "by key of the model; none for a model that the extreme does not concern"]
+    entries: Annotated[
+        Mapping[str, MatrixEntry], "by key of the model; none for a model that the extreme does not concern"
+    ]
 
 
 @result
@@ -82,7 +84,7 @@ class Matrix:
         """The rows that share a quantity."""
         return [list(rows) for _, rows in groupby(self.rows, key=lambda row: row.group)]
 
-    def listed(self, verdict: str) -> list[tuple[Extreme, str, Entry]]:
+    def cells_of(self, verdict: str) -> list[tuple[Extreme, str, MatrixEntry]]:
         """Row, title of the column and entry of the cells of one verdict."""
         return [
             (row, self.columns[key], entry)
@@ -95,7 +97,7 @@ class Matrix:
 STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "phase-resonance extremes")
 
 
-def describe(entry: Entry) -> str:
+def describe(entry: MatrixEntry) -> str:
     """Return what stands in the field: the error claimed, or the status in its own words."""
     if entry.verdict == Verdict.CONVERGED and entry.error is not None:
         return f"{entry.error:.0e}"

@@ -1,5 +1,5 @@
 """
-The rows and columns of the matrix of extremes: one quantity of a plain scene driven to its extreme, for every model.
+The rows of the matrix of extremes: one quantity of a plain scene driven to its extreme, for every model.
 
 Scenes are written as in a scene file and read where a cell is solved, so that a wrong one is refused there. They last a
 few seconds, during which the platform rests, slides and stops, unless the duration itself is the extreme.
@@ -10,8 +10,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from comparison.study.models import Model
-from reference.problem.readings import DEFAULT_V_REG
+from comparison.evidence.extremes.columns import (
+    ALL,
+    MAX_WORK,
+    PLANAR,
+    REFERENCE,
+    SPATIAL,
+    STATED,
+    WITH_ENGINE,
+    WITH_V_REG,
+)
 
 Phases = tuple[tuple[float, float], ...]
 
@@ -19,35 +27,14 @@ PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad
 SYMMETRIC: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
 PLAIN_RADIUS = 0.25  # m, of the plain scene, whose period is 1 s
 GRAVITY_LIMIT = 9.81  # m/s^2: downward acceleration of the plate at which the contact carries nothing
-
-
-EQUATIONS, ENGINE = "reference:amplification", "multibody:amplification"
-
-
-@dataclass(frozen=True)
-class Column:
-    """A model and what confirms it."""
-
-    key: str
-    title: str
-    amplification: str  # "package:function"
-    settings: Mapping[str, Any]  # arguments of the function
-    tolerance: float  # relative error asked
-    # how a value is confirmed, in this order until one answers: function, settings, relative error asked
-    finer: tuple[tuple[str, Mapping[str, Any], float], ...]
-    seconds: float = 0.5  # rough processor time of a cell with its finer runs
-    like: str = ""  # for an engine of the user: the column whose rows concern it, too
-
-
-# steps of the engine for a phase pair, and for one of a tower by its number of bodies, whose steps cost more: a cell
-# ends within the limit of its processor time
-MAX_WORK = 6e5
-MUCH_WORK = 4e6  # where nothing but the number of steps would stop the translational model, whose steps cost least
+# steps of the engine for a phase pair where nothing but their number would stop the translational model, whose steps
+# cost least, and for one of a tower by its number of bodies, whose steps cost more
+MUCH_WORK = 4e6
 TOWER_WORK = {10: 1.5e5, 100: 2.5e5, 1000: 1e3}
 
 
 @dataclass(frozen=True)
-class Row:
+class ExtremeCase:
     """An extreme."""
 
     group: str  # the quantity
@@ -66,45 +53,6 @@ class Row:
     def name(self) -> str:
         """Quantity and value."""
         return f"{self.group} {self.title}"
-
-
-def _column(key: str, title: str, equations: str, regularization: float | None) -> Column:
-    function, settings = EQUATIONS, {"equations": equations, "regularization": regularization}
-    return Column(key, title, function, settings, 1e-6, ((function, settings, 1e-8), (function, settings, 1e-7)))
-
-
-_REGULARIZED = {"equations": "exact", "regularization": DEFAULT_V_REG}
-_TRANSLATIONAL = {"model": "translational", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
-_SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
-STATED = "comparison.evidence.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
-
-# the same law and geometry by other means and far closer; the engine itself where that has no answer
-_FINER = (EQUATIONS, _REGULARIZED, 1e-6), (ENGINE, _TRANSLATIONAL, 3e-5), (ENGINE, _TRANSLATIONAL, 1e-4)
-_FINER_SPATIAL = (ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)
-
-COLUMNS = (
-    _column("small", "small equations", "small", None),
-    _column("exact", "exact equations", "exact", None),
-    _column("regularised", "exact equations, v_reg", "exact", DEFAULT_V_REG),
-    Column("translational", "translational engine", ENGINE, _TRANSLATIONAL, 1e-3, _FINER, 1.0),
-    Column("spatial", "spatial engine", ENGINE, _SPATIAL, 1e-2, _FINER_SPATIAL, 8.5),
-)
-ALL = tuple(column.key for column in COLUMNS)
-
-
-def user_column(model: Model) -> Column:
-    """The column of an engine of the user, confirmed by the equations with the same law."""
-    law = {key: value for key, value in model.settings.items() if key != "engine"}
-    like = str(model.like) if model.like in ALL else "exact"
-    finer = ((EQUATIONS, law, 1e-8), (EQUATIONS, law, 1e-6))
-    return Column(model.key, model.title, model.amplification, model.settings, 1e-3, finer, like=like)
-
-
-PLANAR = ALL[:4]  # every model whose bodies do not turn
-REFERENCE = ALL[:3]
-WITH_V_REG = ALL[2:]
-WITH_ENGINE = ALL[3:]
-SPATIAL = ALL[4:]
 
 
 def scene(
@@ -149,12 +97,12 @@ def _upward(amplitude: float) -> list[list[float]]:
 
 def _rows(
     group: str, scenes: Mapping[Any, Mapping[str, Any]], columns: tuple[str, ...] = ALL, **more: Any
-) -> list[Row]:
+) -> list[ExtremeCase]:
     titles = [value if isinstance(value, str) else f"{value:g}" for value in scenes]
-    return [Row(group, title, stated, columns, **more) for title, stated in zip(titles, scenes.values())]
+    return [ExtremeCase(group, title, stated, columns, **more) for title, stated in zip(titles, scenes.values())]
 
 
-def rows() -> Iterator[Row]:
+def rows() -> Iterator[ExtremeCase]:
     """Every extreme, in the order of the matrix."""
     yield from _friction_laws()
     yield from _numerics_of_the_engine()
@@ -169,7 +117,7 @@ def rows() -> Iterator[Row]:
     yield from _outside_the_rules()
 
 
-def _friction_laws() -> Iterator[Row]:
+def _friction_laws() -> Iterator[ExtremeCase]:
     yield from _rows("friction", {friction: scene(friction=friction) for friction in (0.0, 1e-9, 1.0, 10.0)})
     laws = {
         f"{rate:g}, {slow:g} to {fast:g}": scene(friction={"slow": slow, "fast": fast, "rate": rate})
@@ -181,27 +129,27 @@ def _friction_laws() -> Iterator[Row]:
     yield from _rows("lubrication, s/m", wet, ("small", "exact", "translational"))
     for exponent in range(1, 9):
         speed = 10.0**-exponent
-        yield Row("v_reg, m/s", f"{speed:g}", scene(), WITH_V_REG, settings={"regularization": speed})
+        yield ExtremeCase("v_reg, m/s", f"{speed:g}", scene(), WITH_V_REG, settings={"regularization": speed})
     for cutoff in (1e-1, 1e-4, 1e-12):
-        yield Row("cutoff v_c, m/s", f"{cutoff:g}", scene(), ("small", "exact"), settings={"cutoff": cutoff})
+        yield ExtremeCase("cutoff v_c, m/s", f"{cutoff:g}", scene(), ("small", "exact"), settings={"cutoff": cutoff})
 
 
-def _numerics_of_the_engine() -> Iterator[Row]:
+def _numerics_of_the_engine() -> Iterator[ExtremeCase]:
     stiff, step = "contact stiffness, N/m", "step of the engine, s"
     brief = {-6: 0.02, -5: 0.2}  # s of motion at a small step
     for group, key, exponents in ((stiff, "contact_stiffness", range(2, 13, 2)), (step, "step", range(-6, 0))):
         for exponent in exponents:
             changed = {key: 10.0**exponent, "tolerance": 1e-2}
             short = scene(duration=brief.get(exponent, 1.0))
-            yield Row(group, f"1e{exponent}", short, WITH_ENGINE, settings=changed, amplification=STATED)
+            yield ExtremeCase(group, f"1e{exponent}", short, WITH_ENGINE, settings=changed, amplification=STATED)
 
 
-def _sizes() -> Iterator[Row]:
+def _sizes() -> Iterator[ExtremeCase]:
     group = "amplitude, m/s^2"
     sizes = (1e-9, 1e-6, 1e-3, 5.0, 20.0, 1e3, 1e9)
     yield from _rows(group, {amplitude: scene(amplitudes=_along(amplitude)) for amplitude in sizes})
     near_rim = scene(amplitudes=_along(12.0), friction=0.02, duration=20.0)
-    yield Row(group, "12, friction 0.02, along the rim", near_rim, PLANAR, phases=PHASES[:1])
+    yield ExtremeCase(group, "12, friction 0.02, along the rim", near_rim, PLANAR, phases=PHASES[:1])
     curved = {radius: _above_its_contacts(scene(radius=radius)) for radius in (1e-3, 3e-2, 30.0, 1e3)}
     flat = {
         "inf": scene(radius=math.inf),
@@ -210,23 +158,23 @@ def _sizes() -> Iterator[Row]:
     }
     yield from _rows("rho, m", {**curved, **flat})
     far_off = scene(radius=math.inf, amplitudes=_along(1e3))  # the platform leaves its supports
-    yield Row("rho, m", "inf, 1000 m/s^2", far_off, PLANAR)
+    yield ExtremeCase("rho, m", "inf, 1000 m/s^2", far_off, PLANAR)
     yield from _rows("travel, m", {travel: scene(travel=travel) for travel in (1e-6, 0.02, 0.24)})
 
 
 def _above_its_contacts(stated: dict[str, Any]) -> dict[str, Any]:
-    """The bodies no lower beside the contacts than in the plain scene: heights count from a radius below them."""
+    """The bodies no lower against the contacts than in the plain scene: heights count from a radius below them."""
     rise = max(stated["isolator"]["radius"] - PLAIN_RADIUS, 0.0)
     return {**stated, "bodies": [{**body, "height": body["height"] + rise} for body in stated["bodies"]]}
 
 
-def _chains() -> Iterator[Row]:
+def _chains() -> Iterator[ExtremeCase]:
     # a shock takes to the top of the towers 0.5 to 1.6 s
     for count, link in ((1, 1.0), (2, 1.0), (10, 0.3), (100, 0.03), (1000, 0.01)):
         tower = scene(masses=[1.0] * count, link=(link, 0.8 * link), storey=0.3, duration=3.0 if count <= 10 else 2.0)
         few, models = (PHASES, ALL) if count <= 10 else (PHASES[:1], PLANAR)
         work = TOWER_WORK.get(count, MAX_WORK)
-        yield Row("bodies N", str(count), tower, models, phases=few, quick=count <= 100, max_work=work)
+        yield ExtremeCase("bodies N", str(count), tower, models, phases=few, quick=count <= 100, max_work=work)
     totals = (1e-6, 1e-3, 1e3, 1e9)
     yield from _rows("total mass, kg", {total: scene(masses=[0.5 * total, 0.5 * total]) for total in totals})
     group = "platform's share of the mass"
@@ -234,12 +182,12 @@ def _chains() -> Iterator[Row]:
     paradox = ("painleve paradox", "contact lost")
     for share, right in ((1e-6, ()), (1e-3, paradox), (0.999, ()), (0.999999, ())):
         tower = scene(masses=[2.0 * share, 2.0 * (1.0 - share)])
-        yield Row(group, f"{share:g}", tower, ("exact", "regularised", "translational"), right=right)
-        yield Row(group, f"{share:g}", tower, ("small", "spatial"))
-    yield Row(group, "1", scene(masses=[2.0]), ALL)
+        yield ExtremeCase(group, f"{share:g}", tower, ("exact", "regularised", "translational"), right=right)
+        yield ExtremeCase(group, f"{share:g}", tower, ("small", "spatial"))
+    yield ExtremeCase(group, "1", scene(masses=[2.0]), ALL)
     stiffest = scene(link=(1e-3, 0.8e-3))  # swings for 3000 of its periods
-    yield Row("link periods, s", "0.001", stiffest, PLANAR, max_work=MUCH_WORK)
-    yield Row("link periods, s", "0.001", stiffest, ("spatial",))
+    yield ExtremeCase("link periods, s", "0.001", stiffest, PLANAR, max_work=MUCH_WORK)
+    yield ExtremeCase("link periods, s", "0.001", stiffest, ("spatial",))
     yield from _rows("link periods, s", {each: scene(link=(each, 0.8 * each)) for each in (1e-2, 30.0, 1e3)})
     damped: dict[Any, Any] = {zeta: scene(damping=zeta) for zeta in (0.0, 1e-6, 0.05, 1.0, 5.0)}
     damped["0 along x, 2 along y"] = scene(damping=[0.0, 20.0])
@@ -247,11 +195,11 @@ def _chains() -> Iterator[Row]:
     yield from _rows("damping of the links, of critical", damped)
 
 
-def _bars() -> Iterator[Row]:
+def _bars() -> Iterator[ExtremeCase]:
     """Bars under the weight of a mass of 1 kg, whose sway buckling load is stated in weights of that mass."""
     group = "load over the buckling load of bars"
     yield from _rows(group, {share: _on_bars(share) for share in (1e-4, 0.01, 0.5, 0.99, 0.999999)})
-    yield Row(group, "1.000001", _on_bars(1.000001), ALL, invalid=True)
+    yield ExtremeCase(group, "1.000001", _on_bars(1.000001), ALL, invalid=True)
     group = "axial stiffness of the bars, N"
     giving = {
         f"{stiffness:g}, {effect}": _on_bars(0.3, axial_stiffness=stiffness, spread=0.8, load_effect=effect)
@@ -261,7 +209,7 @@ def _bars() -> Iterator[Row]:
     yield from _rows(group, giving, SPATIAL, max_work=1e5)
     topples = _on_bars(0.3, axial_stiffness=1.0, spread=0.8)
     topples["bodies"][1]["height"] = 6.0
-    yield Row(group, "1, under a body 6 m above", topples, SPATIAL, invalid=True)
+    yield ExtremeCase(group, "1, under a body 6 m above", topples, SPATIAL, invalid=True)
 
 
 def _on_bars(share: float, **keys: Any) -> dict[str, Any]:
@@ -273,7 +221,7 @@ def _on_bars(share: float, **keys: Any) -> dict[str, Any]:
     return {**stated, "bodies": [platform, {**body, "period": None, "bars": bars}]}
 
 
-def _excitations() -> Iterator[Row]:
+def _excitations() -> Iterator[ExtremeCase]:
     harmonics = {
         "equal": scene(periods=(0.9, 0.9)),
         "1e-3 Hz": scene(periods=(1e3, 1.1e3), decay=(3e-4, 3e-4)),
@@ -290,14 +238,14 @@ def _excitations() -> Iterator[Row]:
     yield from _rows(group, {upward: scene(amplitudes=_upward(upward)) for upward in (5.0, 9.8)})
     exactly = scene(amplitudes=_upward(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
     weightless = (0.0, 1.1), (math.pi, 0.7)  # for one instant: whether the contact has opened then is a matter of words
-    yield Row(group, "-g exactly", exactly, PLANAR, phases=weightless, right=("contact lost",))
+    yield ExtremeCase(group, "-g exactly", exactly, PLANAR, phases=weightless, right=("contact lost",))
     # the spatial model goes on when a contact opens: it may have an answer, or none, but no refusal
-    yield Row(group, "-g exactly", exactly, ("spatial",), phases=weightless)
+    yield ExtremeCase(group, "-g exactly", exactly, ("spatial",), phases=weightless)
     yield from _rows(group, {upward: scene(amplitudes=_upward(upward)) for upward in (15.0, 1e3)})
-    yield Row("phases", "at symmetric values", scene(duration=2.0), ALL, phases=SYMMETRIC)
+    yield ExtremeCase("phases", "at symmetric values", scene(duration=2.0), ALL, phases=SYMMETRIC)
 
 
-def _directions() -> Iterator[Row]:
+def _directions() -> Iterator[ExtremeCase]:
     lines = {
         "x alone": scene(amplitudes=[[2.0, 1.0], [0.0, 0.0]]),
         "y alone": scene(amplitudes=[[0.0, 0.0], [2.0, 1.0]]),
@@ -313,22 +261,22 @@ def _directions() -> Iterator[Row]:
     yield from _rows("direction", planar, PLANAR)
 
 
-def _starts_and_supports() -> Iterator[Row]:
+def _starts_and_supports() -> Iterator[ExtremeCase]:
     limit = 0.1 * GRAVITY_LIMIT
     for name, phase in (("falling", 0.0), ("rising", -math.pi / 3.0), ("beyond at once", math.pi / 3.0)):
         amplitude = limit / math.cos(phase)
         alone = scene(amplitudes=[[amplitude, 0.0], [0.0, 0.0]], decay=(0.0, 0.0), masses=[1.0])
-        yield Row("start at the friction limit", name, alone, ALL, phases=((phase, 0.0),))
+        yield ExtremeCase("start at the friction limit", name, alone, ALL, phases=((phase, 0.0),))
     three = {ring: scene(amplitudes=_along(4.0), friction=0.05, supports=3, ring=ring) for ring in (1.0, 0.1, 0.01)}
     yield from _rows("three supports, ring in m", three, ("spatial",))
 
 
-def _uneven() -> Iterator[Row]:
+def _uneven() -> Iterator[ExtremeCase]:
     """Uneven buildings: the equations and translation do not read what makes them so."""
     for share in (1e-6, 0.1, 0.45, 0.5, 1.0):  # shares of the ring, to a support: at 0.5 its opposite carries nothing
         moved, beyond = _with_bodies(offset=[share * math.sqrt(0.5)] * 2), share >= 0.5
         work = MAX_WORK if beyond else 1e5
-        yield Row("offset over the ring", f"{share:g}", moved, SPATIAL, invalid=beyond, max_work=work)
+        yield ExtremeCase("offset over the ring", f"{share:g}", moved, SPATIAL, invalid=beyond, max_work=work)
     turned = {f"{yaw:.3g}": _with_bodies(yaw=yaw) for yaw in (1e-6, 0.25 * math.pi)}
     yield from _rows("yaw, rad", turned, SPATIAL)
     positions = {
@@ -340,7 +288,7 @@ def _uneven() -> Iterator[Row]:
     held = {title: scene(ring=None, supports=places) for title, places in positions.items()}
     yield from _rows(group, held, SPATIAL, max_work=5e4)
     line = scene(ring=None, supports=[[-1.0, -1.0], [0.0, 0.0], [1.0, 1.0]])
-    yield Row(group, "on one line", line, SPATIAL, invalid=True)
+    yield ExtremeCase(group, "on one line", line, SPATIAL, invalid=True)
 
 
 def _with_bodies(**keys: Any) -> dict[str, Any]:
@@ -348,14 +296,14 @@ def _with_bodies(**keys: Any) -> dict[str, Any]:
     return {**stated, "bodies": [{**body, **keys} for body in stated["bodies"]]}
 
 
-def _tolerances() -> Iterator[Row]:
+def _tolerances() -> Iterator[ExtremeCase]:
     for columns, tolerances in ((REFERENCE, (1e-1, 1e-2, 1e-4, 1e-8)), (("translational",), (1e-1, 1e-2, 1e-4, 1e-6))):
         for tolerance in tolerances:
             settings = {"tolerance": tolerance}
-            yield Row("relative error asked", f"{tolerance:g}", scene(), columns, settings=settings)
+            yield ExtremeCase("relative error asked", f"{tolerance:g}", scene(), columns, settings=settings)
 
 
-def _outside_the_rules() -> Iterator[Row]:
+def _outside_the_rules() -> Iterator[ExtremeCase]:
     group = "outside the rules"
     wrong = {
         "friction -0.1": scene(friction=-0.1),
@@ -367,52 +315,9 @@ def _outside_the_rules() -> Iterator[Row]:
     }
     yield from _rows(group, wrong, ("exact", "translational"), invalid=True)
     for speed in (0.0, -1.0, math.inf):
-        yield Row(group, f"v_reg {speed:g} m/s", scene(), WITH_V_REG, settings={"regularization": speed}, invalid=True)
-    yield Row(group, "no loading", scene(amplitudes=_along(0.0)), PLANAR, right=("no ground motion",))
+        yield ExtremeCase(
+            group, f"v_reg {speed:g} m/s", scene(), WITH_V_REG, settings={"regularization": speed}, invalid=True
+        )
+    yield ExtremeCase(group, "no loading", scene(amplitudes=_along(0.0)), PLANAR, right=("no ground motion",))
     overflow = scene(amplitudes=_along(1e200))
-    yield Row(group, "loading 1e200 m/s^2", overflow, PLANAR, right=("non-finite load",))
-
-
-_ENGINE = "translational", "spatial"
-_LONG_CHAIN = "the fastest swing of the chain sets the step: the steps take more processor time than a cell may"
-_QUICK = "within a time that the contact, as stiff as rounding allows, cannot follow"
-_FRICTION = f"friction stops so light a platform {_QUICK}"
-_RELAXATION = f"friction relaxes at a stop {_QUICK}, and a larger v_reg has another answer"
-_LIGHT = (
-    "the weight of the tower is so much more than the platform's that the force which starts a slide is less than the "
-)
-_LIGHT += "rounding of those which balance at its start"
-
-# why a model has no answer, where that is known: by quantity and extreme, by key of the model
-CAUSES: dict[tuple[str, str], dict[str, str]] = {
-    ("v_reg, m/s", "1e-06"): {"spatial": _RELAXATION},
-    ("v_reg, m/s", "1e-07"): dict.fromkeys(_ENGINE, _RELAXATION),
-    ("v_reg, m/s", "1e-08"): dict.fromkeys(_ENGINE, _RELAXATION),
-    ("amplitude, m/s^2", "1e-09"): dict.fromkeys(
-        _ENGINE,
-        "the contact force rounds by 1e-15 of the weight over its penetration, which is as much as the accelerations",
-    ),
-    ("rho, m", "0.001"): {
-        "spatial": "heights of a thousand rho: their rounding makes that of the contact force a share of the peaks"
-    },
-    ("bodies N", "100"): {"translational": _LONG_CHAIN},
-    ("bodies N", "1000"): {"translational": _LONG_CHAIN},
-    ("platform's share of the mass", "1e-06"): {
-        **dict.fromkeys(("exact", "regularised"), _LIGHT),
-        **dict.fromkeys(_ENGINE, _FRICTION),
-    },
-    ("platform's share of the mass", "0.001"): {"spatial": _FRICTION},
-    ("link periods, s", "0.001"): {"spatial": _LONG_CHAIN},
-    ("load over the buckling load of bars", "0.0001"): {
-        "spatial": "the swing of so stiff a link asks for a contact that damps none of it: the levels within the work "
-        "of a cell do not reach the tolerance"
-    },
-    ("duration, s", "0.001"): dict.fromkeys(
-        _ENGINE,
-        "mu_2 is so small beside mu_1 that a contact stiff enough not to change it rounds by as much, and a softer "
-        "one changes it",
-    ),
-    ("relative error asked", "1e-06"): {
-        "translational": "the error estimate of the engine counts 1e-6 of a peak at least: less is not measured"
-    },
-}
+    yield ExtremeCase(group, "loading 1e200 m/s^2", overflow, PLANAR, right=("non-finite load",))

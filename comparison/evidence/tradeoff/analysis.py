@@ -9,7 +9,14 @@ import numpy as np
 import xarray as xr
 
 from comparison.evidence.tradeoff import trade
-from comparison.evidence.tradeoff.settings import Question, Setting, Settings, asked, settings, user_settings
+from comparison.evidence.tradeoff.settings import (
+    Setting,
+    Settings,
+    TradeoffQuestion,
+    questions_of,
+    settings,
+    user_settings,
+)
 from comparison.json_file import finite_or_none
 from comparison.result_types import Array
 from comparison.runner.analysis import Analysis
@@ -42,8 +49,8 @@ class Measurement:
 
 
 @dataclass(frozen=True)
-class Measured:
-    """What a measurement gave."""
+class SettingResult:
+    """Result of a measurement."""
 
     mu: Array  # (M, N), NaN without a value
     error_estimate: Array  # (M, N), absolute, NaN without
@@ -61,7 +68,7 @@ def sample(points: int) -> Array:
     return np.random.default_rng(SEED).uniform(0.0, 2.0 * np.pi, (points, 2))
 
 
-def measure(measurement: Measurement) -> Measured:
+def measure(measurement: Measurement) -> SettingResult:
     """Call the function, warm, inside a worker process; where it raises there are no values, but the reason."""
     path, settings = measurement.function
     if path not in _warm:
@@ -70,31 +77,33 @@ def measure(measurement: Measurement) -> Measured:
     return _call_function(measurement.scene, measurement.phases, path, settings)
 
 
-def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -> Measured:
+def _call_function(scene: Scene, phases: Array, path: str, settings: Settings) -> SettingResult:
     nothing, step, clock = np.full((len(phases), len(scene.bodies)), np.nan), np.nan, time.process_time()
     try:
         answer = import_function(path)(scene, phases, **settings)
     except Exception as error:
-        return Measured(nothing, nothing, time.process_time() - clock, np.nan, exception_line(error))
+        return SettingResult(nothing, nothing, time.process_time() - clock, np.nan, exception_line(error))
     seconds = time.process_time() - clock
     if isinstance(answer, tuple):
         answer, step = answer
     if isinstance(answer, Amplification):
-        return Measured(answer.mu, answer.error, seconds, step)
-    return Measured(np.asarray(answer, dtype=float), nothing, seconds, step)
+        return SettingResult(answer.mu, answer.error, seconds, step)
+    return SettingResult(np.asarray(answer, dtype=float), nothing, seconds, step)
 
 
-def without_value(measurement: Measurement, failed: TaskResult) -> Measured:
+def without_value(measurement: Measurement, failed: TaskResult) -> SettingResult:
     """In place of what a task did not return: phase pairs without a value."""
     nothing = np.full((len(measurement.phases), len(measurement.scene.bodies)), np.nan)
-    return Measured(nothing, nothing, 0.0, np.nan, failed.reason)
+    return SettingResult(nothing, nothing, 0.0, np.nan, failed.reason)
 
 
-def joined(parts: Sequence[Measured]) -> Measured:
+def join_results(parts: Sequence[SettingResult]) -> SettingResult:
     """The measurements of one function as one: times added up, and the first error message."""
     mu, error_estimate = map(np.concatenate, zip(*((part.mu, part.error_estimate) for part in parts)))
     seconds, step = sum(part.seconds for part in parts), float(np.mean([part.step for part in parts]))
-    return Measured(mu, error_estimate, seconds, step, next(filter(None, (part.error_message for part in parts)), ""))
+    return SettingResult(
+        mu, error_estimate, seconds, step, next(filter(None, (part.error_message for part in parts)), "")
+    )
 
 
 @dataclass(frozen=True)
@@ -119,7 +128,7 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
 
     def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
         """The tasks of the reference solution of every question; then of every setting, and of what it is against."""
-        questions = {question.key: question for question in asked(scene)}
+        questions = {question.key: question for question in questions_of(scene)}
         for question in questions.values():
             yield self._tasks(scene, question.reference_solution, question, question.seconds)
         for each in self._settings(scene):
@@ -128,7 +137,7 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
             seconds = CHEAP if each.against else question.seconds
             yield self._tasks(scene, each.against or question.reference_solution, question, seconds)
 
-    def _tasks(self, scene: Scene, function: Function, question: Question, seconds: float) -> list[Task]:
+    def _tasks(self, scene: Scene, function: Function, question: TradeoffQuestion, seconds: float) -> list[Task]:
         """Those of one function on the sample of a question; seconds: per point of a motion of 20 s, about."""
         count, each = question.quick if self.quick else question.points, seconds * scene.duration / 20.0
         size, phases = int(np.clip(CHUNK / each, 1, count)), sample(count)
@@ -143,9 +152,9 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
 
     def _trade(self, scene: Scene, results: TaskResults) -> trade.MeasuredTrade:
         measured = (
-            joined([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
+            join_results([results.value(task, without_value) for task in parts]) for parts in self._measurements(scene)
         )
-        solutions = [(question, next(measured)) for question in asked(scene)]
+        solutions = [(question, next(measured)) for question in questions_of(scene)]
         rows = [(setting, next(measured), next(measured)) for setting in self._settings(scene)]
         entries = [entry(setting, answer, against.mu) for setting, answer, against in rows]
         entries = trade.with_pareto_fronts(entries, len(scene.bodies))
@@ -154,10 +163,10 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
         values = dict(zip(trade.MEANINGS, map(list, numbers)))
         phases = sample(max(question.points for question in answered))
         found = trade.Trade(scene.name, scene.title, scene.digest(), len(scene.bodies), answered, entries, {})
-        return trade.MeasuredTrade(found, trade.labeled(entries, values, phases))
+        return trade.MeasuredTrade(found, trade.label_values(entries, values, phases))
 
 
-def entry(setting: Setting, measured: Measured, reference_solution: Array) -> trade.Entry:
+def entry(setting: Setting, measured: SettingResult, reference_solution: Array) -> trade.MeasuredSetting:
     """Return what one setting gave at M phase pairs, against mu (M, N) of the reference solution there."""
     error = np.abs(measured.mu / reference_solution - 1.0)
     error_estimate = measured.error_estimate / np.abs(measured.mu)
@@ -166,8 +175,8 @@ def entry(setting: Setting, measured: Measured, reference_solution: Array) -> tr
         [trade.quantile(column, share) for column in errors.T]
         for errors, share in ((error, 0.5), (error, 0.95), (error_estimate, 0.95))
     )
-    return trade.Entry(
-        **{field.name: getattr(setting, field.name) for field in fields(trade.Stated)},
+    return trade.MeasuredSetting(
+        **{field.name: getattr(setting, field.name) for field in fields(trade.StatedSetting)},
         points=points,
         answered=int(np.isfinite(error).all(axis=1).sum()),
         seconds=measured.seconds / points,
@@ -179,7 +188,9 @@ def entry(setting: Setting, measured: Measured, reference_solution: Array) -> tr
     )
 
 
-def _count_answers(question: Question, reference_solution: Measured, entries: Sequence[trade.Entry]) -> trade.Answered:
+def _count_answers(
+    question: TradeoffQuestion, reference_solution: SettingResult, entries: Sequence[trade.MeasuredSetting]
+) -> trade.Answered:
     """The question with its reference solution, and what is known about that."""
     error_estimate = reference_solution.error_estimate / np.abs(reference_solution.mu)
     error = trade.quantile(error_estimate.ravel(), 1.0)
@@ -192,7 +203,7 @@ def _count_answers(question: Question, reference_solution: Measured, entries: Se
     return trade.Answered(question.key, question.title, len(reference_solution.mu), solution, error, checks)
 
 
-def _agreements(question: Question, entries: Sequence[trade.Entry]) -> list[str]:
+def _agreements(question: TradeoffQuestion, entries: Sequence[trade.MeasuredSetting]) -> list[str]:
     """
     Return how far the most accurate setting of other methods, else of the same one, agrees with the reference solution.
     """
@@ -203,7 +214,7 @@ def _agreements(question: Question, entries: Sequence[trade.Entry]) -> list[str]
     if not any(others for _, others in families):
         families = [("the same code, asked for less", [each for each in candidates if each.controlled])]
 
-    def largest(setting: trade.Entry) -> float:
+    def largest(setting: trade.MeasuredSetting) -> float:
         return max(np.inf if error is None else error for error in setting.most)
 
     best = [(what, min(others, key=largest)) for what, others in families if others]

@@ -81,7 +81,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
             print_trade(console, each.trade)
 
     (file,) = write_and_show(out, write, show)
-    console.print(f"Trade: {file}, and SCENE-tradeoff.nc beside it.", soft_wrap=True)
+    console.print(f"Trade: {file}, and SCENE-tradeoff.nc next to it.", soft_wrap=True)
     return 0
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from comparison.evidence.tradeoff import growth, trade
 from comparison.evidence.tradeoff.growth import MeasuredGrowth, Series
-from comparison.evidence.tradeoff.trade import Answered, Entry, Trade
+from comparison.evidence.tradeoff.trade import Answered, MeasuredSetting, Trade
 from comparison.report.feature import Feature, ResultField
 from comparison.report.panels import panel
 from comparison.report.plots import MAX_CURVES, Panel
@@ -91,7 +91,7 @@ def _tradeoff_panel(trade: Trade, question: Answered, body: int) -> Panel:
     )
 
 
-def _curve(method: str, entries: Sequence[Entry], body: int, number: int) -> dict[str, Any]:
+def _curve(method: str, entries: Sequence[MeasuredSetting], body: int, number: int) -> dict[str, Any]:
     times = [f"{scientific(entry.most[body] or 0.0)} in {1e3 * entry.seconds:.3g} ms" for entry in entries]
     x, y = [entry.seconds for entry in entries], [max(entry.most[body] or 0.0, 1e-16) for entry in entries]
     titles = [f"{method}, {entry.setting}: {time}" for entry, time in zip(entries, times)]
@@ -102,15 +102,13 @@ def _curve(method: str, entries: Sequence[Entry], body: int, number: int) -> dic
 TRADES = ResultField(
     "tradeoff",
     list[Trade],
-    "error against compute time for every model and parameter; null unless phase-resonance tradeoff left it "
-    "beside the report",
+    trade.STORED.word_field("error against compute time for every model and parameter"),
     load=trade.load,
 )
 GROWTH = ResultField(
     "growth",
     MeasuredGrowth,
-    "how the cost grows with bodies, duration, phase pairs and workers; null unless phase-resonance tradeoff "
-    "--growth left it beside the report",
+    growth.STORED.word_field("how the cost grows with bodies, duration, phase pairs and workers"),
     load=growth.STORED.load,
 )
 
@@ -127,7 +125,7 @@ FEATURE = Feature(
     (TRADES, GROWTH),
     section=Section(
         "Speed for accuracy",
-        "phase-resonance tradeoff SCENE makes it, beside the report; the next run of the study shows it",
+        trade.STORED.word_origin(" SCENE"),
         _context,
         verifies=True,
         verdict=lambda results: word_trades(TRADES.get(results) or ()),

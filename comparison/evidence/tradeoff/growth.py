@@ -38,7 +38,7 @@ MAX_WORK = 1e9  # steps of the engine: the limit ends what takes too long, not a
 
 
 def tall(scene: Scene, bodies: int) -> Scene:
-    """The scene with its upper body cut into so many less one, each above the other on links of the same period."""
+    """Return the scene with its upper body cut into `bodies` - 1, each above the other on links of the same period."""
     table = scene.model_dump(exclude_none=True)
     first, second = table["bodies"][0], table["bodies"][min(1, len(table["bodies"]) - 1)]
     height = second.get("height", STOREY)
@@ -52,8 +52,8 @@ def tall(scene: Scene, bodies: int) -> Scene:
 
 
 @dataclass(frozen=True)
-class Quantity:
-    """What grows. scene: of a value, from the scene of the study."""
+class GrowingQuantity:
+    """Quantity that grows. scene: of a value, from the scene of the study."""
 
     name: str
     unit: str
@@ -64,15 +64,17 @@ class Quantity:
 
 _EACH = EXACT, TRANSLATIONAL, SPATIAL
 QUANTITIES = (
-    Quantity("bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), _EACH),
-    Quantity("duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}), _EACH),
-    Quantity(PAIRED, "", PHASES, lambda scene, n: scene, (EXACT,)),
+    GrowingQuantity("bodies", "", BODIES, lambda scene, n: tall(scene, int(n)), _EACH),
+    GrowingQuantity(
+        "duration", "s", DURATIONS, lambda scene, duration: scene.with_values({"duration": duration}), _EACH
+    ),
+    GrowingQuantity(PAIRED, "", PHASES, lambda scene, n: scene, (EXACT,)),
 )
 
 
 @result
 class Series:
-    """What one model costs over the values of one quantity."""
+    """Cost of one model over the values of one quantity."""
 
     quantity: Annotated[str, "what grows"]
     unit: Annotated[str, "its unit; empty for a pure number"]
@@ -122,12 +124,10 @@ def fit_slope(values: Sequence[float], seconds: Sequence[float]) -> tuple[float,
     return float(slope), float(np.sqrt(max(covariance[0, 0], 0.0)))
 
 
-@dataclass(frozen=True)
 class Growth(Analysis[list[Series]]):
-    """The series of the first scene with phases; quantities: what grows."""
+    """The series of the first scene with phases."""
 
     key, stage = "growth", "growth"
-    quantities: Sequence[Quantity] = QUANTITIES
 
     def tasks(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Task]:
         """One task for every quantity, model and value."""
@@ -143,16 +143,16 @@ class Growth(Analysis[list[Series]]):
             collected.append(with_slope(quantity.name, quantity.unit, model.title, quantity.values, seconds))
         return collected
 
-    def _series(self, study: Study) -> list[tuple[Quantity, Model, list[Task]]]:
+    def _series(self, study: Study) -> list[tuple[GrowingQuantity, Model, list[Task]]]:
         scene = study.phased[0]
         return [
             (quantity, model, [self._task(quantity, model, scene, value) for value in quantity.values])
-            for quantity in self.quantities
+            for quantity in QUANTITIES
             for model in quantity.models
             if model.applies(scene)
         ]
 
-    def _task(self, quantity: Quantity, model: Model, scene: Scene, value: float) -> Task:
+    def _task(self, quantity: GrowingQuantity, model: Model, scene: Scene, value: float) -> Task:
         work = {"max_work": MAX_WORK} if model.side == "engine" else {}
         settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(TOLERANCE), **work}
         phases = sample(int(value) if quantity.name == PAIRED else POINTS[model.side])
@@ -160,9 +160,9 @@ class Growth(Analysis[list[Series]]):
         return Task(measure, measurement, self.stage, about=scene, timeout=LIMIT)
 
 
-def by_workers(scene: Scene, pool: Callable[[int], Executor], most: int | None = None) -> Series:
+def by_workers(scene: Scene, pool: Callable[[int], Executor]) -> Series:
     """Wall time of the same calls of the equations with 1, 2, 4 ... workers of this machine."""
-    most = most or cores()
+    most = cores()
     counts = sorted({*(2**n for n in range(most.bit_length()) if 2**n <= most), most})
     settings = {**EXACT.settings, "tolerance": 1e-6}
     call = Measurement(scene, (EXACT.amplification, settings), sample(PAIRS))

@@ -16,7 +16,7 @@ from reference.solver.equations import exact_acceleration
 from reference.solver.system import pack
 
 ABSOLUTE = 1e-2  # absolute tolerance of a step, m and m/s, over its relative one
-SAMPLES = 2001  # samples of the motion besides the solver's own steps, to find where the peaks are
+SAMPLES = 2001  # samples of the motion in addition to the solver's own steps, to find where the peaks are
 NEAR = 1e-3  # share of the peak: samples as high as that are looked at again, FINER times as closely
 FINER = 50
 ALWAYS_LINEAR = 1e6  # m/s, corner of the lubricated law mu = f_c |v|: above any speed

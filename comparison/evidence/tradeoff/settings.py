@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from comparison.evidence.tradeoff.trade import Stated
+from comparison.evidence.tradeoff.trade import StatedSetting
 from comparison.study.models import V_REG_TEXT, Model, dry, has_spatial_data
 from comparison.study.user_models import engine_of
 from reference.problem import Scene
@@ -38,7 +38,7 @@ Settings = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
-class Question:
+class TradeoffQuestion:
     """One panel. reference_solution: its function and settings. points, quick: phase pairs of the sample."""
 
     key: str
@@ -50,7 +50,7 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Setting(Stated):
+class Setting(StatedSetting):
     """
     One point of a diagram. function: answers (scene, phases, **settings). against: reference solution of its own in
     place of the question's. seconds: per point, about.
@@ -70,21 +70,21 @@ _LAWS: Mapping[str, Settings] = {
 _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "tolerance": SPATIAL_TIGHT}
 _TIGHT = {question: (REFERENCE, {**law, "tolerance": TIGHT}) for question, law in _LAWS.items()}
 QUESTIONS = (
-    Question("exact", "exact equations, supremum", _TIGHT["exact"], 48, 12, 0.006),
-    Question("small", "small equations, supremum", _TIGHT["small"], 48, 12, 0.006),
-    Question("regularised", f"exact equations, v_reg = {V_REG_TEXT}", _TIGHT["regularised"], 12, 3, 0.01),
-    Question("spatial", f"spatial engine model, v_reg = {V_REG_TEXT}", (ENGINE, _SPATIAL), 6, 2, 3.0),
+    TradeoffQuestion("exact", "exact equations, supremum", _TIGHT["exact"], 48, 12, 0.006),
+    TradeoffQuestion("small", "small equations, supremum", _TIGHT["small"], 48, 12, 0.006),
+    TradeoffQuestion("regularised", f"exact equations, v_reg = {V_REG_TEXT}", _TIGHT["regularised"], 12, 3, 0.01),
+    TradeoffQuestion("spatial", f"spatial engine model, v_reg = {V_REG_TEXT}", (ENGINE, _SPATIAL), 6, 2, 3.0),
 )
 
 
-def asked(scene: Scene) -> list[Question]:
+def questions_of(scene: Scene) -> list[TradeoffQuestion]:
     """The questions that a scene allows."""
     return [question for question in QUESTIONS if question.key != "spatial" or has_spatial_data(scene)]
 
 
 def settings(scene: Scene, quick: bool = False) -> list[Setting]:
     """Every setting that is measured for a scene; quick: every other one of the expensive ones."""
-    keys = {question.key for question in asked(scene)}
+    keys = {question.key for question in questions_of(scene)}
     every = [*_reference(scene), *_scipy(quick), *_levels(quick), *_constant(quick)]
     return [setting for setting in every if setting.question in keys]
 

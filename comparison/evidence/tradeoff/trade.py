@@ -23,8 +23,8 @@ MEANINGS = {
 
 
 @result
-class Stated:
-    """What is known of a setting before it is measured."""
+class StatedSetting:
+    """Setting before it is measured."""
 
     question: Annotated[str, "key of the question that it answers"]
     method: Annotated[str, "the curve that it belongs to"]
@@ -41,7 +41,7 @@ class Stated:
 
 
 @result
-class Entry(Stated):
+class MeasuredSetting(StatedSetting):
     """One setting of a method, measured."""
 
     points: Annotated[int, "phase pairs asked for"]
@@ -81,7 +81,7 @@ class Trade:
     digest: Annotated[str, "hash of the scene"]
     bodies: Annotated[int, "number of bodies"]
     questions: Annotated[Sequence[Answered], "one per panel of the diagram"]
-    entries: Annotated[Sequence[Entry], "one per setting"]
+    entries: Annotated[Sequence[MeasuredSetting], "one per setting"]
     run: Annotated[Mapping[str, Any], "command, times, provenance"]
 
     def __post_init__(self) -> None:
@@ -92,13 +92,13 @@ class Trade:
             known = any(each.question == question.key for question in self.questions)
             require(known, f"question {each.question[:40]!r} of an entry is none of the questions")
 
-    def of(self, question: str) -> list[Entry]:
+    def of(self, question: str) -> list[MeasuredSetting]:
         """The entries of one question, in the order in which they were listed."""
         return [entry for entry in self.entries if entry.question == question]
 
-    def methods(self, question: str) -> dict[str, list[Entry]]:
+    def methods(self, question: str) -> dict[str, list[MeasuredSetting]]:
         """The curves of one question, from the cheapest value to the dearest."""
-        curves: dict[str, list[Entry]] = {}
+        curves: dict[str, list[MeasuredSetting]] = {}
         for entry in self.of(question):
             curves.setdefault(entry.method, []).append(entry)
         return curves
@@ -116,15 +116,15 @@ def unbeaten(mine: tuple[float, float], others: Sequence[tuple[float, float]]) -
     return math.isfinite(sum(mine)) and not beaten
 
 
-def with_pareto_fronts(entries: Sequence[Entry], bodies: int) -> list[Entry]:
+def with_pareto_fronts(entries: Sequence[MeasuredSetting], bodies: int) -> list[MeasuredSetting]:
     """The entries with `pareto_front` filled in, compared with those that answer their question at every point."""
     complete = [entry for entry in entries if entry.complete and not entry.model_error]
 
-    def pair(entry: Entry, body: int) -> tuple[float, float]:
+    def pair(entry: MeasuredSetting, body: int) -> tuple[float, float]:
         error = entry.most[body]
         return entry.seconds, math.inf if error is None else error
 
-    def front(entry: Entry, body: int) -> bool:
+    def front(entry: MeasuredSetting, body: int) -> bool:
         rivals = [pair(other, body) for other in complete if other.question == entry.question]
         return entry in complete and unbeaten(pair(entry, body), rivals)
 
@@ -156,7 +156,9 @@ class MeasuredTrade:
     values: xr.Dataset
 
 
-def labeled(entries: Sequence[Entry], values: Mapping[str, Sequence[Array]], phases: Array) -> xr.Dataset:
+def label_values(
+    entries: Sequence[MeasuredSetting], values: Mapping[str, Sequence[Array]], phases: Array
+) -> xr.Dataset:
     """Every value (P, N) by setting, point and body; a question with fewer points leaves the rest NaN."""
     axes = ("setting", "point", "body")
     variables: dict[str, Any] = {}

@@ -20,7 +20,7 @@ from comparison.cli.terminal import new_table
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import frame, pendulum
 from comparison.evidence.validation.files import DECAY, FRAME_SOURCE, LARGE, PENDULUM_SOURCE, read_folder, wrong_file
-from comparison.evidence.validation.table import STORED, Found, Validation, joined, recorded
+from comparison.evidence.validation.table import STORED, Found, Validation, join_findings, load_record
 from comparison.runner.environment import provenance
 from comparison.runner.output import destination, publish, refuse_foreign_files
 from comparison.runner.progress import wide_console
@@ -34,7 +34,9 @@ REASON = 150  # letters of what a library says of a motion
 @command
 def main(argv: Sequence[str]) -> int:
     """Compare with the measured files that the command line names, or print what is recorded; the exit code."""
-    parser = CommandParser("validation", "Measured motions beside what the equations and the engine compute of them.")
+    parser = CommandParser(
+        "validation", "Measured motions compared with what the equations and the engine compute of them."
+    )
     parser.add_argument(
         "folder",
         nargs="?",
@@ -46,7 +48,7 @@ def main(argv: Sequence[str]) -> int:
     options = parser.parse_args(argv)
     console = wide_console()
     if options.folder is None:
-        print_validation(console, recorded())
+        print_validation(console, load_record())
         console.print("Recorded in the package. To compute it anew, or with other runs of the frame, get the files:")
         for source in (FRAME_SOURCE, PENDULUM_SOURCE):
             console.print(f"  {source}", soft_wrap=True)
@@ -54,7 +56,7 @@ def main(argv: Sequence[str]) -> int:
         return 0
     out = destination(options.out)
     refuse_foreign_files(out, [STORED.name])
-    table = compared(options.folder)
+    table = compare_folder(options.folder)
     write = partial(publish, out, {STORED.name: STORED.as_json(table)}, "comparison.validation")
     files = write_and_show(out, write, partial(print_validation, console, table))
     console.print(f"Table: {', '.join(map(str, files))}", soft_wrap=True)
@@ -62,7 +64,7 @@ def main(argv: Sequence[str]) -> int:
     return 1 if table.counts()[NOT_COMPARED] else 0
 
 
-def compared(folder: Path) -> Validation:
+def compare_folder(folder: Path) -> Validation:
     """Everything that a folder of measured files allows."""
     begin = time.process_time()
     measured = read_folder(folder)
@@ -71,7 +73,7 @@ def compared(folder: Path) -> Validation:
     found += [_compare(LARGE, pendulum.compare_large, measured.large)] if measured.large else []
     seconds = round(time.process_time() - begin, 1)
     run = {"command": f"{STORED.command} FOLDER", "seconds": seconds, "provenance": provenance()}
-    return Validation(*joined(found), run)
+    return Validation(*join_findings(found), run)
 
 
 def _compare(file: str, compare: Callable[[Any], Found], measured: Any) -> Found:

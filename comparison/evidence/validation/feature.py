@@ -38,7 +38,7 @@ def panels(table: Validation) -> list[Panel]:
 FOUND = ResultField(
     "validation",
     Validation,
-    "measured motions beside what both sides compute; null unless phase-resonance validation left it beside the report",
+    STORED.word_field("measured motions, compared with what both sides compute"),
     load=STORED.load,
 )
 FEATURE = Feature(
@@ -46,8 +46,7 @@ FEATURE = Feature(
     (FOUND,),
     section=Section(
         "Measured motions",
-        "phase-resonance validation FOLDER makes it of measured files, beside the report; the next run of the "
-        "study shows it",
+        STORED.word_origin(" FOLDER"),
         lambda report: {
             "validation_panels": panels,
             "validation_verdicts": MEANING,

@@ -68,15 +68,15 @@ class Swing(NamedTuple):
     angle: Array
 
 
-class Measured(NamedTuple):
-    """What a folder holds."""
+class MeasuredFiles(NamedTuple):
+    """Measurements in a folder."""
 
     runs: list[Shaken]
     decay: Swing | None
     large: Swing | None
 
 
-def read_folder(folder: Path) -> Measured:
+def read_folder(folder: Path) -> MeasuredFiles:
     """The measured files in a folder and in the folders directly in it. Raises SceneError, one line."""
     if not folder.is_dir():
         raise wrong_file(folder, "must be a folder with the measured files")
@@ -90,7 +90,7 @@ def read_folder(folder: Path) -> Measured:
     plates, bases = ({match[1]: files[match[0]] for match in named if match[2] == axis} for axis in "xy")
     for grams in plates.keys() ^ bases.keys():
         missing = "y" if grams in plates else "x"
-        raise wrong_file(folder, f"s_b_{grams}g_{missing}.mat is missing beside its partner")
+        raise wrong_file(folder, f"s_b_{grams}g_{missing}.mat is missing, but its partner is there")
     workers = Workers(1)
     try:
         runs = [_shaken(workers, int(grams), plates[grams], bases[grams]) for grams in sorted(plates, key=int)]
@@ -101,7 +101,7 @@ def read_folder(folder: Path) -> Measured:
     if not (runs or decay or large):
         rule = f"holds none of the measured files: s_b_<weight>g_x.mat with s_b_<weight>g_y.mat, {DECAY}, {LARGE}"
         raise wrong_file(folder, rule)
-    return Measured(runs, decay, large)
+    return MeasuredFiles(runs, decay, large)
 
 
 def _shaken(workers: Workers, grams: int, plate: Path, base: Path) -> Shaken:
@@ -165,7 +165,7 @@ def read_columns(
 ) -> Mapping[str, Any] | str:
     """Read the columns of variables of a file inside a worker process; return what is wrong with it as text."""
     try:
-        with limited_memory(), warnings.catch_warnings():
+        with limit_memory(), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             data = read_file(file, LARGEST)
             kinds = {name: kind for name, _, kind in whosmat(io.BytesIO(data))}
@@ -192,7 +192,7 @@ def read_columns(
 
 
 @contextmanager
-def limited_memory() -> Iterator[None]:
+def limit_memory() -> Iterator[None]:
     """Let the process take MEMORY more than it has, where the system tells how much that is."""
     try:
         pages = int(Path("/proc/self/statm").read_text().split()[0])

@@ -13,7 +13,7 @@ from scipy.special import ellipk
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import table
 from comparison.evidence.validation.files import DECAY, LARGE, Swing, wrong_file
-from comparison.evidence.validation.table import COVERAGE, INPUT, LAW, OPEN, SIDES, Answer, Data, Found
+from comparison.evidence.validation.table import COVERAGE, INPUT, LAW, OPEN, SIDES, ComputedValues, Data, Found
 from comparison.result_types import Array
 from reference.problem import GRAVITY, Scene, Trajectory
 
@@ -74,7 +74,9 @@ def compare_decay(swing: Swing) -> Found:
     drawn = {"measured": sizes} | {side: 1e3 * _compute_turns(motions[side])[1] for side in (EQUATIONS, ENGINE)}
     axes = ("number of the turning point", "angle, mrad")
     curves = table.curves("pendulum, decay", axes, {name: (numbers, y) for name, y in drawn.items()})
-    given = [table.given(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named]
+    given = [
+        table.word_input(f"pendulum, decay: {name}", value, size, unit, source) for name, value, size, unit in named
+    ]
     return Found(rows, given, [fact], [], curves)
 
 
@@ -92,10 +94,10 @@ def compare_large(swing: Swing) -> Found:
     names = [f"half period at {angle:g} rad" for angle in ANGLES]
     data = Data(names, ["ms"] * 3, ["predicted"] * 3, 1e3 * values[:-2], 1e3 * spreads[:-2])
 
-    def compute(side: str, half: float, equations: str = "exact") -> Answer:
+    def compute(side: str, half: float, equations: str = "exact") -> ComputedValues:
         motions = [_motion(side, half, 0.0, angle, 3.2, equations) for angle in ANGLES]
         parts = [table.answer(each, lambda motion: 1e3 * np.diff(_zeros(motion))[:1], 1) for each in motions]
-        return Answer(*(np.concatenate(each) for each in zip(*parts)))
+        return ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
 
     answers = {side: compute(side, half) for side in SIDES}
     again, varied, small = (compute(EQUATIONS, *each).values for each in ((other,), (half + scatter,), (half, "small")))
@@ -110,7 +112,7 @@ def compare_large(swing: Swing) -> Found:
     fact = "pendulum, large angles: the half period of the small-vibration equations is off by "
     fact += ", ".join(f"{error:.1f} % at {angle:g} rad" for error, angle in off)
     source = f"fitted to the half period at {FITTED} rad, and the scatter of the swings about it"
-    given = table.given("pendulum, large angles: half period", half, scatter, "s", source)
+    given = table.word_input("pendulum, large angles: half period", half, scatter, "s", source)
     drawn = {"measured": (sizes, 1e3 * periods)} | {
         s: (np.array(ANGLES), answers[s].values) for s in (EQUATIONS, ENGINE)
     }

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation.frame import LOADED
-from comparison.evidence.validation.table import Quantity, Validation
+from comparison.evidence.validation.table import MeasuredQuantity, Validation
 from comparison.verdicts import (
     MET,
     NOT_COMPARED,
@@ -24,17 +24,17 @@ INSTANTS = "phase of the starts", "phase of the stops", "share of time at rest"
 FRAME, PENDULUM = "frame, ", "pendulum, "  # begin the names of the experiments
 
 
-def worse_side(each: Quantity) -> str:
+def worse_side(each: MeasuredQuantity) -> str:
     """Return the side with the worse verdict on a quantity, of equal ones that with the larger error."""
     return max(BOTH, key=lambda side: (ORDER.index(each.sides[side].verdict), abs(each.sides[side].error or 0.0)))
 
 
-def verdict_on(each: Quantity) -> Verdict:
+def verdict_on(each: MeasuredQuantity) -> Verdict:
     """Return the worse verdict of both sides on a quantity: met where both meet it."""
     return each.sides[worse_side(each)].verdict
 
 
-def word_quantity(each: Quantity) -> str:
+def word_quantity(each: MeasuredQuantity) -> str:
     """Return the worse verdict with the numbers behind it: "met (E = +1.4 %, within 2.2 %)", "not met (by +12 %)"."""
     found = each.sides[worse_side(each)]
     if found.verdict != MET or found.error is None or found.validation is None:
@@ -43,13 +43,13 @@ def word_quantity(each: Quantity) -> str:
     return f"{found.verdict} (E = {word_error(found.error, each.base, each.unit)}, within {allowed})"
 
 
-def frame_rows(table: Validation, loaded: bool, use: str) -> list[Quantity]:
+def frame_rows(table: Validation, loaded: bool, use: str) -> list[MeasuredQuantity]:
     """Return the quantities of the frame by one law of friction, predicted or calibrated."""
     rows = [each for each in table.quantities if each.experiment.startswith(FRAME) and each.use == use]
     return [each for each in rows if each.experiment.endswith(LOADED) == loaded]
 
 
-def name_run(each: Quantity) -> str:
+def name_run(each: MeasuredQuantity) -> str:
     """Return the weight of the disc in the run of a quantity, in words."""
     return each.experiment.removeprefix(FRAME).removesuffix(LOADED)
 
@@ -68,7 +68,7 @@ def word_runs(table: Validation, loaded: bool, use: str) -> str:
     return ", ".join(f"at {name_run(each)} {word_quantity(each)}" for each in rows) or f"{NOT_COMPARED}: no such run"
 
 
-def word_met_of(rows: Sequence[Quantity]) -> str:
+def word_met_of(rows: Sequence[MeasuredQuantity]) -> str:
     """Return how many of the quantities both sides meet: "6 of 10"."""
     return f"{sum(verdict_on(each) == MET for each in rows)} of {len(rows)}"
 
@@ -194,7 +194,7 @@ def word_predicted_pendulum(table: Validation) -> str:
     return f"{count} {'is' if met < 2 else 'are'} met"
 
 
-def word_largest(rows: Sequence[Quantity]) -> str:
+def word_largest(rows: Sequence[MeasuredQuantity]) -> str:
     """Return the largest relative error of some quantities and where it is: "rms about the mean at 550 g +13 %"."""
     each = max(
         (each for each in rows if each.base),

@@ -1,4 +1,4 @@
-"""Measured quantities beside what both sides compute, as data: a file, and what the report needs of it."""
+"""Measured quantities compared with what both sides compute, as data: a file, and what the report needs of it."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -42,7 +42,7 @@ class Comparison:
 
 
 @result
-class Quantity:
+class MeasuredQuantity:
     """One measured quantity."""
 
     experiment: Annotated[str, "frame or pendulum, and the run"]
@@ -96,8 +96,8 @@ class Curve:
 
 
 @result
-class Residual:
-    """How far a whole motion is off, which quantities of it alone do not show."""
+class CycleResidual:
+    """Difference of a whole motion, which quantities of it alone do not show."""
 
     experiment: Annotated[str, "the run, and the law of friction where it is of the load"]
     use: Annotated[str, "calibrated or predicted"]
@@ -108,16 +108,16 @@ class Residual:
 class Validation:
     """All measured quantities. Every uncertainty is expanded, about 95 %."""
 
-    quantities: Annotated[Sequence[Quantity], "in the order of the experiments"]
+    quantities: Annotated[Sequence[MeasuredQuantity], "in the order of the experiments"]
     inputs: Annotated[Sequence[str], "of the computations, in sentences: value, uncertainty, unit, and who states them"]
     facts: Annotated[Sequence[str], "what else was found, in sentences"]
-    residuals: Annotated[Sequence[Residual], "of the runs of the frame"]
+    residuals: Annotated[Sequence[CycleResidual], "of the runs of the frame"]
     curves: Annotated[Sequence[Curve], "of the plots; only in the file of a user who has the measured files"]
     run: Annotated[Mapping[str, Any], "command, provenance"]
 
-    def explanations(self) -> dict[str, list[Quantity]]:
+    def explanations(self) -> dict[str, list[MeasuredQuantity]]:
         """Quantities that are not met, by their explanation."""
-        groups: dict[str, list[Quantity]] = {}
+        groups: dict[str, list[MeasuredQuantity]] = {}
         for each in self.quantities:
             if each.cause:
                 groups.setdefault(each.cause, []).append(each)
@@ -131,36 +131,36 @@ class Validation:
 STORED = StoredFile("validation.json", Validation, "a table of measured quantities", "phase-resonance validation")
 
 
-def recorded() -> Validation:
+def load_record() -> Validation:
     """The table of the published files, as the command made it; without their motions."""
     file = resources.files("comparison.evidence.validation") / "recorded.json"
     return TypeAdapter(Validation).validate_json(file.read_bytes())
 
 
-class Answer(NamedTuple):
-    """What one side computes, (Q,), with its numerical errors."""
+class ComputedValues(NamedTuple):
+    """Values that one side computes, (Q,), with their numerical errors."""
 
     values: Array
     errors: Array
 
 
 class Found(NamedTuple):
-    """What one experiment adds to the table."""
+    """Contribution of one experiment to the table."""
 
-    quantities: list[Quantity]
+    quantities: list[MeasuredQuantity]
     inputs: list[str]
     facts: list[str]
-    residuals: list[Residual]
+    residuals: list[CycleResidual]
     curves: list[Curve]
 
 
-def joined(parts: Sequence[Found]) -> Found:
+def join_findings(parts: Sequence[Found]) -> Found:
     """Return what several experiments add."""
     return Found(*([each for part in column for each in part] for column in zip(*parts)))
 
 
 class Data(NamedTuple):
-    """What was measured: names and units of the quantities, their use, D and u_D."""
+    """Measurements: names and units of the quantities, their use, D and u_D."""
 
     names: Sequence[str]
     units: Sequence[str]
@@ -187,14 +187,14 @@ def motion_of(
     return reference.trajectory(scene, phases, equations, threshold, 1e-7, initial=initial)
 
 
-def answer(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> Answer:
+def answer(motion: Trajectory, read: Callable[[Trajectory], Array], count: int) -> ComputedValues:
     """Return what is read from a motion, `count` values, and its errors; NaN from one that ended early."""
     nothing = np.full(count, np.nan)
     if motion.status not in ANSWERED or motion.accuracy is None:
-        return Answer(nothing, nothing)
+        return ComputedValues(nothing, nothing)
     values, others = read(motion), [read(each) for each in motion.accuracy.coarser]
     errors = [motion.accuracy.error_of(value, rest) for value, *rest in zip(values, *others)]
-    return Answer(values, np.array(errors))
+    return ComputedValues(values, np.array(errors))
 
 
 def spline(motion: Trajectory) -> CubicHermiteSpline:
@@ -202,7 +202,7 @@ def spline(motion: Trajectory) -> CubicHermiteSpline:
     return CubicHermiteSpline(motion.time, motion.position[:, 0, 0], motion.velocity[:, 0, 0])
 
 
-def given(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:
+def word_input(name: str, value: float, uncertainty: float, unit: str, source: str) -> str:
     """An input as a sentence."""
     return f"{name} {value:.5g} ± {uncertainty:.2g} {unit}".rstrip() + f" ({source})"
 
@@ -210,10 +210,10 @@ def given(name: str, value: float, uncertainty: float, unit: str, source: str) -
 def quantities(
     experiment: str,
     data: Data,
-    answers: Mapping[str, Answer],
+    answers: Mapping[str, ComputedValues],
     varied: Sequence[Array],
     explain: Callable[[int, float], str],
-) -> list[Quantity]:
+) -> list[MeasuredQuantity]:
     """
     The table of one run.
 
@@ -234,7 +234,7 @@ def quantities(
             value, off, numerical, limit = map(finite_or_none, (float(values[k]), error, float(errors[k]), allowed))
             sides[side] = Comparison(value, off, numerical, limit, verdict)
         measured, spread, propagated = (float(row[k]) for row in (data.values, data.uncertainty, inputs))
-        rows.append(Quantity(experiment, name, unit, use, measured, spread, propagated, cause, sides))
+        rows.append(MeasuredQuantity(experiment, name, unit, use, measured, spread, propagated, cause, sides))
     return rows
 
 

@@ -2,7 +2,7 @@
 Formats of recorded accelerograms: one table of readers, one file a format.
 
 A reader is (name, what it recognizes in the first lines, function of text and file name). The first that recognizes a
-file reads it. A new format is one file beside this one and its line in the table.
+file reads it. A new format is one file in this folder and its line in the table.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from reference.records.formats import at2, cosmos, csv_table, esm, jma, knet, plain_text
 from reference.records.numerals import MAX_HEADER_LINES, decode_text
-from reference.records.samples import Array, Reading, RecordError, join_directions
+from reference.records.samples import Array, RecordError, RecordSamples, join_directions
 
 
 class Reader(NamedTuple):
@@ -21,7 +21,7 @@ class Reader(NamedTuple):
 
     name: str
     recognizes: Callable[[Sequence[str]], bool]
-    read: Callable[..., Reading]
+    read: Callable[..., RecordSamples]
 
 
 READERS = (
@@ -46,7 +46,7 @@ def recognize_format(text: str, suffix: str = "") -> Reader | None:
     return known
 
 
-def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = None) -> Reading:
+def read_record(content: bytes, name: str, options: Mapping[str, Any] | None = None) -> RecordSamples:
     """
     Return what a file holds. Raises RecordError, one line.
 

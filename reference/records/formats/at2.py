@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from reference.records.numerals import MAX_LINE, holds_numbers, parse_number, quote_name, read_values
-from reference.records.samples import Reading, RecordError, evenly_spaced
+from reference.records.samples import RecordError, RecordSamples, evenly_spaced
 from reference.support.arguments import brief
 from reference.support.constants import GRAVITY
 
@@ -30,7 +30,7 @@ def recognizes_at2(head: Sequence[str]) -> bool:
 
 
 @lru_cache(maxsize=64)
-def read_at2(text: str, name: str = "file.AT2") -> Reading:
+def read_at2(text: str, name: str = "file.AT2") -> RecordSamples:
     """Return what a PEER .AT2 file holds. Raises RecordError."""
     lines = text.splitlines()
     head = _short(lines)

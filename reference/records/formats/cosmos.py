@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from reference.records.numerals import parse_number, unit_factor
-from reference.records.samples import Reading, RecordError, evenly_spaced
+from reference.records.samples import RecordError, RecordSamples, evenly_spaced
 from reference.support.arguments import brief
 
 FORMAT = "COSMOS V2"
@@ -36,7 +36,7 @@ def recognizes_cosmos(head: Sequence[str]) -> bool:
 
 
 @lru_cache(maxsize=32)
-def read_cosmos(text: str, name: str = "file.V2") -> Reading:
+def read_cosmos(text: str, name: str = "file.V2") -> RecordSamples:
     """Return what such a file holds. Raises RecordError."""
     lines = text.splitlines()
     blocks = [(at, found) for at, line in enumerate(lines) if (found := BLOCK.match(line) or OLD_BLOCK.match(line))]
@@ -52,7 +52,7 @@ def read_cosmos(text: str, name: str = "file.V2") -> Reading:
     for number, line in enumerate(lines[at + 1 :], at + 2):
         if len(values) >= int(block["count"]):
             break
-        values += _fixed_fields(number, line, width)
+        values += _split_fields(number, line, width)
     if len(values) != int(block["count"]):
         raise RecordError(f"{len(values)} values: line {at + 1} says {block['count']}")
     step = block.groupdict().get("step")
@@ -66,13 +66,13 @@ def _header_step(lines: Sequence[str]) -> float:
         if found := REAL_HEADER.match(line):
             rows = lines[at + 1 : at + 1 + int(found[2])]
             values = [
-                value for number, row in enumerate(rows, at + 2) for value in _fixed_fields(number, row, int(found[3]))
+                value for number, row in enumerate(rows, at + 2) for value in _split_fields(number, row, int(found[3]))
             ]
             if len(values) > STEP_AT:
                 return values[STEP_AT]
     raise RecordError("no real header with the sampling interval, 'Real-header values follow on'")
 
 
-def _fixed_fields(number: int, line: str, width: int) -> list[float]:
+def _split_fields(number: int, line: str, width: int) -> list[float]:
     cells = [line[at : at + width].strip() for at in range(0, len(line.rstrip()), max(width, 1))]
     return [parse_number(number, cell) for cell in cells if cell]

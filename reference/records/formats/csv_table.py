@@ -17,7 +17,7 @@ import numpy as np
 
 from reference.records.directions import Direction, assign_axes, parse_direction
 from reference.records.numerals import MAX_CELL, MAX_LINE, UNIT_NAMES, parse_number, quote_name, unit_factor
-from reference.records.samples import AXES, Reading, RecordError
+from reference.records.samples import AXES, RecordError, RecordSamples
 from reference.support.arguments import brief
 
 FORMAT = "CSV"
@@ -34,7 +34,7 @@ DECIMAL_COMMA = re.compile(r"[+-]?[0-9]*,[0-9]+(?:e[+-]?[0-9]+)?", re.IGNORECASE
 
 
 @dataclass(frozen=True)
-class Column:
+class HeaderCell:
     """A cell of the header: its place, what it is, "time", "acceleration" or "other", direction and unit."""
 
     place: int
@@ -50,7 +50,7 @@ def recognizes_csv(head: Sequence[str]) -> bool:
 
 
 @lru_cache(maxsize=32)  # the files are the same while other keys of a family run
-def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Reading:
+def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> RecordSamples:
     """Return what a table holds; unit: of columns whose header names none. Raises RecordError."""
     lines = ((number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip())
     rows = [(number, line) for number, line in lines if not line.lstrip().startswith("#")]
@@ -79,7 +79,7 @@ def read_csv(text: str, name: str = "file.csv", unit: str | None = None) -> Read
         for axis, column in directions.items()
     }
     names = {axis: column.word for axis, column in directions.items() if column.word}
-    return Reading(FORMAT, time, values, names, notes=tuple(notes))
+    return RecordSamples(FORMAT, time, values, names, notes=tuple(notes))
 
 
 def _separator_line(rows: list[tuple[int, str]]) -> tuple[str | None, list[tuple[int, str]]]:
@@ -97,7 +97,7 @@ def _guess_separator(line: str) -> str:
 
 
 def _header_row(rows: Sequence[tuple[int, str]], separator: str | None) -> tuple[int, str] | None:
-    """Which of the first lines names a time and an acceleration, and its separator; None where none does."""
+    """Return the first line that names a time and an acceleration, and its separator; None where none does."""
     for row, (number, line) in enumerate(rows[:MAX_PREAMBLE]):
         if len(line) > MAX_LINE or line.lstrip().startswith("#"):
             continue
@@ -138,7 +138,7 @@ def _units_row(cells: list[str], header: list[str]) -> list[str] | None:
     return [f"{name} [{unit}]" if unit else name for name, unit in zip(header, units)] + header[len(units) :]
 
 
-def _columns(line: int, cells: list[str], unit: str | None, name: str) -> list[Column]:
+def _columns(line: int, cells: list[str], unit: str | None, name: str) -> list[HeaderCell]:
     """The columns of the header. Nothing is quoted where none is as it must be: that is no record. RecordError."""
     columns = []
     for place, cell in enumerate(cells):
@@ -155,7 +155,7 @@ def _columns(line: int, cells: list[str], unit: str | None, name: str) -> list[C
     return [_with_unit(line, column, unit, name) for column in columns]
 
 
-def _with_unit(line: int, column: Column, unit: str | None, name: str) -> Column:
+def _with_unit(line: int, column: HeaderCell, unit: str | None, name: str) -> HeaderCell:
     """The column with its unit checked. Raises RecordError."""
     cell, (_, stated) = column.text, _name_and_unit(column.text)
     if column.kind == "time" and stated.lower() not in SECONDS:
@@ -179,7 +179,7 @@ def _with_unit(line: int, column: Column, unit: str | None, name: str) -> Column
         else:
             rule = f'write {shown} [g], or record = {{file = {quote_name(name)}, unit = "g"}}; units are {UNIT_NAMES}'
         raise RecordError(f"line {line}: column {brief(cell)}: {quoted}: {rule}")
-    return Column(column.place, cell, column.kind, column.word, factor)
+    return HeaderCell(column.place, cell, column.kind, column.word, factor)
 
 
 def _name_and_unit(cell: str) -> tuple[str, str]:
@@ -196,27 +196,27 @@ def _name_and_unit(cell: str) -> tuple[str, str]:
     return text, ""
 
 
-def _column(place: int, cell: str) -> Column:
-    """What a cell of the header is; "wrong" is one with the unit of an acceleration that names none."""
+def _column(place: int, cell: str) -> HeaderCell:
+    """Return a cell of the header; its kind is "wrong" with the unit of an acceleration and no name of one."""
     name, unit = _name_and_unit(cell)
     words = [word for word in re.split(r"[\s_.:/]+", name.lower()) if word]
     if words and all(word in TIMES for word in words):
-        return Column(place, cell, "time")
+        return HeaderCell(place, cell, "time")
     rest = [word for word in words if word not in ACCELERATIONS]
     told = bool(words) and len(rest) < len(words)
     if words and not rest:
-        return Column(place, cell, "acceleration")
+        return HeaderCell(place, cell, "acceleration")
     if len(rest) == 1:
         fused = FUSED.fullmatch(rest[0])
         word = fused[1] if fused else rest[0]
         if parse_direction(word) is not None and (fused or told or unit or not word.isdigit()):
             if unit and unit_factor(unit) is None and not fused and not told:
-                return Column(place, cell, "other")  # N [counts], v [m/s]
-            return Column(place, cell, "acceleration", name if fused else word.upper() if len(word) < 4 else word)
-    return Column(place, cell, "wrong" if unit_factor(unit) is not None else "other")
+                return HeaderCell(place, cell, "other")  # N [counts], v [m/s]
+            return HeaderCell(place, cell, "acceleration", name if fused else word.upper() if len(word) < 4 else word)
+    return HeaderCell(place, cell, "wrong" if unit_factor(unit) is not None else "other")
 
 
-def _directions(line: int, columns: Sequence[Column]) -> dict[str, Column]:
+def _directions(line: int, columns: Sequence[HeaderCell]) -> dict[str, HeaderCell]:
     """The columns by axis, or one under "" that names no direction. Raises RecordError."""
     for column in columns:
         if sum(one.word.lower() == column.word.lower() for one in columns) > 1:
@@ -241,7 +241,7 @@ def _directions(line: int, columns: Sequence[Column]) -> dict[str, Column]:
     return {axis: columns[number] for axis, number in places.items()}
 
 
-def _table(rows: Sequence[tuple[int, str]], columns: Sequence[Column], separator: str) -> np.ndarray:
+def _table(rows: Sequence[tuple[int, str]], columns: Sequence[HeaderCell], separator: str) -> np.ndarray:
     """The values of the needed columns, (K, len(columns)). Raises RecordError."""
     needed = [(at, column.place) for at, column in enumerate(columns) if column.kind != "other"]
     table, commas, points = np.zeros((len(rows), len(columns))), 0, 0

@@ -10,7 +10,7 @@ import numpy as np
 
 from reference.records.directions import parse_direction
 from reference.records.numerals import parse_number, read_values, unit_factor
-from reference.records.samples import Reading, RecordError, evenly_spaced
+from reference.records.samples import RecordError, RecordSamples, evenly_spaced
 from reference.support.arguments import brief
 
 FORMAT = "ESM .ASC"
@@ -23,7 +23,7 @@ def recognizes_esm(head: Sequence[str]) -> bool:
 
 
 @lru_cache(maxsize=64)
-def read_esm(text: str, name: str = "file.ASC") -> Reading:
+def read_esm(text: str, name: str = "file.ASC") -> RecordSamples:
     """Return what such a file holds. Raises RecordError."""
     lines = text.splitlines()
     size = next((at for at, line in enumerate(lines) if not ENTRY.fullmatch(line.strip())), len(lines))

@@ -10,7 +10,7 @@ import numpy as np
 
 from reference.records.directions import parse_direction
 from reference.records.numerals import MAX_HEADER_LINES, parse_number, unit_factor
-from reference.records.samples import Reading, RecordError
+from reference.records.samples import RecordError, RecordSamples
 from reference.support.arguments import brief
 
 FORMAT = "JMA CSV"
@@ -24,7 +24,7 @@ def recognizes_jma(head: Sequence[str]) -> bool:
 
 
 @lru_cache(maxsize=32)
-def read_jma(text: str, name: str = "file.csv") -> Reading:
+def read_jma(text: str, name: str = "file.csv") -> RecordSamples:
     """Return what such a file holds. Raises RecordError."""
     lines = text.splitlines()
     rate = next(match for line in lines if (match := RATE.match(line)))
@@ -46,7 +46,7 @@ def read_jma(text: str, name: str = "file.csv") -> Reading:
     columns = {_axis(word): factor * table[:, at] for at, word in enumerate(words)}
     names = {_axis(word): word for word in words}
     step = 1.0 / sampling
-    return Reading(FORMAT, step * np.arange(len(table), dtype=float), columns, names, step=step)
+    return RecordSamples(FORMAT, step * np.arange(len(table), dtype=float), columns, names, step=step)
 
 
 def _axis(word: str) -> str:

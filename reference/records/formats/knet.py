@@ -10,7 +10,7 @@ import numpy as np
 
 from reference.records.directions import parse_direction
 from reference.records.numerals import parse_number, read_values
-from reference.records.samples import Reading, RecordError, evenly_spaced
+from reference.records.samples import RecordError, RecordSamples, evenly_spaced
 
 FORMAT = "K-NET"
 RATE = re.compile(r"Sampling Freq\(Hz\)\s+([0-9.]+) ?Hz")
@@ -27,7 +27,7 @@ def recognizes_knet(head: Sequence[str]) -> bool:
 
 
 @lru_cache(maxsize=64)
-def read_knet(text: str, name: str = "file.EW") -> Reading:
+def read_knet(text: str, name: str = "file.EW") -> RecordSamples:
     """Return what such a file holds, its zero line left in. Raises RecordError."""
     lines = text.splitlines()
     head = lines[:HEADER]

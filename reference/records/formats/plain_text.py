@@ -25,7 +25,7 @@ from reference.records.numerals import (
     quote_name,
     unit_factor,
 )
-from reference.records.samples import MIN_INTERVAL, Array, Reading, RecordError, evenly_spaced
+from reference.records.samples import MIN_INTERVAL, Array, RecordError, RecordSamples, evenly_spaced
 from reference.support.arguments import as_float, brief
 
 FORMAT = "plain text"
@@ -53,7 +53,7 @@ COUNT_AND_STEP = re.compile(r"\s*([0-9]+)[\s,]+([0-9]*\.[0-9]+(?:e-?[0-9]+)?)\s*
 @lru_cache(maxsize=64)
 def read_plain_text(
     text: str, name: str, step: Any = None, unit: Any = None, skip: Any = 0, column: Any = None
-) -> Reading:
+) -> RecordSamples:
     """
     Return the values of a text behind `skip` lines: all in their order (`column` 0), or those of one column, from 1.
 
@@ -96,7 +96,7 @@ def propose_line(text: str, name: str) -> str:
         body = [line.replace(",", ".") for line in body]
     rows = [cells for line in body if (cells := _loose_cells(line))]
     time = _even_step(rows)
-    step, unit = _stated_step(header), NAMED_UNIT.search(header)
+    step, unit = _read_step(header), NAMED_UNIT.search(header)
     known = step if step is not None else time
     stated = unit[0].strip("()[]") if unit else None
     parts = [f"file = {quote_name(name)}", f"step = {0.01 if known is None else known:g}", f'unit = "{stated or "g"}"']
@@ -135,7 +135,7 @@ def _loose_cells(line: str) -> list[float] | None:
         return None
 
 
-def _stated_step(header: str) -> float | None:
+def _read_step(header: str) -> float | None:
     """The step, s, that a header states."""
     for line in header.splitlines():
         if match := COUNT_AND_STEP.fullmatch(line):
@@ -201,7 +201,7 @@ def _check_count(header: Sequence[str], count: int) -> None:
 
 
 def _even_step(rows: Sequence[Sequence[float]]) -> float | None:
-    """The step of the first column where it rises evenly beside others, as a time does; None otherwise."""
+    """The step of the first of several columns where it rises evenly, as a time does; None otherwise."""
     if len(rows) < FEW or min(map(len, rows)) < 2:
         return None
     steps: Array = np.diff([row[0] for row in rows])

@@ -1,29 +1,29 @@
-"""Demands under a suite of motions at many intensities: fractiles, the engine's subset, the command and its files."""
+"""Demands under a suite of motions at many intensities: fractiles, the engine's motions, the command and its files."""
 
 import csv
 import io
 import json
 import math
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
-from runs import no_picture
 from terminal_tables import rows_under
 
 import reference
-from comparison.analyses.ensemble import analysis
-from comparison.analyses.ensemble.command import FILES, main, table_text
-from comparison.analyses.ensemble.feature import demand_rows, labels, largest_differences
-from comparison.analyses.ensemble.result import STORED
+from comparison.analyses.ensemble import analysis, governing, statistics
+from comparison.analyses.ensemble.command import CHECKED, FILES, main
+from comparison.analyses.ensemble.members import SCALE, Member, members_of
+from comparison.analyses.ensemble.rows import labels
+from comparison.analyses.ensemble.table import table_text
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
-from comparison.wording import percent
-from reference.measures import Demands, Estimate, FloorSpectra
+from reference.measures import Estimate, FloorSpectra, story_forces
 from reference.problem import load_family, load_scene
 
 SCENE = """title = "two bodies"
@@ -37,7 +37,7 @@ NAN = float("nan")
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Three motions and a scene; nothing is drawn, which takes most of the time."""
+    """Three motions and a scene."""
     (tmp_path / "suite").mkdir()
     time = np.arange(0.0, 2.0, 0.05)
     for number in (1, 2, 3):
@@ -46,7 +46,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (tmp_path / "suite" / f"m{number}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{rows}\n")
     (tmp_path / "mine.toml").write_text(SCENE)
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("comparison.analyses.ensemble.command.draw_ensemble", no_picture)
     return tmp_path
 
 
@@ -55,18 +54,18 @@ def run(*words: str) -> int:
 
 
 def content() -> Any:
-    return json.loads(Path("out/ensemble.json").read_text(encoding="utf-8"))
+    return json.loads(Path("out/summary.json").read_text(encoding="utf-8"))
 
 
 def test_the_error_of_a_fractile_covers_every_change() -> None:
     random = np.random.default_rng(2)
     values, errors = random.uniform(1.0, 2.0, 22), random.uniform(0.0, 0.2, 22)
     gaps = [Estimate(value, 0.0) for value in (3.0, NAN, 1.0, 2.0, NAN)]
-    lacking = [analysis.uncertain_fractile(gaps, share).value for share in (0.5, 0.6)]
+    lacking = [statistics.uncertain_fractile(gaps, share).value for share in (0.5, 0.6)]
     assert lacking == pytest.approx([3.0, NAN], nan_ok=True), "without an answer it is larger than all others"
     numbers = [Estimate(*pair) for pair in zip(values, errors)]
     for share in (0.0, 0.16, 0.5, 0.84, 1.0):
-        stated = analysis.uncertain_fractile(numbers, share)
+        stated = statistics.uncertain_fractile(numbers, share)
         assert stated.value == pytest.approx(np.quantile(values, share, method="hazen"), abs=1e-12)
         corners = [values + sign * errors for sign in (-1.0, 1.0)]
         drawn = [values + errors * random.uniform(-1.0, 1.0, 22) for _ in range(200)]
@@ -74,28 +73,21 @@ def test_the_error_of_a_fractile_covers_every_change() -> None:
         assert stated.error == pytest.approx(max(changes), abs=1e-12)
 
 
-def demanding(scene: str = "fig3-I", model: str = "exact", motion: str = "m", **known: Estimate) -> analysis.Point:
-    """A motion of which these demands are known, every other is lacking."""
-    demands = Demands(**{**{field.name: None for field in fields(Demands)}, "status": "ok", **known})  # type: ignore[arg-type]
-    return analysis.Point(analysis.Member("mine", motion, 1.0, load_scene(scene)), model, "ok", demands)
+def demanding(
+    motion: str = "m", scale: float = 1.0, structure: str = "mine", **known: Estimate | Mapping[int, Estimate]
+) -> analysis.Point:
+    """A motion of which these demands are known, of bodies by their numbers; every other is lacking."""
+    values = {
+        (name, body): number
+        for name, numbers in known.items()
+        for body, number in ({0: numbers} if isinstance(numbers, Estimate) else numbers).items()
+    }
+    return analysis.Point(Member(structure, motion, scale, load_scene("fig3-I")), "exact", "ok", values)
 
 
-def test_the_bound_of_the_engine_has_the_errors_of_both_sides() -> None:
-    """The largest differences of two motions, of different ones: 3 of 2, and like for like 3 of 2.5."""
-    sides = [
-        [demanding(scene, displacement=Estimate(*pair)) for scene, pair in zip(("fig3-I", "fig3-II"), pairs)]
-        for pairs in (((2.0, 0.1), (4.0, 0.5)), ((2.5, 0.2), (4.2, 0.7)), ((3.0, 0.4), (4.4, 0.6)))
-    ]
-    equations, alike, engine = sides
-    (bound,) = analysis.bounds(equations, engine, alike)
-    assert (bound.quantity, bound.body, bound.points) == ("displacement", None, 2)
-    assert bound.largest == pytest.approx(0.5)
-    assert bound.like_for_like == pytest.approx(0.2)
-    assert bound.errors == pytest.approx((0.2 + 0.4) / 2.5)
-    other = replace(bound, structure="other", largest=0.1, like_for_like=0.3, errors=0.07)
-    found = SimpleNamespace(engine=SimpleNamespace(differences=[bound, other]))
-    ((_, *sizes),) = largest_differences(found)  # type: ignore[arg-type]
-    assert sizes == [bound.largest, 0.3, 0.07], "of the structures the worst, its error with that like for like"
+def sure(value: float) -> Estimate:
+    """A number without error."""
+    return Estimate(value, 0.0)
 
 
 def test_a_motion_without_an_answer_is_worse_than_all_and_counted() -> None:
@@ -103,13 +95,18 @@ def test_a_motion_without_an_answer_is_worse_than_all_and_counted() -> None:
     lacking, residuals = Estimate(NAN, NAN), (0.5, 0.2, 0.3, NAN)
     moved = [*(Estimate(value, 0.1 * value) for value in (1.0, 2.0, 6.0)), lacking]
     left = [Estimate(value, 0.0, "" if value == value else reason) for value in residuals]
-    points = [demanding(displacement=a, contact_force_min=a, residual=b) for a, b in zip(moved, left)]
-    displacement, residual, force = analysis.stripes(points)
+    points = [
+        demanding(f"m{n}", displacement=a, contact_force_min=a, residual=b) for n, (a, b) in enumerate(zip(moved, left))
+    ]
+    displacement, residual, force = statistics.stripes(analysis.Points(points))
     assert (displacement.smallest.value, displacement.largest.value) == (1.0, None)
     assert (force.smallest.value, force.largest.value) == (None, 6.0)
     assert (displacement.mean.value, displacement.answered, displacement.reasons) == (None, 3, {"ok": 1})
     assert (residual.answered, residual.reasons) == (3, {reason: 1})
-    known, _, _ = analysis.stripes(points[:3])
+    assert (displacement.smallest_motion, displacement.largest_motion) == ("m0", "")
+    assert (force.smallest_motion, force.largest_motion) == ("", "m2")
+    known, _, _ = statistics.stripes(analysis.Points(points[:3]))
+    assert known.largest_motion == "m2"
     assert (known.mean.value, known.mean.error) == pytest.approx((3.0, 0.3))
 
 
@@ -118,7 +115,7 @@ def test_a_band_of_floor_spectra_has_the_larger_direction() -> None:
     values = np.array([[[[1.0], [2.0]], [[5.0], [3.0]]], [[[4.0], [1.5]], [[6.0], [9.0]]]])
     spectra = [FloorSpectra(np.array([0.5]), 0.05, each, 0.01 * each[:, ::-1]) for each in values]
     points = [replace(demanding(displacement=Estimate(0.0, 0.0)), spectra=each) for each in spectra]
-    first, second = analysis.spectrum_bands(points)
+    first, second = statistics.spectrum_bands(points)
     assert (first.body, first.damping, first.period) == (1, 0.05, [0.5])
     for band, pair in ((first, (2.0, 4.0)), (second, (5.0, 9.0))):
         assert (band.mean[0].value, band.mean[0].error) == pytest.approx((np.mean(pair), 0.01 * np.mean(pair)))
@@ -132,37 +129,68 @@ def test_one_motion_in_the_scene_needs_neither_suite_nor_scales(folder: Path) ->
     assert (content()["motions"], content()["scales"]) == (1, [0.5])
 
 
-def test_the_engine_is_asked_at_different_motions_and_scales(folder: Path) -> None:
-    text = SCENE[: SCENE.index("excitation")].replace("title", 'combine = "product"\ntitle')
-    loading = 'excitation = {record = {suite = "suite", motion = "all"}, scale = {range = [0.5, 2.0], steps = 4}}\n'
-    (folder / "family.toml").write_text(text + loading)
-    members = analysis.members_of([load_family("family.toml")])
-    assert analysis.Ensemble(members, None).chosen() == list(range(12))
-    assert [len(analysis.Ensemble(members, count).chosen()) for count in (0, 1, 3)] == [0, 1, 3]
-    asked = {task.argument[1].key: task.argument[2] for task in analysis.Ensemble(members, 1).tasks()}
-    assert asked == {"exact": 1e-6, "regularised": 1e-6, "translational": 1e-2}, "relative errors"
-    three = [members[place] for place in analysis.Ensemble(members, 3).chosen()]
-    assert len({member.motion for member in three}) == len({member.scale for member in three}) == 3
+def chosen(points: list[analysis.Point], asked: governing.Asked = None) -> dict[str, tuple[str, ...]]:
+    return {each.member.motion: each.reasons for each in governing.choose_motions(points, asked)}
+
+
+def test_the_engine_computes_the_motions_that_govern_and_the_one_at_the_median() -> None:
+    """Each demand is largest under another motion; of demands of bodies that body counts that has most."""
+    points = [
+        demanding("a", displacement=sure(9.0), base_shear=sure(1.0), drift={2: sure(1.0), 3: sure(1.0)}),
+        demanding("b", displacement=sure(1.0), base_shear=sure(9.0), drift={2: sure(2.0), 3: sure(1.0)}),
+        demanding("c", displacement=sure(2.0), base_shear=sure(2.0), drift={2: sure(1.0), 3: sure(3.0)}),
+        demanding("d", displacement=sure(4.0), base_shear=sure(3.0), drift={2: sure(2.9), 3: sure(0.0)}),
+        demanding("e", displacement=Estimate(NAN, NAN), base_shear=Estimate(NAN, NAN), drift={2: sure(NAN)}),
+    ]
+    reasons = {"a": ("largest displacement",), "b": ("largest base shear",), "c": ("largest drift",)}
+    assert chosen(points) == reasons | {"c": ("largest drift", "nearest the median displacement")}
+    with_supports = [replace(point, values={**point.values, ("support_force_max", 0): sure(k)})
+                     for k, point in enumerate(points)]  # fmt: skip
+    assert chosen(with_supports)["e"] == ("largest support force",)
+    assert list(chosen(points, 2)) == ["a", "b"]
+    assert list(chosen(points, 4)) == ["a", "b", "c", "d"], "then the next largest displacement"
+    assert list(chosen(points, ("b", "e"))) == ["b", "e"]
+    assert len(chosen(points, governing.MOST)) == 5
+    smaller = [replace(point, member=replace(point.member, scale=0.5)) for point in points]
+    assert chosen([*smaller, *points]) == chosen(points), "at the largest scale"
+    assert all(each.member.scale == 1.0 for each in governing.choose_motions([*smaller, *points], None))
+    other = [replace(point, member=replace(point.member, structure="other")) for point in points[::-1]]
+    by_bound = governing.choose_motions([*points, *other], 1)
+    assert [(each.member.structure, each.member.motion) for each in by_bound] == [("mine", "a"), ("other", "a")]
+
+
+def test_each_motion_of_the_engine_is_computed_by_every_model(folder: Path) -> None:
+    (member,) = members_of([load_family("synthetic-pair")])
+    ensemble = analysis.Ensemble((member,))
+    tasks = ensemble.engine_tasks([governing.Choice(member, ())])
+    asked = {task.argument[1].key: task.argument[2] for task in tasks}
+    tolerances = {"small": 1e-6, "regularised": 1e-6, "translational": 1e-2, "spatial": 1e-2}
+    assert asked == tolerances, "relative errors"
+    assert [task.argument[1].key for task in ensemble.equation_tasks()] == ["exact"]
+    assert len(replace(ensemble, spatial=False).engine_tasks([governing.Choice(member, ())])) == 3
 
 
 def test_the_command_writes_the_demands_of_every_motion(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("mine.toml", "--suite", "suite", "--scales", "0.5", "1", "2", "--engine", "1") == 0
-    assert {file.name for file in Path("out").iterdir()} == {*FILES, "manifest.json"}
+    assert {file.name for file in Path("out").iterdir()} == {*FILES, "manifest.json"} - {CHECKED}
     summary = content()
     assert (summary["motions"], summary["scales"], summary["outcomes"]) == (3, [0.5, 1.0], {"ok": 6})
     with open("out/ensemble.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert [row["model"] for row in rows] == ["exact"] * 6 + ["regularised", "translational"]
+    assert [row["model"] for row in rows] == ["exact"] * 6 + ["small", "regularised", "translational"]
     scene = reference.load_scene("mine.toml").with_values(
         {"excitation": {"record": {"suite": "suite", "motion": 2}, "scale": 1.0}, "duration": 1.95}
     )
     numbers = reference.demands(reference.trajectory(scene, (0.0, 0.0)))
     (row,) = (row for row in rows if (row["motion"], row["scale"], row["model"]) == ("m2", "1.0", "exact"))
-    assert float(row["displacement"]) == numbers.displacement.value
-    assert float(row["drift_2"]) == numbers.drift[0].value
-    assert float(row["acceleration_1_error"]) == numbers.acceleration[0].error
-    assert float(row["friction_energy"]) == numbers.friction_energy.value
-    column = [float(row["displacement"]) for row in rows if (row["scale"], row["model"]) == ("1.0", "exact")]
+    assert float(row["displacement [m]"]) == numbers.displacement.value
+    assert float(row["drift_2 [m]"]) == numbers.drift[0].value
+    assert float(row["acceleration_1_error [m/s^2]"]) == numbers.acceleration[0].error
+    assert float(row["friction_energy [J]"]) == numbers.friction_energy.value
+    assert (row["bound"], row["status"]) == ("mine", "ok")
+    shear = story_forces(reference.trajectory(scene, (0.0, 0.0))).shear
+    assert float(row["story_shear_2 [N]"]) == shear[1].value
+    column = [float(row["displacement [m]"]) for row in rows if (row["scale"], row["model"]) == ("1.0", "exact")]
     about = {"quantity": "displacement", "scale": 1.0, "model": "exact"}
     (stripe,) = (each for each in summary["stripes"] if about.items() <= each.items())
     assert stripe["mean"]["value"] == pytest.approx(np.mean(column))
@@ -176,14 +204,15 @@ def test_the_command_writes_the_demands_of_every_motion(folder: Path, capsys: py
     curve = next(each for each in summary["curves"] if (each["quantity"], each["motion"]) == ("displacement", "m2"))
     assert (curve["scales"], curve["values"][1]) == ([0.5, 1.0], numbers.displacement.value)
     assert [band["scale"] for band in summary["spectra"]] == [1.0, 1.0]
-    known = {row["quantity"]: row for row in summary["engine"]["differences"]}
-    for name in ("displacement", "base_shear", "acceleration", "drift"):
-        assert known[name]["like_for_like"] <= max(5e-3, known[name]["errors"]), name
-    printed = rows_under(capsys.readouterr().out, "16 %")
-    row = next(row for row in printed if row["quantity"] == "largest displacement of the isolator")
-    cells = [float(row[head].partition(" ±")[0]) for head in ("mean", "16 %", "50 %", "84 %", "largest")]
-    assert cells == pytest.approx([1e3 * each for each in (np.mean(column), *expected, max(column))], rel=1e-3)
-    assert (row["unit"], row["motions"]) == ("mm", "3")
+    assert stripe["largest_motion"] == "m2"
+    (moved,) = summary["engine"]["motions"]
+    assert (moved["motion"], moved["scale"]) == ("m2", 1.0)
+    assert moved["statuses"] == dict.fromkeys(("exact", "small", "regularised", "translational"), "ok")
+    printed = rows_under(capsys.readouterr().out, "50 %")
+    row = next(row for row in printed if row["quantity"] == "isolator displacement")
+    cells = [float(row[head].partition(" ±")[0]) for head in ("mean", "50 %", "largest")]
+    assert cells == pytest.approx([1e3 * each for each in (np.mean(column), expected[1], max(column))], rel=1e-3)
+    assert (row["unit"], row["motion"], row["16 %"]) == ("mm", "m2", "–"), "16 % of three lies beyond them"
 
 
 HEAD, SUITE = "period [s], acceleration [g]\n", ("--suite", "suite")
@@ -199,9 +228,12 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
         ((*SUITE, "--scales", "2", "1", "2"), "", "the smaller first"),
         ((*SUITE, "--scales", "1", "x", "2"), "", "--scales"),
         ((*SUITE, "--scales", "1", "2", "0"), "", "a whole number from 1 to 100"),
-        ((*SUITE, "--engine", "-1"), "", "--engine"),
+        ((*SUITE, "--engine", "-1"), "", "--engine = -1: must be a whole number"),
+        ((*SUITE, "--engine", "m1", "mx"), "", "--engine = 'mx': must be all, a number, or motions: m1, m2, m3"),
         ((*SUITE, "--model", "spatial"), "", "--model translational"),
         (("mine.toml", *SUITE), "", "two files have this name"),
+        ((*SUITE, "--bounds", "1.5", "0.8"), "", "--bounds = '1.5 0.8': the smaller factor must be the first"),
+        ((*SUITE, "--bounds", "0.8", "x"), "", "--bounds = 'x': must be a number from 0.01 to 100"),
         ((*SUITE, "--periods", "0.2", "1"), "", "needs --target"),
         ((*SUITE, "--target", "code.csv"), f"{HEAD.replace('[g]', '[yd/s^2]')}0.1, 1\n1, 1", NO_SPECTRUM),
         ((*SUITE, "--target", "code.csv"), f"{HEAD}1, 1\n0.1, 1", NO_SPECTRUM),
@@ -240,30 +272,24 @@ def test_several_scenes_have_statistics_of_their_own(folder: Path) -> None:
         expected |= {"damping": 2 / math.pi * friction_fast / mean / stiffness}
         expected |= {"restoring": mean / 0.25 / friction_fast}
         assert each["isolator"].pop("statistic") == "mean"
+        assert each["isolator"].pop("friction") == friction_fast
         assert each["isolator"] == pytest.approx(expected, rel=1e-9)
 
 
-def test_the_spatial_engine_adds_demands_of_supports(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    text = SCENE.replace("0.05}", "0.05, supports = 4, ring = 0.5, sphere_radius = 0.02}")
-    bodies = "bodies = [{mass = 1e3, height = 0.1, size = [1.0, 1.0, 0.1]}]\n"
-    (folder / "mine.toml").write_text(text.split("bodies =")[0] + bodies + text[text.index("excitation") :])
-    assert run("mine.toml", "--suite", "suite", "--engine", "all", "--model", "spatial") == 0
-    said, stored = capsys.readouterr().out, STORED.load(Path("out"))
-    assert stored
-    assert (stored.engine.model, len(stored.engine.points)) == ("spatial", 3)
-    sizes = {each.quantity: each.like_for_like or 0.0 for each in stored.engine.differences}
-    assert f"Its bodies turn; given the same friction law, it is within {percent(max(sizes.values()))}" in said
-    found = {(stripe.quantity, stripe.model): stripe for stripe in stored.stripes}
-    assert found["support_force_max", "spatial"].answered == found["torsion", "spatial"].answered == 3
-    assert ("uplift", "exact") not in found
-    bound = next(each for each in stored.engine.differences if each.quantity == "displacement")
-    printed = rows_under(said, "like for like")
-    row = next(row for row in printed if row["quantity"] == "largest displacement of the isolator")
-    shown = row["largest difference"], row["like for like"], row["errors"]
-    assert shown == tuple(percent(each) for each in (bound.largest, bound.like_for_like, bound.errors))  # type: ignore[arg-type]
-    names = {row["name"] for row in demand_rows(stored, stored.structures[0], 1.0)}
-    assert {"base shear", "largest support force (spatial engine)"} <= names
-    assert "base shear (spatial engine)" not in names, "it is that of the equations"
+def test_bounds_on_the_command_line_are_the_two_structures_of_the_file(folder: Path, capsys) -> None:
+    friction = "friction = {slow = 0.025, fast = 0.05, rate = 50.0}"
+    (folder / "mine.toml").write_text(SCENE.replace("friction = 0.05", friction))
+    assert run("mine.toml", *SUITE, "--engine", "0", "--bounds", "0.8", "1.2") == 0
+    found = content()
+    assert [each["name"] for each in found["structures"]] == ["mine[lower bound]", "mine[upper bound]"]
+    assert "\nlower bound:\n" in (said := capsys.readouterr().out)
+    assert "\nupper bound:\n" in said
+    assert "\nEnvelope:\n" in said
+    by_hand = friction.replace("slow = 0.025, fast = 0.05", "slow = 0.03, fast = 0.06")
+    (folder / "upper.toml").write_text(SCENE.replace("friction = 0.05", by_hand))
+    assert run("upper.toml", *SUITE, "--engine", "0") == 0
+    upper = [{**row, "structure": ""} for row in found["stripes"] if row["structure"] == "mine[upper bound]"]
+    assert upper == [{**row, "structure": ""} for row in content()["stripes"]]
 
 
 def test_the_plan_says_how_files_of_peer_are_paired(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -273,7 +299,7 @@ def test_the_plan_says_how_files_of_peer_are_paired(folder: Path, capsys: pytest
     assert run("mine.toml", "--suite", "peer", "--scales", "0.5", "1", "2", "--engine", "1", "--plan") == 0
     said = capsys.readouterr().out
     assert "2 motions, paired by name, 1 with a vertical one: x = RSN1_A_B_H1.AT2, y = RSN1_A_B_H2" in said
-    assert "4 motions by the equations, 1 by the engine" in said
+    assert "4 motions by the equations, about 1 by the engine" in said
     assert "The motions last 1.95 to 1.95 s. Nothing was computed." in said
     assert not list(Path().glob("out*"))
 
@@ -281,8 +307,8 @@ def test_the_plan_says_how_files_of_peer_are_paired(folder: Path, capsys: pytest
 def test_a_formula_stands_behind_an_apostrophe(monkeypatch: pytest.MonkeyPatch) -> None:
     texts = ["=1+1", "+1", "-1", "@A1", "\tx"]
     rows = [{"motion": text, "scale": -1.0} for text in texts]
-    monkeypatch.setattr("comparison.analyses.ensemble.command.as_rows", lambda result: rows)
-    written = csv.reader(io.StringIO(table_text(None), newline=""))  # type: ignore[arg-type]
+    monkeypatch.setattr("comparison.analyses.ensemble.table.as_rows", lambda points, result: rows)
+    written = csv.reader(io.StringIO(table_text(None, None), newline=""))  # type: ignore[arg-type]
     assert [*written][1:] == [[f"'{text}", "-1.0"] for text in texts]
 
 
@@ -309,13 +335,14 @@ def test_motions_are_scaled_to_the_target_spectrum(folder: Path, capsys: pytest.
     assert [float(row["scale"]) for row in second] == [0.5, 1.0]
     assert [float(row["factor"]) for row in second] == pytest.approx([2.0, 2.0], rel=2e-3)
     peak = np.hypot(motion[:, 1], motion[:, 2]).max()
-    assert [float(row["peak_ground_acceleration"]) for row in second] == pytest.approx([peak, 2.0 * peak], rel=2e-3)
+    peaks = [float(row["peak_ground_acceleration [m/s^2]"]) for row in second]
+    assert peaks == pytest.approx([peak, 2.0 * peak], rel=2e-3)
 
 
 def test_a_motion_at_many_scales_is_matched_once(tmp_path: Path) -> None:
     (tmp_path / "code.csv").write_text("period [s], acceleration [g]\n0.1, 0.5\n2.0, 0.3\n")
     scene = load_scene("synthetic-pair")
-    members = [analysis.Member("a", "m", scale, scene.with_values({analysis.SCALE: scale})) for scale in (0.3, 1.3)]
+    members = [Member("a", "m", scale, scene.with_values({SCALE: scale})) for scale in (0.3, 1.3)]
     scaled, target = match_spectrum(members, str(tmp_path / "code.csv"), None)
     assert len(target.motions) == 1
     assert np.ptp(np.diff(np.log(target.acceleration))) < 1e-12, "straight in the logarithms"
@@ -350,14 +377,16 @@ def test_the_equations_are_shown_before_the_engine_runs(folder, capsys, monkeypa
         patch.setattr(Runner, "run", interrupted)
         assert run("mine.toml", "--suite", "suite", "--engine", "1") == 130
     said = capsys.readouterr()
-    assert "Outcomes by the equations: 3 ok. " in said.out
+    assert "Outcomes by the equations: 3 ok.\n" in said.out
     assert "Next: 1 of 3 motions by the translational engine, about" in said.out
     assert "interrupted: 3 results are kept" in said.err
-    assert (content()["outcomes"], content()["engine"]["points"]) == ({"ok": 3}, [])
-    for shown in (2, 1):
+    assert (content()["outcomes"], content()["engine"]["motions"]) == ({"ok": 3}, [])
+    for following in (1, 0):
         assert run("mine.toml", "--suite", "suite", "--engine", "1") == 0
-        assert capsys.readouterr().out.count("two bodies (mine): 3 motions") == shown
-        assert (len(content()["engine"]["points"]), content()["engine"]["tolerance"]) == (1, 0.01)
+        said = capsys.readouterr().out
+        assert (said.count("two bodies: 3 motions."), said.count("Next: 1 of 3")) == (1, following)
+        assert said.count("The translational engine computed: m2 (largest displacement") == 1
+        assert (len(content()["engine"]["motions"]), content()["engine"]["tolerance"]) == (1, 0.01)
 
 
 def test_structures_are_told_apart_by_the_values_that_differ() -> None:

@@ -8,7 +8,7 @@ from known_analyses import collected
 
 import reference
 from comparison.analyses.measured import analysis
-from comparison.analyses.measured.analysis import MeasuredPeaks, _beside, verdict_line, word_measured
+from comparison.analyses.measured.analysis import MeasuredPeaks, _compare_peak, verdict_line, word_measured
 from comparison.study.models import EXACT, MODEL_HIERARCHY, REGULARIZED, RESOLVED, SMALL, TRANSLATIONAL
 from comparison.study.study import Study
 from comparison.study.user_models import user_model
@@ -103,7 +103,7 @@ def test_what_is_not_known_exceeds_nothing():
     scene = PLAIN.with_values({"measured": [peak("mu", 1.0, 0.1, 1)]})
     [stated] = scene.measured
     known = {"near": (1.15, 0.1), "far": (0.75, 0.1), "none": (math.nan, math.nan)}
-    found = _beside(scene, stated, [(key, {("mu", 1): (*numbers, "ok")}) for key, numbers in known.items()])
+    found = _compare_peak(scene, stated, [(key, {("mu", 1): (*numbers, "ok")}) for key, numbers in known.items()])
     assert [each.exceeds for each in found.computed] == [False, True, None], "0.15 < 0.1 + 0.1 < 0.25"
     assert [each.difference for each in found.computed[:2]] == pytest.approx([0.15, -0.25])
     assert [found.word(each) for each in found.computed] == ["met", "not met (by −25 %)", "not compared: ok"]
@@ -113,5 +113,5 @@ def test_what_is_not_known_exceeds_nothing():
     largest = f"largest: {scene.name}, mu of body 1, far, −25 %"
     assert verdict_line([found]) == counts.replace("1 not met", f"1 not met ({largest})")
     [none] = PLAIN.with_values({"measured": [peak("drift", 0.0, 0.1, 2)]}).measured
-    drift = _beside(scene, none, [("a", {("drift", 2): (0.3, 0.1, "ok")})])
+    drift = _compare_peak(scene, none, [("a", {("drift", 2): (0.3, 0.1, "ok")})])
     assert drift.word(drift.computed[0]) == "not met (by +0.3 m)"

@@ -50,7 +50,7 @@ def test_an_engine_without_an_answer_there_says_why(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr("comparison.analyses.worst_phases.analysis.import_function", lambda path: refusing)
     worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
-    engine = analysis._engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
+    engine = analysis._compute_engine_nearby(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
     assert math.isnan(engine.value)
     assert engine.reason == Outcome.STEP_LIMIT.value
 
@@ -74,7 +74,7 @@ def test_the_engine_is_asked_where_its_ratio_says(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("comparison.analyses.worst_phases.analysis.import_function", sides.__getitem__)
     monkeypatch.setattr("reference.measures.local_search.ground_peak", lambda scene, phases: np.full(len(phases), 0.5))
     worst = analysis.Worst(SHORT.name, REGULARIZED.key, "amplification", 1, 2.0, 1e-6, (1.0, 2.0), "smooth")
-    beside = analysis._engine_beside(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
+    beside = analysis._compute_engine_nearby(worst, SHORT, REGULARIZED, TRANSLATIONAL, 1e-3)
     assert beside.evaluations == analysis.ENGINE_POINTS
     assert (beside.value, beside.at_start, beside.start_error) == pytest.approx((2.00001, 1.99998, 2e-9), rel=2e-6)
     assert beside.phases == pytest.approx((1.005, 2.002), abs=1e-4)  # 1e-3 of slope over 2 of curvature

@@ -22,8 +22,6 @@ PAIR = "excitation.record = 'synthetic-pair': "
         (benchmarks, ["--only", "nothing"], "--only = 'nothing': no benchmark is left"),
         (benchmarks, ["--mastodon", "nowhere.csv"], "--mastodon = 'nowhere.csv': No such file or directory"),
         (benchmarks, ["--mastodon", "flat.csv"], "must have accelerations along x, y and z: columns ax, ay and az"),
-        (benchmarks, ["--jobs", "0"], "--jobs = 0: must be a whole number"),
-        (extremes, ["--jobs", "0"], "must be a whole number from 1"),
         (extremes, ["--limit", "-1"], "--limit = "),
         (extremes, ["--rows", "no such extreme"], "no cell is left: take part of a row's name"),
         (extremes, ["--only", "friction"], "selects analyses of a study; the extremes are chosen with --rows TEXT"),

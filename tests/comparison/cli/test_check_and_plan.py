@@ -15,8 +15,10 @@ from runs import Run, no_executor
 from studies import difference_rows, solved
 
 import reference
+from comparison.analyses.demands.analysis import DemandSurfaces
 from comparison.cli.options import parse_options
 from comparison.runner.processes import cores
+from comparison.study.costs import seconds_per_motion
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
 from comparison.surfaces.acceptance import Limit, check_limits
@@ -50,6 +52,14 @@ def test_check_exits_1_and_names_scene_body_key_found_and_limit(command: Callabl
     beside = command(plain, *SMALL, "--check", hierarchy=fake_hierarchy(gap=5e-5))
     everything = "total, translational, like-for-like of plain"
     assert beside.err == f"{UNCHECKED.strip()}; {everything}\n"
+
+
+def test_check_says_where_limits_on_demands_are_checked(command: Callable[..., Run], tmp_path: Path) -> None:
+    limited = limited_scene(
+        tmp_path, "[acceptance]\nmedian = 1.0\n[acceptance.demands]\ndisplacement = 0.1", "mine.toml"
+    )
+    run = command(limited, *SMALL[1:], "--check", hierarchy=fake_hierarchy(gap=5e-5))
+    assert run.err.startswith("--check: [acceptance.demands] of mine: phase-resonance ensemble --check checks it\n")
 
 
 @pytest.mark.parametrize(
@@ -106,6 +116,13 @@ def test_plan_counts_the_work_and_computes_and_writes_nothing(command: Callable[
     assert f"Roughly {4.0 + (points + 3.0 + 3.5) / 2 + 4.0:.0f} s with" in mirrored
 
 
+def test_bounds_of_the_command_line_make_two_scenes_of_each() -> None:
+    scenes = parse_options(["fig3-I", "fig4-dry", "--bounds", "0.8", "1.5", "--plan"]).scenes
+    names = [f"{name}[{bound} bound]" for name in ("fig3-I", "fig4-dry") for bound in ("lower", "upper")]
+    assert [scene.name for scene in scenes] == names
+    assert [scene.friction_coefficient for scene in scenes] == [0.08, 0.15] * 2
+
+
 def test_plan_refuses_what_takes_more_work_than_is_allowed(command: Callable[..., Run]) -> None:
     run = command(*SMALL, "--plan", "--max-work", "1000", hierarchy=MODEL_HIERARCHY)
     assert "fig3-I, translational engine: refused before any step" in run.out
@@ -155,6 +172,16 @@ def test_without_a_word_the_study_is_the_papers_four_cases_on_48_phases(
 def test_the_cost_of_a_model_is_that_of_all_its_batches() -> None:
     costs = solved(Study((reference.load_scene("fig3-I"),), 4, 1e-3, fake_hierarchy()))["cost"]
     assert costs.values.ravel() == pytest.approx(0.016), "16 phase pairs of 1 ms each"
+
+
+def test_the_plan_counts_every_motion_of_the_demands() -> None:
+    scene = reference.load_scene("fig3-I")
+    for grid in (4, 8):
+        study = Study((scene,), grid, 1e-3, MODEL_HIERARCHY)
+        tasks = DemandSurfaces().tasks(study)
+        motions = [(task.argument[1], len(task.argument[3])) for task in tasks]
+        expected = sum(count * seconds_per_motion(scene, model) for model, count in motions)
+        assert DemandSurfaces().estimate_seconds(study) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("number", range(6))

@@ -10,7 +10,6 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime
 from pathlib import Path
-from types import SimpleNamespace
 
 import psutil
 import pytest
@@ -27,6 +26,7 @@ from comparison.cli.computing import run_facts
 from comparison.cli.start import Clock
 from comparison.cli.terminal import new_table
 from comparison.run import main
+from reference.problem import load_scene
 
 
 def next_commands(run: Run) -> list[list[str]]:
@@ -96,8 +96,20 @@ def test_a_value_hardly_meant_is_named_once_with_its_first_scene(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(terminal, "implausible_values", lambda scene: ["mass = 1e9: hardly meant"])
-    terminal.print_implausible_values(Console(), [SimpleNamespace(name=name) for name in "ab"])  # type: ignore[misc]
-    assert capsys.readouterr().out == "Warning: a: mass = 1e9: hardly meant\n"
+    terminal.print_buildings(Console(), [(name, load_scene("fig3-I")) for name in "ab"])
+    *building, warning = capsys.readouterr().out.splitlines()
+    assert warning == "Warning: a: mass = 1e9: hardly meant"
+    assert building[0].startswith("Building a, b: 2 bodies, weight 19.62 N"), "once what is alike"
+    assert len(building) == 5
+
+
+def test_the_warning_of_a_building_is_that_of_its_strongest_motion(capsys: pytest.CaptureFixture[str]) -> None:
+    pair = load_scene("synthetic-pair")
+    scales = (1.0, 20.0, 2.0)
+    terminal.print_buildings(Console(), [("pair", pair.with_values({"excitation.scale": scale})) for scale in scales])
+    *building, warning = capsys.readouterr().out.splitlines()
+    assert warning == "Warning: pair: the peak of the ground is 5.101 g, above 3 g: unit or scale?"
+    assert building[-1] == "  peak of the ground: 2.5 to 50 m/s^2 = 0.255 to 5.1 g"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows does not add up the times of processes")

@@ -25,7 +25,7 @@ from runs import Run, no_executor
 
 from comparison.evidence.extremes import command as extremes
 from comparison.evidence.extremes.matrix import STORED
-from comparison.runner.cache import Cache, store_beside
+from comparison.runner.cache import Cache, locate_store
 from comparison.runner.output import publish
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import MODEL_HIERARCHY
@@ -143,7 +143,10 @@ def test_ctrl_c_ends_the_extremes_with_the_command_that_goes_on(
     verdicts = [row.entries[model].verdict for row in found.rows for model in models]
     assert verdicts == ["converged", "FAILED"] * len(rows)
     assert found.run["stored_before"] == int(stopped[1])
+    assert found.run["command"] == "phase-resonance extremes --jobs 2 --out report"
     assert extremes.main(words, no_executor) == 1, "nothing is computed twice"
+    with pytest.raises(AssertionError, match="computed"):
+        extremes.main([*words, "--fresh"], no_executor)
 
 
 def test_nothing_is_computed_twice_and_fresh_computes_all(command: Callable[..., Run]) -> None:
@@ -192,7 +195,7 @@ def test_a_full_disk_is_exit_3_and_the_run_goes_on_later(
     assert run.err.count("\n") == 1
     assert "a result could not be stored: No space left on device; 3 of " in run.err
     assert "go on with: python -m comparison.run fig3-I --grid 4 " in run.err
-    store = store_beside(run.report)
+    store = locate_store(run.report)
     assert len(list(store.glob("*/*.batch"))) == 3
     assert not list(store.glob("*/.phase*"))
     assert not run.report.exists()

@@ -15,8 +15,8 @@ from rich.console import Console
 
 import reference
 from comparison.evidence.benchmarks import analysis, readings
-from comparison.evidence.benchmarks.analysis import Answer, BenchmarkTable, _benchmark, solve
-from comparison.evidence.benchmarks.cases import LIMITS, Case, Reading, cases, mastodon, published, shipped
+from comparison.evidence.benchmarks.analysis import BenchmarkTable, SideNumbers, _benchmark, solve
+from comparison.evidence.benchmarks.cases import LIMITS, Case, MotionReading, cases, mastodon, published, shipped
 from comparison.evidence.benchmarks.command import main, print_benchmarks
 from comparison.evidence.benchmarks.table import (
     FRICTION,
@@ -100,9 +100,9 @@ def test_the_error_covers_that_of_few_instants(monkeypatch):
 
 
 def _words(difference: str = "", **sides: tuple[float, float]) -> dict[str, str]:
-    case = Case("a", "b", "c", [published("x", 1.0, 0.01, "mm")], Reading(readings.period), shipped("pendulum"))
+    case = Case("a", "b", "c", [published("x", 1.0, 0.01, "mm")], MotionReading(readings.period), shipped("pendulum"))
     case = replace(case, difference=difference)
-    answers = {side: Answer([value], [error], "ok", 0.0) for side, (value, error) in sides.items()}
+    answers = {side: SideNumbers([value], [error], "ok", 0.0) for side, (value, error) in sides.items()}
     row = _benchmark(case, answers).rows[0]
     return {side: row.word(side, explained=True) for side in row.numbers}
 

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from known_analyses import collected
 from known_results import FOUND, PLAIN, fake
-from runs import no_executor
 
 import multibody
 from comparison.evidence.extremes import analysis
+from comparison.evidence.extremes.causes import CAUSES
 from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
-from comparison.evidence.extremes.matrix import STORED, Verdict
-from comparison.evidence.extremes.rows import CAUSES, rows, scene
+from comparison.evidence.extremes.matrix import Verdict
+from comparison.evidence.extremes.rows import rows, scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, process_pool
 from comparison.runner.task import TaskResult
 from reference.problem import Outcome
@@ -80,7 +80,7 @@ def test_every_kind_of_answer_has_its_verdict(row, column, verdict, reason):
 
 def test_the_equations_fail_at_no_extreme():
     groups = {"friction", "v_reg, m/s", "vertical loading, m/s^2", "outside the rules"}
-    chosen = [row for row in analysis.reduced(list(rows())) if row.group in groups]
+    chosen = [row for row in analysis.select_quick(list(rows())) if row.group in groups]
     assert {row.group for row in chosen} == groups
     for cell in analysis.cells(chosen):
         entry = analysis.solve_cell(cell)
@@ -126,22 +126,9 @@ def test_a_row_has_the_quantity_that_it_names():
 
 @pytest.mark.long
 def test_the_equations_fail_at_none_of_the_extremes():
-    matrix = collected(analysis.Extremes(analysis.reduced(list(rows())), limit=120.0), None, executor=process_pool)
-    assert [(row.group, row.title, title, cell.reason) for row, title, cell in matrix.listed(Verdict.FAILED)] == []
+    matrix = collected(analysis.Extremes(analysis.select_quick(list(rows())), limit=120.0), None, executor=process_pool)
+    assert [(row.group, row.title, title, cell.reason) for row, title, cell in matrix.cells_of(Verdict.FAILED)] == []
     assert sum(matrix.counts().values()) >= 120
-
-
-def test_the_command_writes_the_matrix_and_computes_once(tmp_path, capsys):
-    words = ["--models", "small", "--rows", "amplitude, m/s^2 1e", "--jobs", "1", "--out", str(tmp_path / "report")]
-    assert main(words, ThreadPoolExecutor) == 0
-    matrix = STORED.load(tmp_path / "report")
-    assert matrix.run["command"].startswith("phase-resonance extremes --models small ")
-    assert main(words, no_executor) == 0
-    assert f"3 of 3 tasks are in {tmp_path / 'report'}.tiles: only the others are computed." in capsys.readouterr().out
-    again = STORED.load(tmp_path / "report")
-    assert (again.rows, again.run["stored_before"]) == (matrix.rows, 3)
-    with pytest.raises(AssertionError, match="computed"):
-        main([*words, "--fresh"], no_executor)
 
 
 def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
@@ -195,7 +182,9 @@ def test_a_motion_that_leaves_the_model_is_refused() -> None:
     mu, verdicts = np.full((1, 2), np.nan), {}
     for outcome in Outcome:
         reply = analysis.Reply(mu, mu, (outcome.value,))
-        verdicts.setdefault(str(analysis.judged(reply, [reply], 1e-3, False, ()).verdict), set()).add(outcome.value)
+        verdicts.setdefault(str(analysis.judge_reply(reply, [reply], 1e-3, False, ()).verdict), set()).add(
+            outcome.value
+        )
     physics = {"rim reached", "travel reached", "contact lost", "overturned", "painleve paradox"}
     assert verdicts["refused"] == physics | {"non-finite load", "no ground motion"}
     assert verdicts["limit"] == {"step limit", "solver failed"}
@@ -206,7 +195,7 @@ def test_the_body_that_is_farthest_beyond_its_own_error_fails() -> None:
         analysis.Reply(np.array([[10.0 + off, 1.0 + 0.1 * off]]), np.array([[error, 0.01 * error]]), ("ok",))
         for off, error in ((0.05, 0.1), (0.0, 0.0))
     )
-    entry = analysis.judged(reply, [known], 1e-1, False, ())
+    entry = analysis.judge_reply(reply, [known], 1e-1, False, ())
     assert (entry.verdict, entry.reason[:14]) == ("FAILED", "mu_2 is off by"), "mu_1 is off by more, and allowed to be"
 
 
@@ -225,4 +214,6 @@ def test_the_body_that_is_farthest_beyond_its_own_error_fails() -> None:
 def test_an_error_half_of_what_it_should_be_fails(off: float, claimed: float, finer: float, verdict: str) -> None:
     mu = np.array([[1.0, 2.0], [1.0, 2.0]])
     reply = analysis.Reply(mu * [[1.0, 1.0], [1.0, 1.0 + off]], claimed * mu, ("ok", "ok"))
-    assert analysis.judged(reply, [analysis.Reply(mu, finer * mu, ("ok", "ok"))], 1e-2, False, ()).verdict == verdict
+    assert (
+        analysis.judge_reply(reply, [analysis.Reply(mu, finer * mu, ("ok", "ok"))], 1e-2, False, ()).verdict == verdict
+    )

@@ -125,7 +125,9 @@ def bomb(count: int) -> bytes:
     head = element(6, struct.pack("<II", 6, 0)) + element(5, struct.pack("<ii", count, 1)) + element(1, b"Theta1")
     packed, size = zlib.compressobj(9), len(head) + 8 + 8 * count
     data = packed.compress(struct.pack("<II", 14, size) + head + struct.pack("<II", 9, 8 * count))
-    data += b"".join(packed.compress(bytes(2**20)) for _ in range(count // 2**17)) + packed.flush()
+    data += packed.flush(zlib.Z_FULL_FLUSH)
+    # no end: nobody reads so far
+    data += (packed.compress(bytes(2**20)) + packed.flush(zlib.Z_FULL_FLUSH)) * (count // 2**17)
     start = b"MATLAB 5.0 MAT-file".ljust(116) + bytes(8) + struct.pack("<H", 0x0100) + b"IM"
     return start + struct.pack("<II", 15, len(data)) + data
 

@@ -13,9 +13,9 @@ from rich.console import Console
 from scipy.stats import linregress
 
 from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs
-from comparison.evidence.tradeoff.analysis import Measured, Measurement, entry, joined, sample
+from comparison.evidence.tradeoff.analysis import Measurement, SettingResult, entry, join_results, sample
 from comparison.evidence.tradeoff.growth import QUANTITIES, STORED, Growth, fit_slope, tall, with_slope
-from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Question, Setting, settings
+from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Setting, TradeoffQuestion, settings
 from comparison.evidence.tradeoff.trade import load, quantile, unbeaten, with_pareto_fronts
 from comparison.study.batches import import_function
 from comparison.study.study import Study
@@ -38,14 +38,14 @@ def test_the_share_of_points_is_met_by_a_value_that_occurred() -> None:
     assert quantile(np.array([1.0, 2.0, 3.0, 40.0]), 0.95) == 40.0
     assert quantile(np.array([np.nan]), 0.5) is None
     share = np.arange(101.0)[:, None]
-    shares = entry(SETTING, Measured(1.0 + share, share * (1.0 + share), 1.0, np.nan), np.ones((101, 1)))
+    shares = entry(SETTING, SettingResult(1.0 + share, share * (1.0 + share), 1.0, np.nan), np.ones((101, 1)))
     assert (shares.median, shares.most, shares.error_estimate) == ([50.0], [95.0], [95.0])
 
 
 def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     ones = np.ones((3, 1))
     good, lost, uneven, other = (
-        entry(SETTING, Measured(ones * mu, 0.1 * ones * mu, seconds, np.nan), ones)
+        entry(SETTING, SettingResult(ones * mu, 0.1 * ones * mu, seconds, np.nan), ones)
         for mu, seconds in (
             (1.1, 3.0),
             ([[1.0], [np.nan], [1.0]], 1.0),
@@ -57,14 +57,16 @@ def test_a_setting_with_gaps_is_not_on_the_front() -> None:
     assert [setting.pareto_front for setting in marked] == [(True,), (False,), (False,), (False,)]
     assert lost.answered == 2
     assert (good.seconds, good.error_estimate) == (1.0, [pytest.approx(0.1)]), "per point, and relative"
-    parts = [Measured(ones[:2], ones[:2], part, step, why) for part, step, why in ((2.0, 0.1, ""), (4.0, 0.3, "no"))]
-    both = joined(parts)
+    parts = [
+        SettingResult(ones[:2], ones[:2], part, step, why) for part, step, why in ((2.0, 0.1, ""), (4.0, 0.3, "no"))
+    ]
+    both = join_results(parts)
     assert (both.seconds, both.step, both.error_message) == (6.0, pytest.approx(0.2), "no")
 
 
 def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> None:
     mu, share = np.array([[1.0, 2.0], [4.0, 5.0], [7.0, 8.0]]), np.array([[0.01, 0.03], [0.02, 0.005], [0.01, 0.01]])
-    plain = entry(SETTING, Measured(mu, mu, 1.0, np.nan), mu)
+    plain = entry(SETTING, SettingResult(mu, mu, 1.0, np.nan), mu)
     entries = [
         replace(plain, method=method, value=value, most=most, model_error=method.startswith("v_reg"))
         for method, value, most in (
@@ -75,7 +77,7 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
             ("v_reg", 0.1, (0.0, 0.0)),
         )
     ]
-    found = analysis._count_answers(QUESTIONS[0], Measured(mu, share * mu, 6.0, np.nan), entries)
+    found = analysis._count_answers(QUESTIONS[0], SettingResult(mu, share * mu, 6.0, np.nan), entries)
     assert (found.points, found.error) == (3, pytest.approx(0.03))
     assert found.reference_solution == "the reference at a tolerance of 1e-10, 2 s per point"
     assert found.checks == [
@@ -139,18 +141,12 @@ def _known(scene: Scene, phases: np.ndarray, gap: float, tolerance: float = 1e-6
     return Amplification(mu, 1e-3 * mu, np.full(len(phases), "ok"), nothing, 0.0)
 
 
-def test_a_model_that_raises_leaves_points_without_a_value() -> None:
-    measured = analysis.measure(Measurement(SCENE, ("fake_models:always_raising", {}), sample(2)))
-    assert np.isnan(measured.mu).all()
-    assert measured.error_message == "TypeError: always_raising() missing 1 required positional argument: 'tolerance'"
-
-
 def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
     path, gaps = f"{__name__}:_known", (1e-3, 1e-2)
-    question = Question("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
+    question = TradeoffQuestion("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
     monkeypatch.setattr(analysis, "settings", lambda scene, quick: known)
-    monkeypatch.setattr(analysis, "asked", lambda scene: [question])
+    monkeypatch.setattr(analysis, "questions_of", lambda scene: [question])
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
     (first,) = load(tmp_path / "out")
@@ -200,14 +196,15 @@ def test_the_front_is_printed_with_median_and_95_percent(capsys: pytest.CaptureF
 
 
 def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.MonkeyPatch) -> None:
-    def measured(measurement: Measurement) -> Measured:
+    def measured(measurement: Measurement) -> SettingResult:
         """A second for every body of every phase pair."""
         mu = np.ones((len(measurement.phases), len(measurement.scene.bodies)))
-        return Measured(mu, mu, float(mu.size), np.nan)
+        return SettingResult(mu, mu, float(mu.size), np.nan)
 
     monkeypatch.setattr(growth, "measure", measured)
     few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 16))]
-    *bodies, pairs = collected(Growth(few), Study((SCENE,), 1, 1e-3))
+    monkeypatch.setattr(growth, "QUANTITIES", few)
+    *bodies, pairs = collected(Growth(), Study((SCENE,), 1, 1e-3))
     assert [each.seconds for each in bodies] == [[2.0, 4.0, 8.0]] * 3, "of every model"
     assert (pairs.quantity, pairs.seconds) == ("phase pairs", [8.0, 32.0])
 
@@ -230,6 +227,7 @@ def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path)
 def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[object] = []
     monkeypatch.setattr(growth, "measure", calls.append)
-    series = growth.by_workers(SCENE, ThreadPoolExecutor, 3)
+    monkeypatch.setattr(growth, "cores", lambda: 3)
+    series = growth.by_workers(SCENE, ThreadPoolExecutor)
     assert list(series.values) == [1.0, 2.0, 3.0]
     assert len(calls) == 3 * growth.CALLS + 2 * (1 + 2 + 3), "the same work for all, and two calls to warm each up"

@@ -15,11 +15,12 @@ from scipy.io import savemat
 from scipy.special import ellipk
 
 from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
-from comparison.evidence.validation import frame, pendulum, table
-from comparison.evidence.validation.command import compared, main
+from comparison.evidence.validation import command, frame, pendulum, table
+from comparison.evidence.validation.command import compare_folder, main
+from comparison.evidence.validation.cycles import SPEED, WIDTH
 from comparison.evidence.validation.feature import panels
 from comparison.evidence.validation.files import DECAY, LARGE, Shaken, read_folder
-from comparison.evidence.validation.table import COVERAGE, LAW, Validation, recorded
+from comparison.evidence.validation.table import COVERAGE, LAW, Validation, load_record
 from comparison.verdicts import MET, NOT_COMPARED, NOT_MET
 
 MASS, STIFFNESS, DAMPING, RATIO = 3.0799, 1191.0, 0.6690, 0.24
@@ -85,8 +86,8 @@ def test_the_numbers_of_a_known_cycle_are_read():
     half_range, rms, rest, starts, stops = frame.read_cycle(motion, 1.0)
     assert half_range == 1.5
     assert rms == pytest.approx(math.sqrt((200.0 * 1.5**2 + 160.0 * 1.5**2 / 3.0) / 360.0), rel=1e-3)
-    width, top = 360.0 * frame.WIDTH / frame.SAMPLES, 3.0 / (80.0 / 360.0)  # velocity: a mean over twice the width
-    early = width * (1.0 - 2.0 * frame.SPEED / top)
+    width, top = 360.0 * WIDTH / frame.SAMPLES, 3.0 / (80.0 / 360.0)  # velocity: a mean over twice the width
+    early = width * (1.0 - 2.0 * SPEED / top)
     assert (starts, stops) == pytest.approx((70.0 - early, 150.0 + early), abs=0.2)
     assert rest == pytest.approx(100.0 * (200.0 - 4.0 * early) / 360.0, abs=0.2)
     at_rest = frame.read_cycle(0.05 * np.sin(np.linspace(0.0, 6.283, frame.SAMPLES)), 1.0)
@@ -139,8 +140,8 @@ def test_one_run_is_fitted_and_the_others_predicted(monkeypatch):
         motions = [cycle(frame.Setup(ratio=ratio + change)) for change in (5e-4, -5e-4, 5e-4, -5e-4)]
         return frame.Cycles(run, np.array(motions), 1.0, 2.0, 0.02)
 
-    def read(cycles: frame.Cycles, setup: frame.Setup) -> table.Answer:
-        return table.Answer(frame.read_cycle(cycle(setup), 1.0), np.full(5, 1e-3))
+    def read(cycles: frame.Cycles, setup: frame.Setup) -> table.ComputedValues:
+        return table.ComputedValues(frame.read_cycle(cycle(setup), 1.0), np.full(5, 1e-3))
 
     for name, known in (("fold", folded), ("compute", lambda side, cycles, setup: setup), ("read", read)):
         monkeypatch.setattr(frame, name, known)
@@ -245,7 +246,7 @@ def test_half_periods_are_those_of_elliptic_integrals(tmp_path: Path):
 def test_both_sides_meet_runs_of_an_independent_program(tmp_path: Path):
     save(tmp_path, 250)
     save(tmp_path, 450, offset=0.3)
-    table = compared(tmp_path)
+    table = compare_folder(tmp_path)
     assert len(table.quantities) == 10
     assert table.counts()[MET] == 20
     assert "ratio of this run alone is 0.240" in table.facts[1]
@@ -254,9 +255,9 @@ def test_both_sides_meet_runs_of_an_independent_program(tmp_path: Path):
 @pytest.mark.long
 @pytest.mark.skipif(not MEASURED, reason="PHASE_RESONANCE_MEASURED names no folder with the published files")
 def test_the_recorded_table_is_that_of_the_published_files():
-    table = compared(Path(MEASURED))
+    table = compare_folder(Path(MEASURED))
     new = {(each.experiment, each.name): each for each in table.quantities}
-    for each in recorded().quantities:
+    for each in load_record().quantities:
         again = new[each.experiment, each.name]
         assert again.measured == pytest.approx(each.measured, rel=1e-6)
         for side, computed in each.sides.items():
@@ -272,9 +273,9 @@ def test_page_and_terminal_have_the_recorded_table(capsys: pytest.CaptureFixture
     lines = [re.split(r"\s{2,}", line.strip()) for line in printed.splitlines()]
     heads = ["quantity", "D", "u_D", "u_input", "E equations", "u_num", "E engine", "u_num", "u_val", "verdict"]
     assert heads in lines
-    assert sum(recorded().counts().values()) == 2 * len(recorded().quantities)
-    assert recorded().curves == []  # nothing of the files is in the package
-    for each in recorded().quantities:
+    assert sum(load_record().counts().values()) == 2 * len(load_record().quantities)
+    assert load_record().curves == []  # nothing of the files is in the package
+    for each in load_record().quantities:
         equations, smoothed, engine = (each.sides[side] for side in (EQUATIONS, SMOOTHED, ENGINE))
         measured = f"{each.measured:.5g}"
         sides = [number for side in (equations, engine) for number in (side.error, side.numerical)]
@@ -316,12 +317,12 @@ def test_wrong_files_end_in_one_line(tmp_path, capsys, spoil, said):
 
 
 def test_a_side_without_a_value_is_an_exit_code(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
-    first, *rest = recorded().quantities
+    first, *rest = load_record().quantities
     nothing = table.Comparison(None, None, None, None, NOT_COMPARED)
     lacking = replace(first, sides={**first.sides, ENGINE: nothing})
-    for quantities, code in ((recorded().quantities, 0), ([lacking, *rest], 1)):
-        compared = replace(recorded(), quantities=quantities)
-        monkeypatch.setattr("comparison.evidence.validation.command.compared", lambda folder, table=compared: table)
+    for quantities, code in ((load_record().quantities, 0), ([lacking, *rest], 1)):
+        table_of_folder = replace(load_record(), quantities=quantities)
+        monkeypatch.setattr(command, "compare_folder", lambda folder, found=table_of_folder: found)
         assert main([str(tmp_path), "--out", str(tmp_path / "report")]) == code
 
 
@@ -330,7 +331,7 @@ def test_a_comparison_error_is_within_all_uncertainties():
     one = np.ones(2)
     data = table.Data(("a", "b"), ("mm", "mm"), ("predicted",) * 2, one, np.array([0.12, 0.12]))
     values = np.array([1.1285, 1.135])
-    answers = dict.fromkeys((EQUATIONS, ENGINE), table.Answer(values, np.array([0.03, 0.03])))
+    answers = dict.fromkeys((EQUATIONS, ENGINE), table.ComputedValues(values, np.array([0.03, 0.03])))
     varied = [values + 0.024, values - 0.032]
     first, second = table.quantities("run", data, answers, varied, lambda k, allowed: "why")
     assert [each.sides[EQUATIONS].verdict for each in (first, second)] == [MET, NOT_MET]

@@ -56,9 +56,13 @@ def places() -> Iterator[Place]:
         for field in (*feature.fields, *feature.scene_fields):
             if field.compute:
                 yield Place(field, "compute", f"section {field.name}")
-        for name, said in {"figures": "pictures of ", "packed_data": ""}.items():
+        for name, said in {
+            "figures": "pictures of {}",
+            "packed_data": "{}",
+            "page_data": "data of {} on the page",
+        }.items():
             if getattr(feature, name):
-                yield Place(feature, name, f"{said}{feature.key}")
+                yield Place(feature, name, said.format(feature.key))
         if section := feature.section:
             yield Place(section, "context", f"section {section.name}")
             if section.verdict:

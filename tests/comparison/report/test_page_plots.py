@@ -7,8 +7,8 @@ import pytest
 from recorded_figures import figures_are_told
 
 from comparison.evidence.tradeoff.feature import tradeoff_answers, tradeoff_panels
-from comparison.evidence.tradeoff.trade import Answered, Entry, Trade
-from comparison.evidence.trend_panels import trend_panels
+from comparison.evidence.tradeoff.trade import Answered, MeasuredSetting, Trade
+from comparison.evidence.trend_feature import trend_panels
 from comparison.evidence.trends import Trend
 from comparison.report.glossary import GLOSSARY, explained
 from comparison.report.page import content_policy
@@ -16,9 +16,9 @@ from comparison.report.panels import draw_panels, panel
 from comparison.report.plots import MAX_CURVES
 
 
-def _entry(method: str, seconds: float, error: float, value: float = 1e-3) -> Entry:
+def _entry(method: str, seconds: float, error: float, value: float = 1e-3) -> MeasuredSetting:
     most, half = (error,) * 2, (1e-3 * error,) * 2
-    return Entry(
+    return MeasuredSetting(
         "exact", method, "tolerance", "", value, True, False, 4, 4, seconds, half, most, half, None, (True,) * 2
     )
 

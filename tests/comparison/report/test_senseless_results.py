@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from fake_models import fake_hierarchy
-from known_results import FILES, known_trade
+from known_results import FILES, known_ensemble, known_trade
 from runs import SMALL, Run
 
 from comparison.analyses.ensemble.result import STORED as ENSEMBLE
@@ -21,7 +21,11 @@ from comparison.runner.output import publish
 
 STORES = {each.name: each for each in (BENCHMARKS, ENSEMBLE, MATRIX, STORED, growth.STORED, VALIDATION)}
 TRADES = STORED.as_json(TradeFile(SCHEMA, [known_trade("fig3-I")]))
-KNOWN = {**{name: content for name, content in FILES.items() if name in STORES}, STORED.name: TRADES}
+KNOWN = {
+    **{name: content for name, content in FILES.items() if name in STORES},
+    STORED.name: TRADES,
+    ENSEMBLE.name: ENSEMBLE.as_json(known_ensemble()),
+}
 
 
 CURVE = {"panel": "p", "axes": ["a", "b"], "name": "measured", "x": [1.0], "y": [2.0]}
@@ -74,7 +78,7 @@ def test_fields_that_contradict_each_other_are_refused(
 
 
 def test_a_senseless_file_beside_a_report_is_a_wrong_input(command: Callable[..., Run], tmp_path: Path) -> None:
-    publish(tmp_path / "report", {ENSEMBLE.name: edited(ENSEMBLE.name, ("scales",), [])}, "a test")
+    publish(tmp_path / "report", {MATRIX.name: edited(MATRIX.name, ("columns",), {})}, "a test")
     run = command(*SMALL, hierarchy=fake_hierarchy("forbidden"))
     assert (run.code, run.out, run.err.count("\n")) == (2, "", 1)
 

@@ -3,10 +3,11 @@
 import io
 import math
 import re
-from html.parser import HTMLParser
 from types import SimpleNamespace
 from typing import Any
 
+import pytest
+from report_texts import Tables
 from rich.console import Console
 
 from comparison.cli.closing import _print_differences
@@ -30,36 +31,6 @@ ROW = Difference(
     independent=59, grids=(GridMean(4, -0.071, 0.091), GridMean(8, -0.081, 0.093)), beyond_error=0.62, resolved=0.73,
     ratio=3.4, not_ok=7, unanswered=5,
 )  # fmt: skip
-
-
-class Tables(HTMLParser):
-    """The rows of every table by the heads of its columns."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.tables: list[list[list[str]]] = []
-        self.inside = False
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: Any) -> None:
-        if tag == "table":
-            self.tables.append([])
-        elif tag == "tr":
-            self.tables[-1].append([])
-        elif tag in ("td", "th"):
-            self.tables[-1][-1].append("")
-            self.inside = True
-
-    def handle_endtag(self, tag: str) -> None:
-        self.inside = self.inside and tag not in ("td", "th")
-
-    def handle_data(self, data: str) -> None:
-        if self.inside:
-            self.tables[-1][-1][-1] += data
-
-    def rows(self, number: int) -> list[dict[str, str]]:
-        heads, *rows = self.tables[number]
-        return [dict(zip(heads, [" ".join(cell.split()) for cell in row])) for row in rows]
 
 
 def tables_of(section: str, **context: Any) -> Tables:
@@ -173,6 +144,51 @@ def test_alerts_of_a_kind_are_counted_together_and_never_across_kinds() -> None:
         ("amber", "2 wide swings of the platform", ["b: text of b", "c: text of c"]),
         ("amber", "1 wide swing of the platform", ["d: text of d"]),
     ]
+
+
+def test_the_answers_stand_below_their_heads_and_beside_their_labels() -> None:
+    names = ("difference", "range", "causes", "agreement", "supremum")
+    cells = SimpleNamespace(**{name: lambda line, name=name: f"<{name} {line.body}>" for name in names})
+    scene = SimpleNamespace(name="tower", title="", headlines=[SimpleNamespace(name="platform", body=1)])
+    results = SimpleNamespace(scenes=[scene], phased=True, gate="", engine_lines=[])
+    template = _environment().get_template("sections/summary.html.j2")
+    text = template.render(results=results, cells=cells, second_title="SECOND", drawn=[])
+    less = "less the paper's equations, relative to these, as integrated"
+    assert Tables(text).rows(0) == [{
+        "scene": "tower", "body": "platform",
+        f"SECOND {less}: mean, and range over the phases (α₁, α₂)": "<difference 1> <range 1>",
+        "causes, with their share of the mean": "<causes 1>",
+        "same equations and friction law: largest difference (within twice the errors?)": "<agreement 1>",
+        "literal supremum above as integrated: mean, largest": "<supremum 1>",
+    }]  # fmt: skip
+    labels = dict(re.findall(r'<td data-label="([^"]*)">.*?&lt;(\w+) 1', text))
+    assert labels == {
+        "SECOND less the paper’s equations, as integrated: mean, range": "difference", "causes": "causes",
+        "same equations and friction law: largest difference (within twice the errors?)": "agreement",
+        "literal supremum above as integrated": "supremum",
+    }  # fmt: skip
+
+
+def test_the_answers_name_exudyn_only_where_an_engine_takes_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    for sides, name in ((("equations", "engine"), "Exudyn"), (("equations", "user"), "the last model")):
+        models = [SimpleNamespace(side=side) for side in sides]
+        monkeypatch.setattr(page, "models_in_use", lambda study, models=models: models)
+        assert page.name_second(SimpleNamespace()) == name  # type: ignore[arg-type]
+
+
+def test_a_record_has_value_error_step_and_its_error_below_their_heads() -> None:
+    value = SimpleNamespace(body=2, model="spatial", mu=1.234, error=3.1e-4, status="ok")
+    bar = WaterfallBar("spatial", -0.057, 7.3e-3, True)
+    scene = SimpleNamespace(
+        name="tower", title="", recorded=True, values=[value], waterfalls=[SimpleNamespace(body=2, bars=[bar])]
+    )
+    study = SimpleNamespace(scenes=[SimpleNamespace(excitation=SimpleNamespace(files="a.at2", scale=1.0))])
+    results = SimpleNamespace(scenes=[scene], phased=False)
+    tables = tables_of("surfaces", results=results, study=study, has_surfaces=lambda scene: False)
+    assert tables.rows(0) == [{
+        "model": "spatial engine", "μ2": "1.234", "error": "3.1e-04", "step from the model above": "-5.7e-02",
+        "its error": "7.3e-03", "status": "ok",
+    }]  # fmt: skip
 
 
 def test_what_was_measured_is_said_with_what_the_study_adds() -> None:

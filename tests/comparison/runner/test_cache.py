@@ -30,7 +30,7 @@ import multibody.models.engine
 from comparison.analyses.motions.analysis import Place, StoredMotion
 from comparison.evidence.claims.table import paper_complete
 from comparison.registry import ANALYSES, EVERYTHING, first_tasks
-from comparison.runner.cache import MAGIC, Cache, Key
+from comparison.runner.cache import MAGIC, Cache, CacheKey
 from comparison.runner.environment import (
     environment_fingerprint,
     provenance,
@@ -138,8 +138,12 @@ def _on_disk(folder: Path) -> int:
     return sum(max(512 * getattr(state, "st_blocks", 0), state.st_size) for state in states)
 
 
-def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path) -> None:
-    needed, old, new = (Key(f'"{name}"', "0" * 64, "batch") for name in ("needed", "old", "new"))
+def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def trim(limit: int) -> None:
+        monkeypatch.setattr("comparison.runner.cache.LIMIT", limit)
+        store.trim([needed])
+
+    needed, old, new = (CacheKey(f'"{name}"', "0" * 64, "batch") for name in ("needed", "old", "new"))
     store = Cache(tmp_path)
     for age, key in enumerate((needed, old, new)):
         store.put(key, 1.5)
@@ -149,24 +153,24 @@ def test_the_store_is_bounded_and_keeps_what_the_study_needs(tmp_path: Path) -> 
     for file, age in ((aside, 4000.0), (young, 3000.0)):
         file.write_bytes(MAGIC + b"torn")
         os.utime(file, (time.time() - age,) * 2)
-    store.trim([needed], limit=2 * sum(sizes))
+    trim(2 * sum(sizes))
     assert (aside.exists(), young.exists()) == (False, True), "what a killed run left long ago goes"
     young.unlink()
-    store.trim([needed], limit=sum(sizes))
+    trim(sum(sizes))
     assert len(list(tmp_path.iterdir())) == 3, "within the limit nothing else goes"
-    store.trim([needed], limit=sizes[0] + sizes[2])
+    trim(sizes[0] + sizes[2])
     assert {entry.name for entry in tmp_path.iterdir()} == {needed.group, new.group}
     store.put(old, 1.5)
     os.utime(tmp_path / old.group, (1000.0, 1000.0))
     assert store.get(old, float) == 1.5
-    store.trim([needed], limit=sizes[0] + sizes[1])
+    trim(sizes[0] + sizes[1])
     assert {entry.name for entry in tmp_path.iterdir()} == {needed.group, old.group}, "what was read lately stays"
-    store.trim([needed], limit=0)
+    trim(0)
     assert {entry.name for entry in tmp_path.iterdir()} == {needed.group}
     store.put(old, 1.5)
     for size, kept in ((2**30 - 2**16, True), (2**30, False)):  # with the blocks of the other group beyond it
         os.truncate(tmp_path / old.name, size)
-        store.trim([needed])
+        trim(2**30)
         assert (tmp_path / old.name).exists() == kept
 
 
@@ -258,7 +262,7 @@ def test_the_cost_of_a_task_is_its_own_processor_time() -> None:
     assert 0.0 <= execute(Task(len, "abc", "test")).cost < 0.1 < time.process_time()
 
 
-KEY = Key('{"a": 1}', "0" * 64, "result")
+KEY = CacheKey('{"a": 1}', "0" * 64, "result")
 
 
 class Color(Enum):
@@ -297,7 +301,7 @@ VALUE = Outer(
 )
 
 
-def forged(key: Key, content: bytes) -> bytes:
+def forged(key: CacheKey, content: bytes) -> bytes:
     """A file with a right checksum."""
     return MAGIC + hashlib.sha256(key.name.encode() + b"\0" + content).digest() + content
 
@@ -357,7 +361,7 @@ def test_a_forged_file_with_a_right_checksum_is_not_taken(
 def test_no_file_of_another_result_is_taken(tmp_path: Path) -> None:
     cache = Cache(tmp_path)
     cache.put(KEY, VALUE)
-    other = Key(KEY.about, "1" * 64, "result")
+    other = CacheKey(KEY.about, "1" * 64, "result")
     (tmp_path / KEY.name).rename(tmp_path / other.name)
     assert cache.get(other, Outer) is None
 

@@ -1,8 +1,10 @@
 """A Dask cluster gives the numbers of this machine, loses none when a worker dies, and can be done without."""
 
+import socket
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -83,11 +85,48 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on(
     assert (again.code, summary["tiles_stored_before"], summary["jobs"]) == (0, 6 * kept, 3)
 
 
-@pytest.mark.parametrize("address", ["nowhere", "tls://127.0.0.1:1"])
-def test_no_scheduler_is_a_wrong_option(command: Callable[..., Run], address: str) -> None:
-    run = command("fig3-I", "--scheduler", address, hierarchy=fake_hierarchy("forbidden"))
+ANSWERS = {
+    "silent": b"",
+    "http": b"HTTP/1.1 400 Bad Request\r\nContent-Length: 0\r\n\r\n",
+    "garbage": bytes(range(256)) * 8,
+}
+
+
+@contextmanager
+def serve(answer: bytes) -> Iterator[str]:
+    """Send the answer to every connection and keep it open, for the block; yields the address."""
+
+    def accept() -> None:
+        with suppress(OSError):
+            while True:
+                kept.append(server.accept()[0])
+                kept[-1].sendall(answer)
+
+    kept: list[socket.socket] = []
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        thread = threading.Thread(target=accept)
+        thread.start()
+        yield f"tcp://127.0.0.1:{server.getsockname()[1]}"
+        server.shutdown(socket.SHUT_RDWR)
+        thread.join()
+    for connection in kept:
+        connection.close()
+
+
+@pytest.mark.parametrize("kind", ["nowhere", "tls://127.0.0.1:1", *ANSWERS])
+def test_no_scheduler_is_a_wrong_option(
+    command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    assert dask.LONGEST_KNOCK < 15.0
+    monkeypatch.setattr(dask, "LONGEST_KNOCK", 1.5)
+    with serve(ANSWERS[kind]) if kind in ANSWERS else nullcontext(kind) as address:
+        run = command("fig3-I", "--scheduler", address, hierarchy=fake_hierarchy("forbidden"))
     assert (run.code, run.err.count("\n")) == (2, 1)
     assert run.err.startswith(f"command line: --scheduler = {address!r}: no scheduler answers there: ")
+    assert ("silent for 1.5 s" in run.err) is (kind == "silent")
+
+
+def test_a_scheduler_and_a_number_of_processes_exclude_each_other(command: Callable[..., Run]) -> None:
     both = command("fig3-I", "--scheduler", "nowhere", "--jobs", "3")
     assert both.code == 2
     assert both.err.startswith("command line: --jobs = '3': counts processes of this machine")
@@ -106,7 +145,7 @@ def test_a_task_that_killed_every_worker_it_was_on_has_died_as_often() -> None:
     remote: Future[Any] = Future()
     remote.set_exception(KilledWorker("task", SimpleNamespace(address="tcp://there"), 3))
     answer: Future[Any] = Future()
-    dask._arrived(remote, answer)
+    dask._pass_on(remote, answer)
     error = answer.exception()
     assert isinstance(error, WorkerDiedError)
     assert error.times == 4

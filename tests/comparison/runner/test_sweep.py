@@ -277,7 +277,7 @@ def test_a_batch_that_was_given_up_is_not_stored(tmp_path: Path, monkeypatch: py
     model = user_model("mine", {"function": "user_engines:plain"})
     tasks = surface_tasks(Study((load_scene("fig3-I"),), 2, 1e-3, [model]))
     results = _run(tasks, Limited, jobs=1, folder=tmp_path)
-    assert [result.outcome for result in results] == [Outcome.TIME_LIMIT] * 4
+    assert [result.outcome for result in results] == [*[Outcome.TIME_LIMIT] * 3, Outcome.NOT_ASKED]
     assert [result.error_message for result in results] == [*["no answer within 60 s"] * 3, GIVEN_UP]
     assert TaskResults(Cache(tmp_path / "cache")).missing(tasks) == tasks[3:]
     monkeypatch.setattr(Limited, "error", WorkerDiedError)

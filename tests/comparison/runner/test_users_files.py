@@ -2,10 +2,11 @@
 
 import errno
 import hashlib
+import io
 import os
 import signal
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import redirect_stderr, suppress
 from pathlib import Path
 
 import pytest
@@ -17,19 +18,9 @@ from runs import SMALL, Run
 from comparison.cli import reports
 from comparison.evidence.extremes import command as extremes
 from comparison.report import page
-from comparison.runner.cache import Cache, Key, store_beside
-from comparison.runner.output import (
-    MANIFEST,
-    Own,
-    clear_dead,
-    destination,
-    foreign,
-    manifest_json,
-    publish,
-    read_manifest,
-    refuse_foreign_files,
-    replace_report,
-)
+from comparison.runner.cache import Cache, CacheKey, locate_store
+from comparison.runner.manifest import MANIFEST, Own, list_foreign_files, manifest_json, read_manifest
+from comparison.runner.output import clear_dead, destination, publish, refuse_foreign_files, replace_report
 from reference.support.files import TEMPORARY
 
 TABLES = ["extremes.json", "extremes.png"]
@@ -37,12 +28,11 @@ TABLES = ["extremes.json", "extremes.png"]
 
 def put(folder: Path, *names: str, content: str = "new") -> tuple[Path, list[str]]:
     """A report of these files; where it went, and what was said."""
-    said: list[str] = []
-    with replace_report(folder, said.append) as report:
+    with redirect_stderr(io.StringIO()) as said, replace_report(folder) as report:
         for name in names or ("index.html",):
             (report.folder / name).parent.mkdir(exist_ok=True)
             (report.folder / name).write_text(content, encoding="utf-8")
-    return report.place, said
+    return report.place, said.getvalue().splitlines()
 
 
 def mine(file: Path) -> Path:
@@ -60,18 +50,19 @@ def is_mine(file: Path) -> bool:
     ("name", "finished"),
     [("thesis.txt", False), (MANIFEST, False), ("figures/for-paper/fig.svg", True), ("index.html", True)],
 )
-def test_what_appears_in_out_meanwhile_stays(tmp_path: Path, name: str, finished: bool) -> None:
+def test_what_appears_in_out_meanwhile_stays(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, finished: bool
+) -> None:
     if finished:
         put(tmp_path / "report", "index.html", "figures/ours.png")
-    said: list[str] = []
-    with replace_report(tmp_path / "report", said.append) as report:
+    with replace_report(tmp_path / "report") as report:
         (report.folder / "index.html").write_text("new", encoding="utf-8")
         mine(tmp_path / "report" / name)
     assert is_mine(tmp_path / "report" / name)
     assert report.place == tmp_path / "report-2"
     assert page_of(tmp_path / "report-2") == "new"
-    assert foreign(tmp_path / "report-2") == []
-    (line,) = said
+    assert list_foreign_files(tmp_path / "report-2") == []
+    (line,) = capsys.readouterr().err.splitlines()
     assert repr(name) in line
     assert "report-2" in line
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["report", "report-2"]
@@ -107,10 +98,10 @@ def test_a_file_of_the_user_in_a_report_is_refused_at_the_start(
 
 
 def test_a_file_or_link_in_place_of_the_report_stays(tmp_path: Path) -> None:
-    with replace_report(tmp_path / "report", lambda line: None):
+    with replace_report(tmp_path / "report"):
         mine(tmp_path / "report")
     assert is_mine(tmp_path / "report")
-    with replace_report(tmp_path / "other", lambda line: None) as report:
+    with replace_report(tmp_path / "other") as report:
         (tmp_path / "other").symlink_to(tmp_path / "report-2")
     assert (tmp_path / "other").is_symlink()
     assert report.place == tmp_path / "other-2"
@@ -153,7 +144,7 @@ def test_a_report_half_moved_is_still_the_studys(tmp_path: Path, monkeypatch: py
             patch.setattr(os, "replace", moved)
             ends()
     refuse_foreign_files(tmp_path / "tables", TABLES)
-    assert foreign(tmp_path / "report") == []
+    assert list_foreign_files(tmp_path / "report") == []
     assert page_of(tmp_path / "report") in ("old", "new"), "each file is whole"
     put(tmp_path / "report", "index.html", content="newer")
     assert {entry.name for entry in tmp_path.iterdir()} == {"report", "tables"}
@@ -170,14 +161,15 @@ def test_a_manifest_that_was_tampered_with_proves_nothing(tmp_path: Path) -> Non
     assert is_mine(thesis)
 
 
-def test_a_folder_of_24_letters_in_the_store_is_never_trimmed(tmp_path: Path) -> None:
-    needed, old = (Key(f'"{name}"', "0" * 64, "batch") for name in ("needed", "old"))
+def test_a_folder_of_24_letters_in_the_store_is_never_trimmed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    needed, old = (CacheKey(f'"{name}"', "0" * 64, "batch") for name in ("needed", "old"))
     cache = Cache(tmp_path / "e.tiles")
     cache.put(old, 1.5)
     photos = tmp_path / "e.tiles" / "my-photos-of-summer-2024"
     files = [mine(photos / "a.jpg"), mine(photos / "b.batch"), mine(tmp_path / "e.tiles" / old.group / "c.batch")]
     (tmp_path / "e.tiles" / "link").symlink_to(photos)
-    cache.trim([needed], limit=0)
+    monkeypatch.setattr("comparison.runner.cache.LIMIT", 0)
+    cache.trim([needed])
     assert all(map(is_mine, files))
     assert not (tmp_path / "e.tiles" / old.name).exists(), "what is the study's own is"
 
@@ -210,7 +202,7 @@ def test_files_of_other_commands_in_the_report_are_kept(tmp_path: Path) -> None:
         publish(tmp_path / "report", {"extremes.json": b"{}"}, "comparison.extremes")
     assert report.place == tmp_path / "report"
     assert (tmp_path / "report" / "extremes.json").read_bytes() == b"{}"
-    assert foreign(tmp_path / "report") == []
+    assert list_foreign_files(tmp_path / "report") == []
 
 
 PLACES = {  # others are refused by phase-resonance init, too
@@ -219,9 +211,9 @@ PLACES = {  # others are refused by phase-resonance init, too
     "a link that leads back": ("loop", "leads back to itself"),
     "a link with another's store beside what it means": (
         "link",
-        "beside it is not a store of results of this study, it holds 'mine.txt'",
+        "next to it is not a store of results of this study, it holds 'mine.txt'",
     ),
-    "a store that is a link": ("linked-store", "beside it is not the folder that keeps results"),
+    "a store that is a link": ("linked-store", "next to it is not the folder that keeps results"),
     "a file": ("page.html", "is a file: give a directory"),
     "a mount point": ("mount", "is a mount point, which cannot be replaced"),
     "files of others": ("elsewhere.tiles", "is not a report of this study: give another directory, or empty this one"),
@@ -313,4 +305,4 @@ def test_what_a_killed_run_left_is_cleared_of_a_living_one_not(tmp_path: Path) -
 
 def test_the_working_directory_has_a_store_beside_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert store_beside(destination(Path("."))) == tmp_path.resolve().with_name(f"{tmp_path.name}.tiles")
+    assert locate_store(destination(Path("."))) == tmp_path.resolve().with_name(f"{tmp_path.name}.tiles")

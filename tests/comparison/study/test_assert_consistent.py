@@ -132,16 +132,6 @@ def test_a_status_that_is_not_ok_is_no_value(missing: int, status: str) -> None:
     assert_consistent(SHORT, **limits, engine=off_by(1.0, "regularised", **engine), failed=1)
 
 
-def test_an_engine_that_raises_fails_with_file_line_and_message() -> None:
-    def broken(scene, phases):  # type: ignore[no-untyped-def]
-        raise ZeroDivisionError("a pivot vanishes")
-
-    line = broken.__code__.co_firstlineno + 1
-    assert failure(like_for_like=0.1, grid=2, engine=broken)[-1] == (
-        f"ZeroDivisionError: a pivot vanishes (test_assert_consistent.py, line {line})"
-    )
-
-
 @pytest.mark.parametrize(
     ("arguments", "rule"),
     [

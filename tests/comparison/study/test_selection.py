@@ -13,7 +13,7 @@ from runs import Run
 
 from comparison.cli.options import parse_options
 from comparison.registry import EVERYTHING, FEATURES, SELECTABLE, first_tasks, select_analyses
-from comparison.runner.cache import Key
+from comparison.runner.cache import CacheKey
 from comparison.runner.task import Task
 from comparison.study.selection import select, select_names
 from comparison.study.study import Study
@@ -38,7 +38,7 @@ def scene_file(folder: Path, analyses: str, name: str = "mine") -> str:
 def test_a_selected_analysis_has_its_tasks_and_pictures_and_no_others() -> None:
     study = Study((load_scene("fig3-I"),), 4, 1e-3)
 
-    def tasks(only: list[str] | None, skip: list[str] | None) -> tuple[list[Task], set[Key]]:
+    def tasks(only: list[str] | None, skip: list[str] | None) -> tuple[list[Task], set[CacheKey]]:
         part = replace(study, selection=select(SELECTABLE, study.scenes, only, skip))
         pictures = Pictures().tasks(part, label_surfaces(study, [], []))
         return first_tasks(part, select_analyses(part)), {task.key for task in pictures}

@@ -85,6 +85,7 @@ DEFAULT = Limit("tower", "mine.ratio", 2.0, (LARGEST,), default=True)
         (DEFAULT, replace(LARGEST, found=NAN, reason="an error estimate is missing"), "body 2: acceptance.mine.ratio: an error estimate is missing, 2 allowed by default; largest difference −2.1 % at (90°, 45°)"),
         (DEFAULT, Breach(0, NAN, "nothing to compare"), "acceptance.mine.ratio: nothing to compare, 2 allowed by default"),
         (replace(DEFAULT, default=False), LARGEST, "body 2: acceptance.mine.ratio: 171 found, 2 allowed"),
+        (Limit("tower", "total.median", 0.3, ()), Breach(2, 0.30012), "body 2: acceptance.total.median: 0.3001 found, 0.3 allowed"),
         (Limit("tower", "total.maximum", 0.325, ()), Breach(1, 0.512), "body 1: acceptance.total.maximum: 0.512 found, 0.325 allowed"),
     ],
 )  # fmt: skip

@@ -42,9 +42,9 @@ CASES: dict[str, tuple[Any, ...]] = {  # levels and errors of the models, what i
     "causes that are alike": (gaps(0.05, 0.05, 0.05, 0.1001), {"spatial": 1e-3},
         [f"Causes: {TURNING} +5.0 ± 0.1 % (50 % of it), {GEOMETRY} +5 % (50 % of it); which effect is the largest"]),
     "within the errors": ({"spatial": 0.01}, {"spatial": 0.004},
-        ["Exudyn (spatial) and the paper's equations agree within the numerical error over 4 × 4 initial phases"]),
+        ["the paper's equations differ by less than five times the numerical error over 4 × 4 initial phases"]),
     "codes that differ": ({"translational": 0.2, "spatial": 0.2}, {},
-        ["the two codes differ beyond their errors, by up to 20 %."]),
+        ["the two codes differ beyond twice their errors, by up to 20 %."]),
     "literal supremum above": ({"small": 0.3, "exact": 0.3, "spatial": 0.02}, {},
         ["fig3-I, platform, as integrated: ", "The literal supremum is 30 % higher in the mean, up to 30 %."]),
     "literal supremum the same": ({"spatial": 0.02}, {}, ["The literal supremum is the same."]),
@@ -62,7 +62,7 @@ def test_the_sentence_says_what_is_planted(levels: Any, errors: Any, said: list[
     for words in said:
         assert words in sentence, sentence
     assert sentence.startswith("fig3-I, platform, as integrated: ")
-    assert sentence.count("Cause") == (0 if "agree within the numerical" in sentence else 1)
+    assert sentence.count("Cause") == (0 if "less than five times the numerical" in sentence else 1)
 
 
 def test_an_effect_between_literal_suprema_stands_beside_that_as_integrated() -> None:
@@ -108,6 +108,25 @@ def test_one_unknown_error_leaves_the_agreement_of_the_codes_open() -> None:
     place = {"model": "translational", "body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][4]}
     surfaces["error"].loc[place] = np.nan
     assert told(study, surfaces).like_for_like_met is None
+
+
+def test_agreement_is_told_in_units_of_both_errors_together() -> None:
+    study, surfaces = planted_study({"spatial": 0.02})
+    place = {"body": 1, "alpha1": surfaces["alpha1"][2], "alpha2": surfaces["alpha2"][4]}
+    base = surfaces["mu"].sel(model="regularised", **place).item()
+    surfaces["mu"].loc[{**place, "model": "translational"}] = 1.009 * base
+    for key, error in (("regularised", 0.003), ("translational", 0.004)):
+        surfaces["error"].loc[{**place, "model": key}] = error * base
+    numbers = told(study, surfaces)
+    assert (numbers.like_for_like, numbers.like_for_like_ratio) == (pytest.approx(0.009), pytest.approx(1.8))
+    assert "the two codes agree within twice their errors, to 0.9 %" in numbers.sentence
+
+
+def test_what_is_beyond_one_error_is_counted_beside_what_is_beyond_five() -> None:
+    study, surfaces = planted_study({"spatial": 0.02}, {"spatial": 0.01})
+    surfaces["error"].loc[{"model": "spatial", "alpha1": surfaces["alpha1"][0]}] *= 0.1
+    numbers = told(study, surfaces)
+    assert (numbers.beyond_error, numbers.resolved_share) == (1.0, 0.25)
 
 
 def test_the_ends_of_the_range_have_their_signs_and_phases() -> None:

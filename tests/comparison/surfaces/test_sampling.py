@@ -58,3 +58,11 @@ def test_missing_values_leave_the_others() -> None:
     assert mean_of_known(sizes) == pytest.approx((120.0 - 1.0) / 15.0)
     assert sampling_error(sizes, 15) > 0.0
     assert np.isnan(mean_of_known(np.full((2, 2), np.nan)))
+
+
+def test_the_scatter_is_that_of_every_shifted_grid() -> None:
+    """One value of 16 lies on one of four shifted grids of 2 x 2: their means are 1/4, 0, 0 and 0 about 1/16."""
+    for row, column in ((0, 0), (1, 0), (2, 3)):
+        sizes = np.zeros((4, 4))
+        sizes[row, column] = 1.0
+        assert sampling_error(sizes, 16) == pytest.approx(1.5 * np.sqrt((9.0 + 3.0) / 256.0 / 4.0))

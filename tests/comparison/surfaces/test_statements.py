@@ -39,10 +39,10 @@ KNOWN = Headline(
     first="small-resolved", first_name="the paper's equations", second="spatial", second_name="Exudyn (spatial)",
     mean=-0.0749, error=0.002, resolved=True, spread=0.031,
     low=-0.171, low_error=0.002, low_phases=(turn(1 / 8), turn(1 / 4)), high=0.053, high_error=0.001, high_phases=(turn(3 / 8), turn(1 / 2)),
-    phases_per_axis=16, points=256, independent=64, resolved_share=0.9,
+    phases_per_axis=16, points=256, independent=64, resolved_share=0.9, beyond_error=0.95,
     maximum=-0.18, maximum_error=1e-3, maximum_phases=(turn(1 / 16), 0.0), maximum_model="translational",
     effects=(GEOMETRY, FRICTION, CONTACT, TURNING), causes=("turning of the bodies", "geometry"),
-    main_cause="turning of the bodies", like_for_like=2.3e-4, like_for_like_met=True,
+    main_cause="turning of the bodies", like_for_like=2.3e-4, like_for_like_met=True, like_for_like_ratio=0.9,
     supremum_mean=0.091, supremum_error=0.01, supremum_maximum=0.283, supremum_phases=(0.0, turn(1 / 8)),
     engines=(), sentence="",
 )  # fmt: skip
@@ -73,12 +73,22 @@ def test_the_headline_is_size_causes_agreement_and_literal_supremum() -> None:
         ({"error": 1e-6}, TOTAL.replace("7.5 ± 0.2 %", "7.5 %")),
         ({"phases_per_axis": 1, "points": 1}, "Exudyn (spatial) gives 7.5 ± 0.2 % less than the paper's equations under the "
          "record."),
-        ({"phases_per_axis": 1, "points": 1, "resolved": False}, "Exudyn (spatial) and the paper's equations agree within the "
-         "numerical error under the record (difference −7.5 ± 0.2 %)."),
-        ({"resolved": False}, "Exudyn (spatial) and the paper's equations have no mean difference beyond its error over 16 × 16 initial phases "
-         "(−7.5 ± 0.2 %; from −17.1 ± 0.2 % at (45°, 90°) to +5.3 ± 0.1 % at (135°, 180°))."),
-        ({"resolved": False, "resolved_share": 0.0}, "Exudyn (spatial) and the paper's equations agree within the numerical "
-         "error over 16 × 16 initial phases (mean −7.5 ± 0.2 %; from −17.1 ± 0.2 % at (45°, 90°) to +5.3 ± 0.1 % at (135°, 180°))."),
+        ({"phases_per_axis": 1, "points": 1, "resolved": False, "error": 0.08}, "Exudyn (spatial) and the paper's equations agree "
+         "within the numerical error under the record (difference −7 ± 8 %)."),
+        ({"phases_per_axis": 1, "points": 1, "resolved": False, "error": 0.02}, "Exudyn (spatial) and the paper's equations differ "
+         "by −7 ± 2 % under the record, less than five times the numerical error."),
+        ({"resolved": False, "error": 0.02}, "Exudyn (spatial) and the paper's equations differ in the mean over 16 × 16 initial phases "
+         "by −7 ± 2 %, less than five times the numerical error (from −17.1 ± 0.2 % at (45°, 90°) to +5.3 ± 0.1 % at (135°, 180°))."),
+        ({"resolved": False, "error": 0.08}, "Exudyn (spatial) and the paper's equations have no mean difference beyond its error over "
+         "16 × 16 initial phases (−7 ± 8 %; from −17.1 ± 0.2 % at (45°, 90°) to +5.3 ± 0.1 % at (135°, 180°))."),
+        ({"resolved": False, "resolved_share": 0.0, "error": 0.08}, "Exudyn (spatial) and the paper's equations differ by less than five "
+         "times the numerical error over 16 × 16 initial phases (mean −7 ± 8 %; from −17.1 ± 0.2 % at (45°, 90°) to +5.3 ± 0.1 % at "
+         "(135°, 180°))."),
+        ({"resolved": False, "resolved_share": 0.0, "beyond_error": 0.0}, "Exudyn (spatial) and the paper's equations differ by less than "
+         "five times the numerical error over 16 × 16 initial phases (mean −7.5 ± 0.2 %; from −17.1 ± 0.2 % at (45°, 90°) to +5.3 ± 0.1 % "
+         "at (135°, 180°))."),
+        ({"resolved": False, "resolved_share": 0.0, "beyond_error": 0.0, "error": 0.08}, "Exudyn (spatial) and the paper's equations agree "
+         "within the numerical error over 16 × 16 initial phases (mean −7 ± 8 %; from −17.1 ± 0.2 % at (45°, 90°) to +5.3 ± 0.1 % at (135°, 180°))."),
         ({"resolved": False, "error": NAN, "points": 4, "independent": 2, "phases_per_axis": 2}, "Exudyn (spatial) against "
          "the paper's equations: 2 independent of 4 phase pairs do not tell the mean over all phases (mean of these −7.5 %, "
          "from −17.1 ± 0.2 % at (45°, 90°) to +5.3 ± 0.1 % at (135°, 180°))."),
@@ -125,7 +135,9 @@ def test_another_order_is_told_where_it_changes_more_than_a_fifth() -> None:
     ("changes", "sentence", "cell"),
     [
         ({}, AGREE, "0.023 % (met)"),
-        ({"like_for_like_met": False}, AGREE.replace("agree within their errors, to", "differ beyond their errors, by up to"),
+        ({"like_for_like_ratio": 1.1}, AGREE.replace("within their", "within twice their"), "0.023 % (met)"),
+        ({"like_for_like_met": False, "like_for_like_ratio": 2.1},
+         AGREE.replace("agree within their errors, to", "differ beyond twice their errors, by up to"),
          "0.023 % (not met)"),
         ({"like_for_like_met": None}, AGREE.replace("agree within their errors, to", "differ, with an unknown error, by up to"),
          "0.023 % (error unknown)"),
@@ -165,7 +177,8 @@ def test_the_cells_of_the_first_screen_say_what_the_sentence_says() -> None:
     assert CELLS.causes(replace(KNOWN, main_cause="")).endswith(
         "; which effect is the largest 16 × 16 phases do not tell"
     )
-    assert CELLS.causes(replace(KNOWN, resolved=False)) == "the mean is not beyond its error"
+    assert CELLS.causes(replace(KNOWN, resolved=False)) == "the mean is less than five times the numerical error"
+    assert CELLS.causes(replace(KNOWN, resolved=False, error=0.08)) == "the mean is not beyond its error"
     assert CELLS.causes(replace(KNOWN, causes=())) == "Which effect causes it 16 × 16 phases do not tell"
 
 
@@ -187,8 +200,10 @@ def test_the_verdict_answers_how_far_in_which_reading_and_what_was_measured() ->
 
 def test_the_verdict_names_where_the_codes_do_not_agree() -> None:
     beyond = replace(OTHER, like_for_like_met=False)
-    said = "the two codes agree to 0.044 %, not within the errors that both state for tower, body 2; "
+    said = "the two codes agree to 0.044 %, not within twice the errors that both state for tower, body 2; "
     assert said in word_verdict([KNOWN, beyond], "m")
+    twice = word_verdict([KNOWN, replace(OTHER, like_for_like_ratio=1.3)], "m")
+    assert "the two codes agree to 0.044 %, within twice the errors that both state; " in twice
     unknown = word_verdict([KNOWN, replace(OTHER, like_for_like_met=None)], "m")
     assert "the two codes agree to 0.044 %, with an unknown error for tower, body 2; " in unknown
     other = replace(OTHER, second="translational", second_name="Exudyn (translational)")
@@ -210,6 +225,29 @@ def test_the_verdict_finds_the_worst_phase_pair_below_zero() -> None:
     assert "by −40 % to +19 ± 1 % at single phase pairs" in said
     higher = "up to 50 % higher in the mean (tower, platform) and up to 90 % at single phase pairs (tower, body 2)"
     assert higher in said, "each has its own body"
+
+
+def test_the_verdict_names_every_reading_and_model_that_its_bodies_have() -> None:
+    same = replace(OTHER, reading="in both readings")
+    assert "give, read as integrated, differ" in word_verdict([KNOWN, same], "m"), "what holds in both holds in this"
+    assert "give, read in both readings, differ" in word_verdict([same], "m")
+    high = replace(OTHER, reading="literal supremum", first_name="the paper's equations (supremum)")
+    said = word_verdict([KNOWN, high], "m")
+    assert (
+        "that the paper's equations or the paper's equations (supremum) give, read as integrated or literal supremum, differ"
+        in said
+    )
+
+
+def test_the_verdict_takes_the_ends_over_the_phases_where_there_are_phases() -> None:
+    record = replace(KNOWN, phases_per_axis=1, mean=0.7, low=0.7, high=0.7)
+    said = word_verdict([OTHER, record], "m")
+    assert "by at most 70 % under the record (" in said
+    assert ", and by −1.0 ± 0.2 % to +19 ± 1 % at single phase pairs." in said
+    said = word_verdict([OTHER, replace(record, supremum_mean=0.05, supremum_maximum=0.05)], "m")
+    assert "up to 13 % higher in the mean (tower, body 2) and up to 22 % at single phase pairs (tower, body 2)" in said
+    said = word_verdict([OTHER, replace(record, supremum_mean=0.33, supremum_maximum=0.33)], "m")
+    assert "up to 33 % higher (tower, platform) and up to 22 % at single phase pairs (tower, body 2)" in said
 
 
 def test_the_verdict_names_the_largest_of_the_other_bodies() -> None:

@@ -52,6 +52,9 @@ def test_lists_of_surfaces_are_answered_by_what_is_modeled(tmp_path, line):
 def test_a_hint_has_the_meaning_of_the_key_and_not_only_its_letters(tmp_path):
     assert "did you mean damping" not in said_of(tmp_path, body="duration = 0.05\n").rule
     assert "write damping, as a ratio of critical" in said_of(tmp_path, body="damping_ratio = 0.05\n").rule
+    superstructure = "write [superstructure] damping = 0.05"
+    assert superstructure in said_of(tmp_path, loading=f"{LOADING}[superstructure]\ndamping_ratio = 0.05\n").rule
+    assert superstructure in said_of(tmp_path, body="modal_damping = 0.05\n").rule
     assert "write mass, kg" in said_of(tmp_path, body="weight = 0.05\n").rule
     assert (
         "support_"

@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 from chains import refusal
 
+from reference.plausibility import implausible_drift, implausible_values
 from reference.problem import SceneError, load_scene
-from reference.problem.plausibility import implausible_values
 from reference.support.arguments import brief
 
 PEAK = {"quantity": "mu", "body": 2, "value": 2.3, "uncertainty": 0.1, "phases": [0.3, 1.1]}
@@ -132,21 +132,54 @@ def test_a_wrong_value_is_one_line_with_scene_key_value_and_rule(values: dict[st
 
 BODIES = [{"mass": 1e3}, {"mass": 1e3, "stiffness": [4e5, 4e5]}]
 LONG = {"isolator.radius": None, "isolator.period": 150.0}
+HEAVY = {"bodies.0.mass": 1e9, "bodies.1.mass": 1e9, "bodies.1.stiffness": [4e11, 4e11]}
+LIGHT = {"bodies.0.mass": 20.0, "bodies.1.mass": 20.0, "bodies.1.stiffness": [8e3, 8e3]}
+STRONG = {"excitation.amplitudes": [[40.0, 0.0], [0.0, 1.0]]}
+DAMPED = "the damping of the first mode above a fixed base is {} % of critical, above 20 %: percent?"
+PERIOD = "the period above a fixed base is {}: stiffness in N/m, mass in kg?"
+LOAD = "the weight on each support is {}: is mass in kg?"
 
 
 @pytest.mark.parametrize(
     ("values", "lines"),
     [
         ({}, []),
-        ({"bodies.1.damping": 1.5}, ["the damping ratio of a link is 1.5, above critical: percent?"]),
-        ({"bodies.1.stiffness": [1.0, 4e5]}, ["a natural period is 198.7 s: units of mass and stiffness?"]),
-        (LONG, ["a natural period is 150 s: units of mass and stiffness?"]),
-        ({"isolator.radius": 2200.0}, ["the radius of the isolator is 2200 m: mm?"]),
+        ({"superstructure.damping": 0.25}, [DAMPED.format(25)]),
+        ({"bodies.1.damping": 1.5}, [DAMPED.format(150)]),
+        ({"bodies.1.stiffness": [1.0, 4e5]}, [PERIOD.format("198.7 s, above 5 s")]),
+        ({"bodies.1.stiffness": [4e5, 4e8]}, [PERIOD.format("0.009935 s, below 0.05 s")]),
+        (LONG, ["the radius of the isolator is 5591 m, above 50 m: is period in s?"]),
+        ({"isolator.radius": 2200.0}, ["the radius of the isolator is 2200 m, above 50 m: mm?"]),
         ({"isolator.radius": float("inf")}, []),
         ({"isolator.friction": {"slow": 5.0, "fast": 0.06, "rate": 50.0}}, ["the friction coefficient is 5: percent?"]),
-        ({"bodies.0.mass": 1e9}, ["masses differ by a factor of 1e+06: kg in one place and t in another?"]),
+        ({"bodies.0.mass": 1e7}, []),
+        (HEAVY, [LOAD.format("4905 MN, above 100 MN")]),
+        (LIGHT, [LOAD.format("98.1 N, below 1 kN")]),
+        (LIGHT | {"isolator.supports": None}, []),
+        (STRONG, ["the peak of the ground is 4.079 g, above 3 g: unit or scale?"]),
     ],
 )
 def test_what_is_hardly_meant_is_one_line(values: dict[str, Any], lines: list[str]) -> None:
-    given = {"bodies": BODIES, "isolator": {"radius": 2.2, "friction": 0.05}}
+    given = {"bodies": BODIES, "isolator": {"radius": 2.2, "friction": 0.05, "supports": 4}}
     assert implausible_values(load_scene("fig3-I").with_values(given).with_values(values)) == lines
+
+
+def test_masses_in_two_units_are_one_line_and_unit_masses_none() -> None:
+    scene = load_scene("fig3-I")
+    assert implausible_values(scene) == [], "the cases of the paper have masses of 1 kg"
+    spread = scene.with_values({"bodies.0.mass": 1e6, "isolator.supports": None})
+    assert implausible_values(spread) == ["masses differ by a factor of 1e+06: kg in one place and t in another?"]
+
+
+def test_a_peak_of_the_ground_is_hardly_meant_by_its_scale_where_the_record_is_not() -> None:
+    pair = load_scene("synthetic-pair")
+    assert implausible_values(pair.with_values({"excitation.scale": 20.0})) == [
+        "the peak of the ground is 5.101 g, above 3 g: unit or scale?"
+    ]
+    in_another_unit = pair.with_values({"excitation.record": {"time": [0.0, 1.0], "acceleration": [0.0, 40.0]}})
+    assert implausible_values(in_another_unit) == [], "said where the record is described"
+
+
+def test_a_drift_above_a_tenth_of_the_height_is_hardly_meant() -> None:
+    assert implausible_drift(0.1, "below body 2") == ""
+    assert implausible_drift(0.236, "below body 2").startswith("the drift below body 2 is 23.6 % of the height")

@@ -41,16 +41,6 @@ def test_motions_of_a_directory_beside_the_scene_are_numbered_and_labeled_by_nam
     assert Scene.model_validate(second.model_dump(exclude_none=True)) == second
 
 
-def test_components_of_a_motion_are_told_by_the_names_of_their_files(folder):
-    """By their order along x and y, an upright one along z."""
-    names = "rsn1-y090", "RSN2_X_H2", "rsn1-y000", "RSN2_X_H1", "RSN2_X-UP"
-    at2_files(folder / "pairs", *names)
-    family = load_family(written(folder, 'suite = "pairs", motion = "all"'))
-    assert family.labels == {"excitation.record.motion": ("RSN2_X", "rsn1-y")}
-    for scene, numbers in zip(family.scenes, ([4.0, 2.0, 5.0], [3.0, 1.0, 0.0])):
-        np.testing.assert_allclose(scene.record[0, 1:], GRAVITY * np.array(numbers))
-
-
 def at2_files(folder, *names):
     """Each with its number from 1, g, in its samples."""
     folder.mkdir()
@@ -60,16 +50,12 @@ def at2_files(folder, *names):
 
 
 def test_files_of_no_suite_are_one_line(folder):
-    at2_files(folder / "lone", "RSN1_H1")
-    at2_files(folder / "unnamed", "first_of_two")
     at2_files(folder / "mixed", "RSN1_H1", "RSN1_H2")
     (folder / "mixed" / "a.csv").write_text("")
     (folder / "suite" / "a.CSV").write_text((folder / "suite" / "a.csv").read_text())
     (folder / "bad").mkdir()
     (folder / "bad" / "b.csv").write_text("time [s],ax [g]\n0,one\n1,0\n")
     for suite, rule in {
-        "lone": "'RSN1' has 1 horizontal and 0 vertical components: must have 2, and 0 or 1",
-        "unnamed": "'first_of_two.AT2': no direction at the end of the name. Tried H1 H2 V, azimuths as 090, E N Z",
         "mixed": "has CSV and .AT2 files: 'a.csv' holds whole motions, 'RSN1_H1.AT2' a component: take one kind",
         "suite": "'a.CSV' and 'a.csv' have one name: rename one of them",
         "bad": "b.csv: line 2: 'one': must be a number",

@@ -6,7 +6,8 @@ from chains import refusal, scene_file
 
 from reference.problem import GRAVITY, SceneError, load_family, load_scene
 from reference.records.motion_lists import FILE, motion_list_text
-from reference.records.suites import SuiteError, list_motions
+from reference.records.pairing import SuiteError
+from reference.records.suites import list_motions
 
 AT2 = "PEER\nInvented\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 3, DT= .0100 SEC\n {:.1f} 0.2 0.0\n"
 

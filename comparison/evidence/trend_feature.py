@@ -1,13 +1,43 @@
-"""The panels of trends: what a difference falls with."""
+"""Features that are lists of trends, over what a difference falls with: convergence and scaling."""
 
 import math
 from collections.abc import Sequence
 from itertools import groupby
 from typing import Any
 
-from comparison.evidence.trends import Trend
+from comparison.evidence.trends import Trend, word_trends
+from comparison.report.feature import Feature, ResultField
 from comparison.report.panels import panel
 from comparison.report.plots import MAX_CURVES, Panel, plain
+from comparison.report.section import Section
+from comparison.runner.mapped_analysis import MappedAnalysis
+
+
+def make_trend_feature(
+    analysis: MappedAnalysis[list[Trend]], title: str, scenes: str, meaning: str, column: str, parameter: str = "",
+    **texts: Any,
+) -> Feature:  # fmt: skip
+    """
+    Return the feature of an analysis that makes trends.
+
+    title: of its section. scenes: those that have it. meaning: of its field. column: title of the column of medians.
+    parameter: title of the axis of the panels, where all have one. texts: what else its template reads.
+    """
+    found = ResultField(analysis.key, list[Trend], f"{meaning}; null if not computed")
+    section = Section(
+        title,
+        f"phase-resonance run makes it, of {scenes}",
+        lambda report: {
+            "key": analysis.key,
+            "trends": (trends := found.of(report.results)),
+            "panels": trend_panels(trends, parameter),
+            "column": column,
+            **texts,
+        },
+        verdict=lambda results: word_trends(found.of(results)),
+        verifies=True,
+    )
+    return Feature(analysis.key, (found,), analysis=analysis, section=section)
 
 
 def trend_panels(trends: Sequence[Trend], parameter: str) -> list[Panel]:

@@ -1,0 +1,60 @@
+"""The demands of an ensemble computed in this process, and what is not met of their limits: for tests of users."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from comparison.analyses.ensemble.analysis import Ensemble
+from comparison.analyses.ensemble.build import build_result
+from comparison.analyses.ensemble.governing import choose_motions
+from comparison.analyses.ensemble.limits import check_limits, compare_with_stored, limits_of, word_checks
+from comparison.analyses.ensemble.members import members_of, with_suite
+from comparison.analyses.ensemble.result import STORED, EnsembleResult
+from comparison.runner.task import Task, execute
+from comparison.runner.task_results import TaskResults
+from comparison.verdicts import MET
+from reference.problem.acceptance import DemandLimits
+from reference.problem.families import family_of, with_bounds
+from reference.problem.scene_file import scene_tables, scene_text
+
+
+def check_demands(
+    source: str | Path,
+    suite: str | Path | None,
+    bounds: tuple[float, float] | None,
+    limits: Mapping[str, Any],
+    stored: str | Path | None,
+    within: float,
+) -> list[str]:
+    """Return a line for every demand that is not met; limits: in place of those of the file. Raises ValueError."""
+    data = scene_tables(scene_text(source), str(source))
+    data = data if suite is None else with_suite(data, suite)
+    members = members_of([family_of(with_bounds(data, bounds), str(source))])
+    asked = limits_of({member.structure: member.scene for member in members})
+    for member in members:
+        own = asked.get(member.structure, DemandLimits()).model_dump(exclude_none=True)
+        asked[member.structure] = DemandLimits.model_validate({**own, **limits})
+    uplift = any(each.uplift is not None for each in asked.values())
+    before = None if stored is None else STORED.load(Path(stored))
+    if stored is not None and before is None:
+        raise ValueError(f"stored: {str(stored)!r} has no {STORED.name}: phase-resonance ensemble --out writes one")
+    if before is None and not any(each.limits_by_key() for each in asked.values()):
+        raise ValueError("no limit: give displacement, drift_ratio, uplift or base_shear, or stored")
+    result = compute_ensemble(Ensemble(members), uplift)
+    checks = check_limits(result, asked)
+    checks += [] if before is None else compare_with_stored(result, before, within)
+    return word_checks(checks) if any(check.verdict != MET for check in checks) else []
+
+
+def compute_ensemble(ensemble: Ensemble, engine: bool) -> EnsembleResult:
+    """Return the ensemble computed in this process, by the engine at the motions that govern where it is asked for."""
+    results = TaskResults()
+    _compute(results, ensemble.equation_tasks())
+    chosen = choose_motions(ensemble.points(results).equations, None) if engine else []
+    _compute(results, ensemble.engine_tasks(chosen))
+    return build_result(ensemble.points(results, chosen), {}, ensemble.tolerance)
+
+
+def _compute(results: TaskResults, tasks: Sequence[Task]) -> None:
+    for task in results.missing(tasks):
+        results.put(task, execute(task))

@@ -1,0 +1,100 @@
+"""The motions that the engine computes: those that govern by the equations, and the one nearest the median."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from comparison.analyses.ensemble.members import Member, group_by
+from comparison.cli.arguments import read_whole_number
+from reference.problem import SceneError
+
+if TYPE_CHECKING:
+    from comparison.analyses.ensemble.analysis import Point
+
+ALL = "all"
+GOVERNING = {  # demands whose largest value chooses a motion, and the words for it; of a demand of bodies the largest
+    "displacement": "largest displacement",
+    "base_shear": "largest base shear",
+    "drift": "largest drift",
+    "support_force_max": "largest support force",
+}
+MEDIAN = "nearest the median displacement"
+ASKED, NEXT = "asked for", "next largest displacement"
+MOST = 100_000  # motions of every structure that may be asked for
+USUAL = 3  # motions of a structure that govern, before it is known which
+
+Asked = int | tuple[str, ...] | None  # so many of each structure, or these motions, or those that govern
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A motion of the engine, and why."""
+
+    member: Member
+    reasons: tuple[str, ...]
+
+
+def read_engine(words: Sequence[str] | None, members: Sequence[Member]) -> Asked:
+    """Which motions `--engine all | N | NAME ...` asks for; those that govern without it. Raises SceneError."""
+    if words is None:
+        return None
+    names = list(dict.fromkeys(member.motion for member in members))
+    if list(words) == [ALL]:
+        return MOST
+    if len(words) == 1 and words[0] not in names and words[0].lstrip("+-").replace(".", "", 1).isdigit():
+        return read_whole_number("--engine", words[0], 0, MOST)
+    for word in words:
+        if word not in names:
+            shown = ", ".join(names[:10]) + (" and so on" if len(names) > 10 else "")
+            raise SceneError("command line", "--engine", word, f"must be all, a number, or motions: {shown}")
+    return tuple(words)
+
+
+def expected_count(asked: Asked, motions: int) -> int:
+    """How many motions of a structure the engine will compute, before the equations say which."""
+    count = USUAL if asked is None else len(asked) if isinstance(asked, tuple) else asked
+    return min(count, motions)
+
+
+def choose_motions(points: Sequence[Point], asked: Asked) -> list[Choice]:
+    """The motions of the engine by the demands of the equations; with `all` at every scale, else at the largest."""
+    if asked == MOST:
+        return [Choice(point.member, (ASKED,)) for point in points]
+    top = max((point.member.scale for point in points), default=0.0)
+    chosen: list[Choice] = []
+    for own in group_by([point for point in points if point.member.scale == top], "member.structure").values():
+        if isinstance(asked, tuple):
+            chosen += [Choice(point.member, (ASKED,)) for point in own if point.member.motion in asked]
+            continue
+        reasons: dict[int, list[str]] = {}
+        for place, reason in _governing(own):
+            reasons.setdefault(place, []).append(reason)
+        if asked is not None:
+            for place in sorted(range(len(own)), key=lambda place: -_largest(own[place], "displacement")):
+                reasons.setdefault(place, [NEXT])
+            reasons = dict(list(reasons.items())[:asked])
+        chosen += [Choice(own[place].member, tuple(why)) for place, why in reasons.items()]
+    return chosen
+
+
+def _governing(points: Sequence[Point]) -> Iterator[tuple[int, str]]:
+    """Places of the motions that govern, and why."""
+    for quantity, reason in GOVERNING.items():
+        values = [_largest(point, quantity) for point in points]
+        if max(values, default=-math.inf) > -math.inf:
+            yield int(np.argmax(values)), reason
+    moved = np.array([_largest(point, "displacement") for point in points])
+    known = moved[moved > -math.inf]
+    if len(known):
+        yield int(np.argmin(np.abs(moved - np.median(known)))), MEDIAN
+
+
+def _largest(point: Point, quantity: str) -> float:
+    """The demand of a motion, of a demand of bodies the largest; minus infinity without an answer."""
+    values = [number.value for (name, _), number in point.values.items() if name == quantity]
+    return max((value for value in values if math.isfinite(value)), default=-math.inf)

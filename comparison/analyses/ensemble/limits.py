@@ -1,0 +1,207 @@
+"""
+Limits on the demands of an ensemble, and its demands against those of a stored ensemble.
+
+A limit is met where the demand is not beyond it by more than its numerical error. A demand is that of the stored
+ensemble where it differs by no more than a tolerance and both numerical errors.
+"""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from comparison.analyses.ensemble.quantities import title_of, unit_of_demand
+from comparison.analyses.ensemble.result import EnsembleResult, LimitVerdict, Statistic, Stripe, Structure
+from comparison.analyses.ensemble.rows import labels, place_of
+from comparison.analyses.ensemble.sentences import count_motions
+from comparison.study.models import EXACT
+from comparison.verdicts import (
+    MET,
+    NOT_COMPARED,
+    NOT_MET,
+    Verdict,
+    count_verdicts,
+    judge,
+    word_counts,
+    word_verdict,
+)
+from reference.problem import Scene
+from reference.problem.acceptance import DemandLimits
+from reference.support.arguments import Range
+
+KEY = "acceptance.demands."
+MEAN, LARGEST = "mean", "largest"
+UNITS = {"displacement": "m", "uplift": "m"}  # of the limits; those of the others are pure numbers
+COUNTED = "stops"  # a number of events, of which a tolerance says nothing
+WITHIN = Range(0.0, 10.0)  # tolerance of a comparison with a stored ensemble
+WORST_FIRST = (NOT_MET, NOT_COMPARED, MET)
+NOT_COMPUTED = "no model that was computed has it; the spatial engine needs supports, heights and sizes of bodies"
+NO_LIMITS = "no scene states [acceptance.demands]: nothing was checked"
+
+
+@dataclass(frozen=True)
+class DemandCheck:
+    """
+    A demand of a structure against a stated number: a limit, or the demand of a stored ensemble.
+
+    key: of the limit, or of the demand. bound: what tells the structure apart. what: the demand in words, with the
+    statistic and the motions. found, stated: in `unit`; None without a number. excess: found less stated; of a limit 0
+    below it. allowed: size of it that is met. motion: of the largest value, "" of a mean. reason: why nothing is
+    compared, "" otherwise.
+    """
+
+    key: str
+    bound: str
+    what: str
+    found: float | None
+    stated: float | None
+    excess: float | None = None
+    allowed: float = 0.0
+    unit: str = ""
+    motion: str = ""
+    reason: str = ""
+
+    @property
+    def verdict(self) -> Verdict:
+        """Met, not met or not compared."""
+        return NOT_COMPARED if self.reason else judge(self.excess, self.allowed)
+
+
+def word_check(check: DemandCheck) -> str:
+    """Return the verdict on a demand in words: bound, demand, motion, both numbers, and by how much it is not met."""
+    found, stated = (
+        "none" if value is None else f"{value:.4g} {check.unit}".rstrip() for value in (check.found, check.stated)
+    )
+    under = f" ({check.motion})" if check.motion else ""
+    verdict = word_verdict(check.verdict, check.excess, check.stated, check.unit)
+    verdict += f" ({check.reason})" if check.reason else ""
+    return f"{check.bound}: {check.what}: {found}{under}, {_stated_in_words(check)} {stated}: {verdict}"
+
+
+def _stated_in_words(check: DemandCheck) -> str:
+    return "allowed" if check.key.startswith(KEY) else "stored"
+
+
+def word_checks(checks: Sequence[DemandCheck]) -> list[str]:
+    """Return how many demands are met, then a line for every one that is not, the worst last."""
+    lines = [word_check(check) for check in sorted(checks, key=_order, reverse=True) if check.verdict != MET]
+    return [word_counts(count_verdicts(check.verdict for check in checks), "demand"), *lines] if checks else []
+
+
+def verdicts_of(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
+    """Return the verdicts as file and page have them, in the order of the checks."""
+    return [LimitVerdict(check.key, check.bound, check.verdict, word_check(check)) for check in checks]
+
+
+def _order(check: DemandCheck) -> tuple[int, float, float]:
+    """Return the order of checks, the worst first: by the share of the stated number by which a demand is off."""
+    share = abs(check.excess or 0.0) / abs(check.stated) if check.stated else math.inf
+    return WORST_FIRST.index(check.verdict), -share, -(check.found or 0.0)
+
+
+def check_limits(ensemble: EnsembleResult, limits: Mapping[str, DemandLimits]) -> list[DemandCheck]:
+    """Return the verdict on every limit of every structure, at the largest scale. limits: by name of the structure."""
+    return [
+        min(_check_bodies(ensemble, structure, key, limit, stated.statistic), key=_order)
+        for structure in ensemble.structures
+        if (stated := limits.get(structure.name)) is not None
+        for key, limit in stated.limits_by_key().items()
+    ]
+
+
+def limits_of(scenes: Mapping[str, Scene]) -> dict[str, DemandLimits]:
+    """Return the limits that scenes state, by name of the structure."""
+    stated = {name: scene.acceptance.demands for name, scene in scenes.items()}
+    return {name: limits for name, limits in stated.items() if limits is not None}
+
+
+def _check_bodies(
+    ensemble: EnsembleResult, structure: Structure, key: str, limit: float, statistic: str
+) -> list[DemandCheck]:
+    """Return the check of a limit; of drift ratios that of every story."""
+    asked = structure.name, key
+    bodies = list(dict.fromkeys(c.body for c in ensemble.curves if (c.structure, c.quantity) == asked))
+    return [_check_body(ensemble, structure, key, body, limit, statistic) for body in bodies or [None]]
+
+
+def _check_body(
+    ensemble: EnsembleResult, structure: Structure, key: str, body: int | None, limit: float, statistic: str
+) -> DemandCheck:
+    """Return the check of a limit on one demand, over all motions that have it."""
+    values, model = _values_at_top(ensemble, structure.name, key, body)
+    known = [
+        (number.value, number.error or 0.0, motion) for motion, number in values.items() if number.value is not None
+    ]
+    per = structure.weight if key == "base_shear" else 1.0
+    by = "" if model in ("", EXACT.key) else f" by the {model} engine"
+    count = f"{len(known)} of " if len(known) < ensemble.motions else ""
+    what = "base shear over the weight" if key == "base_shear" else title_of(key)
+    what += f" {place}" if (place := place_of(structure, key, body)) else ""
+    what += f", {statistic} of {count}{count_motions(ensemble.motions)}{by}"
+    what += f" at scale {ensemble.top:g}" if len(ensemble.scales) > 1 else ""
+    about: tuple[str, str, str] = f"{KEY}{key}", labels(ensemble)[structure.name], what
+    lacking = (ensemble.motions if statistic == MEAN else len(values)) - len(known)
+    reason = f"{lacking} {'motion has' if lacking == 1 else 'motions have'} no value" if lacking else ""
+    if not known:
+        reason = reason if values else "heights of the bodies are needed" if key == "drift_ratio" else NOT_COMPUTED
+        return DemandCheck(*about, None, limit, unit=UNITS.get(key, ""), reason=reason)
+    if statistic == MEAN:
+        found, error, motion = *(sum(part) / len(known) / per for part in list(zip(*known))[:2]), ""
+    else:
+        value, error, motion = max(known)
+        found, error = value / per, error / per
+    excess = max(found - limit, 0.0)
+    if statistic == LARGEST and excess > error:  # whatever the others have
+        reason = ""
+    return DemandCheck(*about, found, limit, excess, error, UNITS.get(key, ""), motion, reason)
+
+
+def _values_at_top(
+    ensemble: EnsembleResult, structure: str, quantity: str, body: int | None
+) -> tuple[dict[str, Statistic], str]:
+    """Return a demand at the largest scale by motion, and the model: the equations, or else what alone has it."""
+    for model in (EXACT.key, ensemble.engine.model):
+        if values := ensemble.values_at_top(structure, quantity, body, model):
+            return values, model
+    return {}, ""
+
+
+def compare_with_stored(ensemble: EnsembleResult, stored: EnsembleResult, within: float) -> list[DemandCheck]:
+    """Return the verdict on mean and largest value of every demand by the equations against a stored ensemble."""
+    new, old = _stripes(ensemble), _stripes(stored)
+    named = {each.name: each.name for each in (*stored.structures, *ensemble.structures)} | labels(ensemble)
+    return [
+        check
+        for place in dict.fromkeys([*old, *new])
+        for check in _compare_stripes(named, place, new.get(place), old.get(place), within)
+    ]
+
+
+Place = tuple[str, str, int | None, float]
+
+
+def _stripes(ensemble: EnsembleResult) -> dict[Place, Stripe]:
+    """Return the stripes of the equations by structure, demand, body and scale."""
+    return {
+        (each.structure, each.quantity, each.body, each.scale): each
+        for each in ensemble.stripes
+        if each.model == EXACT.key and each.quantity != COUNTED
+    }
+
+
+def _compare_stripes(
+    named: Mapping[str, str], place: Place, new: Stripe | None, old: Stripe | None, within: float
+) -> Iterator[DemandCheck]:
+    """Return the checks of mean and largest value; none where both ensembles lack it."""
+    structure, quantity, body, scale = place
+    for statistic in (MEAN, LARGEST):
+        sides = [None if each is None else each.mean if statistic == MEAN else each.largest for each in (new, old)]
+        found, stated = (None if each is None else each.value for each in sides)
+        about = quantity, named[structure], f"{title_of(quantity, body)}, {statistic}, scale {scale:g}", found, stated
+        motion = new.largest_motion if new is not None and statistic == LARGEST else ""
+        unit = unit_of_demand(quantity)
+        if found is not None and stated is not None:
+            errors = sum(each.error or 0.0 for each in sides if each is not None)
+            yield DemandCheck(*about, found - stated, within * abs(stated) + errors, unit, motion)
+        elif new is None or old is None or found is not stated:
+            lacking = "this ensemble" if found is None else "the stored ensemble"
+            yield DemandCheck(*about, unit=unit, motion=motion, reason=f"{lacking} lacks it")

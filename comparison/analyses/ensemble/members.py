@@ -1,0 +1,86 @@
+"""The scenes of an ensemble: every structure under every motion at every scale."""
+
+from collections.abc import Hashable, Iterable, Sequence
+from dataclasses import dataclass
+from operator import attrgetter
+from pathlib import Path
+from typing import Any, TypeVar
+
+from comparison.study.models import Model, has_spatial_data, why_not_spatial
+from reference.problem import Family, Scene, SceneError
+from reference.problem.families import BOUNDS
+from reference.problem.tables import Record
+
+SCALE = "excitation.scale"
+RECORD = "excitation.record"
+
+Row = TypeVar("Row")
+
+
+@dataclass(frozen=True)
+class Member:
+    """A scene of the ensemble and its place in it."""
+
+    structure: str  # file, and the values that run in it beside motion and scale
+    motion: str
+    scale: float  # scale of the ensemble; a factor of the motion itself comes on top
+    scene: Scene
+    factor: float = 1.0  # factor of the motion, to a target spectrum
+
+
+def with_suite(
+    data: dict[str, Any], suite: str | Path, components: int | None = None, normalized: bool = False
+) -> dict[str, Any]:
+    """Return the tables of a scene file with every motion of a suite as its loading, each as long as it is."""
+    name = str(suite) if ":" in str(suite) else str(Path(suite).absolute())
+    record: dict[str, Any] = {"suite": name, "motion": "all"} | ({"normalized": True} if normalized else {})
+    record |= {} if components is None else {"components": components}
+    loading = data.get("excitation")
+    own = loading if isinstance(loading, dict) else {}
+    scale = own.get("scale", 1.0)
+    kept = {key: own[key] for key in ("detrend",) if key in own}
+    loading = {"record": record, "scale": scale if isinstance(scale, dict) else {"values": [scale]}, **kept}
+    under_suite = {key: value for key, value in data.items() if key != "duration"} | {"excitation": loading}
+    return {"combine": "product", **under_suite}
+
+
+def members_of(families: Sequence[Family]) -> tuple[Member, ...]:
+    """The members of families. Raises SceneError unless every scene has a record and every file a name of its own."""
+    names = [family.name for family in families]
+    for name in names:
+        if names.count(name) > 1:
+            raise SceneError(name, "scene", name, "two files have this name, and the structures are named by it")
+    members = []
+    for family in families:
+        inner = [key for key in family.columns if key != SCALE and not key.startswith(RECORD)]
+        outer = [key for key in family.columns if key.startswith(RECORD)]
+        for n, scene in enumerate(family.scenes):
+            if not isinstance(scene.excitation, Record):
+                rule = "an ensemble needs recorded motions: give --suite, or a record in the scene"
+                raise SceneError(family.name, "excitation", scene.name, rule)
+            values = ", ".join(_entry(family, key, n) for key in inner)
+            motion = ", ".join(family.labels[key][n] for key in outer) or scene.excitation.files
+            structure = f"{family.name}[{values}]" if values else family.name
+            members.append(Member(structure, motion, float(scene.excitation.scale or 1.0), scene))
+    return tuple(members)
+
+
+def _entry(family: Family, key: str, n: int) -> str:
+    """What tells a structure apart by one key that runs."""
+    return family.labels[key][n] if key == BOUNDS else f"{key.rpartition('.')[2]}={family.columns[key][n]}"
+
+
+def refuse_unfit(members: Sequence[Member], model: Model) -> None:
+    """Raise SceneError if a scene does not state what the engine's model needs."""
+    for scene in (member.scene for member in members):
+        if model.is_spatial and not has_spatial_data(scene):
+            rule = why_not_spatial(scene) or "has no supports, heights and sizes of bodies: --model translational"
+            raise SceneError(scene.name, "--model", "spatial", rule)
+
+
+def group_by(rows: Iterable[Row], name: str) -> dict[Any, list[Row]]:
+    """The rows by one of their attributes, in the order in which its values come."""
+    groups: dict[Hashable, list[Row]] = {}
+    for row in rows:
+        groups.setdefault(attrgetter(name)(row), []).append(row)
+    return groups

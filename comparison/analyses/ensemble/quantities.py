@@ -1,0 +1,91 @@
+"""The demands of an ensemble: which there are, in which words and units they are read, and their values by motion."""
+
+from reference.measures import Demands, Estimate, StoryForces
+from reference.measures.peak_demands import QUANTITIES, list_demands
+from reference.measures.story_forces import heights_above_contact
+from reference.problem import GRAVITY, Scene
+
+Quantity = tuple[str, int]  # name, and body from 1 or 0 for the isolator
+
+DEMANDS: dict[str, tuple[str, str]] = {
+    **{name: about for name, about in QUANTITIES.items() if name != "energy_balance"},
+    "acceleration": ("largest floor acceleration", "m/s^2"),
+    "drift_ratio": ("drift over the height of the story", "1"),
+    "story_shear": ("story shear", "N"),
+    "overturning_moment": ("overturning moment", "N m"),
+}
+OF_BODY = {
+    "acceleration": "acceleration of body {}",
+    "drift": "drift below body {}",
+    "drift_ratio": "drift ratio below body {}",
+    "story_shear": "story shear below body {}",
+    "overturning_moment": "overturning moment below body {}",
+    "torsion": "rotation of body {}",
+}
+FRACTILES = (0.16, 0.5, 0.84)  # shares of the motions below a value
+SMALLEST = ("contact_force_min", "support_force_min")  # demands of which the smallest value is the worst
+READ = {
+    "m": ("mm", 1e3),
+    "N": ("kN", 1e-3),
+    "N m": ("kN m", 1e-3),
+    "J": ("kJ", 1e-3),
+    "rad": ("mrad", 1e3),
+    "m/s^2": ("g", 1.0 / GRAVITY),
+}
+UNSEEN = 5e-5  # share of a value: a smaller error is not seen in four digits
+
+
+def unit_of_demand(quantity: str) -> str:
+    """The SI unit of a demand; "" for a pure number."""
+    unit = DEMANDS[quantity][1]
+    return "" if unit == "1" else unit
+
+
+def title_of(quantity: str, body: int | None = None) -> str:
+    """A demand in words."""
+    return OF_BODY[quantity].format(body) if body else DEMANDS[quantity][0]
+
+
+def unit_for_reading(quantity: str, weight: float) -> tuple[str, float]:
+    """The unit in which a demand is read, and its factor; weight: of the structure, N."""
+    if quantity == "base_shear":
+        return "% of the weight", 100.0 / weight
+    if quantity.endswith("_share") or quantity == "drift_ratio":
+        return "%", 100.0
+    unit = unit_of_demand(quantity)
+    return READ.get(unit, (unit, 1.0))
+
+
+def text_of(value: float | None, error: float | None, factor: float) -> str:
+    """A value to four digits without power of ten, with its error where these digits show it."""
+    if value is None:
+        return "none"
+    read = factor * value
+    digits = f"{read:.4g}" if abs(read) < 1e4 else f"{float(f'{read:.4g}'):.0f}"
+    if abs(read) < 1e-4:
+        digits = "0" if read == 0.0 else f"{read:.1e}"
+    if error is None or factor * error <= UNSEEN * abs(read):
+        return digits
+    return f"{digits} ± {float(f'{factor * error:.1g}'):g}"
+
+
+def values_of_motion(scene: Scene, demands: Demands, forces: StoryForces) -> dict[Quantity, Estimate]:
+    """
+    The demands of one motion by name and body.
+
+    Support forces of a model without single supports are those of statics (`story_forces`).
+    """
+    values = {(name, body): number for name, body, number in list_demands(demands) if name in DEMANDS}
+    heights = heights_above_contact(scene)
+    if heights is not None:
+        for body, drift in enumerate(demands.drift, start=2):
+            story = float(heights[body - 1] - heights[body - 2])
+            if story > 0.0:
+                values["drift_ratio", body] = Estimate(drift.value / story, drift.error / story)
+    values |= {("story_shear", body): number for body, number in enumerate(forces.shear, start=1)}
+    values |= {("overturning_moment", body): number for body, number in enumerate(forces.moment or (), start=1)}
+    worst = {"support_force_min": (forces.support_min, min), "support_force_max": (forces.support_max, max)}
+    for name, (supports, choose) in worst.items():
+        if supports:
+            values.setdefault((name, 0), choose(supports, key=lambda number: number.value))
+    return values

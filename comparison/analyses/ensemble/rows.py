@@ -1,0 +1,239 @@
+"""The tables of demands, as page and terminal show them: every bound, then the envelope of all."""
+
+import math
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from comparison.analyses.ensemble.quantities import FRACTILES, READ, SMALLEST, text_of, unit_for_reading
+from comparison.analyses.ensemble.result import EnsembleResult, Statistic, Stripe, Structure
+from comparison.study.models import EXACT, SPATIAL
+from reference.problem import GRAVITY
+
+ENVELOPE = "envelope"
+NOT_ALL = "–"  # statistic over all motions of a demand that only some of them have
+HEIGHTS = ("acceleration", "drift", "drift_ratio", "story_shear", "overturning_moment")  # shown over the height
+PLATFORM = 1
+WORST = 4  # column of the worst value, behind mean and fractiles
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A demand of the table. bodies: of these the governing one; none for a demand of the isolator."""
+
+    name: str
+    quantity: str
+    bodies: str = ""  # "", "platform", "floors"
+    unit: str = ""  # in place of that in which the demand is read
+
+
+MAIN = (
+    Shown("isolator displacement", "displacement"),
+    Shown("displacement over travel", "travel_share"),
+    Shown("base shear", "base_shear", unit="kN"),
+    Shown("base shear over weight", "base_shear", unit="%"),
+    Shown("platform acceleration", "acceleration", "platform"),
+    Shown("largest floor acceleration", "acceleration", "floors"),
+    Shown("largest drift", "drift", "floors"),
+    Shown("largest drift ratio", "drift_ratio", "floors"),
+    Shown("overturning moment at the isolator", "overturning_moment", "platform"),
+    Shown("largest support force", "support_force_max"),
+    Shown("smallest support force", "support_force_min"),
+    Shown("uplift of a support", "uplift"),
+    Shown("residual displacement", "residual"),
+)
+
+
+@dataclass(frozen=True)
+class DemandRow:
+    """One line of a table: a demand of one bound, or the envelope."""
+
+    name: str
+    unit: str
+    bound: str
+    where: str
+    cells: tuple[str, ...]  # mean, fractiles, the worst value
+    motion: str  # of the worst value
+    motions: str  # how many have the demand, and why others do not
+    is_first: bool = True  # begins a demand
+
+
+def labels(ensemble: EnsembleResult) -> dict[str, str]:
+    """Return what tells the structures apart, by their names: of those of one file the values in which they differ."""
+    names = [each.name for each in ensemble.structures]
+    files, values = zip(*(name.rstrip("]").partition("[")[::2] for name in names))
+    parts = [re.split(r", |\+(?!\d)", text) for text in values]
+    columns = [column for column in zip(*parts) if len({*column}) > 1]
+    alike = len({*files}) == 1 and len({len(part) for part in parts}) == 1 and columns
+    return dict(zip(names, (", ".join(row) for row in zip(*columns)) if alike else names))
+
+
+def floor_of(structure: Structure, body: int) -> str:
+    """Name of a body as the scene gives it, or its number."""
+    names = structure.building.floors if structure.building else ()
+    given = names[body - 1] if body <= len(names) else ""
+    return given or ("platform" if body == PLATFORM else f"body {body}")
+
+
+def place_of(structure: Structure, quantity: str, body: int | None) -> str:
+    """Where a demand of a body is: at its floor, or in the story below it."""
+    if body is None:
+        return ""
+    if quantity == "acceleration":
+        return floor_of(structure, body)
+    return "isolator" if body == PLATFORM else f"below {floor_of(structure, body)}"
+
+
+def governing(rows: Sequence[Stripe]) -> Stripe | None:
+    """Of stripes of several bodies that with the largest mean, median or largest value, whichever is known."""
+
+    def size(row: Stripe) -> tuple[float, float, float]:
+        values = row.mean.value, row.fractiles[1].value, row.largest.value
+        return tuple(-math.inf if value is None else value for value in values)  # type: ignore[return-value]
+
+    return max(rows, key=size, default=None)
+
+
+def demand_rows(ensemble: EnsembleResult, scale: float) -> list[DemandRow]:
+    """The main table at a scale: every demand of every bound, then its envelope."""
+    rows: list[DemandRow] = []
+    for shown in MAIN:
+        rows += _rows_of(ensemble, shown, partial(stripe_of, ensemble, shown, scale), scale)
+    return rows
+
+
+def profile_rows(ensemble: EnsembleResult, quantity: str, scale: float) -> list[DemandRow]:
+    """A demand of every body from the top down."""
+    rows: list[DemandRow] = []
+    for body in range(max(each.bodies for each in ensemble.structures), 0, -1):
+
+        def stripe(structure: Structure, body: int = body) -> Stripe | None:
+            own = ensemble.profile(structure.name, quantity, scale)
+            return next((each for each in own if each.body == body), None)
+
+        found = next((each for each in ensemble.structures if each.bodies >= body), None)
+        name = "" if found is None else place_of(found, quantity, body)
+        rows += _rows_of(ensemble, Shown(name, quantity), stripe, scale)
+    return rows
+
+
+def _rows_of(
+    ensemble: EnsembleResult, shown: Shown, read: Callable[[Structure], Stripe | None], scale: float
+) -> Iterator[DemandRow]:
+    """The lines of one demand."""
+    named, found = labels(ensemble), []
+    for structure in ensemble.structures:
+        stripe = read(structure)
+        if stripe is not None:
+            found.append((structure, stripe))
+            yield _row(shown, structure, named[structure.name], stripe, is_first=len(found) == 1)
+    if not found and scale == ensemble.top:
+        yield from _engine_rows(ensemble, shown)
+    if len(found) > 1:
+        yield _envelope(shown, found, named)
+
+
+def stripe_of(ensemble: EnsembleResult, shown: Shown, scale: float, structure: Structure) -> Stripe | None:
+    """The statistics of a demand of a structure; of several bodies those of the governing one."""
+    own = ensemble.profile(structure.name, shown.quantity, scale)
+    if shown.bodies:
+        return governing([each for each in own if shown.bodies == "floors" or each.body == PLATFORM])
+    if not own and scale == ensemble.top:
+        return ensemble.stripe(structure.name, shown.quantity, None, SPATIAL.key)
+    return own[0] if own else None
+
+
+def unit_of_row(shown: Shown, structure: Structure) -> tuple[str, float]:
+    """The unit in which a row is read, and its factor."""
+    if shown.unit == "kN":
+        return READ["N"]
+    if shown.unit == "%":
+        return "%", 100.0 / structure.weight
+    return unit_for_reading(shown.quantity, structure.weight)
+
+
+def worst_of(stripe: Stripe) -> tuple[Statistic, str]:
+    """The largest value over the motions and its motion; of a smallest force the smallest."""
+    if stripe.quantity in SMALLEST:
+        return stripe.smallest, stripe.smallest_motion
+    return stripe.largest, stripe.largest_motion
+
+
+def _row(shown: Shown, structure: Structure, bound: str, stripe: Stripe, is_first: bool) -> DemandRow:
+    unit, factor = unit_of_row(shown, structure)
+    worst, motion = worst_of(stripe)
+    numbers = stripe.mean, *stripe.fractiles, worst
+    motions = "; ".join([str(stripe.answered), *(f"{count} {reason}" for reason, count in stripe.reasons.items())])
+    motions += "" if stripe.model == EXACT.key else f" ({stripe.model} engine)"
+    where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" else ""
+    count = stripe.answered + sum(stripe.reasons.values())
+    cells = tuple(cell_of(each, factor, column, count, stripe.quantity) for column, each in enumerate(numbers))
+    return DemandRow(shown.name, unit, bound, where, cells, motion, motions, is_first)
+
+
+def cell_of(number: Statistic, factor: float, column: int, motions: int, quantity: str) -> str:
+    """
+    The text of a cell: mean, fractiles, worst value, of so many motions; the fractiles without their errors.
+
+    Of few motions a fractile lies beyond the outermost of them, and is left out: 16 % of three, but not of four.
+    """
+    if column in (0, WORST):
+        text = text_of(number.value, number.error, factor)
+        return f"{text} (smallest)" if column == WORST and quantity in SMALLEST and number.value is not None else text
+    share = FRACTILES[column - 1]
+    if not 0.5 / motions <= share <= 1.0 - 0.5 / motions:
+        return NOT_ALL
+    return text_of(number.value, None, factor)
+
+
+def _envelope(shown: Shown, found: Sequence[tuple[Structure, Stripe]], named: dict[str, str]) -> DemandRow:
+    """The worst of all bounds in every statistic."""
+    sign = -1.0 if shown.quantity in SMALLEST else 1.0
+    rows = [(structure, stripe, (stripe.mean, *stripe.fractiles, worst_of(stripe)[0])) for structure, stripe in found]
+    cells, at = [], found[0]
+    for column in range(len(rows[0][2])):
+        known = [row for row in rows if row[2][column].value is not None]
+        if len(known) < len(rows):
+            cells.append("none")
+            continue
+
+        def size(row: tuple[Structure, Stripe, tuple[Statistic, ...]], column: int = column) -> float:
+            value = row[2][column].value
+            return sign * unit_of_row(shown, row[0])[1] * (value if value is not None else -math.inf)
+
+        structure, stripe, numbers = max(known, key=size)
+        at = structure, stripe
+        number, factor = numbers[column], unit_of_row(shown, structure)[1]
+        count = stripe.answered + sum(stripe.reasons.values())
+        cells.append(cell_of(number, factor, column, count, shown.quantity))
+    structure, stripe = at
+    where = place_of(structure, shown.quantity, stripe.body) if shown.bodies == "floors" else ""
+    motion = worst_of(stripe)[1] if cells[-1] != "none" else ""
+    said = f"{motion}, {named[structure.name]}" if motion else ""
+    return DemandRow(
+        shown.name, unit_of_row(shown, structure)[0], ENVELOPE, where, tuple(cells), said, "", is_first=False
+    )
+
+
+def _engine_rows(ensemble: EnsembleResult, shown: Shown) -> Iterator[DemandRow]:
+    """A demand that the engine alone has, of its motions: the worst of them, and no statistics."""
+    first = True
+    for structure in ensemble.structures:
+        values = ensemble.values_at_top(structure.name, shown.quantity, None, ensemble.engine.model)
+        known = {motion: each for motion, each in values.items() if each.value is not None}
+        if not known or shown.bodies:
+            continue
+        motion = max(known, key=lambda name: known[name].value or 0.0)
+        unit, factor = unit_of_row(shown, structure)
+        worst = text_of(known[motion].value, known[motion].error, factor)
+        cells = (*(NOT_ALL,) * 4, worst)
+        motions = f"{len(known)} of {ensemble.motions} ({ensemble.engine.model} engine)"
+        about = shown.name, unit, labels(ensemble)[structure.name], "", cells, motion if known[motion].value else ""
+        yield DemandRow(*about, motions, is_first=first)
+        first = False
+
+
+def peak_in_g(value: float) -> str:
+    """An acceleration in g."""
+    return f"{value / GRAVITY:.3g} g"

@@ -1,0 +1,202 @@
+"""What the page and the terminal of an ensemble say, each sentence worded from the result by one function."""
+
+from collections.abc import Iterator, Sequence
+
+from comparison.analyses.ensemble.quantities import text_of, unit_for_reading
+from comparison.analyses.ensemble.result import EnsembleResult, Structure, SupportExtremes, Target
+from comparison.analyses.ensemble.rows import MAIN, floor_of, labels, peak_in_g, place_of, stripe_of
+from comparison.study.models import EXACT
+from comparison.wording import percent
+from reference.plausibility import implausible_drift
+
+NAMED = 12  # motions that are named one by one
+DEFINITIONS = (
+    "Displacement, drift, story shear, base shear, overturning moment and acceleration are resultants of x and y, "
+    "the largest over time; floor spectra are the larger of x and y.",
+    "Accelerations by the equations are the literal supremum: the one-sided limits at a stop of the isolator count.",
+    "± is the numerical error of a number, not the scatter over the motions: the fractiles show that. Mean and largest "
+    "value have it, where it is not below the last digit; summary.json has those of the fractiles.",
+    "16 %, 50 % and 84 % are fractiles over the motions (Hazen), and each motion has a value of its own. A motion "
+    "without a value, as one that reaches the rim or the travel, counts as worse than all others; a statistic that "
+    "rests on it is none. A fractile beyond the outermost motions is left out, as 16 % of three. The column “largest” "
+    "has the smallest value of a smallest force.",
+    "The envelope is in every column the worst of the bounds.",
+    "All supports carry the same dead load, but for eccentric masses. Support forces by the equations are statics: "
+    "normal force, overturning moment and displaced weight on equally stiff supports under a stiff platform, negative "
+    "where a support would lift off. Those of the spatial engine are its contact forces.",
+    "The overturning moment is that of the forces of inertia about the sliding contact, or about the floor below.",
+    "Effective period and damping are those of a bilinear loop (ASCE/SEI 7, chapter 17) with the friction at high "
+    "speed. Damping of the links acts in the superstructure; friction has no part in the modal damping.",
+    "The residual displacement is where the platform comes to rest under Coulomb friction.",
+)
+
+
+def heading(ensemble: EnsembleResult) -> str:
+    """Building and number of motions, and the scale where there are several."""
+    titles = ", ".join(dict.fromkeys(each.title for each in ensemble.structures))
+    at = f", scale {ensemble.top:g}" if len(ensemble.scales) > 1 or ensemble.top != 1.0 else ""
+    return f"{titles}: {count_motions(ensemble.motions)}{at}"
+
+
+def count_motions(count: int) -> str:
+    """A number of motions in words."""
+    return f"{count} motion{'' if count == 1 else 's'}"
+
+
+def answer_sentence(ensemble: EnsembleResult) -> str:
+    """Return mean and largest displacement and base shear of the bound in which each is larger."""
+    said = []
+    for quantity, words in (("displacement", "isolator displacement"), ("base_shear", "base shear")):
+        found = []
+        for structure in ensemble.structures:
+            stripe = ensemble.stripe(structure.name, quantity)
+            if stripe is not None and stripe.largest.value is not None:
+                per = structure.weight if quantity == "base_shear" else 1.0
+                found.append((stripe.largest.value / per, structure, stripe))
+        if not found:
+            continue
+        most, structure, stripe = max(found, key=lambda each: each[0])
+        unit, factor = unit_for_reading(quantity, structure.weight)
+        mean, largest = (text_of(each.value, None, factor) for each in (stripe.mean, stripe.largest))
+        bound = f"{labels(ensemble)[structure.name]}, " if len(ensemble.structures) > 1 else ""
+        travel = structure.building.travel if structure.building else None
+        share = f" = {percent(most / travel)} of the travel" if quantity == "displacement" and travel else ""
+        where = f"{bound}{stripe.largest_motion}"
+        said.append(f"{words}: mean {mean} {unit}, largest {largest} {unit}{share} ({where})")
+    lost = {each.name: missing_motions(ensemble, each) for each in ensemble.structures}
+    bounds = [f"{', '.join(motions)} ({labels(ensemble)[name]})" for name, motions in lost.items() if motions]
+    lacking = f"No value under {'; '.join(bounds)}. " if bounds else ""
+    if not said:
+        return f"{lacking}No demand is known of all motions. {outcomes_sentence(ensemble)}"
+    return f"{lacking}{'; '.join(said)}. {outcomes_sentence(ensemble)}".replace("isolator", "Isolator", 1)
+
+
+def missing_motions(ensemble: EnsembleResult, structure: Structure) -> list[str]:
+    """The motions of which a structure has no displacement at the largest scale."""
+    known = ensemble.values_at_top(structure.name, "displacement", None, EXACT.key)
+    return [motion for motion, each in known.items() if each.value is None]
+
+
+def outcomes_sentence(ensemble: EnsembleResult) -> str:
+    """How the motions ended by the equations."""
+    ended = ", ".join(f"{count} {name}" for name, count in ensemble.outcomes.items())
+    return f"Outcomes by the equations: {ended}."
+
+
+def target_sentence(target: Target) -> str:
+    """Return what the motions are scaled to."""
+    between = f"from {target.low:.3g} to {target.high:.3g} s, in the logarithm, at 5 % damping"
+    return f"Scale 1 is that of the target spectrum: least squares over periods {between}."
+
+
+def isolator_sentence(structure: Structure) -> str:
+    """The effective isolator of a structure; "" without one."""
+    if (at := structure.isolator) is None:
+        return ""
+    return (
+        f"Effective isolator of design codes at the {at.statistic} displacement, {1e3 * at.displacement:.4g} mm, and "
+        f"friction {at.friction:.3g}: period {at.period:.3g} s, damping {percent(at.damping)}, re-centering ratio "
+        f"{at.restoring:.3g}."
+    )
+
+
+def below_contact_sentence(structure: Structure) -> str:
+    """Return that the platform hangs below the sliding contact, as a height read wrongly makes it; or ""."""
+    building = structure.building
+    if building is None or not building.heights or building.heights[0] >= 0.0:
+        return ""
+    return (
+        f"The center of mass of the {floor_of(structure, 1)} is {-building.heights[0]:.3g} m below the sliding "
+        "contact: `height` counts from the centers of the depressions, which lie R = radius + sphere_radius below it."
+    )
+
+
+def engine_sentences(ensemble: EnsembleResult) -> list[str]:
+    """Return which motions the engine computed, and why."""
+    engine, named, said = ensemble.engine, labels(ensemble), []
+    for structure in ensemble.structures:
+        own = [each for each in engine.motions if each.structure == structure.name]
+        if not own:
+            continue
+        each_motion = [
+            f"{each.motion} ({', '.join(each.reasons)}{_status(each.statuses.get(engine.model, ''))})"
+            for each in own[:NAMED]
+        ]
+        more = f" and {len(own) - NAMED} more" if len(own) > NAMED else ""
+        bound = f", {named[structure.name]}" if len(ensemble.structures) > 1 else ""
+        said.append(f"The {engine.model} engine computed{bound}: {'; '.join(each_motion)}{more}.")
+    if said:
+        said.append(f"The engine was asked for largest accelerations to {percent(engine.tolerance)}.")
+    return said
+
+
+def _status(status: str) -> str:
+    return "" if status in ("ok", "") else f"; {status}"
+
+
+def support_sentences(ensemble: EnsembleResult) -> list[str]:
+    """Return the largest and smallest force of a support, where, and under which motion, by every model."""
+    said = []
+    for model in dict.fromkeys(each.model for each in ensemble.supports):
+        rows = [each for each in ensemble.supports if each.model == model]
+        by = "By the equations and statics" if model == EXACT.key else f"By the {model} engine"
+        parts = list(_support_parts(ensemble, rows))
+        if parts:
+            said.append(f"{by}, {count_motions(rows[0].motions)} of each bound: {'; '.join(parts)}.")
+    return said
+
+
+def _support_parts(ensemble: EnsembleResult, rows: Sequence[SupportExtremes]) -> Iterator[str]:
+    named = labels(ensemble)
+    for name, sign in (("largest", 1.0), ("smallest", -1.0), ("uplift", 1.0)):
+        known = [row for row in rows if getattr(row, name).value is not None]
+        if not known:
+            continue
+        row = max(known, key=lambda row: sign * getattr(row, name).value)
+        value = getattr(row, name).value
+        if name == "uplift":
+            yield f"largest uplift {text_of(value, None, 1e3)} mm" + (f" at support {row.support}" if value else "")
+            continue
+        bound = f", {named[row.structure]}" if len(ensemble.structures) > 1 else ""
+        place = f"support {row.support} at [{row.x:.3g}, {row.y:.3g}] m"
+        yield f"{name} force {text_of(value, None, 1e-3)} kN, {place} ({getattr(row, f'{name}_motion')}{bound})"
+
+
+def drift_warning(ensemble: EnsembleResult, structure: Structure) -> str:
+    """Return that a drift is hardly meant, with its story and motion; "" for any other."""
+    stripes = [row for row in ensemble.profile(structure.name, "drift_ratio") if row.largest.value is not None]
+    if not stripes:
+        return ""
+    worst = max(stripes, key=lambda row: row.largest.value or 0.0)
+    place = f"{place_of(structure, worst.quantity, worst.body)} under {worst.largest_motion}"
+    line = implausible_drift(worst.largest.value or 0.0, place)
+    return f"Warning: {line}" if line else ""
+
+
+def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[str]:
+    """Return which motions of a structure lack which demands at the largest scale, and why."""
+    stripes = [found for shown in MAIN if (found := stripe_of(ensemble, shown, ensemble.top, structure)) is not None]
+    ended = missing_motions(ensemble, structure)
+    lacking: dict[tuple[str, int], list[str]] = {}
+    for shown in MAIN:
+        found = stripe_of(ensemble, shown, ensemble.top, structure)
+        for reason in found.reasons.items() if found else ():
+            lacking.setdefault(reason, []).append(shown.name)
+    lines = []
+    for (why, count), names in lacking.items():
+        every = len(names) == len(stripes)
+        which = f" ({', '.join(ended[:NAMED])}{' and more' * (len(ended) > NAMED)})" if every else ""
+        what = "every demand" if every else ", ".join(names)
+        lines.append(f"Without a value for {count_motions(count)}{which}: {what} ({why}).")
+    return lines
+
+
+def ground_sentence(ensemble: EnsembleResult) -> str:
+    """Return the range of peaks and durations of the motions."""
+    peaks, lengths = [each.peak for each in ensemble.suite], [each.duration for each in ensemble.suite]
+    if not peaks:
+        return ""
+    return (
+        f"Peaks from {peak_in_g(min(peaks))} to {peak_in_g(max(peaks))}, resultant of x and y, with the factors; "
+        f"durations from {min(lengths):.3g} to {max(lengths):.3g} s."
+    )

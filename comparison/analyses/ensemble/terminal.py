@@ -1,0 +1,108 @@
+"""An ensemble on the terminal: the equations first, then what the engine adds."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from rich.console import Console
+
+from comparison.analyses.ensemble.members import group_by
+from comparison.analyses.ensemble.quantities import FRACTILES
+from comparison.analyses.ensemble.result import EnsembleResult
+from comparison.analyses.ensemble.rows import ENVELOPE, DemandRow, demand_rows, labels
+from comparison.analyses.ensemble.sentences import (
+    answer_sentence,
+    below_contact_sentence,
+    count_motions,
+    drift_warning,
+    engine_sentences,
+    heading,
+    isolator_sentence,
+    missing_sentences,
+    support_sentences,
+    target_sentence,
+)
+from comparison.analyses.ensemble.trust import COLUMNS, trust_rows, trust_sentence
+from comparison.cli.terminal import new_table
+from comparison.runner.attempts import attempt
+from comparison.study.models import EXACT
+
+
+def print_equations(console: Console, ensemble: EnsembleResult) -> None:
+    """The demands of every bound by the equations, and how the motions ended; a part that fails is one line."""
+    parts: dict[str, Callable[[], None]] = {
+        "factors of the motions": partial(_print_factors, console, ensemble),
+        "demands": partial(_print_demands, console, ensemble),
+        "sentences": partial(_print_sentences, console, ensemble),
+    }
+    for what, act in parts.items():
+        attempt(what, act)
+
+
+def print_engine(console: Console, ensemble: EnsembleResult) -> None:
+    """What the engine adds to the tables of the equations; a part that fails is one line."""
+    parts: dict[str, Callable[[], None]] = {
+        "motions of the engine": lambda: say(console, engine_sentences(ensemble)),
+        "table of models": partial(_print_trust, console, ensemble),
+        "support forces": lambda: say(console, support_sentences(ensemble)),
+    }
+    for what, act in parts.items() if ensemble.engine.motions else ():
+        attempt(what, act)
+
+
+def say(console: Console, lines: Sequence[str]) -> None:
+    """Print lines as they are."""
+    for line in lines:
+        console.print(line, soft_wrap=True, markup=False)
+
+
+def _print_factors(console: Console, ensemble: EnsembleResult) -> None:
+    if ensemble.target is None:
+        return
+    say(console, [target_sentence(ensemble.target)])
+    table = new_table("motion", "factor")
+    for one in ensemble.target.motions:
+        table.add_row(one.motion, f"{one.factor:.4g}")
+    console.print(table)
+
+
+def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
+    say(console, [f"{heading(ensemble)}."])
+    shares = [f"{100.0 * share:.0f} %" for share in FRACTILES]
+    for bound, rows in group_by(demand_rows(ensemble, ensemble.top), "bound").items():
+        say(console, [f"{bound}:".capitalize() if bound == ENVELOPE else f"{bound}:"])
+        table = new_table("quantity", "unit", "mean", *shares, "largest", "motion")
+        for row in rows:
+            table.add_row(*_cells(row))
+        console.print(table)
+
+
+def _cells(row: DemandRow) -> list[str]:
+    mean, *others = row.cells
+    values = [cell.partition(" ±")[0] for cell in others]
+    name = f"{row.name}, {row.where}" if row.where else row.name
+    return [name, row.unit, mean, *values, row.motion]
+
+
+def _print_sentences(console: Console, ensemble: EnsembleResult) -> None:
+    named = labels(ensemble)
+    for structure in ensemble.structures:
+        lines = [
+            *missing_sentences(ensemble, structure),
+            isolator_sentence(structure),
+            below_contact_sentence(structure),
+            drift_warning(ensemble, structure),
+        ]
+        bound = f"{named[structure.name]}: " if len(ensemble.structures) > 1 else ""
+        say(console, [f"{bound}{line}" for line in lines if line])
+    say(console, [answer_sentence(ensemble)])
+
+
+def _print_trust(console: Console, ensemble: EnsembleResult) -> None:
+    models = {key: title for key, title in COLUMNS.items() if key != EXACT.key}
+    for bound, rows in group_by(trust_rows(ensemble), "bound").items():
+        say(console, [f"{bound}, mean difference from the exact equations on {count_motions(len(rows[0].motions))}:"])
+        table = new_table("quantity", "exact", *(title.partition(" ")[0] for title in models.values()))
+        for row in rows:
+            table.add_row(row.name, row.text, *(row.ratios[key].brief if key in row.ratios else "" for key in models))
+        console.print(table)
+    say(console, [trust_sentence(ensemble)])

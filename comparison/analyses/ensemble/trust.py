@@ -1,0 +1,192 @@
+"""How far the simple models can be trusted: every model beside the exact equations, on the motions that all have."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from comparison.analyses.ensemble.quantities import text_of
+from comparison.analyses.ensemble.result import EnsembleResult, Structure
+from comparison.analyses.ensemble.rows import MAIN, Shown, labels, place_of, stripe_of, unit_of_row, worst_of
+from comparison.study.models import EXACT, REGULARIZED, SMALL, SPATIAL, TRANSLATIONAL
+from comparison.wording import percent
+
+COLUMNS = {
+    SMALL.key: "small equations",
+    EXACT.key: "exact equations",
+    TRANSLATIONAL.key: "translational engine",
+    SPATIAL.key: "spatial engine",
+}
+TRUSTED = ("displacement", "base_shear", "acceleration", "drift")  # demands that every model has
+# rows of the main table with the ratio of another, or without a base of one
+LEFT_OUT = (
+    "displacement over travel", "base shear over weight", "largest drift ratio", "residual displacement",
+    "uplift of a support",
+)  # fmt: skip
+UNSEEN = 1e-4  # difference that the two decimals of a table do not show
+STATISTICS = (("mean", 0), ("84 %", 3), ("largest", 4))
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """A model over the exact equations on common motions: mean, smallest and largest."""
+
+    mean: float
+    smallest: float
+    largest: float
+
+    @property
+    def text(self) -> str:
+        """Mean difference, and its range over the motions."""
+        ends = _in_percent(self.smallest - 1.0), _in_percent(self.largest - 1.0)
+        return self.brief + (f" ({ends[0]} to {ends[1]})" if ends[0] != ends[1] else "")
+
+    @property
+    def brief(self) -> str:
+        """Mean difference alone."""
+        return f"{_in_percent(self.mean - 1.0)} %"
+
+
+def _in_percent(share: float) -> str:
+    """A share in percent to two decimals, without the sign of percent."""
+    return f"{100.0 * share:+.2f}".replace("-", "−").replace("+0.00", "0.00").replace("−0.00", "0.00")
+
+
+@dataclass(frozen=True)
+class TrustRow:
+    """A demand of one bound. ratios: by model, of those that have it at all the common motions."""
+
+    bound: str
+    structure: Structure
+    shown: Shown
+    body: int | None
+    motions: tuple[str, ...]
+    value: float  # mean over these motions by the exact equations, SI
+    ratios: Mapping[str, Ratio] = field(default_factory=dict)
+    by_law: Ratio | None = None  # the translational engine over the equations with its friction law
+    turning: Ratio | None = None  # the spatial over the translational engine
+
+    @property
+    def name(self) -> str:
+        """The demand in words, with its place."""
+        where = place_of(self.structure, self.shown.quantity, self.body) if self.shown.bodies == "floors" else ""
+        return f"{self.shown.name}{', ' if where else ''}{where}"
+
+    @property
+    def read(self) -> tuple[str, float]:
+        """The unit in which the demand is read, and its factor."""
+        return unit_of_row(self.shown, self.structure)
+
+    @property
+    def text(self) -> str:
+        """The mean by the exact equations, in the unit in which it is read."""
+        unit, factor = self.read
+        return f"{text_of(self.value, None, factor)} {unit}".strip()
+
+
+def trust_rows(ensemble: EnsembleResult) -> list[TrustRow]:
+    """The demands of the main table, of bodies the governing one, where at least one other model has them."""
+    named, rows = labels(ensemble), []
+    for structure in ensemble.structures:
+        for shown in MAIN:
+            stripe = stripe_of(ensemble, shown, ensemble.top, structure)
+            if stripe is not None and shown.name not in LEFT_OUT:
+                row = _trust_row(ensemble, structure, named[structure.name], shown, stripe.body)
+                rows += [] if row is None else [row]
+    return rows
+
+
+def _trust_row(
+    ensemble: EnsembleResult, structure: Structure, bound: str, shown: Shown, body: int | None
+) -> TrustRow | None:
+    quantity = shown.quantity
+
+    def values(model: str) -> dict[str, float]:
+        found = ensemble.values_at_top(structure.name, quantity, body, model)
+        return {motion: each.value for motion, each in found.items() if each.value is not None}
+
+    by_model = {key: values(key) for key in (*COLUMNS, REGULARIZED.key)}
+    # statics, not the model itself, gives the supports of all models but the spatial one
+    beside = [SPATIAL.key] if quantity.startswith("support_force") else [key for key in by_model if key != EXACT.key]
+    others = {key: by_model[key] for key in beside if by_model[key]}
+    exact = by_model[EXACT.key]
+    known = [motion for motion, value in exact.items() if value > 0.0]
+    common = [motion for motion in known if all(motion in each for each in others.values())]
+    if not others or not common:
+        return None
+
+    def ratio(upper: str, lower: str) -> Ratio | None:
+        if upper not in others or not (lower == EXACT.key or lower in others):
+            return None
+        pairs = [by_model[upper][motion] / by_model[lower][motion] for motion in common if by_model[lower][motion]]
+        return Ratio(math.fsum(pairs) / len(pairs), min(pairs), max(pairs)) if pairs else None
+
+    ratios = {key: found for key in COLUMNS if key != EXACT.key and (found := ratio(key, EXACT.key))}
+    law = REGULARIZED.key if REGULARIZED.key in others else EXACT.key
+    return TrustRow(
+        bound, structure, shown, body, tuple(common),
+        math.fsum(exact[motion] for motion in common) / len(common), ratios,
+        ratio(TRANSLATIONAL.key, law), ratio(SPATIAL.key, TRANSLATIONAL.key),
+    )  # fmt: skip
+
+
+def _largest(rows: Sequence[TrustRow], pick: str) -> tuple[float, TrustRow] | None:
+    """The largest size of a difference over the demands that every model has, and its row."""
+    found = []
+    for row in rows:
+        ratio = row.ratios.get(SMALL.key) if pick == SMALL.key else getattr(row, pick)
+        if ratio is not None and row.shown.quantity in TRUSTED:
+            worst = max(ratio.smallest - 1.0, ratio.largest - 1.0, key=abs)
+            found.append((worst, row))
+    return max(found, key=lambda pair: abs(pair[0]), default=None)
+
+
+def _at_most(size: float) -> str:
+    """The largest size of a difference in words."""
+    return f"up to {percent(size)}" if size >= UNSEEN else f"less than {percent(UNSEEN)}"
+
+
+def trust_sentence(ensemble: EnsembleResult) -> str:
+    """Return the sentence that keeps geometry, the codes and the turning of the bodies apart; "" without an engine."""
+    rows = trust_rows(ensemble)
+    parts = {
+        SMALL.key: "the geometry of the sphere, which the small equations leave out, is worth {} ({})",
+        "by_law": "given the same equations and friction law, the two codes differ by {} ({})",
+        "turning": "bodies that turn on their supports change a demand by {} ({})",
+    }
+    said = []
+    for pick, words in parts.items():
+        if (found := _largest(rows, pick)) is not None:
+            size, row = found
+            bound = f", {row.bound}" if len(ensemble.structures) > 1 else ""
+            said.append(words.format(_at_most(abs(size)), f"{row.name}{bound}"))
+    if not said:
+        return ""
+    motions = {(row.bound, motion) for row in rows for motion in row.motions}
+    count = f"On the {f'{len(motions)} motions' if len(motions) > 1 else 'one motion'} that all models computed"
+    return f"{count}, three things are apart: {'; '.join(said)}."
+
+
+def extended_rows(ensemble: EnsembleResult) -> Iterator[tuple[TrustRow, Ratio, list[str]]]:
+    """
+    Yield the demands of the suite by the equations, times the ratio of the engine over them.
+
+    Each with the ratio, and mean, 84 % and largest value times its mean, with the range that its spread makes.
+    """
+    for row in trust_rows(ensemble):
+        ratio = row.ratios.get(ensemble.engine.model)
+        stripe = stripe_of(ensemble, row.shown, ensemble.top, row.structure)
+        if ratio is None or stripe is None:
+            continue
+        unit, factor = row.read
+        numbers = stripe.mean, *stripe.fractiles, worst_of(stripe)[0]
+        cells = []
+        for _, place in STATISTICS:
+            value = numbers[place].value
+            cells.append("none" if value is None else _with_range(ratio, value, factor))
+        yield row, ratio, [unit, *cells]
+
+
+def _with_range(ratio: Ratio, value: float, factor: float) -> str:
+    """A value times the mean ratio, and the range that the spread of the ratio makes."""
+    mean, low, high = (text_of(each * value, None, factor) for each in (ratio.mean, ratio.smallest, ratio.largest))
+    return f"{mean} ({low} to {high})"

@@ -1,0 +1,74 @@
+"""Recorded motions as they were read: in the report and in summary.json."""
+
+from collections.abc import Sequence
+from typing import Annotated
+
+from comparison.report.feature import Feature, Findings, ResultField
+from comparison.report.scene_result import SceneResult
+from comparison.report.section import Section
+from comparison.result_types import Number, Text, result
+from comparison.study.records import describe_records
+from reference.problem import GRAVITY
+from reference.records.description import RecordDescription
+
+
+@result
+class RecordedDirection:
+    """One direction of a recorded motion as read, without scale and detrend."""
+
+    axis: Annotated[str, "x, y or z"]
+    peak: Annotated[Number, "largest size of the acceleration, m/s^2"]
+    mean_over_peak: Annotated[Number, "mean acceleration over the peak"]
+    final_velocity: Annotated[Number, "velocity at the last sample, integrated from rest, m/s"]
+    final_displacement: Annotated[Number, "displacement at the last sample, integrated from rest, m"]
+
+
+@result
+class RecordedMotion:
+    """A recorded motion as it was read."""
+
+    title: Annotated[Text, "its files, or suite and number"]
+    origin: Annotated[tuple[Text, ...], "a line for every file with its format, and for what was ignored in it"]
+    samples: Annotated[int, "number of samples"]
+    step: Annotated[Number, "median time from sample to sample, s"]
+    duration: Annotated[Number, "time from the first to the last sample, s"]
+    scale: Annotated[Number, "factor with which the scenes take it; 1 where they take several"]
+    detrend: Annotated[Text | None, "what the scenes take off every direction: mean, linear or null"]
+    directions: Annotated[tuple[RecordedDirection, ...], "those that are not at rest"]
+    warnings: Annotated[tuple[Text, ...], "what is hardly meant"]
+
+
+def list_recorded_motions(findings: Findings, scenes: Sequence[SceneResult]) -> list[RecordedMotion] | None:
+    """Return every recorded motion of a study; None where it has none."""
+    return [_recorded_motion(record) for record in describe_records(findings.study.scenes)] or None
+
+
+def _recorded_motion(record: RecordDescription) -> RecordedMotion:
+    directions = tuple(
+        RecordedDirection(one.axis, one.peak, one.mean_over_peak, one.final_velocity, one.final_displacement)
+        for one in record.directions
+    )
+    size = record.samples, record.step, record.duration, record.scale, record.detrend
+    return RecordedMotion(record.title, record.origin, *size, directions, record.warnings)
+
+
+def word_warnings(records: Sequence[RecordedMotion]) -> str:
+    """Return how many recorded motions were read, and how many of them are hardly meant so."""
+    count, warned = len(records), sum(bool(record.warnings) for record in records)
+    read = f"{count} motion{'' if count == 1 else 's'} read"
+    return f"{read}, {warned} with a warning" if warned else f"{read}, no warning"
+
+
+FOUND = ResultField(
+    "records", list[RecordedMotion], "recorded motions as read; null without any", compute=list_recorded_motions
+)
+FEATURE = Feature(
+    "records",
+    (FOUND,),
+    section=Section(
+        "Records as read",
+        context=lambda report: {"gravity": GRAVITY},
+        verdict=lambda results: word_warnings(FOUND.of(results)),
+    ),
+    selectable=False,
+)

@@ -1,0 +1,44 @@
+"""Causes of the limits at the extremes, by model and extreme."""
+
+_ENGINE = "translational", "spatial"
+_LONG_CHAIN = "the fastest swing of the chain sets the step: the steps take more processor time than a cell may"
+_QUICK = "within a time that the contact, as stiff as rounding allows, cannot follow"
+_FRICTION = f"friction stops so light a platform {_QUICK}"
+_RELAXATION = f"friction relaxes at a stop {_QUICK}, and a larger v_reg has another answer"
+_LIGHT = (
+    "the weight of the tower is so much more than the platform's that the force which starts a slide is less than the "
+    "rounding of those which balance at its start"
+)
+# why a model has no answer, where that is known: by quantity and extreme, by key of the model
+CAUSES: dict[tuple[str, str], dict[str, str]] = {
+    ("v_reg, m/s", "1e-06"): {"spatial": _RELAXATION},
+    ("v_reg, m/s", "1e-07"): dict.fromkeys(_ENGINE, _RELAXATION),
+    ("v_reg, m/s", "1e-08"): dict.fromkeys(_ENGINE, _RELAXATION),
+    ("amplitude, m/s^2", "1e-09"): dict.fromkeys(
+        _ENGINE,
+        "the contact force rounds by 1e-15 of the weight over its penetration, which is as much as the accelerations",
+    ),
+    ("rho, m", "0.001"): {
+        "spatial": "heights of a thousand rho: their rounding makes that of the contact force a share of the peaks"
+    },
+    ("bodies N", "100"): {"translational": _LONG_CHAIN},
+    ("bodies N", "1000"): {"translational": _LONG_CHAIN},
+    ("platform's share of the mass", "1e-06"): {
+        **dict.fromkeys(("exact", "regularised"), _LIGHT),
+        **dict.fromkeys(_ENGINE, _FRICTION),
+    },
+    ("platform's share of the mass", "0.001"): {"spatial": _FRICTION},
+    ("link periods, s", "0.001"): {"spatial": _LONG_CHAIN},
+    ("load over the buckling load of bars", "0.0001"): {
+        "spatial": "the swing of so stiff a link asks for a contact that damps none of it: the levels within the work "
+        "of a cell do not reach the tolerance"
+    },
+    ("duration, s", "0.001"): dict.fromkeys(
+        _ENGINE,
+        "mu_2 is so small beside mu_1 that a contact stiff enough not to change it rounds by as much, and a softer "
+        "one changes it",
+    ),
+    ("relative error asked", "1e-06"): {
+        "translational": "the error estimate of the engine counts 1e-6 of a peak at least: less is not measured"
+    },
+}

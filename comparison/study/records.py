@@ -1,0 +1,26 @@
+"""The recorded motions of a study, each described once."""
+
+from collections.abc import Hashable, Sequence
+from dataclasses import replace
+
+from reference.problem import Scene, describe_record
+from reference.problem.tables import Record
+from reference.records.description import RecordDescription
+
+
+def describe_records(scenes: Sequence[Scene], names: Sequence[str] = ()) -> list[RecordDescription]:
+    """
+    Return what was read of every recorded motion; its scale is 1 where the scenes take several factors.
+
+    names: of the motions of the scenes; "" and without them a motion is named by its files.
+    """
+    read: dict[Hashable, RecordDescription] = {}
+    for scene, name in zip(scenes, names or [""] * len(scenes), strict=True):
+        if isinstance(record := scene.excitation, Record):
+            what = record.files, tuple(record.origin), record.detrend
+            if what not in read:
+                one = describe_record(scene)
+                read[what] = replace(one, title=name or one.title)
+            elif record.scale != read[what].scale:
+                read[what] = replace(read[what], scale=1.0)
+    return list(read.values())

@@ -1,0 +1,189 @@
+"""The building of a scene as it was read: weight, periods, modal damping, and the peak of the ground."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from reference.natural_modes import linear_stiffness
+from reference.problem import GRAVITY, Scene
+from reference.problem.chain_modes import solve_chain
+from reference.problem.result import Array
+from reference.problem.scene import takes_scene
+
+DESCRIBED = 10  # modes of each axis; of a tall chain only the lowest are found
+NAMED = 6  # modes, or buildings, that a line names
+SHOWN = 3  # kinds of buildings that are described
+
+
+@dataclass(frozen=True)
+class Building:
+    """
+    A building as it was read; axis 0 is x, 1 is y. The result of `describe_building`.
+
+    Attributes
+    ----------
+    name : str
+        Name of the scene.
+    bodies : int
+        Number N of bodies, the platform among them.
+    weight : float, N
+        Weight of all bodies.
+    supports : int or None
+        Number of supports; None where the scene states none.
+    load_per_support : float or None, N
+        Weight over the number of supports: the dead load of each, alike on all; None where the scene states none.
+    isolated_period : ndarray, (2, M), s
+        Natural periods on the isolator, linear and without friction, of the M = min(N, 10) lowest modes; inf for the
+        rigid motion on a plane.
+    fixed_base_period : ndarray, (2, L), s
+        Natural periods of the bodies above a platform that is held, of the L = min(N - 1, 10) lowest modes.
+    modal_damping : ndarray, (2, L)
+        Damping ratio of each of these modes, X^T D0 X / (2 omega) with X of unit modal mass, from the dampers of the
+        links. Friction of the isolator has no part in it.
+    ground_peak : float, m/s^2
+        Largest horizontal acceleration of the ground, the resultant of x and y; of two frequencies the largest over
+        all phases; 0 without a loading.
+    """
+
+    name: str
+    bodies: int
+    weight: float
+    supports: int | None
+    load_per_support: float | None
+    isolated_period: Array
+    fixed_base_period: Array
+    modal_damping: Array
+    ground_peak: float
+
+    @property
+    def lines(self) -> list[str]:
+        """The building as lines of text."""
+        return word_buildings([self])
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines)
+
+
+@takes_scene
+def describe_building(scene: Scene) -> Building:
+    """
+    Return the building of a scene as it was read, to see that its numbers and their units are those that were meant.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Building
+        Weight, load of a support, natural periods, modal damping and peak of the ground. `lines` has it as text.
+
+    Notes
+    -----
+    Natural periods are those of (4.8)-(4.11); the fixed-base ones of the same chain above a platform that is held.
+    The modal damping ratio is that of Chopra, Dynamics of Structures, chapter 11: the diagonal of the damping matrix
+    in modal coordinates over 2 omega. Bars with an axial stiffness count by their stiffness in sway alone.
+
+    Examples
+    --------
+    >>> import reference
+    >>> building = reference.describe_building(reference.load_scene("fig3-I"))
+    >>> building.fixed_base_period.round(3).tolist()
+    [[1.5], [1.2]]
+    >>> round(building.load_per_support, 2)
+    4.91
+    """
+    weight, supports = scene.total_mass * GRAVITY, scene.isolator.support_count
+    isolated = [solve_chain(scene.masses, stiffness, DESCRIBED)[0] for stiffness in linear_stiffness(scene).T]
+    fixed = [_solve_fixed_base(scene, axis) for axis in range(2)]
+    with np.errstate(divide="ignore"):
+        return Building(
+            scene.name,
+            len(scene.bodies),
+            weight,
+            supports,
+            None if supports is None else weight / supports,
+            2.0 * np.pi / np.array(isolated),
+            2.0 * np.pi / np.array([frequency for frequency, _ in fixed]),
+            np.array([ratio for _, ratio in fixed]),
+            horizontal_peak(scene),
+        )
+
+
+def _solve_fixed_base(scene: Scene, axis: int) -> tuple[Array, Array]:
+    """Return frequencies and damping ratios, (L,), of the bodies above a platform that is held, along one axis."""
+    if len(scene.bodies) == 1:
+        return np.zeros(0), np.zeros(0)
+    frequency, shape = solve_chain(scene.masses[1:], scene.stiffness[:, axis], DESCRIBED)
+    elongation = np.diff(shape, axis=0, prepend=0.0)
+    ratio: Array = scene.damping[:, axis] @ elongation**2 / (2.0 * frequency)
+    return frequency, ratio
+
+
+def horizontal_peak(scene: Scene) -> float:
+    """Return the largest horizontal acceleration of the ground, m/s^2; of two frequencies over all phases."""
+    with np.errstate(over="ignore"):
+        if scene.recorded:
+            # The norm of a vector that changes linearly is convex: it is largest at a knot.
+            return float(np.hypot(*scene.record[:, 1:3].T).max())
+        # The same holds over the cosines of both phases, and both harmonics are largest at the start.
+        first, second = scene.amplitudes[:2].T
+        return float(max(np.hypot(*(first + second)), np.hypot(*(first - second))))
+
+
+def word_buildings(buildings: Sequence[Building]) -> list[str]:
+    """Return the buildings as lines of text: once what is alike, of the first kinds."""
+    alike: dict[str, list[Building]] = {}
+    for building in buildings:
+        alike.setdefault("\n".join(_word_structure(building)), []).append(building)
+    lines = []
+    for text, own in [*alike.items()][:SHOWN]:
+        names = [*dict.fromkeys(building.name for building in own)]
+        more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+        lines.append(f"Building {', '.join(names[:NAMED])}{more}: {text}")
+        lines.append(f"  peak of the ground: {_word_peaks([building.ground_peak for building in own])}")
+    if len(alike) > SHOWN:
+        lines.append(f"and {len(alike) - SHOWN} more buildings")
+    return "\n".join(lines).splitlines()
+
+
+def _word_structure(building: Building) -> list[str]:
+    """Return what is said of a building without its loading."""
+    bodies = f"{building.bodies} {'body' if building.bodies == 1 else 'bodies'}"
+    load = building.load_per_support
+    each = "" if load is None else f", {word_force(load)} on each of {building.supports} supports (equal dead load)"
+    lines = [f"{bodies}, weight {word_force(building.weight)}{each}"]
+    lines.append(f"  periods on the isolator, without friction: {_word_axes(building.isolated_period, 's')}")
+    if building.bodies > 1:
+        lines.append(f"  periods above a fixed base: {_word_axes(building.fixed_base_period, 's')}")
+        lines.append(f"  damping of these modes: {_word_axes(100.0 * building.modal_damping, '%')}")
+    return lines
+
+
+def _word_peaks(peaks: Sequence[float]) -> str:
+    """Return the peaks of the ground, m/s^2, of one motion or of the least and the most."""
+    if not any(peaks):
+        return "none, the ground is at rest"
+    ends = [min(peaks), max(peaks)]
+    in_meters, in_g = (" to ".join(dict.fromkeys(f"{end / unit:.3g}" for end in ends)) for unit in (1.0, GRAVITY))
+    return f"{in_meters} m/s^2 = {in_g} g"
+
+
+def word_force(force: float) -> str:
+    """Return a force, N, in the unit in which it is read."""
+    unit, factor = next(((unit, size) for unit, size in (("MN", 1e6), ("kN", 1e3)) if force >= size), ("N", 1.0))
+    return f"{force / factor:.4g} {unit}"
+
+
+def _word_axes(values: Array, unit: str) -> str:
+    """Return values of both axes (2, M), once where they are alike."""
+    along_x, along_y = (_word_values(axis, unit) for axis in values)
+    return f"{along_x} along x and y" if along_x == along_y else f"{along_x} along x; {along_y} along y"
+
+
+def _word_values(values: Sequence[float] | Array, unit: str) -> str:
+    more = f" and {len(values) - NAMED} more" if len(values) > NAMED else ""
+    return f"{', '.join(f'{value:.3g}' for value in values[:NAMED])} {unit}{more}"

@@ -1,0 +1,165 @@
+"""Forces over the height of a structure, and of its single supports: what columns and bearings are designed for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from reference.measures.demands import DemandReader, DemandSamples, Estimate
+from reference.problem.result import Array, Trajectory, takes_motion
+from reference.problem.scene import Scene
+
+
+@dataclass(frozen=True)
+class StoryForces:
+    """
+    Largest forces of one motion of N bodies on K supports, the result of `story_forces`.
+
+    Attributes
+    ----------
+    shear : tuple of Estimate, (N,), N
+        Horizontal force below every body; the first is that of the isolator.
+    moment : tuple of Estimate or None, (N,), N m
+        Overturning moment below every body: about the body below it, the first about the sliding contact. None where
+        the scene does not state the heights of all bodies.
+    support_min, support_max : tuple of Estimate or None, (K,), N
+        Smallest and largest normal force of every support. None where the scene does not place its supports.
+    uplift : tuple of Estimate or None, (K,), m
+        Largest gap of every support. None where the model has no single supports.
+    """
+
+    shear: tuple[Estimate, ...]
+    moment: tuple[Estimate, ...] | None
+    support_min: tuple[Estimate, ...] | None
+    support_max: tuple[Estimate, ...] | None
+    uplift: tuple[Estimate, ...] | None
+
+
+@takes_motion
+def story_forces(trajectory: Trajectory) -> StoryForces:
+    """
+    Return story shears, overturning moments and forces of the single supports of one motion, with errors.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        From `reference.trajectory`, `multibody.trajectory` or `multibody.single_run`.
+
+    Returns
+    -------
+    StoryForces
+
+    Notes
+    -----
+    Shears and moments are lengths of vectors in the plane. By Newton's law the shear below body i is the sum of
+    m_j a_j over the bodies j >= i, with absolute accelerations, and the moment is that of these forces at the heights
+    of the bodies. The moment leaves out the inertia of turning bodies and the weight times the drift.
+
+    The spatial model has forces of its own at every support. Any other model has the normal force of the whole
+    isolator. Equally stiff supports under a stiff platform carry it, the moment and the weight that is displaced as
+    N_k = c0 + c1 x_k + c2 y_k: this is statics, and negative where a support would lift off. While all stay closed it
+    is within half a percent of the spatial model in the tests.
+
+    Examples
+    --------
+    >>> import reference
+    >>> motion = reference.trajectory(reference.load_scene("fig3-I"), (0.3, 1.1))
+    >>> forces = reference.measures.story_forces(motion)
+    >>> forces.shear[0] == reference.demands(motion).base_shear, forces.moment is None
+    (True, True)
+    """
+    read, scene = DemandReader(trajectory), trajectory.scene
+    bodies, heights, places = range(len(scene.bodies)), heights_above_contact(scene), scene.support_places
+    has_supports = read.samples.support.shape[1] > 0
+    support: Callable[[DemandSamples], Array] | None = None
+    if has_supports:
+        support = _support_of_model
+    elif places is not None and heights is not None:
+        support = _support_by_statics(scene, heights, places)
+    return StoryForces(
+        shear=tuple(read.extreme(_shear_below(scene, body)) for body in bodies),
+        moment=None if heights is None else tuple(read.extreme(_moment_below(scene, heights, body)) for body in bodies),
+        support_min=_of_supports(read, support, np.min),
+        support_max=_of_supports(read, support, np.max),
+        uplift=_of_supports(read, _uplift_of_model, np.max) if has_supports else None,
+    )
+
+
+def heights_above_contact(scene: Scene) -> Array | None:
+    """
+    Return the heights of the centers of mass above the sliding contact, (N,), m; None unless all are stated.
+
+    A scene states them above the centers of the depressions, which lie R = rho + r below the contact, or above the
+    plane of a flat slider.
+    """
+    heights = [body.height for body in scene.bodies]
+    return None if None in heights else np.array(heights, dtype=float) - (0.0 if scene.flat else _depression(scene))
+
+
+def _depression(scene: Scene) -> float:
+    """Radius R = rho + r of the depressions, m."""
+    return scene.radius + (scene.isolator.sphere_radius or 0.0)
+
+
+def _support_of_model(samples: DemandSamples) -> Array:
+    return samples.support
+
+
+def _uplift_of_model(samples: DemandSamples) -> Array:
+    return samples.uplift
+
+
+def _of_supports(
+    read: DemandReader, force: Callable[[DemandSamples], Array] | None, extreme: Callable[..., float]
+) -> tuple[Estimate, ...] | None:
+    """Return the smallest or largest value of every support."""
+    if force is None:
+        return None
+
+    def of(number: int) -> Callable[[DemandSamples], float]:
+        return lambda samples: float(extreme(force(samples)[:, number]))
+
+    places = read.motion.scene.support_places
+    count = read.samples.support.shape[1] or (0 if places is None else len(places))
+    return tuple(read.extreme(of(number)) for number in range(count))
+
+
+def _shear_below(scene: Scene, body: int) -> Callable[[DemandSamples], float]:
+    """Largest resultant of the forces of inertia from a body on upwards, N."""
+    masses = scene.masses[body:]
+    return lambda samples: _largest_length(np.einsum("i,tia->ta", masses, samples.acceleration[:, body:]))
+
+
+def _moment_below(scene: Scene, heights: Array, body: int) -> Callable[[DemandSamples], float]:
+    """Largest moment of the forces of inertia from a body on upwards about the body below, N m."""
+    arms = scene.masses[body:] * (heights[body:] - (heights[body - 1] if body else 0.0))
+    return lambda samples: _largest_length(np.einsum("i,tia->ta", arms, samples.acceleration[:, body:]))
+
+
+def _largest_length(vectors: Array) -> float:
+    return float(np.linalg.norm(vectors, axis=1).max())
+
+
+def _support_by_statics(scene: Scene, heights: Array, places: Array) -> Callable[[DemandSamples], Array]:
+    """
+    Forces (T, K), N, of equally stiff supports in balance with the normal force and the overturning moment.
+
+    The spheres stay with the ground and the depressions go with the platform, so the weight acts off their middle by
+    the displacement, R / rho times for the normals that lean, and that of the floors by their drift besides.
+    """
+    middle = places.mean(axis=0)
+    arms = places - middle
+    leverage = arms @ np.linalg.inv(arms.T @ arms)  # (K, 2), 1/m: force of a support for a moment along x and y
+    lean = 1.0 if scene.flat else _depression(scene) / scene.radius
+    shares = scene.masses / scene.total_mass
+
+    def forces(samples: DemandSamples) -> Array:
+        moment = np.einsum("i,tia->ta", scene.masses * heights, samples.acceleration)
+        drift = np.einsum("i,tia->ta", shares, samples.place - samples.place[:, :1])
+        off_middle = scene.center_of_mass - middle + lean * samples.place[:, 0] + drift
+        normal = samples.contact[:, None]
+        return normal / len(places) + (normal * off_middle - moment) @ leverage.T
+
+    return forces

@@ -1,0 +1,87 @@
+"""Components of motions, paired by what the names of their files have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from reference.records.directions import TRIED, Direction, assign_axes, split_name
+from reference.records.motion_lists import FILE, Motion
+from reference.support.arguments import brief
+
+MAX_NAMED = 20  # files that an error names one by one
+
+
+class SuiteError(ValueError):
+    """A motion that no suite has: the key of the record, as "suite" or "motion", and the rule."""
+
+    def __init__(self, key: str, rule: str) -> None:
+        super().__init__(f"{key}: {rule}")
+        self.key, self.rule = key, rule
+
+
+def _groups(files: Sequence[Path]) -> dict[str, dict[Path, tuple[str, Direction]]]:
+    """Files by what each name may have in common with others; the longest spelling of a direction counts."""
+    groups: dict[str, dict[Path, tuple[str, Direction]]] = {}
+    for file in files:
+        for base, direction in split_name(file.stem, file.suffix):
+            groups.setdefault(base.upper(), {}).setdefault(file, (base, direction))
+    return groups
+
+
+def pair_files(files: Sequence[Path]) -> list[Motion]:
+    """The components of motions, by what their names have in common. Raises SuiteError for all that are left alone."""
+    groups, left, motions = _groups(files), set(files), []
+    for base in sorted(groups, key=lambda base: (-len(groups[base]), len(base))):
+        members = [file for file in groups[base] if file in left]
+        axes = assign_axes([groups[base][file][1] for file in members])
+        if axes is not None:
+            paired = {axis: members[number] for axis, number in axes.items()}
+            motions.append(Motion(groups[base][paired["x"]][0], paired))
+            left -= set(members)
+    if left:
+        raise SuiteError("suite", _not_understood([file for file in files if file in left], groups))
+    return sorted(motions, key=lambda motion: min(motion.files.values()))
+
+
+def _not_understood(files: Sequence[Path], groups: Mapping[str, Mapping[Path, tuple[str, Direction]]]) -> str:
+    """Return one message on all components that make no motion."""
+    shares: dict[str, list[Path]] = {}
+    for file in files:
+        bases = [base.upper() for base, _ in split_name(file.stem, file.suffix)]
+        shared = max(bases, key=lambda base: (len(groups[base]), -len(base)), default="")
+        shares.setdefault(shared, []).append(file)
+    said: list[str] = []
+    lone: dict[str, list[str]] = {}
+    for base, alone in shares.items():
+        told = [groups[base][file][1] for file in alone] if base else []
+        angles = [f"{one.azimuth:g}" for one in told if one.azimuth is not None]
+        upright = sum(one.axis == "z" for one in told)
+        if not base:
+            said.append(f"{_list_names([file.name for file in alone])}: no direction at the end of the name")
+        elif len(angles) == len(told) >= 2:
+            numbers = f"numbers {', '.join(angles[:3])}"
+            said.append(f"{_list_names([file.name for file in alone])}: {numbers} are no azimuths across each other")
+        else:
+            found = f"{len(told) - upright} horizontal and {upright} vertical"
+            lone.setdefault(found, []).append(groups[base][alone[0]][0])
+    for found, names in lone.items():
+        said.append(
+            f"{_list_names(names)} {'has' if len(names) == 1 else 'have'} {found} components: must have 2, and 0 or 1"
+        )
+    return (
+        f"{'; '.join(said[:MAX_NAMED])}{f'; and {len(said) - MAX_NAMED} more' if len(said) > MAX_NAMED else ''}. "
+        f"Tried {TRIED}. Complete the motions, list them in {FILE} ({', '.join(('name', 'x', 'y', 'z', 'factor'))}), "
+        "or take every file as a motion along x: components = 1"
+    )
+
+
+def _list_names(names: Sequence[str]) -> str:
+    shown = ", ".join(brief(name) for name in names[:MAX_NAMED])
+    return shown if len(names) <= MAX_NAMED else f"{shown} and {len(names) - MAX_NAMED} more"
+
+
+def find_vertical_components(files: Sequence[Path]) -> set[Path]:
+    """The files that are the vertical component of a motion of which others are there."""
+    groups = _groups(files).values()
+    return {file for members in groups if len(members) > 1 for file, (_, one) in members.items() if one.axis == "z"}

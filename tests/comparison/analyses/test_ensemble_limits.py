@@ -1,0 +1,300 @@
+"""Limits on demands of an ensemble: the verdict, who broke it, and the exit code; demands of a stored ensemble."""
+
+import re
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from markupsafe import escape
+
+from comparison.analyses.ensemble.command import main
+from comparison.analyses.ensemble.limits import check_limits, compare_with_stored, verdicts_of, word_check, word_checks
+from comparison.analyses.ensemble.page import page_of
+from comparison.analyses.ensemble.result import (
+    SCHEMA,
+    DemandCurve,
+    DemandFractile,
+    Engine,
+    EnsembleResult,
+    Statistic,
+    Stripe,
+    Structure,
+)
+from comparison.analyses.ensemble.sentences import drift_warning
+from reference.problem.acceptance import DemandLimits
+
+WEIGHT = 2e6  # N
+MOTIONS = ("Kobe", "Imperial Valley", "Northridge")
+Values = Mapping[tuple[str, int | None], tuple[float | None, ...]]
+
+
+def ensemble_of(
+    values: Values, engine: Values | None = None, error: float = 0.0, bounds: tuple[str, ...] = ("upper bound",)
+) -> EnsembleResult:
+    """An ensemble of three motions at scale 1; values: of every demand and body by motion, alike at all bounds."""
+    both = [("exact", values), ("spatial", engine or {})]
+    curves = [
+        DemandCurve(f"job[{bound}]", *about, model, motion, [1.0], [value], [error])
+        for bound in bounds
+        for model, known in both
+        for about, row in known.items()
+        for motion, value in zip(MOTIONS, row)
+    ]
+    stripes = [stripe_of(f"job[{bound}]", *about, row, error) for bound in bounds for about, row in values.items()]
+    structures = [Structure(f"job[{bound}]", "Job", 6, WEIGHT) for bound in bounds]
+    known = {"stripes": stripes, "curves": curves, "spectra": [], "engine": Engine("spatial", [])}
+    return EnsembleResult(SCHEMA, structures, [1.0], len(MOTIONS), {"ok": 3}, **known, run={})
+
+
+def stripe_of(structure: str, quantity: str, body: int | None, row: tuple[float | None, ...], error: float) -> Stripe:
+    """Mean and largest value of a demand; none where a motion has none."""
+    whole = [value for value in row if value is not None]
+    complete = len(whole) == len(row)
+    mean, largest = (Statistic(value if complete else None, error) for value in (float(np.mean(whole)), max(whole)))
+    fractiles = [DemandFractile(1.0, 0.0, share) for share in (0.16, 0.5, 0.84)]
+    named = MOTIONS[row.index(max(whole))]
+    return Stripe(
+        structure, quantity, body, "exact", "m", 1.0, len(whole), mean, fractiles, largest, largest, {}, named, named
+    )
+
+
+def said_of(ensemble: EnsembleResult, **limits: Any) -> list[str]:
+    """What is said of limits that every bound has."""
+    stated = {structure.name: DemandLimits(**limits) for structure in ensemble.structures}
+    return [word_check(check) for check in check_limits(ensemble, stated)]
+
+
+MOVED: Values = {("displacement", None): (0.30, 0.50, 0.43)}
+LARGEST_MOVED = (
+    "job[upper bound]: largest displacement of the isolator, largest of 3 motions: 0.5 m (Imperial Valley), "
+)
+MEAN_MOVED = "job[upper bound]: largest displacement of the isolator, mean of 3 motions: 0.41 m, "
+
+
+def test_a_broken_limit_names_demand_bound_motion_and_by_how_much() -> None:
+    assert said_of(ensemble_of(MOVED), displacement=0.4) == [f"{LARGEST_MOVED}allowed 0.4 m: not met (by +25 %)"]
+    two = said_of(ensemble_of(MOVED, bounds=("lower bound", "upper bound")), displacement=0.4)
+    assert [line.partition(":")[0] for line in two] == ["lower bound", "upper bound"]
+
+
+def test_a_limit_is_on_the_statistic_that_it_names() -> None:
+    ensemble = ensemble_of(MOVED)
+    assert said_of(ensemble, displacement=0.45, statistic="mean") == [f"{MEAN_MOVED}allowed 0.45 m: met"]
+    assert said_of(ensemble, displacement=0.45, statistic="largest") == [
+        f"{LARGEST_MOVED}allowed 0.45 m: not met (by +11 %)"
+    ]
+    assert said_of(ensemble, displacement=0.4, statistic="mean") == [f"{MEAN_MOVED}allowed 0.4 m: not met (by +2.5 %)"]
+
+
+def test_a_demand_that_is_beyond_its_limit_by_its_numerical_error_alone_meets_it() -> None:
+    assert said_of(ensemble_of(MOVED, error=0.02), displacement=0.49)[0].endswith("met")
+    assert "not met" not in said_of(ensemble_of(MOVED, error=0.02), displacement=0.49)[0]
+    assert "not met (by +4.2 %)" in said_of(ensemble_of(MOVED, error=0.01), displacement=0.48)[0]
+
+
+def test_a_limit_is_on_the_largest_of_several_scales_and_names_it() -> None:
+    curves = [
+        DemandCurve("job", "displacement", None, "exact", motion, [0.5, 2.0], [0.1, value], [0.0, 0.0])
+        for motion, value in zip(MOTIONS, (0.3, 0.5, 0.4))
+    ]
+    ensemble = replace(ensemble_of(MOVED), scales=[0.5, 2.0], stripes=[], curves=[])
+    ensemble = replace(ensemble, structures=[Structure("job", "Job", 6, WEIGHT)], curves=curves)
+    assert said_of(ensemble, displacement=0.4) == [
+        "job: largest displacement of the isolator, largest of 3 motions at scale 2: 0.5 m (Imperial Valley), "
+        "allowed 0.4 m: not met (by +25 %)"
+    ]
+
+
+def test_base_shear_is_limited_as_a_share_of_the_weight() -> None:
+    ensemble = ensemble_of({("base_shear", None): (3e5, 6e5, 5e5)})
+    assert said_of(ensemble, base_shear=0.25) == [
+        "job[upper bound]: base shear over the weight, largest of 3 motions: 0.3 (Imperial Valley), "
+        "allowed 0.25: not met (by +20 %)"
+    ]
+
+
+def test_a_drift_ratio_is_that_of_the_governing_story() -> None:
+    rows: Values = {("drift_ratio", body): (0.001 * body, 0.002, 0.003) for body in (2, 3, 4)}
+    rows = {**rows, ("drift_ratio", 3): (0.002, 0.012, 0.003)}
+    (line,) = said_of(ensemble_of(rows), drift_ratio=0.01)
+    assert "below body 3, largest of 3 motions: 0.012 (Imperial Valley), allowed 0.01: not met (by +20 %)" in line
+    (line,) = said_of(ensemble_of(rows), drift_ratio=0.02)
+    assert "below body 3, largest of 3 motions: 0.012 (Imperial Valley), allowed 0.02: met" in line
+    assert "not compared (heights of the bodies are needed)" in said_of(ensemble_of(MOVED), drift_ratio=0.01)[0]
+
+
+def test_what_a_motion_without_a_value_leaves_open_is_not_called_met() -> None:
+    ended = ensemble_of({("displacement", None): (0.30, None, 0.43)})
+    assert said_of(ended, displacement=0.45, statistic="mean")[0].endswith("not compared (1 motion has no value)")
+    assert said_of(ended, displacement=0.45)[0].endswith("not compared (1 motion has no value)")
+    beyond = said_of(ended, displacement=0.40)[0]
+    assert "largest of 2 of 3 motions: 0.43 m (Northridge), allowed 0.4 m: not met (by +7.5 %)" in beyond
+
+
+def test_uplift_is_that_of_the_motions_of_the_spatial_engine() -> None:
+    lifted: Values = {("uplift", None): (0.002, 0.0)}
+    (line,) = said_of(ensemble_of(MOVED, lifted), uplift=0.0)
+    assert "uplift of a support, largest of 2 of 3 motions by the spatial engine: 0.002 m (Kobe), allowed 0 m: " in line
+    assert "not met (by +0.002 m)" in line
+    (line,) = said_of(ensemble_of(MOVED, lifted), uplift=0.005)
+    assert line.endswith("allowed 0.005 m: met")
+    (line,) = said_of(ensemble_of(MOVED, lifted), uplift=0.005, statistic="mean")
+    assert line.endswith("not compared (1 motion has no value)"), "two of three motions have no mean"
+    assert "not compared (no model that was computed has it" in said_of(ensemble_of(MOVED), uplift=0.0)[0]
+
+
+def test_the_last_line_is_the_limit_that_is_broken_by_the_largest_share() -> None:
+    ensemble = ensemble_of({**MOVED, ("base_shear", None): (3e5, 6e5, 5e5)})
+    limits = {"job[upper bound]": DemandLimits(displacement=0.4, base_shear=0.1, uplift=0.0)}
+    count, *lines = word_checks(check_limits(ensemble, limits))
+    assert count == "3 demands: 0 met, 2 not met, 1 not compared"
+    assert [" uplift " in lines[0], " isolator," in lines[1], "base shear" in lines[2]] == [True] * 3
+    assert word_checks([]) == []
+
+
+def test_demands_of_a_stored_ensemble_are_met_within_the_tolerance_and_both_errors() -> None:
+    stored = ensemble_of({**MOVED, ("stops", None): (1.0, 2.0, 3.0)})
+    grown = ensemble_of({("displacement", None): (0.30, 0.51, 0.43), ("stops", None): (9.0, 9.0, 9.0)})
+    assert {check.verdict for check in compare_with_stored(stored, stored, 0.0)} == {"met"}
+    assert [check.verdict for check in compare_with_stored(grown, stored, 0.03)] == ["met", "met"]
+    assert [word_check(check) for check in compare_with_stored(grown, stored, 0.01)] == [
+        "job[upper bound]: largest displacement of the isolator, mean, scale 1: 0.4133 m, stored 0.41 m: met",
+        "job[upper bound]: largest displacement of the isolator, largest, scale 1: 0.51 m (Imperial Valley), "
+        "stored 0.5 m: not met (by +2 %)",
+    ]
+    with_errors = ensemble_of({("displacement", None): (0.30, 0.51, 0.43)}, error=0.004)
+    assert "not met" not in str([word_check(each) for each in compare_with_stored(with_errors, with_errors, 0.0)])
+    assert compare_with_stored(with_errors, ensemble_of(MOVED, error=0.007), 0.0)[1].verdict == "met"
+
+
+def test_a_demand_that_one_of_two_ensembles_lacks_is_not_compared() -> None:
+    more = ensemble_of({**MOVED, ("base_shear", None): (3e5, 6e5, 5e5)})
+    lines = [word_check(check) for check in compare_with_stored(ensemble_of(MOVED), more, 0.01)]
+    assert [line.rpartition(": ")[2] for line in lines[2:]] == ["not compared (this ensemble lacks it)"] * 2
+    lines = [word_check(check) for check in compare_with_stored(more, ensemble_of(MOVED), 0.01)]
+    assert [line.rpartition(": ")[2] for line in lines[2:]] == ["not compared (the stored ensemble lacks it)"] * 2
+    ended = ensemble_of({("displacement", None): (0.30, None, 0.43)})
+    assert compare_with_stored(ended, ended, 0.01) == [], "neither has mean or largest value"
+
+
+def test_the_report_has_the_verdict_on_every_limit() -> None:
+    ensemble = ensemble_of({**MOVED, ("base_shear", None): (3e5, 6e5, 5e5)})
+    checks = check_limits(ensemble, {"job[upper bound]": DemandLimits(displacement=0.4, base_shear=0.5)})
+    page = page_of(replace(ensemble, limits=verdicts_of(checks)))
+    assert "2 demands: 1 met, 1 not met, 0 not compared." in page
+    assert all(str(escape(word_check(check))) in page for check in checks)
+    assert "not compared." not in page_of(ensemble), "no section without limits"
+
+
+SCENE = """title = "a block"
+isolator = {radius = 2.0, friction = 0.05, bounds = [0.8, 1.5]}
+bodies = [{mass = 1e4}]
+[excitation]
+record = "none.csv"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Two motions and a block with bounds; no page is drawn."""
+    (tmp_path / "suite").mkdir()
+    time = np.arange(0.0, 2.0, 0.05)
+    for name, peak in (("weak", 1.0), ("strong", 3.0)):
+        values = peak * np.sin(6.0 * time) * np.exp(-(((time - 1.0) / 0.5) ** 2))
+        rows = "\n".join(f"{t:.2f},{a:.6f},{0.5 * a:.6f}" for t, a in zip(time, values))
+        (tmp_path / "suite" / f"{name}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{rows}\n")
+    (tmp_path / "block.toml").write_text(SCENE)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("comparison.analyses.ensemble.command.page_of", lambda result: "")
+    return tmp_path
+
+
+def run(*words: str, out: str = "out") -> int:
+    asked = [*words, "--suite", "suite", "--engine", "0", "--out", out]
+    return main(asked, executor=lambda workers: ThreadPoolExecutor(1))
+
+
+def limit_file(limits: str) -> None:
+    Path("block.toml").write_text(f"{SCENE}[acceptance.demands]\n{limits}\n")
+
+
+def test_check_exits_1_and_says_last_which_limit_at_which_bound_and_motion(folder: Path, capsys: Any) -> None:
+    limit_file("displacement = 0.001\nbase_shear = 9.0")
+    assert run("block.toml") == 0, "nothing is asked for"
+    before, said = capsys.readouterr(), "Record strong: 40 samples, step 0.05 s, 1.95 s, peaks x 0."
+    assert before.err == ""
+    assert said in before.out, "a motion has its name"
+    assert re.search(r"4 motions by the equations, about 0 by the engine: about \d+ s with \d+ worker", before.out)
+    assert re.search(r"The ensemble took \d+ s\.", before.out)
+    assert run("block.toml", "--check") == 1
+    *_, before, last = capsys.readouterr().err.splitlines()
+    assert last.startswith("lower bound: largest displacement of the isolator, largest of 2 motions: ")
+    assert "(strong" in last
+    assert before.startswith("upper bound: largest displacement")
+    suites = ElementTree.parse("out/junit.xml").getroot()
+    assert (suites.get("tests"), suites.get("failures")) == ("4", "2")
+    failure = suites.find("testsuite[@name='lower bound']/testcase/failure")
+    assert failure is not None
+    assert failure.get("message") == last
+    limit_file("displacement = 1.0\nbase_shear = 9.0")
+    assert run("block.toml", "--check") == 0
+    assert capsys.readouterr().err == "4 demands: 4 met, 0 not met, 0 not compared\n"
+
+
+def test_plan_and_run_begin_with_the_building_as_it_was_read_once_for_both_bounds(folder: Path, capsys: Any) -> None:
+    Path("block.toml").write_text(SCENE.replace("radius = 2.0", "radius = 60.0"))
+    for words in (("--plan",), ()):
+        assert run("block.toml", *words) == 0
+        said = capsys.readouterr().out
+        assert said.count("Building block[lower bound], block[upper bound]: 1 body, weight 98.1 kN\n") == 1
+        assert said.count("peak of the ground: ") == 1
+        assert said.count("Warning: block[lower bound]: the radius of the isolator is 60 m, above 50 m: mm?") == 1
+
+
+def test_a_check_without_limits_says_that_nothing_was_checked(folder: Path, capsys: Any) -> None:
+    assert run("block.toml", "--check") == 0
+    assert capsys.readouterr().err == "--check: no scene states [acceptance.demands]: nothing was checked\n"
+    assert not Path("out/junit.xml").exists()
+
+
+def test_an_ensemble_is_compared_with_an_earlier_one(folder: Path, capsys: Any) -> None:
+    assert run("block.toml", out="before") == 0
+    assert run("block.toml", "--against", "before") == 0
+    (count,) = capsys.readouterr().err.splitlines()
+    assert " 0 not met, 0 not compared" in count
+    Path("block.toml").write_text(SCENE.replace("radius = 2.0", "radius = 1.9"))
+    assert run("block.toml", "--against", "before", "--within", "1e-4") == 1
+    assert "not met (by " in capsys.readouterr().err.splitlines()[-1]
+    assert run("block.toml", "--against", "before", "--within", "0.5") == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "line"),
+    [
+        (("--against", "suite"), "--against = 'suite': has no summary.json: give a folder that"),
+        (("--against", "other"), "--against = 'other': "),
+        (("--within", "-1"), "--within = -1.0: must be a number from 0 to 10"),
+    ],
+)
+def test_a_wrong_comparison_is_one_line_before_anything_is_computed(folder, capsys, words, line) -> None:
+    (folder / "other").mkdir()
+    (folder / "other" / "summary.json").write_text("{}")
+    assert run("block.toml", *words) == 2
+    said = capsys.readouterr().err
+    assert (line in said, said.count("\n")) == (True, 1), said
+    assert not Path("out").exists()
+
+
+def test_a_drift_beyond_a_tenth_of_the_story_is_one_warning_with_story_and_motion() -> None:
+    rows: Values = {("drift_ratio", 2): (0.05, 0.236, 0.1), ("drift_ratio", 3): (0.05, 0.12, 0.1)}
+    ensemble = ensemble_of(rows)
+    (structure,) = ensemble.structures
+    said = drift_warning(ensemble, structure)
+    assert said.startswith("Warning: the drift below body 2 under Imperial Valley is 23.6 % of the height of the story")
+    usual = ensemble_of({("drift_ratio", 2): (0.05, 0.1, 0.01)})
+    assert drift_warning(usual, structure) == drift_warning(ensemble_of(MOVED), structure) == ""

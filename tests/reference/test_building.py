@@ -1,0 +1,97 @@
+"""What is said of a building before anything is computed, against hand calculations."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from reference import damped_modes, describe_building, load_scene
+from reference.building import word_buildings
+from reference.problem import GRAVITY, Scene, ground_acceleration, phase_grid
+
+FLOORS = 5
+MASS, STIFFNESS = 3e5, 4e8  # kg, N/m, of every floor and story
+# Chopra, Dynamics of Structures: omega_j of a uniform shear building on a fixed base
+OMEGA = 2.0 * np.sqrt(STIFFNESS / MASS) * np.sin((2.0 * np.arange(1, FLOORS + 1) - 1.0) * np.pi / (4.0 * FLOORS + 2.0))
+
+
+def shear_building(damping: float | list[float] = 0.05) -> Scene:
+    """Five equal floors on a platform with twelve supports."""
+    floors = [{"mass": MASS, "stiffness": [STIFFNESS, 4.0 * STIFFNESS], "damping": damping} for _ in range(FLOORS)]
+    isolator = {"radius": 2.2, "friction": 0.05, "supports": 12, "ring": 10.0, "sphere_radius": 0.15}
+    return load_scene("fig3-I").with_values({"bodies": [{"mass": 2e5}, *floors], "isolator": isolator})
+
+
+def test_fixed_base_periods_of_a_shear_building_are_those_of_the_formula() -> None:
+    periods = describe_building(shear_building()).fixed_base_period
+    np.testing.assert_allclose(periods, 2.0 * np.pi / np.array([OMEGA, 2.0 * OMEGA]), rtol=1e-12)
+
+
+def test_modal_damping_of_a_shear_building_is_proportional_to_frequency() -> None:
+    """c = 2 zeta sqrt(k m) in every story makes D0 = (c / k) C0, whose modal ratios are c omega / (2 k)."""
+    damping = describe_building(shear_building(0.05)).modal_damping
+    np.testing.assert_allclose(damping, [0.05 * OMEGA / np.sqrt(STIFFNESS / MASS)] * 2, rtol=1e-10)
+    assert damping[0, 0] == pytest.approx(0.0142, abs=5e-5)
+
+
+def test_modal_damping_is_that_of_complex_modes_where_dampers_are_weak() -> None:
+    """A platform so heavy that it does not move is a fixed base."""
+    scene = shear_building().with_values({"bodies.0.mass": 1e14, "bodies.2.damping": [3e4, 1e3]})
+    scene = scene.with_values({f"bodies.{floor}.damping": [1e3 * floor, 2e3] for floor in (1, 3, 4, 5)})
+    complex_modes = np.sort(damped_modes(scene).damping_ratio[:, 2::2], axis=1)
+    np.testing.assert_allclose(np.sort(describe_building(scene).modal_damping, axis=1), complex_modes, rtol=1e-4)
+
+
+def test_weight_and_dead_load_of_a_support_follow_from_the_masses() -> None:
+    building = describe_building(shear_building())
+    assert building.weight == pytest.approx(1.7e6 * GRAVITY, rel=1e-14)
+    assert building.load_per_support == pytest.approx(1.7e6 * GRAVITY / 12.0, rel=1e-14)
+    assert describe_building(load_scene("fig3-I").with_values({"isolator.supports": None})).load_per_support is None
+
+
+def test_peak_of_the_ground_is_the_resultant_of_x_and_y_over_all_phases() -> None:
+    scene = load_scene("fig3-I").with_values({"excitation.amplitudes": [[1.0, -0.4], [-0.3, 0.8], [9.0, 9.0]]})
+    start = [ground_acceleration(scene, phases, [0.0])[0, :2] for phases in phase_grid(16).reshape(-1, 2)]
+    assert describe_building(scene).ground_peak == pytest.approx(np.linalg.norm(start, axis=1).max(), rel=1e-12)
+    pair = load_scene("synthetic-pair")
+    motion = ground_acceleration(pair, (0.0, 0.0), pair.record[:, 0])[:, :2]
+    assert describe_building(pair).ground_peak == np.linalg.norm(motion, axis=1).max()
+
+
+def test_a_body_alone_has_no_fixed_base_modes() -> None:
+    alone = load_scene("fig3-I").with_values({"bodies": [{"mass": 2.0}]})
+    building = describe_building(alone)
+    assert building.fixed_base_period.shape == building.modal_damping.shape == (2, 0)
+    assert not any("fixed base" in line or "damping" in line for line in building.lines)
+
+
+def test_a_tall_chain_is_described_by_its_lowest_modes() -> None:
+    floors = [{"mass": MASS, "stiffness": [STIFFNESS] * 2} for _ in range(2000)]
+    building = describe_building(shear_building().with_values({"bodies": [{"mass": MASS}, *floors]}))
+    assert building.fixed_base_period.shape == (2, 10)
+    first = np.sin(np.pi / (4.0 * 2000 + 2.0)) * 2.0 * np.sqrt(STIFFNESS / MASS)
+    assert building.fixed_base_period[0, 0] == pytest.approx(2.0 * np.pi / first, rel=1e-10)
+
+
+def test_the_lines_of_a_building_have_its_numbers_with_their_units() -> None:
+    assert describe_building(shear_building()).lines == [
+        "Building fig3-I[bodies changed, isolator changed]: 6 bodies, weight 16.68 MN, "
+        "1.39 MN on each of 12 supports (equal dead load)",
+        "  periods on the isolator, without friction: 3.02, 0.311, 0.163, 0.117, 0.0969, 0.0883 s along x; "
+        "2.99, 0.157, 0.0819, 0.0585, 0.0485, 0.0442 s along y",
+        "  periods above a fixed base: 0.605, 0.207, 0.131, 0.102, 0.0897 s along x; "
+        "0.302, 0.104, 0.0657, 0.0511, 0.0448 s along y",
+        "  damping of these modes: 1.42, 4.15, 6.55, 8.41, 9.59 % along x and y",
+        "  peak of the ground: 1.41 m/s^2 = 0.144 g",
+    ]
+
+
+def test_buildings_that_are_alike_are_described_once_with_all_peaks() -> None:
+    scene = shear_building()
+    scenes = [scene.with_values({"excitation.scale": scale, "name": f"job {scale:g}"}) for scale in (2.0, 4.0, 1.0)]
+    stiffer = scene.with_values({"bodies.1.stiffness": [1e9, 1e9], "name": "other"})
+    lines = word_buildings([describe_building(each) for each in (*scenes, stiffer)])
+    assert lines[0].startswith("Building job 2, job 4, job 1: 6 bodies")
+    assert lines[4] == "  peak of the ground: 1.41 to 5.66 m/s^2 = 0.144 to 0.577 g"
+    assert lines[5].startswith("Building other: 6 bodies")
+    assert len(lines) == 10
