@@ -15,6 +15,8 @@ import importlib.util
 import json
 import math
 import sys
+from functools import partial
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -92,7 +94,7 @@ def compare_pendulum(swing: Swing, recorded: dict[str, dict[str, Any]]) -> dict[
     sides = (-1.0) ** numbers
     terms = np.column_stack([np.ones(len(numbers)), -numbers, sides])
     along = np.sign(turns[0]) * sides * turns[: len(numbers)]
-    (start, loss, middle), *_ = np.linalg.lstsq(terms[:11], along[:11])
+    (_, loss, middle), *_ = np.linalg.lstsq(terms[:11], along[:11])
     half = float(np.diff(instants)[: pendulum.HALF].mean())
     measured = along - middle * sides
 
@@ -114,16 +116,14 @@ def compare_pendulum(swing: Swing, recorded: dict[str, dict[str, Any]]) -> dict[
         motion = table.motion_of(EQUATIONS, made, (0.0, 0.0), place, 1e-5, 1e-4, "exact")
         track = table.spline(motion)
         ends = [0.0, *pendulum._zeros(motion), float(motion.time[-1])]
-        sizes = [
-            (track(np.linspace(a, b, 2001)) * (-1.0) ** k).max() for k, (a, b) in enumerate(zip(ends[:-1], ends[1:]))
-        ]
+        sizes = [(track(np.linspace(a, b, 2001)) * (-1.0) ** k).max() for k, (a, b) in enumerate(pairwise(ends))]
         rest = [float(track(ends[-1])) * (-1.0) ** k for k in range(len(sizes), len(numbers))]
         return np.arcsin(np.array([*sizes, *rest][: len(numbers)]) / made.radius)
 
     tried = []
     for yields in (0.0, 2e-4, 5e-4, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3, 6e-3, 8e-3):
-        fit = least_squares(lambda lost: turning_points(yields, float(lost[0]), half)[:11] - measured[:11], [loss],
-                            diff_step=1e-3, x_scale=loss)  # fmt: skip
+        misfit = partial(_misfit, partial(turning_points, yields), half, measured)
+        fit = least_squares(misfit, [loss], diff_step=1e-3, x_scale=loss)
         tried.append((yields, float(fit.x[0]), float(np.sqrt(np.mean(fit.fun**2)))))
     best = min(tried, key=lambda each: each[2])
     rows = []
@@ -132,8 +132,14 @@ def compare_pendulum(swing: Swing, recorded: dict[str, dict[str, Any]]) -> dict[
         for number in pendulum.SHOWN:
             within = recorded[f"pendulum, decay: turning point {number}"]
             error = 1e3 * float(sizes[number]) - within["measured"]
-            rows.append([yields, f"turning point {number}", error, within["u_val"], bool(abs(error) <= within["u_val"])])
+            rows.append(
+                [yields, f"turning point {number}", error, within["u_val"], bool(abs(error) <= within["u_val"])]
+            )
     return {"fits": tried, "fitted, rad": best[0], "rows": rows}
+
+
+def _misfit(compute: Any, half: float, measured: Any, loss: Any) -> Any:
+    return compute(float(loss[0]), half)[:11] - measured[:11]
 
 
 def compute_mastodon(path: Path, yields: float, step: float) -> list[float]:

@@ -211,7 +211,8 @@ class _Progress:
         if self.at.divisions >= DIVISIONS_BEFORE_REST and any(self.at.state.sliding):
             # Newton's iteration finds no sliding where a slide ends within any step: it may go on from rest
             springs, state = self.model.springs, self.at.state
-            assert springs is not None and state.accelerations is not None  # settled
+            assert springs is not None
+            assert state.accelerations is not None  # settled
             self.at.state = springs.rest(state, state.accelerations)
             self.at.rested_at = self.at.time
             return True
@@ -266,17 +267,15 @@ class _Progress:
         springs, pressed = self.model.springs, self.model.bearing_penetration or self.level.penetration
         if springs is None:
             return None
-        rows = motion.time, motion.coordinates, motion.velocities, motion.contact
         end = math.inf if self.at.rested_at == self.at.time else self.level.slide_end
-        return springs.find_change(*rows, self.at.state, pressed, self.level.slide_end, end)
+        return springs.find_change(motion, self.at.state, pressed, self.level.slide_end, end)
 
     def _rates_of_limits(self, springs: FrictionSprings, motion: EngineMotion, row: int) -> Array:
         """Rates (K,) of the elastic displacements at which contacts slide, at a row."""
         near = motion.cut_at(max(row, 1))
         pressed = self.model.bearing_penetration or self.level.penetration
-        rows = slice(-RECENT_ROWS, None)
-        limits = springs.limits(near.time[rows], near.velocities[rows], near.contact[rows], pressed)
-        slope: Array = np.polyfit(near.time[rows] - near.time[-1], limits, 1)[0]
+        recent = EngineMotion(*[column[-RECENT_ROWS:] for column in near])
+        slope: Array = np.polyfit(recent.time - recent.time[-1], springs.limits(recent, pressed), 1)[0]
         return slope
 
     def _pass_change(self, springs: FrictionSprings, change: Change, step: float, rates: Array) -> bool:

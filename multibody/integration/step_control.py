@@ -52,17 +52,14 @@ class StepControl:
     model: EngineModel
     level: Level
 
-    def step_ratio(
-        self, motion: EngineMotion, size: Array, peaks: Array, step: float, state: EngineState
-    ) -> Array:
+    def step_ratio(self, motion: EngineMotion, size: Array, peaks: Array, step: float, state: EngineState) -> Array:
         """Each step from `state` over what is allowed there, (T,), from accelerations (T, N) and peaks so far, (N,)."""
         model, level = self.model, self.level
         per_change = step / level.slip_change
         if model.springs is None:
             step_ratio = self._slip_step_ratio(motion, per_change)
         else:
-            rows = motion.coordinates, motion.velocities, motion.contact
-            step_ratio = model.springs.step_ratio(*rows, state, level.slide_end) / level.slip_change
+            step_ratio = model.springs.step_ratio(motion, state, level.slide_end) / level.slip_change
         if model.friction is not None:
             allowed = min(FEEDBACK_PER_SLIP_CHANGE * level.slip_change, MAX_FEEDBACK)
             step_ratio = np.maximum(step_ratio, step / allowed * model.friction.feedback(motion.slip))

@@ -27,7 +27,6 @@ from multibody.models.units import Units
 from reference.problem import DryFriction, Scene
 
 Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 # Moment of inertia of all spheres together over r^2: it adds as much to the mass that vibrates on the springs.
 TURNING_MASS = 1e-9
@@ -62,7 +61,7 @@ class Change(NamedTuple):
     """
     A contact that slides, or rests, from a share of the step behind `row` on.
 
-    limits: elastic displacements (K,) to which springs return that slip more slowly than at the end of a slide; else None.
+    limits: elastic displacements (K,) to which springs return that slip more slowly than at the end of a slide.
     """
 
     row: int
@@ -78,7 +77,8 @@ class FrictionSprings:
     The springs that turn the spheres, in units of the model.
 
     turns: index of the rotations of each sphere, (K, 3). law: friction of the contacts. displacement: elastic one at
-    which they slide under the weight. slide_end: slip speed at which slides end at level 0. damping_ratio: of the contacts.
+    which they slide under the weight. slide_end: slip speed at which slides end at level 0. damping_ratio: that of the
+    contacts. Where steps are meant, `motion` is an `EngineMotion`.
     """
 
     mbs: Any
@@ -104,27 +104,22 @@ class FrictionSprings:
         for contact in self.contacts:
             self.mbs.SetObjectParameter(contact, "frictionProportionalZone", REGULARIZED_SHARE * end)
 
-    def step_ratio(self, coordinates: Array, velocities: Array, contact: Array, state: EngineState, end: float) -> Array:
-        """
-        Largest change in each step, (T,): of elastic displacements over that of yield, of the velocity over the slip.
-
-        end: slip speed, below which a slide ends.
-        """
-        turned = np.linalg.norm(np.diff(coordinates[:, self.turns], axis=0), axis=2)
-        changes = self.depressions.radius / self.displacement * turned
-        slip = np.maximum(contact[1:, SLIP::DATA], end)[:, self._sliding(state)]
-        turning = np.linalg.norm(np.diff(velocities[:, :3], axis=0), axis=1)[:, None] / slip
-        return np.append(0.0, np.maximum(changes.max(axis=1, initial=0.0), SHARE_OF_SLIDE * turning.max(axis=1, initial=0.0)))
+    def step_ratio(self, motion: Any, state: EngineState, end: float) -> Array:
+        """Largest change in each step from `state`, (T,): of displacements over yield, of velocity over slip."""
+        turned = np.linalg.norm(np.diff(motion.coordinates[:, self.turns], axis=0), axis=2).max(axis=1, initial=0.0)
+        slip = np.maximum(motion.slip[1:], end)[:, self._sliding(state)].min(axis=1, initial=math.inf)
+        turning = np.linalg.norm(np.diff(motion.velocities[:, :3], axis=0), axis=1) / slip
+        changes = np.maximum(self.depressions.radius / self.displacement * turned, SHARE_OF_SLIDE * turning)
+        return np.append(0.0, changes)
 
     def find_change(
-        self, time: Array, coordinates: Array, velocities: Array, contact: Array, state: EngineState, penetration: float, end: float, begin: float
+        self, motion: Any, state: EngineState, penetration: float, end: float, begin: float
     ) -> Change | None:
-        """Find the first contact that begins or ends to slide in steps from `state`, (T, ...); None without one."""
-        if len(time) < 2:
+        """Find the first contact that begins or ends to slide in steps from `state`; None without one."""
+        if len(motion.time) < 2:
             return None
-        slip = contact[:, SLIP::DATA]
-        limit = self.limits(time, velocities, contact, penetration)
-        excess = self.depressions.radius * np.linalg.norm(coordinates[:, self.turns], axis=2) - limit
+        time, slip, limit = motion.time, motion.slip, self.limits(motion, penetration)
+        excess = self.depressions.radius * np.linalg.norm(motion.coordinates[:, self.turns], axis=2) - limit
         left = EXCESS * self.displacement * (end / self.slide_end) ** 2
         changes = []
         for number, slides in enumerate(self._sliding(state)):
@@ -139,12 +134,12 @@ class FrictionSprings:
             changes.append(change)
         return min((change for change in changes if change is not None), default=None)
 
-    def limits(self, time: Array, velocities: Array, contact: Array, penetration: float) -> Array:
+    def limits(self, motion: Any, penetration: float) -> Array:
         """Elastic displacements at which the contacts slide, (T, K)."""
-        gap = contact[:, 0::DATA]
         lag = 2.0 * self.damping_ratio * math.sqrt(penetration)
-        load = np.maximum(-(gap + lag * np.gradient(gap, time, axis=0)) / penetration, 0.0)
-        speed = np.linalg.norm(velocities[:, :3], axis=1)[:, None]
+        pressed = motion.gap + lag * np.gradient(motion.gap, motion.time, axis=0)
+        load = np.maximum(-pressed / penetration, 0.0)
+        speed = np.linalg.norm(motion.velocities[:, :3], axis=1)[:, None]
         limit: Array = self.displacement * self.law.at(speed, load) / self.law.largest * load
         return limit
 
@@ -158,7 +153,7 @@ class FrictionSprings:
         change: Change | None = None,
     ) -> EngineState:
         """
-        Return the state to go on from after steps from `before`, with accelerations (n,) and rates of limits (K,) there.
+        Return the state to go on from after steps from `before`, with accelerations (n,), rates (K,) of limits there.
 
         The rates of the spheres are those of contacts that rest or slide: what the steps leave of massless spheres
         alternates behind every kink. change: what happens there.
@@ -166,10 +161,11 @@ class FrictionSprings:
         sliding = np.array(self._sliding(before))
         if change is not None and change.limits is not None:
             coordinates = state.coordinates.copy()
-            for number in np.flatnonzero(~sliding):
-                surface = self.depressions.radius * np.linalg.norm(coordinates[self.turns[number]])
-                if surface > change.limits[number]:
-                    coordinates[self.turns[number]] *= change.limits[number] / surface
+            for number in np.flatnonzero(~sliding).tolist():
+                size = self.depressions.radius * float(np.linalg.norm(coordinates[self.turns[number]]))
+                coordinates[self.turns[number]] *= min(
+                    float(change.limits[number]) / max(size, SMALLEST_DISPLACEMENT), 1.0
+                )
             state = replace(state, coordinates=coordinates)
         velocities, accelerations, contact = state.velocities.copy(), accelerations.copy(), state.contact.copy()
         normals, jacobian = self.depressions.contact_normals_and_jacobian(state.coordinates)

@@ -84,7 +84,12 @@ def assemble_translational(
         [*plate.expressions] if plate.moves else load_coordinates(mbs, ground, _list_pushes(masses, nodes, axes))
     )
     recorders = add_recorders(
-        mbs, [], [chain, *turning.bodies], [contact_node], [contact] if contact_force or scene.dry_friction.by_load else [], plate.node
+        mbs,
+        [],
+        [chain, *turning.bodies],
+        [contact_node],
+        [contact] if contact_force or scene.dry_friction.by_load else [],
+        plate.node,
     )
     mbs.Assemble()
 
