@@ -33,6 +33,7 @@ from reference.problem import GRAVITY, Scene, Trajectory, ground_acceleration, g
 from reference.problem.friction import Heat
 
 STORED = Path(__file__).with_name("yielding_friction.json")
+OPENSEES_ADVICE = """Friction of such an element is a spring k up to μN. Its `kInit` is k + W/R: the element subtracts N/R."""
 PLACE, V_REG, TOLERANCE = 1e-3, 1e-4, 1e-3
 OPENSEES_YIELDS, OPENSEES_STEPS = (1e-3, 1e-4, 1e-5), (4e-3, 1e-3, 5e-4)  # m; s
 HEAT_STEPS = 20  # steps of MASTODON's motion between two of its temperature
@@ -216,6 +217,90 @@ def compare_opensees() -> dict[str, Any]:
 def _spread(change: Any) -> list[list[float]]:
     """Median and largest size of relative changes (M, Q) in each column."""
     return [[float(f"{value:.2g}") for value in (np.median(each), each.max())] for each in np.abs(change).T]
+
+
+def state_frame(found: dict[str, Any]) -> str:
+    """Say whether a yield displacement that is fitted to one run of the frame meets what is not met without."""
+    frame_ = found["frame"]
+    lines = []
+    for law in ("one ratio", "friction of the load"):
+        rigid, elastic = (
+            {tuple(row[:2]): row for row in rows if row[4] is not None}
+            for name, rows in frame_["laws"].items()
+            if name.startswith(law)
+        )
+        gained = [key for key, row in elastic.items() if row[4] and not rigid[key][4]]
+        lost = [key for key, row in elastic.items() if not row[4] and rigid[key][4]]
+        met = [sum(row[4] for row in rows.values()) for rows in (rigid, elastic)]
+        lines.append(
+            f"by {law} {met[0]} of {len(rigid)} quantities are met without and {met[1]} with it, "
+            f"{len(gained)} gained and {len(lost)} lost"
+        )
+    misfits = ", ".join(
+        f"{run} {fits[0][2]:.3f} to {next(f[2] for f in fits if f[0] == frame_['fitted at 250 g, mm']):.3f} mm"
+        for run, fits in frame_["fits"].items()
+    )
+    return (
+        f"Frame: a yield displacement of {frame_['fitted at 250 g, mm']:g} mm, fitted to the run with 250 g, does not "
+        f"validate more: {'; '.join(lines)}. It brings the cycle closer where the ratio is fitted to each run (rms: "
+        f"{misfits}), and shortens the time at rest too much."
+    )
+
+
+def state_pendulum(found: dict[str, Any]) -> str:
+    """Say which turning points of the pendulum a fitted yield displacement meets."""
+    rows, fitted = found["pendulum"]["rows"], found["pendulum"]["fitted, rad"]
+    words = []
+    for yields in (0.0, fitted):
+        met = [row[1].removeprefix("turning point ") for row in rows if row[0] == yields and row[4]]
+        words.append(", ".join(met) if met else "none")
+    last = [next(row[2] for row in rows if row[0] == yields and row[1].endswith("13")) for yields in (0.0, fitted)]
+    return (
+        f"Pendulum: with a yield displacement of {1e3 * fitted:g} mrad, fitted to turning points 0 to 10 together with "
+        f"the loss, the turning points that are met are {words[1]}; without it {words[0]}. The last one, 13, is off by "
+        f"{last[1]:+.1f} in place of {last[0]:+.1f} mrad."
+    )
+
+
+def state_mastodon(found: dict[str, Any]) -> str:
+    """Say how far the displacements of MASTODON's bearing are from the published ones, with and without its 1 mm."""
+    published = found["mastodon"]["published"]
+    off = {
+        name: max(abs(a - b) for a, b in zip(found["mastodon"][name], published))
+        for name in ("u_y = 0.01 mm", "u_y = 1 mm")
+    }
+    with_it = ", ".join(f"{value:.1f}" for value in found["mastodon"]["u_y = 1 mm"])
+    return (
+        f"MASTODON: with its own restoring force N y / sqrt(R² − y²) and its yield displacement of 1 mm the ranges are "
+        f"{with_it} mm. The largest difference from the published ones is {off['u_y = 1 mm']:.1f} mm; without the "
+        f"yield displacement (0.01 mm) it is {off['u_y = 0.01 mm']:.1f} mm. The loops can be read to 3 mm."
+    )
+
+
+def opensees_section() -> list[str]:
+    """Lines of the page of engines on an element that yields elastically, from what is recorded."""
+    found = json.loads(STORED.read_text(encoding="utf-8"))
+    rows = {name: row for name, row in found["opensees"].items() if name not in ("phases", "columns")}
+    steps = [name for name in next(iter(rows.values())) if name.endswith(" s")]
+    heads = [f"{step} against {OPENSEES_STEPS[-1]:g} s" for step in steps]
+    heads += [f"{OPENSEES_STEPS[-1]:g} s against small", "against exact"]
+    text = [
+        "## An element that yields elastically",
+        "",
+        OPENSEES_ADVICE,
+        "",
+        "Recorded by `python docs/yielding_friction.py FOLDER MASTODON.csv`: OpenSees' `singleFPBearing` with the stiffness k "
+        "of `yield_displacement`, 16 phase pairs, median / largest relative difference of μ₁, μ₂, displacement and base shear. "
+        "`small` and `exact` are the equations under the same law.",
+        "",
+        f"| scene, element | {' | '.join(heads)} |",
+        f"|{'---|' * (len(heads) + 1)}",
+    ]
+    for name, row in rows.items():
+        parts = [", ".join(f"{median:.0e} / {largest:.0e}" for median, largest in row[column])
+                 for column in (*steps, "small", "exact")]  # fmt: skip
+        text.append(f"| {name} | {' | '.join(parts)} |")
+    return text
 
 
 def main(folder: Path, mastodon: Path) -> None:
