@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import yielding_friction
 from matplotlib.figure import Figure
 
 import reference
@@ -299,6 +300,7 @@ def _page(rows: list[dict[str, Any]]) -> str:
         measured = [row["version"] for row in rows if row["engine"] == engine.name]
         if measured:
             text.append(f"| {engine.name} | {engine.package} {measured[-1]} | {engine.law} | {engine.lacks} |")
+    text += ["", *yielding_friction.opensees_section()]
     with_versions = ", ".join(f"{name} {version(name)}" for name in PACKAGES)
     return "\n".join([*text, "", f"Measured with Python {sys.version.split()[0]}, {with_versions}.", ""])
 

@@ -20,6 +20,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from xml.etree import ElementTree
 
+import yielding_friction
+
 from comparison.evidence.benchmarks.table import STORED as PUBLISHED
 from comparison.evidence.benchmarks.table import Benchmarks, page
 from comparison.evidence.sides import ENGINE, EQUATIONS
@@ -185,9 +187,16 @@ def findings() -> str:
     return "\n".join(f"- {text[0].upper()}{text[1:]}." for text in (word(table) for word in words))
 
 
+def yielding() -> str:
+    """Say what a yield displacement changes against measurements and against MASTODON."""
+    found = json.loads(yielding_friction.STORED.read_text(encoding="utf-8"))
+    states = (yielding_friction.state_frame, yielding_friction.state_pendulum, yielding_friction.state_mastodon)
+    return "\n".join(f"- {state(found)}" for state in states)
+
+
 BLOCKS: dict[Path, Sequence[Callable[[], str]]] = {
     DOCS / "evidence.md": (evidence, limits),
-    DOCS / "validation.md": (limits, counts, quantities, explanations, findings, facts),
+    DOCS / "validation.md": (limits, counts, quantities, explanations, findings, facts, yielding),
 }
 
 

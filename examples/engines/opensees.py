@@ -6,7 +6,7 @@ OpenSees: single friction pendulum or flat slider bearing under a chain. Needs `
 What its bearing cannot express: the sphere (its restoring force is N x/R) and friction linear in the velocity (it is a
 spring up to `KNEE`, and slides from there). A plastic spring truly rests: the nearest partner is `small-resolved`, with
 the set-valued law and without the limits at stops that no step shows. Where a slide ends the spring is struck, which
-mu_1 feels.
+mu_1 feels. A scene whose friction yields states the spring itself, and its partner is the same law: `small`.
 """
 
 from __future__ import annotations
@@ -30,6 +30,13 @@ def amplification(scene, phases, step=2e-3, knee=KNEE, damped=0.67):
 
 def _peaks(scene, phase, step, knee, damped):
     """Largest absolute acceleration of every body, m/s^2."""
+    _, absolute = follow(scene, phase, step, ("HHT", damped), knee)
+    return np.linalg.norm(absolute, axis=2).max(axis=0)
+
+
+def follow(scene, phase, step, integrator, knee=KNEE):
+    """Displacements of the platform (T, 2), m, and absolute accelerations (T, N, 3), m/s^2, in steps from zero on."""
+    knee = scene.yield_displacement or knee
     masses, weight = scene.masses, scene.total_mass * GRAVITY
     ops.wipe()
     ops.model("basic", "-ndm", 3, "-ndf", 6)
@@ -43,8 +50,10 @@ def _peaks(scene, phase, step, knee, damped):
     ops.uniaxialMaterial("Elastic", 1, weight / VERTICAL, 0.02 * math.sqrt(scene.total_mass * weight / VERTICAL))
     ops.uniaxialMaterial("Elastic", 2, STIFF)
     bearing = ("flatSliderBearing", 1, 1, 2, 1) if scene.flat else ("singleFPBearing", 1, 1, 2, 1, scene.radius)
+    # the element's kInit is that of spring and pendulum together: it subtracts N/R
+    stiffness = scene.friction_coefficient * weight / knee + weight / scene.radius
     laws = ("-P", 1, "-T", 2, "-My", 2, "-Mz", 2)
-    ops.element(*bearing, scene.friction_coefficient * weight / knee, *laws, "-orient", 0, 0, 1, 1, 0, 0)
+    ops.element(*bearing, stiffness, *laws, "-orient", 0, 0, 1, 1, 0, 0)
     for link, (stiffness, damping) in enumerate(zip(scene.stiffness, scene.damping)):
         for axis in range(2):
             ops.uniaxialMaterial("Elastic", 10 + 2 * link + axis, float(stiffness[axis]), float(damping[axis]))
@@ -62,16 +71,18 @@ def _peaks(scene, phase, step, knee, damped):
         ops.timeSeries("Path", 2 + axis, "-dt", step, "-values", *ground[:, axis].tolist())
         ops.pattern("UniformExcitation", 2 + axis, 1 + axis, "-accel", 2 + axis)
     ops.wipeAnalysis()
-    _analysis("Transient", ("HHT", damped))
-    largest = np.linalg.norm(ground[:1], axis=1).repeat(len(masses))  # at rest every body has the ground's
-    for absolute in ground[1:]:
+    _analysis("Transient", integrator)
+    place, absolute = np.zeros((len(times), 2)), np.repeat(ground[:, None, :], len(masses), axis=1)
+    if scene.dry_friction.elastic:  # at rest an elastic bearing transmits nothing, and a rigid one the ground's
+        absolute[0] = 0.0
+    for row in range(1, len(times)):
         if ops.analyze(1, step):
-            return np.full(len(masses), np.nan)
-        vertical = ops.nodeAccel(2, 3)
+            return place * np.nan, absolute * np.nan
+        place[row] = ops.nodeDisp(2, 1), ops.nodeDisp(2, 2)
+        absolute[row, :, 2] += ops.nodeAccel(2, 3)
         for body in range(len(masses)):
-            x, y = ops.nodeAccel(body + 2, 1), ops.nodeAccel(body + 2, 2)
-            largest[body] = max(largest[body], math.hypot(x + absolute[0], y + absolute[1], vertical + absolute[2]))
-    return largest
+            absolute[row, body, :2] += ops.nodeAccel(body + 2, 1), ops.nodeAccel(body + 2, 2)
+    return place, absolute
 
 
 def _analysis(kind, integrator):

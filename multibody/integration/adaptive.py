@@ -33,6 +33,7 @@ from multibody.integration.step_control import (
     gap_rate_at_end,
 )
 from multibody.integration.termination import find_first_row, find_termination
+from multibody.models.friction_springs import Change, FrictionSprings
 from multibody.models.recorded import align_steps
 from multibody.models.state import EngineState
 from reference.problem import Outcome
@@ -50,6 +51,15 @@ FREE_ITERATIONS = 2
 
 # Rows at the end of a chunk that decide whether the step may grow.
 RECENT_ROWS = 8
+
+# Divisions of the largest step from which on contacts rest where a step from sliding fails.
+DIVISIONS_BEFORE_REST = 3
+
+# Number of the largest steps in the first chunk after a contact began or ended to slide: the next may follow soon.
+STEPS_BEHIND_CHANGE = 4
+
+# Least share of a step that is made on its own before a contact begins or ends to slide.
+SHORTEST_SHARE = 1e-4
 
 # Rounding of the instant at which a run has reached its end, relative.
 TIME_ROUNDING = 1e-12
@@ -78,13 +88,14 @@ class Checkpoint:
     The place from which a run goes on.
 
     time: in units of time. divisions: of the largest step by `STEP_RATIO`. next_count: steps of the next chunk at the
-    largest step.
+    largest step. rested_at: the instant at which all contacts were last put to rest where a step failed.
     """
 
     state: EngineState
     time: float = 0.0
     divisions: int = FIRST_DIVISIONS
     next_count: int = MAX_CHUNK_STEPS
+    rested_at: float = -1.0
 
 
 def run_adaptively(integration: Integration, start: EngineState, stop: float = math.inf) -> EngineRun:
@@ -139,23 +150,33 @@ class _Progress:
         if openings is not None:
             motion = openings.fill_gaps_of_open_contacts(motion)
         size = absolute_accelerations(self.model, motion, self.integration.ground)
-        step_ratio = self.control.step_ratio(motion, size, self.run.peaks.value, step)
+        step_ratio = self.control.step_ratio(motion, size, self.run.peaks.value, step, at.state)
         last = len(motion.time) - 1
         failing = find_first_row(step_ratio > 1.0)
         rejected = at.divisions < level.max_divisions and failing <= last
         if rejected:
             last = max(failing - 1, 0)
         event = None if openings is None else openings.find_first_event(motion.cut_at(last))
+        change = self._find_change(motion.cut_at(last)) if event is None else None
         if event is not None:
             last, rejected = event.row, False
+        elif change is not None:
+            last, rejected = change.row, False
+        before = at.state
         if last > 0 and not self._accept(motion.cut_at(last), size[: last + 1], settle=rejected):
             return False
         if openings is not None and event is not None:
             return self._pass_event(openings, event, step)
+        springs = self.model.springs
+        if springs is not None:
+            rates = self._rates_of_limits(springs, motion, last)
+            at.state = springs.settle(at.state, before, motion.accelerations[last], rates, level.slide_end)
+            if change is not None:
+                return self._pass_change(springs, change, step, rates)
         if rejected:
             at.divisions += 1 if step_ratio[failing] < STEP_RATIO else 2
             at.divisions = min(at.divisions, level.max_divisions)
-        else:
+        elif not self.integration.solver.stopped:
             self._enlarge_steps(motion, step_ratio, asked)
         return True
 
@@ -165,6 +186,8 @@ class _Progress:
         at.divisions = max(at.divisions, level.min_divisions(at.time))
         step = level.step / STEP_RATIO**at.divisions
         asked = at.next_count if at.divisions == 0 else self.control.count_small_steps()
+        if self.model.springs is not None:
+            asked = min(asked, at.next_count)
         asked = min(asked, math.ceil((end - at.time) / step * (1.0 - TIME_ROUNDING)))
         longest = min(step, (end - at.time) / asked)
         return asked, *align_steps(ground.knots, ground.near, at.time, longest, asked)
@@ -185,6 +208,14 @@ class _Progress:
         """Divide the step that the engine could not solve; return whether the run goes on."""
         if self.run.outcome != Outcome.OK:
             return False
+        if self.at.divisions >= DIVISIONS_BEFORE_REST and any(self.at.state.sliding):
+            # Newton's iteration finds no sliding where a slide ends within any step: it may go on from rest
+            springs, state = self.model.springs, self.at.state
+            assert springs is not None
+            assert state.accelerations is not None  # settled
+            self.at.state = springs.rest(state, state.accelerations)
+            self.at.rested_at = self.at.time
+            return True
         if self.at.divisions == self.level.max_divisions:
             self.run.terminate(Outcome.SOLVER_FAILED, self.at.time)
             return False
@@ -231,6 +262,40 @@ class _Progress:
         at.next_count = MIN_CHUNK_STEPS
         return True
 
+    def _find_change(self, motion: EngineMotion) -> Change | None:
+        """Find the first contact that begins or ends to slide, where friction yields."""
+        springs, pressed = self.model.springs, self.model.bearing_penetration or self.level.penetration
+        if springs is None:
+            return None
+        end = math.inf if self.at.rested_at == self.at.time else self.level.slide_end
+        return springs.find_change(motion, self.at.state, pressed, self.level.slide_end, end)
+
+    def _rates_of_limits(self, springs: FrictionSprings, motion: EngineMotion, row: int) -> Array:
+        """Rates (K,) of the elastic displacements at which contacts slide, at a row."""
+        near = motion.cut_at(max(row, 1))
+        pressed = self.model.bearing_penetration or self.level.penetration
+        recent = EngineMotion(*[column[-RECENT_ROWS:] for column in near])
+        slope: Array = np.polyfit(recent.time - recent.time[-1], springs.limits(recent, pressed), 1)[0]
+        return slope
+
+    def _pass_change(self, springs: FrictionSprings, change: Change, step: float, rates: Array) -> bool:
+        """Let a contact begin or end to slide, a part of the next step ahead; return whether the run goes on."""
+        at, solver, before = self.at, self.integration.solver, self.at.state
+        self.integration.budget.left -= 1.0
+        length = change.share * step
+        motion = solver.run(before, at.time, length, 1) if length > SHORTEST_SHARE * step else None
+        if motion is not None and np.isfinite(motion.accelerations).all():
+            # nothing is read here: the next chunk reads the place of the kink from its side
+            size = absolute_accelerations(self.model, motion, self.integration.ground)
+            if not self._accept(motion, size, read=False):
+                return False
+            at.state = springs.settle(at.state, before, motion.accelerations[-1], rates, self.level.slide_end)
+        assert at.state.accelerations is not None  # settled
+        at.state = springs.settle(at.state, at.state, at.state.accelerations, rates, self.level.slide_end, change)
+        self.run.peaks.restart()
+        at.next_count = STEPS_BEHIND_CHANGE
+        return True
+
     def _enlarge_steps(self, motion: EngineMotion, step_ratio: Array, asked: int) -> None:
         """Enlarge the step, or the number of largest steps, as far as the last rows allow; asked: steps wanted now."""
         # The number wanted counts, not what a knot left of it: restarts cost accuracy, and a chunk of one step up to a
@@ -239,5 +304,5 @@ class _Progress:
         before = asked if at.divisions == 0 else min(asked, MIN_CHUNK_STEPS)
         if at.divisions > 0 and step_ratio[-RECENT_ROWS:].max() * STEP_RATIO < 1.0:
             at.divisions -= 1
-        if at.divisions == 0:
+        if at.divisions == 0 or self.model.springs is not None:
             at.next_count = min(self.control.count_largest_steps(motion), CHUNK_GROWTH * before)

@@ -116,6 +116,8 @@ def silence_engine() -> Iterator[None]:
 def set_initial_state(model: EngineModel, state: EngineState) -> None:
     """Make `state` the one that the engine's next run starts from."""
     coordinates, velocities = state.coordinates, state.velocities
+    if state.accelerations is not None:
+        model.mbs.systemData.SetODE2Coordinates_tt(state.accelerations, configuration=INITIAL)
     if model.moving_plate:
         axes = carrying_axes(model.carried, len(coordinates))
         shift = np.hstack([state.plate, np.zeros((3, 1))])
@@ -164,26 +166,39 @@ class EngineSolver:
         self.solver = kind()
         self.sensors: list[list[Any]] = [getattr(model.recorders, group.name) for group in fields(model.recorders)]
         self.newton_iterations = 0
+        self.stopped = False
 
     def run(self, state: EngineState, begin: float, step: float, count: int) -> EngineMotion | None:
-        """Make `count` steps from `state` at time `begin`; None if the engine could not solve one of them."""
+        """
+        Make `count` steps from `state` at time `begin`; None if the engine could not solve one of them.
+
+        Where friction yields a step that it cannot solve ends the run, which has `stopped`, and is not reduced.
+        """
+        springs = self.model.springs
         set_initial_state(self.model, state)
         self.model.ground.begin(begin)
+        if springs is not None:
+            springs.begin(state)
         if self.model.friction is not None:
+            if springs is not None:
+                self.model.friction.factors = springs.factors(state)
             self.model.friction.begin(self.model.mbs, state, begin)
         integration = self.integration
         integration.startTime = begin
         integration.endTime = begin + count * step
         integration.numberOfSteps = count
-        integration.minimumStepSize = step / MAX_STEP_REDUCTION
+        integration.minimumStepSize = step / (1.5 if springs is not None else MAX_STEP_REDUCTION)
+        integration.generalizedAlpha.computeInitialAccelerations = state.accelerations is None
         try:
-            if not self.solver.SolveSystem(self.model.mbs, self.settings):
-                return None
+            self.stopped = not self.solver.SolveSystem(self.model.mbs, self.settings)
         except (exudyn.ExudynError, RuntimeError, ValueError):
-            return None
+            self.stopped = True
         finally:
             self.newton_iterations = int(self.solver.it.newtonStepsCount)
-        return self._read()
+        if self.stopped and springs is None:
+            return None
+        motion = self._read()
+        return motion if len(motion.time) > 1 else None
 
     def _read(self) -> EngineMotion:
         """Read the last run from the sensors, at the engine's own instants: it halves steps that it cannot solve."""

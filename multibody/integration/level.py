@@ -60,6 +60,9 @@ MAX_CHANGE_WITHOUT_CONTACT = 0.03
 NEWTON_TOLERANCE = 1e-5
 MIN_NEWTON_TOLERANCE = 1e-12
 
+# Share of that tolerance where friction yields: what a spring misses of its limit is a slip within one small step.
+PRECISION_OF_SPRINGS = 1e-3
+
 # Squared step over the penetration up to which that tolerance is enough: it is relative to a step's first residual,
 # which is what the prediction of the step misses, pressed on the contact.
 MAX_SQUARED_STEP = 1e3
@@ -135,6 +138,8 @@ class Level:
         Largest penetration with which the contact follows a change of its force within the motion.
     force_change : float
         A bound of that change, in weights.
+    slide_end : float
+        Slip speed at which a slide ends where friction yields, in units of velocity: in place of v_reg, which follows.
 
     Examples
     --------
@@ -158,6 +163,7 @@ class Level:
     flat: bool = False
     softest: float = math.inf
     force_change: float = 0.0
+    slide_end: float = 0.0
 
     @property
     def rounding(self) -> float:
@@ -263,6 +269,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
     penetrations = [softest / COMPLIANCE_RATIO ** min(level, stiffenings) for level in numbers]
     brief = list_brief_motions(scene, model, step)
     smallest = min([MIN_STEP_AT_STOP * MAX_SLIP_CHANGE * model.relaxation, *(needed for _, needed in brief)])
+    precision = 1.0 if model.springs is None else PRECISION_OF_SPRINGS
     max_divisions = MIN_DIVISIONS
     if smallest < step:
         max_divisions = max(MIN_DIVISIONS, math.ceil(math.log(step / smallest, STEP_RATIO)))
@@ -271,7 +278,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
             step=step / 2.0**level,
             slip_change=MAX_SLIP_CHANGE / 2.0**level,
             penetration=penetration,
-            newton=newton_tolerance(level, step / 2.0**level, penetration),
+            newton=precision * newton_tolerance(level, step / 2.0**level, penetration),
             rounding_moment=model.rounding,
             max_divisions=max_divisions,
             error_floor=ERROR_FLOOR_OF_LEVEL_0 / 4.0**level,
@@ -282,6 +289,7 @@ def plan_levels(scene: Scene, model: EngineModel, tolerance: float) -> list[Leve
             flat=scene.flat,
             softest=followed**2,
             force_change=force_change,
+            slide_end=0.0 if model.springs is None else model.springs.slide_end / 2.0**level,
         )
         for level, penetration in zip(numbers, penetrations)
     ]

@@ -57,6 +57,8 @@ class PhasePair:
         """Run with the steps of `level`, up to `stop` or, unless kept, to where nothing large comes any more."""
         solver = EngineSolver(self.model, level.newton, level.residual if residual is None else residual)
         self.model.set_contact(level.penetration, level.warping_compliance)
+        if self.model.springs is not None:
+            self.model.springs.set_slide_end(level.slide_end)
         start = self._find_start(level.penetration)
         if start is None:
             return begin_run(self.model, stop).terminate(Outcome.SOLVER_FAILED, 0.0)

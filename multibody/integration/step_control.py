@@ -20,6 +20,7 @@ from multibody.integration.constant_step import EngineMotion
 from multibody.integration.level import STEP_RATIO, Level
 from multibody.integration.openings import FIRST_STEP_OVER_RESPONSE
 from multibody.integration.peak import CANDIDATE_FRACTION, find_kinks
+from multibody.models.state import EngineState
 from multibody.models.system import EngineModel
 
 Array = NDArray[np.float64]
@@ -51,11 +52,14 @@ class StepControl:
     model: EngineModel
     level: Level
 
-    def step_ratio(self, motion: EngineMotion, size: Array, peaks: Array, step: float) -> Array:
-        """Each step over what is allowed there, (T,), from accelerations (T, N) and the peaks so far, (N,)."""
+    def step_ratio(self, motion: EngineMotion, size: Array, peaks: Array, step: float, state: EngineState) -> Array:
+        """Each step from `state` over what is allowed there, (T,), from accelerations (T, N) and peaks so far, (N,)."""
         model, level = self.model, self.level
         per_change = step / level.slip_change
-        step_ratio = self._slip_step_ratio(motion, per_change)
+        if model.springs is None:
+            step_ratio = self._slip_step_ratio(motion, per_change)
+        else:
+            step_ratio = model.springs.step_ratio(motion, state, level.slide_end) / level.slip_change
         if model.friction is not None:
             allowed = min(FEEDBACK_PER_SLIP_CHANGE * level.slip_change, MAX_FEEDBACK)
             step_ratio = np.maximum(step_ratio, step / allowed * model.friction.feedback(motion.slip))

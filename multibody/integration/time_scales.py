@@ -44,11 +44,12 @@ def shortest_period(scene: Scene, model: EngineModel) -> float:
     if not scene.recorded:
         periods += [2.0 * math.pi / (pace * model.units.time) for pace in exponents(scene).imag]
     masses = scene.masses / model.units.mass
+    spring = scene.dry_friction.stiffness * model.units.length / model.units.force if model.springs is not None else 0.0
     fastest = math.inf
     for axis in range(2):
         stiffness = np.zeros((len(masses), len(masses)))
         pendulum_of_all_bodies = 0.0 if scene.flat else 1.0
-        stiffness[0, 0] = pendulum_of_all_bodies
+        stiffness[0, 0] = pendulum_of_all_bodies + spring
         for link, k in enumerate(link_stiffness(scene, model.units)[:, axis]):
             stiffness[link : link + 2, link : link + 2] += k * np.array([[1.0, -1.0], [-1.0, 1.0]])
         scaled = stiffness / np.sqrt(np.outer(masses, masses))

@@ -67,10 +67,6 @@ def refusal(
             scene = scene.softened()
         except SceneError as error:
             return f"refused before any step: {error}"
-    try:
-        scene.require_rigid_friction("the engine's model")
-    except SceneError as error:
-        return f"refused before any step: {error}"
     with silence_engine():
         built = assemble(scene, choose_model(scene, model, full), regularization)
     first = plan_levels(scene, built, tolerance)[0]

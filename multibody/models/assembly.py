@@ -32,7 +32,6 @@ def assemble(
     **options: int,
 ) -> EngineModel:
     """Assemble the engine's system of `scene`. Raises ValueError for an unknown model or loading, or a wrong v_reg."""
-    scene.require_rigid_friction("the engine's model")
     check_choice("loading", loading, LOADINGS)
     check_choice("model", model, sorted(BUILDERS))
     if regularization is not None:
@@ -41,6 +40,8 @@ def assemble(
         raise ValueError("regularization: None: the engine's dry friction needs v_reg in m/s, greater than 0")
     if loading != "inertial" and scene.dry_friction.heat is not None:
         raise ValueError(f"loading: {loading!r}: friction that heat lowers needs the inertial loading")
+    if loading != "inertial" and scene.dry_friction.elastic:
+        raise ValueError(f"loading: {loading!r}: friction that yields needs the inertial loading")
     built = BUILDERS[model](scene, regularization, loading=loading, contact_force=contact_force, **options)
     if scene.isolator.travel is not None:
         built = replace(built, travel=scene.isolator.travel / built.units.length)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from multibody.models.friction_springs import end_of_slide
 from multibody.models.state import EngineState
 from multibody.models.units import Units
 from reference.problem import Scene
@@ -41,6 +42,8 @@ def contact_law(scene: Scene, regularization: float | None, units: Units) -> Con
     """Friction of the contact for v_reg in m/s, or None where the contact is lubricated or frictionless."""
     if scene.lubricated:
         return ContactLaw(scene.friction_coefficient * units.velocity * MAX_LINEAR_SPEED, MAX_LINEAR_SPEED)
+    if scene.dry_friction.elastic:
+        return ContactLaw(scene.friction_coefficient, end_of_slide(scene, units))
     if regularization is None:
         return ContactLaw(scene.friction_coefficient, 1.0)
     return ContactLaw(scene.friction_coefficient, regularization / units.velocity)
@@ -65,7 +68,7 @@ def set_contact_parameters(
 def corner_and_relaxation(scene: Scene, regularization: float | None, units: Units) -> tuple[float, float]:
     """Slip speed below which the law is linear, and the time in which such a slip of the platform dies out."""
     friction, threshold = contact_law(scene, regularization, units)
-    if scene.lubricated or friction == 0.0:
+    if scene.lubricated or friction == 0.0 or scene.dry_friction.elastic:
         return math.inf, math.inf
     return threshold, float(scene.masses[0]) / scene.total_mass * threshold / friction
 

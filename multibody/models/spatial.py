@@ -39,6 +39,7 @@ from multibody.models.contact import (
 )
 from multibody.models.depressions import Depressions, FlatUnderside, rotation_matrices
 from multibody.models.engine import BODY_COORDINATES, exudyn, items
+from multibody.models.friction_springs import add_turning_spheres, make_friction_springs
 from multibody.models.impact import ImpactLaw
 from multibody.models.links import Link, RigidBodies, add_links, fastest_bar_frequency
 from multibody.models.loading import Push, add_coordinate_load, load_coordinates, make_ground
@@ -50,10 +51,12 @@ from multibody.models.state import EngineState
 from multibody.models.supports import (
     DETERMINATE,
     MIN_WARPING_COMPLIANCE,
+    SPHERES_MASS,
     Supports,
     add_fixed_supports,
     add_sharing_supports,
     add_sphere_nodes,
+    make_turning_supports,
 )
 from multibody.models.system import EngineModel
 from multibody.models.units import Units, link_damping, link_stiffness, units_of
@@ -91,9 +94,14 @@ def assemble_spatial(
     bearings = scene.isolator.support_stiffness
     bearing_penetration = 0.0 if bearings is None else units.force / (len(ring) * bearings * units.length)
     shared = not bearing_penetration and len(ring) > DETERMINATE
-    spheres = add_sphere_nodes(mbs, ring, loading == "plate") if shared else []
+    elastic = scene.dry_friction.elastic
+    turning = add_turning_spheres(mbs, scene, units, ring, radius, SPHERES_MASS if shared else 0.0)
+    spheres = add_sphere_nodes(mbs, ring, loading == "plate") if shared and not elastic else []
     plate = add_plate(mbs, loading, ground)
-    supports = add_sharing_supports(mbs, plate, ring, spheres) if shared else add_fixed_supports(mbs, plate, ring)
+    if elastic:
+        supports = make_turning_supports(mbs, ring, turning, shared)
+    else:
+        supports = add_sharing_supports(mbs, plate, ring, spheres) if shared else add_fixed_supports(mbs, plate, ring)
     engine_law = contact_law(scene, regularization, units)
     depressions = np.column_stack([ring, np.zeros(len(ring))]) - centers[0]
     contacts, contact_nodes = _add_contacts(
@@ -113,7 +121,9 @@ def assemble_spatial(
     vertical = parts.body_coordinates + supports.vertical
     under_platform = (FlatUnderside if scene.flat else Depressions)(ring, centers[0], radius, vertical)
     restitution = scene.isolator.restitution or 0.0
+    springs = make_friction_springs(mbs, scene, units, contacts, parts.body_coordinates, under_platform)
     law = DryFriction(engine_law.friction, engine_law.friction, 0.0) if varying is None else varying.law
+    law = law if springs is None else DryFriction(0.0, 0.0, 0.0)  # a spring has no impulse
     rigid = np.array([link.bars is None for link in links], dtype=bool)
     impact_law = ImpactLaw(
         under_platform, masses, inertias, axes, centers, restitution, law, engine_law.threshold, rigid
@@ -148,6 +158,7 @@ def assemble_spatial(
         take_out_open_contacts=parts.take_out_open_contacts,
         friction=varying,
         rim=np.inf if scene.flat else 1.0,
+        springs=springs,
         fastest_bar_frequency=fastest_bar_frequency(links, masses, tensors, centers),
     )
 

@@ -42,6 +42,8 @@ class SpeedFriction:
             self._heat = SurfaceHeat(law.heat, len(contacts), scene.duration, units.time, units.length)
             self._factor_of_heat = np.ones(len(contacts))
             self._watt = scene.total_mass * GRAVITY * units.velocity / len(contacts)
+        # over the coefficients of the law, for contacts that rest where friction yields (`FrictionSprings`)
+        self.factors = [1.0] * len(contacts)
         self._add_contacts, self._ground, self._threshold = contacts, ground, threshold
         self._mass_ratio = scene.total_mass / float(scene.masses[0])
         # slip speeds, loads over the shares of the weight and their rates at the start of the step, from _start to _end
@@ -53,8 +55,10 @@ class SpeedFriction:
     def begin(self, mbs: Any, state: EngineState, time: float) -> None:
         """Make ready for a run from `state` at this instant."""
         nothing = [0.0] * len(self._add_contacts)
-        self._slip = state.contact[SLIP::DATA_PER_CONTACT].tolist()
+        self._slip = self._read_speeds(state.contact, state.velocities)
         self._rate = nothing if state.slip_rate is None else state.slip_rate.tolist()
+        if self.law.elastic:
+            self._rate = [_rate_of_length(state.velocities[:3], state.accelerations)] * len(nothing)
         self._load = [1.0] * len(nothing) if state.load is None else state.load.tolist()
         self._load_rate = nothing if state.load is None or state.load_rate is None else state.load_rate.tolist()
         self._start = self._end = time
@@ -79,7 +83,8 @@ class SpeedFriction:
         # The engine tries a step again with another length where it cannot solve it. The slip speeds of a step that was
         # made differ from those before it: only then is the state of the contacts one step further.
         self._ground.before_step(mbs, end)
-        slip = mbs.systemData.GetDataCoordinates()[SLIP::DATA_PER_CONTACT].tolist()
+        data = mbs.systemData
+        slip = self._read_speeds(data.GetDataCoordinates(), data.GetODE2Coordinates_t())
         if slip != self._slip:
             span = self._end - self._start
             self._rate = [(new - old) / span for new, old in zip(slip, self._slip, strict=True)]
@@ -97,6 +102,13 @@ class SpeedFriction:
         self._set_coefficients(mbs, end - self._start)
         return True
 
+    def _read_speeds(self, contact: Array, velocities: Array) -> list[float]:
+        """Read the speeds that the coefficients depend on: of the slip, or of the platform where friction yields."""
+        if self.law.elastic:
+            return [math.hypot(*velocities[:3])] * len(self._add_contacts)
+        speeds: list[float] = contact[SLIP::DATA_PER_CONTACT].tolist()
+        return speeds
+
     def _read_loads(self, mbs: Any) -> list[float]:
         """Read the normal forces of the contacts over their shares of the weight."""
         kind, count = exudyn.OutputVariableType, len(self._add_contacts)
@@ -112,8 +124,8 @@ class SpeedFriction:
             celsius = self._heat.temperature(end, self._friction_power(coefficients, span), self._heat.distance(end))
             self._factor_of_heat = Heat.factor(celsius)
             coefficients = list(self._factor_of_heat * coefficients)
-        for contact, coefficient in zip(self._add_contacts, coefficients, strict=True):
-            mbs.SetObjectParameter(contact, "dynamicFriction", coefficient)
+        for contact, coefficient, factor in zip(self._add_contacts, coefficients, self.factors, strict=True):
+            mbs.SetObjectParameter(contact, "dynamicFriction", factor * coefficient)
 
     def _coefficients_without_heat(self, span: float) -> list[float]:
         """Coefficients of the contacts after `span`, without heat."""
@@ -130,3 +142,9 @@ class SpeedFriction:
         held = np.minimum(speed / self._threshold, 1.0)
         power: Array = self._watt * (self._factor_of_heat * cold) * pressed * held * speed
         return power
+
+
+def _rate_of_length(vector: Array, rates: Array | None) -> float:
+    """Rate of the length of a vector (3,) whose rates (3, ...) are known; else 0."""
+    length = math.hypot(*vector)
+    return 0.0 if rates is None or length == 0.0 else float(vector @ rates[:3]) / length

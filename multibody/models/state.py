@@ -23,6 +23,8 @@ class EngineState:
     - plate: The plate's own displacement, velocity and acceleration.
     - slip_rate, load, load_rate: Rates of the contacts' slip speeds over the last step, their loads over their shares
       of the weight where friction depends on it, and the rates of these; None where there was no last step, (K,).
+    - accelerations: (n,) where the engine is not to compute them; else None.
+    - sliding: Whether each contact slides, (K,), where friction yields; empty at the start, where all rest.
     """
 
     coordinates: Array
@@ -32,3 +34,5 @@ class EngineState:
     slip_rate: Array | None = None
     load: Array | None = None
     load_rate: Array | None = None
+    accelerations: Array | None = None
+    sliding: tuple[bool, ...] = ()

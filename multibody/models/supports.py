@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.models.engine import BODY_COORDINATES, items
+from multibody.models.friction_springs import TurningSpheres
 from multibody.models.plate import LOCKED_INERTIA, Plate
 
 Array = NDArray[np.float64]
@@ -72,7 +73,7 @@ class Supports:
 
     def sinking(self, penetration: float) -> float:
         """Sinking of the spheres under the weight, for the contacts' penetration; 0 for fixed ones."""
-        return penetration / SPHERE_STIFFNESS_RATIO if self.coordinates else 0.0
+        return penetration / SPHERE_STIFFNESS_RATIO if len(self.vertical) else 0.0
 
 
 def warping_projection(ring: Array) -> Array:
@@ -134,6 +135,29 @@ def add_sharing_supports(mbs: Any, plate: Plate, ring: Array, nodes: list[Any]) 
         springs(stiff, soft, 2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))
 
     return Supports(markers, *read, each * count, first + upright, carried, warped, set_stiffness)
+
+
+def make_turning_supports(mbs: Any, ring: Array, turning: TurningSpheres, shared: bool) -> Supports:
+    """Make supports of spheres that turn at places (K, 2), which share the load elastically or not at all."""
+    count, size = len(ring), turning.coordinates
+    vertical = 2 + BODY_COORDINATES * np.arange(count) if shared else np.empty(0, np.int_)
+    warped = warping_projection(ring) if shared else np.zeros((0, count))
+
+    def set_stiffness(penetration: float, share: float) -> None:
+        if not shared:
+            return
+        block = np.ix_(vertical, vertical)
+        stiff, soft = SPHERE_STIFFNESS_RATIO / (count * penetration), 1.0 / (count * share)
+        for name, held, parts in (
+            ("stiffnessMatrix", turning.stiffness, (stiff, soft)),
+            ("dampingMatrix", turning.damping, (2.0 * np.sqrt(stiff / count), 2.0 * np.sqrt(soft / count))),
+        ):
+            matrix = held.copy()
+            matrix[block] = parts[0] * (np.eye(count) - warped) + parts[1] * warped
+            mbs.SetObjectParameter(turning.bodies[0], name, matrix)
+
+    none = np.empty((0, 3), np.int_)
+    return Supports(turning.markers, [], turning.bodies, size, vertical, none, warped, set_stiffness)
 
 
 def _add_springs_on_ground(mbs: Any, nodes: list[Any], warped: Array) -> tuple[Any, SetSprings]:

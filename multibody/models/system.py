@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from multibody.models.depressions import Depressions
+from multibody.models.friction_springs import FrictionSprings
 from multibody.models.impact import ImpactLaw
 from multibody.models.loading import Ground
 from multibody.models.speed_friction import SpeedFriction
@@ -73,6 +74,7 @@ class EngineModel:
       the supports do not share the load.
     - bearing_penetration: Penetration under the weight as the scene's bearings state it, or 0.
     - friction: Friction that depends on slip speed or load.
+    - springs: Springs on which the spheres turn where friction yields.
     - rim: Displacement of the platform at which it reaches the rim; inf on a plane.
     - fastest_bar_frequency: Largest angular frequency that bars make which give way; 0 without such bars.
     """
@@ -102,6 +104,7 @@ class EngineModel:
     warping_displacement: Callable[[Array], Array] | None = None
     bearing_penetration: float = 0.0
     friction: SpeedFriction | None = None
+    springs: FrictionSprings | None = None
     rim: float = 1.0
     fastest_bar_frequency: float = 0.0
 

@@ -26,7 +26,9 @@ from multibody.models.contact import (
     set_contact_parameters,
     settle_contact,
 )
+from multibody.models.depressions import Depressions, FlatUnderside
 from multibody.models.engine import BODY_COORDINATES, MAX_DENSE_COORDINATES, exudyn, items
+from multibody.models.friction_springs import TurningSpheres, add_turning_spheres, make_friction_springs
 from multibody.models.loading import Push, load_coordinates, make_ground
 from multibody.models.plane import largest_distance_possible, make_plane_contact, place_on_plane, set_plane_extent
 from multibody.models.plate import LOCKED_INERTIA, Plate, add_plate
@@ -45,8 +47,8 @@ BETWEEN_TWO = np.array([[1.0, -1.0], [-1.0, 1.0]])
 # Radius R of the hollow sphere in units of rho; in translation only R - r matters.
 HOLLOW_RADIUS = 2.0
 
-# Radius of the sphere under the platform of a flat slider, in units of length.
-SPHERE_ON_PLANE = 1.0
+# Radius of the sphere, also of that under a flat slider, in units of length.
+SPHERE_RADIUS = HOLLOW_RADIUS - 1.0
 
 
 def assemble_translational(
@@ -76,38 +78,44 @@ def assemble_translational(
     ground = make_ground(mbs, scene, units)
     plate = add_plate(mbs, loading, ground)
     law = contact_law(scene, regularization, units)
-    add_contact = _add_contact_on_plane if scene.flat else _add_contact
-    contact, contact_node = add_contact(mbs, plate, depression, law)
+    turning = add_turning_spheres(mbs, scene, units, np.zeros((1, 2)), SPHERE_RADIUS)
+    contact, contact_node, height = _add_contact(mbs, plate, depression, law, turning, scene.flat)
     expressions = (
         [*plate.expressions] if plate.moves else load_coordinates(mbs, ground, _list_pushes(masses, nodes, axes))
     )
     recorders = add_recorders(
-        mbs, [], [chain], [contact_node], [contact] if contact_force or scene.dry_friction.by_load else [], plate.node
+        mbs,
+        [],
+        [chain, *turning.bodies],
+        [contact_node],
+        [contact] if contact_force or scene.dry_friction.by_load else [],
+        plate.node,
     )
     mbs.Assemble()
 
     constant = scene.dry_friction.constant
     varying = None if constant else SpeedFriction(mbs, scene, units, law.threshold, [contact], ground)
     count = BODY_COORDINATES + axes * (len(masses) - 1)
+    flat_or_hollow = FlatUnderside if scene.flat else Depressions
+    under_platform = flat_or_hollow(np.zeros((1, 2)), np.zeros(3), SPHERE_RADIUS, np.empty(0, np.int_))
+    springs = make_friction_springs(mbs, scene, units, [contact], count, under_platform)
     bodies = np.tile(np.arange(3), (len(masses), 1))
     bodies[1:, :axes] = np.arange(BODY_COORDINATES, count).reshape(-1, axes)
 
     def set_contact(penetration: float, warping_compliance: float = 0.0) -> None:
         # closer by the static penetration, so that the pendulum at rest has length rho whatever the stiffness
         if scene.flat:
-            set_contact_parameters(mbs, contact, SPHERE_ON_PLANE + penetration, penetration)
+            set_contact_parameters(mbs, contact, SPHERE_RADIUS + penetration, penetration)
         else:
             set_contact_parameters(mbs, contact, [HOLLOW_RADIUS - (1.0 - penetration), HOLLOW_RADIUS], penetration)
 
     def start(initial: State | None, ground_acceleration: Array, penetration: float) -> EngineState:
-        coordinates, velocities = np.zeros(count), np.zeros(count)
+        coordinates, velocities = np.zeros((2, count + turning.coordinates))
         if initial is not None:
             coordinates[bodies[:, :2]] = np.asarray(initial.position, float) / units.length
             velocities[bodies[:, :2]] = np.asarray(initial.velocity, float) / units.velocity
         if scene.flat:
-            set_plane_extent(
-                mbs, contact, largest_distance_possible(scene, units, coordinates, velocities), -SPHERE_ON_PLANE
-            )
+            set_plane_extent(mbs, contact, largest_distance_possible(scene, units, coordinates, velocities), height)
         on_surface = place_on_plane if scene.flat else place_on_sphere
         coordinates[:3], velocities[:3], gap, slip = on_surface(
             coordinates[:2], velocities[:2], ground_acceleration / units.acceleration, penetration
@@ -140,30 +148,34 @@ def assemble_translational(
         references=(container, expressions),
         friction=varying,
         rim=np.inf if scene.flat else 1.0,
+        springs=springs,
     )
 
 
-def _add_contact(mbs: Any, plate: Plate, depression: Any, law: ContactLaw) -> tuple[Any, Any]:
-    """Add a sphere on the plate inside the platform's hollow sphere, and its data node; `set_contact` completes it."""
+def _add_contact(
+    mbs: Any, plate: Plate, platform: Any, law: ContactLaw, turning: TurningSpheres, flat: bool
+) -> tuple[Any, Any, float]:
+    """
+    Add a sphere inside the platform's hollow sphere, and its data node; `set_contact` completes it.
+
+    Under a flat slider the sphere is the platform's and lies on the plane of the plate, unless it turns: no moment
+    turns platform and plate. Returns the height of the plane, too.
+    """
     node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
-    sphere = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[0.0, 0.0, 1.0]))
+    if flat:
+        plane = platform if turning.markers else mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body))
+        sphere, height = (turning.markers[0], 1.0 + SPHERE_RADIUS) if turning.markers else (platform, -SPHERE_RADIUS)
+        return mbs.AddObject(make_plane_contact(sphere, plane, node, SPHERE_RADIUS, height, law)), node, height
+    fixed = [] if turning.markers else [items.MarkerBodyRigid(bodyNumber=plate.body, localPosition=[0.0, 0.0, 1.0])]
     contact = items.ObjectContactSphereSphere(
-        markerNumbers=[sphere, depression],
+        markerNumbers=[*turning.markers, *map(mbs.AddMarker, fixed), platform],
         nodeNumber=node,
-        spheresRadii=[HOLLOW_RADIUS - 1.0, HOLLOW_RADIUS],
+        spheresRadii=[SPHERE_RADIUS, HOLLOW_RADIUS],
         isHollowSphere1=True,
         dynamicFriction=law.friction,
         frictionProportionalZone=law.threshold,
     )
-    return mbs.AddObject(contact), node
-
-
-def _add_contact_on_plane(mbs: Any, plate: Plate, platform: Any, law: ContactLaw) -> tuple[Any, Any]:
-    """Add a sphere under the platform on the plane of the plate, and its data node: no moment turns either of them."""
-    node = mbs.AddNode(items.NodeGenericData(initialCoordinates=[0.0] * 4, numberOfDataCoordinates=4))
-    plane = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=plate.body))
-    contact = make_plane_contact(platform, plane, node, SPHERE_ON_PLANE, -SPHERE_ON_PLANE, law)
-    return mbs.AddObject(contact), node
+    return mbs.AddObject(contact), node, 0.0
 
 
 def _add_chain(mbs: Any, platform_node: Any, masses: Array, stiffness: Array, damping: Array) -> tuple[list[Any], Any]:

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from friction_pendulum_element import Element
 from places import ROOT
 
 import reference
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.user_models import amplification
-from reference.problem import load_scene
+from reference.problem import GRAVITY, ground_acceleration, load_scene
 
 PHASES = np.array([(0.0, 0.0), (2.0, 0.5)])
 
@@ -47,6 +48,29 @@ def test_an_example_gives_mu_of_the_equations_with_its_law(
     function = f"examples.engines.{name}:amplification"
     mu = amplification(scene, PHASES, engine={"function": function}, **settings).mu
     assert (np.abs(mu / right - 1.0).max(axis=0) < close).all()
+
+
+def test_an_elastic_bearing_of_opensees_converges_to_the_law_of_its_element(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By an independent program of that law; halving the step halves at least what is left, once it is small."""
+    monkeypatch.syspath_prepend(str(ROOT))
+    try:
+        opensees = import_module("examples.engines.opensees")
+    except (ImportError, RuntimeError) as error:
+        pytest.skip(f"opensees: {error}")
+    friction = {"slow": 0.1, "yield_displacement": 1e-3}
+    scene = load_scene("fig3-II").with_values({"duration": 3.0, "isolator.friction": friction})
+    weight = scene.total_mass * GRAVITY
+    element = Element(
+        scene.masses,
+        scene.stiffness[0],
+        scene.radius,
+        0.1,
+        0.1 * weight / 1e-3 + weight / scene.radius,
+        lambda time: ground_acceleration(scene, PHASES[1], [time])[0, :2],
+    )
+    place, absolute = opensees.follow(scene, PHASES[1], 5e-4, ("Newmark", 0.5, 0.25))
+    found = [*np.linalg.norm(absolute, axis=2).max(axis=0), np.linalg.norm(place, axis=1).max()]
+    np.testing.assert_allclose(found, element.peaks(3.0), rtol=1e-3)
 
 
 def test_the_page_of_other_engines_lists_every_example() -> None:

@@ -1,0 +1,333 @@
+"""
+Measure what friction that yields elastically changes against measurements, and write docs/yielding_friction.json.
+
+    python docs/yielding_friction.py FOLDER MASTODON.csv
+
+FOLDER holds the measured files of `phase-resonance validation`. The yield displacement and the friction ratio of the
+frame are fitted to one run and used on the others; those of the pendulum are fitted to its first turning points. A
+quantity counts as met by the u_val that the package records for it without a yield displacement. MASTODON.csv is the
+input of its bearing's test, as for `phase-resonance benchmarks --mastodon`. OpenSees is compared where it is installed.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import math
+import sys
+from functools import partial
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+
+import reference
+from comparison.evidence.benchmarks import cases
+from comparison.evidence.sides import EQUATIONS
+from comparison.evidence.validation import frame, pendulum, table
+from comparison.evidence.validation.files import Swing, read_folder
+from multibody.models.surface_heat import SurfaceHeat
+from reference.problem import GRAVITY, Scene, Trajectory, ground_acceleration, ground_peak, load_scene
+from reference.problem.friction import Heat
+
+STORED = Path(__file__).with_name("yielding_friction.json")
+OPENSEES_ADVICE = """Friction of such an element is a spring k up to μN. Its `kInit` is k + W/R: the element subtracts N/R."""
+PLACE, V_REG, TOLERANCE = 1e-3, 1e-4, 1e-3
+OPENSEES_YIELDS, OPENSEES_STEPS = (1e-3, 1e-4, 1e-5), (4e-3, 1e-3, 5e-4)  # m; s
+HEAT_STEPS = 20  # steps of MASTODON's motion between two of its temperature
+TRIED = (0.0, 5e-3, 0.01, 0.02, 0.03, 0.05, 0.08, 0.12)  # mm, yield displacements from which each fit begins
+
+
+def move_frame(cycles: frame.Cycles, ratio: float, yields: float) -> Trajectory:
+    """Return the motion of a run with a friction ratio and a yield displacement, mm; 0: rigid friction."""
+    scene, phases = frame.scene_of(cycles, frame.Setup(ratio=ratio))
+    if yields > 0.0:
+        stated = scene.model_dump(exclude_none=True)["isolator"]["friction"]
+        stiffness = ratio * cycles.run.weight * GRAVITY / (PLACE * yields)
+        scene = scene.with_values({"isolator.friction": stated | {"initial_stiffness": stiffness}})
+    start = np.array([PLACE * cycles.amplitude, 0.0])
+    return table.motion_of(EQUATIONS, scene, phases, start, V_REG, TOLERANCE, "small")
+
+
+def fit_ratio(cycles: frame.Cycles, yields: float) -> tuple[float, float]:
+    """Fit the friction ratio of a run at a yield displacement, mm; return it and the rms misfit of the cycle, mm."""
+
+    def misfit(ratio: Any) -> Any:
+        return frame.last_cycle(move_frame(cycles, float(ratio[0]), yields), cycles.frequency) - cycles.mean
+
+    found = least_squares(misfit, [0.3], diff_step=1e-3, xtol=1e-5, ftol=1e-7)
+    return float(found.x[0]), float(np.sqrt(np.mean(found.fun**2)))
+
+
+def compare_frame(runs: list[frame.Cycles], recorded: dict[str, dict[str, Any]]) -> dict[str, Any]:
+    """Fit to the first run, and by friction of the load to two, and judge the quantities of all runs."""
+    fits = {f"{1e3 * run.run.weight:.0f} g": [(u, *fit_ratio(run, u)) for u in TRIED] for run in runs}
+    by_weight = {round(1e3 * run.run.weight): run for run in runs}
+    first, second = fits["250 g"], fits["450 g"]
+    best = min(range(len(TRIED)), key=lambda k: first[k][2])
+    found: dict[str, Any] = {"fits": fits, "fitted at 250 g, mm": TRIED[best], "laws": {}}
+    for law in ("one ratio", "friction of the load"):
+        for yields, k in ((0.0, 0), (TRIED[best], best)):
+            exponent = math.log(second[k][1] / first[k][1]) / math.log(450.0 / 250.0) if "load" in law else 0.0
+            rows = []
+            for weight, run in by_weight.items():
+                ratio = first[k][1] * (weight / 250.0) ** exponent
+                motion = move_frame(run, ratio, yields)
+                curve = frame.last_cycle(motion, run.frequency)
+                values = frame.read_cycle(curve, run.frequency)
+                name = f"frame, {weight} g" + (frame.LOADED if "load" in law and weight != 250 else "")
+                for number, quantity in enumerate(frame.NAMES):
+                    within = recorded[f"{name}: {quantity}"]
+                    error = values[number] - within["measured"]
+                    rows.append([name, quantity, float(error), within["u_val"], bool(abs(error) <= within["u_val"])])
+                rms = float(np.sqrt(np.mean((curve - run.mean) ** 2)))
+                rows.append([name, "rms of the cycle, mm", rms, None, None])
+            found["laws"][f"{law}, u_y = {yields:g} mm"] = rows
+    return found
+
+
+def compare_pendulum(swing: Swing, recorded: dict[str, dict[str, Any]]) -> dict[str, Any]:
+    """Fit loss and yield displacement to turning points 0 to 10, and judge those behind."""
+    instants, turns = pendulum._turns(swing, pendulum.STEPS * float(np.min(np.diff(np.unique(swing.angle)))))
+    numbers = np.arange(pendulum.SHOWN[-1] + 1)
+    sides = (-1.0) ** numbers
+    terms = np.column_stack([np.ones(len(numbers)), -numbers, sides])
+    along = np.sign(turns[0]) * sides * turns[: len(numbers)]
+    (_, loss, middle), *_ = np.linalg.lstsq(terms[:11], along[:11])
+    half = float(np.diff(instants)[: pendulum.HALF].mean())
+    measured = along - middle * sides
+
+    def turning_points(yields: float, lost: float, period: float) -> Any:
+        radius = GRAVITY * (period / np.pi) ** 2
+        friction: Any = 0.5 * lost
+        if yields > 0.0:
+            friction = {"slow": 0.5 * lost, "yield_displacement": yields * radius}
+        scene = {
+            "title": "Swinging pendulum",
+            "name": "pendulum",
+            "duration": 14.2 * period,
+            "isolator": {"radius": radius, "friction": friction},
+            "bodies": [{"mass": 1.0}],
+            "excitation": {"amplitudes": [[0.0, 0.0], [0.0, 0.0]], "periods": [1.0, 1.0], "decay": [0.0, 0.0]},
+        }
+        made = Scene.model_validate(scene)
+        place = np.array([made.radius * np.sin(measured[0])])
+        motion = table.motion_of(EQUATIONS, made, (0.0, 0.0), place, 1e-5, 1e-4, "exact")
+        track = table.spline(motion)
+        ends = [0.0, *pendulum._zeros(motion), float(motion.time[-1])]
+        sizes = [(track(np.linspace(a, b, 2001)) * (-1.0) ** k).max() for k, (a, b) in enumerate(pairwise(ends))]
+        rest = [float(track(ends[-1])) * (-1.0) ** k for k in range(len(sizes), len(numbers))]
+        return np.arcsin(np.array([*sizes, *rest][: len(numbers)]) / made.radius)
+
+    tried = []
+    for yields in (0.0, 2e-4, 5e-4, 1e-3, 1.5e-3, 2e-3, 3e-3, 4e-3, 6e-3, 8e-3):
+        misfit = partial(_misfit, partial(turning_points, yields), half, measured)
+        fit = least_squares(misfit, [loss], diff_step=1e-3, x_scale=loss)
+        tried.append((yields, float(fit.x[0]), float(np.sqrt(np.mean(fit.fun**2)))))
+    best = min(tried, key=lambda each: each[2])
+    rows = []
+    for yields, lost, _ in (tried[0], best):
+        sizes = turning_points(yields, lost, half)
+        for number in pendulum.SHOWN:
+            within = recorded[f"pendulum, decay: turning point {number}"]
+            error = 1e3 * float(sizes[number]) - within["measured"]
+            rows.append(
+                [yields, f"turning point {number}", error, within["u_val"], bool(abs(error) <= within["u_val"])]
+            )
+    return {"fits": tried, "fitted, rad": best[0], "rows": rows}
+
+
+def _misfit(compute: Any, half: float, measured: Any, loss: Any) -> Any:
+    return compute(float(loss[0]), half)[:11] - measured[:11]
+
+
+def compute_mastodon(path: Path, yields: float, step: float) -> list[float]:
+    """
+    Compute the ranges of MASTODON's bearing, mm, with a yield displacement, m, in steps of its own.
+
+    The equations refuse heat with friction that yields. The restoring force is theirs, N y / sqrt(R^2 - y^2) along each
+    axis. Velocity Verlet with the closest point on the circle.
+    """
+    case = cases.mastodon(path)
+    scene = case.scene
+    law, weight = scene.dry_friction, scene.total_mass * GRAVITY
+    assert law.heat is not None
+    track = SurfaceHeat(law.heat, 1, scene.duration, 1.0, 1.0)
+    track.begin(0.0)
+    count = round(scene.duration / step)
+    ground = ground_acceleration(scene, (0.0, 0.0), step * np.arange(count + 1))
+    stiffness = law.largest * weight / yields
+    place, speed, spring, force = np.zeros(2), np.zeros(2), np.zeros(2), np.zeros(2)
+    acceleration, factor, extremes = -ground[0, :2], 1.0, []
+    for row in range(1, count + 1):
+        speed = speed + 0.5 * step * acceleration
+        place, spring = place + step * speed, spring + step * speed
+        load = 1.0 + float(ground[row, 2]) / GRAVITY
+        limit = factor * law.coefficient_at(math.hypot(*speed), load) * load * weight / stiffness
+        size, turned = math.hypot(*spring), np.zeros(2)
+        if size > limit:
+            turned, spring = spring * (1.0 - limit / size), spring * (limit / size)
+        force = stiffness * spring + weight * load * place / np.sqrt(scene.radius**2 - place**2)
+        acceleration = -force / scene.total_mass - ground[row, :2]
+        speed = speed + 0.5 * step * acceleration
+        if row % HEAT_STEPS == 0:
+            cold = law.coefficient_at(math.hypot(*speed), load) * load * weight
+            power = np.array([factor * cold * math.hypot(*turned) / step])
+            track.step_to(row * step, power, math.hypot(*place))
+            factor = float(Heat.factor(track.temperature(row * step, power, track.distance(row * step)))[0])
+        extremes.append(place)
+    ways = 1e3 * np.array(extremes)
+    return [float(value) for axis in range(2) for value in (ways[:, axis].min(), ways[:, axis].max())]
+
+
+def compare_opensees() -> dict[str, Any]:
+    """Compare OpenSees' bearing with the equations under the same law; needs openseespy."""
+    from examples.engines import opensees
+
+    turn = np.pi * (np.sqrt(5.0) - 1.0)
+    phases = np.array([[k * turn, (0.5 + 0.61803 * k) * np.sqrt(2.0) * np.pi] for k in range(16)]) % (2.0 * np.pi)
+    found: dict[str, Any] = {"phases": phases.tolist(), "columns": ["mu_1", "mu_2", "displacement", "base shear"]}
+    for name, yields in ((name, yields) for name in ("fig3-I", "fig3-II") for yields in OPENSEES_YIELDS):
+        scene = load_scene(name).with_values({"isolator.friction": {"slow": 0.1, "yield_displacement": yields}})
+        ours = {}
+        for equations in ("small", "exact"):
+            answer = reference.amplification(scene, phases, equations=equations, tolerance=1e-6)
+            demands = [reference.demands(reference.trajectory(scene, phase, equations)) for phase in phases]
+            shear = [each.base_shear.value for each in demands]
+            ours[equations] = np.column_stack([answer.mu, answer.displacement, shear])
+        for integrator, named in ((("Newmark", 0.5, 0.25), "Newmark"), (("HHT", 0.67), "HHT 0.67")):
+            steps = {}
+            for step in OPENSEES_STEPS:
+                runs = [opensees.follow(scene, phase, step, integrator) for phase in phases]
+                peaks = [np.linalg.norm(absolute, axis=2).max(axis=0) for _, absolute in runs]
+                forces = [np.einsum("b,tbx->tx", scene.masses, absolute[..., :2]) for _, absolute in runs]
+                shear = [np.linalg.norm(force, axis=1).max() for force in forces]
+                ways = [np.linalg.norm(place, axis=1).max() for place, _ in runs]
+                steps[step] = np.column_stack([peaks / ground_peak(scene, phases)[:, None], ways, shear])
+            finest = steps[OPENSEES_STEPS[-1]]
+            row = {f"{step:g} s": _spread(value / finest - 1.0) for step, value in list(steps.items())[:-1]}
+            row |= {equations: _spread(finest / value - 1.0) for equations, value in ours.items()}
+            found[f"{name}, u_y = {1e3 * yields:g} mm, {named}"] = row
+            print(name, yields, named, row, flush=True)
+    return found
+
+
+def _spread(change: Any) -> list[list[float]]:
+    """Median and largest size of relative changes (M, Q) in each column."""
+    return [[float(f"{value:.2g}") for value in (np.median(each), each.max())] for each in np.abs(change).T]
+
+
+def state_frame(found: dict[str, Any]) -> str:
+    """Say whether a yield displacement that is fitted to one run of the frame meets what is not met without."""
+    frame_ = found["frame"]
+    lines = []
+    for law in ("one ratio", "friction of the load"):
+        rigid, elastic = (
+            {tuple(row[:2]): row for row in rows if row[4] is not None}
+            for name, rows in frame_["laws"].items()
+            if name.startswith(law)
+        )
+        gained = [key for key, row in elastic.items() if row[4] and not rigid[key][4]]
+        lost = [key for key, row in elastic.items() if not row[4] and rigid[key][4]]
+        met = [sum(row[4] for row in rows.values()) for rows in (rigid, elastic)]
+        lines.append(
+            f"by {law} {met[0]} of {len(rigid)} quantities are met without and {met[1]} with it, "
+            f"{len(gained)} gained and {len(lost)} lost"
+        )
+    misfits = ", ".join(
+        f"{run} {fits[0][2]:.3f} to {next(f[2] for f in fits if f[0] == frame_['fitted at 250 g, mm']):.3f} mm"
+        for run, fits in frame_["fits"].items()
+    )
+    return (
+        f"Frame: a yield displacement of {frame_['fitted at 250 g, mm']:g} mm, fitted to the run with 250 g, does not "
+        f"validate more: {'; '.join(lines)}. It brings the cycle closer where the ratio is fitted to each run (rms: "
+        f"{misfits}), and shortens the time at rest too much."
+    )
+
+
+def state_pendulum(found: dict[str, Any]) -> str:
+    """Say which turning points of the pendulum a fitted yield displacement meets."""
+    rows, fitted = found["pendulum"]["rows"], found["pendulum"]["fitted, rad"]
+    words = []
+    for yields in (0.0, fitted):
+        met = [row[1].removeprefix("turning point ") for row in rows if row[0] == yields and row[4]]
+        words.append(", ".join(met) if met else "none")
+    last = [next(row[2] for row in rows if row[0] == yields and row[1].endswith("13")) for yields in (0.0, fitted)]
+    return (
+        f"Pendulum: with a yield displacement of {1e3 * fitted:g} mrad, fitted to turning points 0 to 10 together with "
+        f"the loss, the turning points that are met are {words[1]}; without it {words[0]}. The last one, 13, is off by "
+        f"{last[1]:+.1f} in place of {last[0]:+.1f} mrad."
+    )
+
+
+def state_mastodon(found: dict[str, Any]) -> str:
+    """Say how far the displacements of MASTODON's bearing are from the published ones, with and without its 1 mm."""
+    published = found["mastodon"]["published"]
+    off = {
+        name: max(abs(a - b) for a, b in zip(found["mastodon"][name], published))
+        for name in ("u_y = 0.01 mm", "u_y = 1 mm")
+    }
+    with_it = ", ".join(f"{value:.1f}" for value in found["mastodon"]["u_y = 1 mm"])
+    return (
+        f"MASTODON: with its own restoring force N y / sqrt(R² − y²) and its yield displacement of 1 mm the ranges are "
+        f"{with_it} mm. The largest difference from the published ones is {off['u_y = 1 mm']:.1f} mm; without the "
+        f"yield displacement (0.01 mm) it is {off['u_y = 0.01 mm']:.1f} mm. The loops can be read to 3 mm."
+    )
+
+
+def opensees_section() -> list[str]:
+    """Lines of the page of engines on an element that yields elastically, from what is recorded."""
+    found = json.loads(STORED.read_text(encoding="utf-8"))
+    rows = {name: row for name, row in found["opensees"].items() if name not in ("phases", "columns")}
+    steps = [name for name in next(iter(rows.values())) if name.endswith(" s")]
+    heads = [f"{step} against {OPENSEES_STEPS[-1]:g} s" for step in steps]
+    heads += [f"{OPENSEES_STEPS[-1]:g} s against small", "against exact"]
+    text = [
+        "## An element that yields elastically",
+        "",
+        OPENSEES_ADVICE,
+        "",
+        "Recorded by `python docs/yielding_friction.py FOLDER MASTODON.csv`: OpenSees' `singleFPBearing` with the stiffness k "
+        "of `yield_displacement`, 16 phase pairs, median / largest relative difference of μ₁, μ₂, displacement and base shear. "
+        "`small` and `exact` are the equations under the same law.",
+        "",
+        f"| scene, element | {' | '.join(heads)} |",
+        f"|{'---|' * (len(heads) + 1)}",
+    ]
+    for name, row in rows.items():
+        parts = [", ".join(f"{median:.0e} / {largest:.0e}" for median, largest in row[column])
+                 for column in (*steps, "small", "exact")]  # fmt: skip
+        text.append(f"| {name} | {' | '.join(parts)} |")
+    return text
+
+
+def main(folder: Path, mastodon: Path) -> None:
+    """Compute, store and print."""
+    kept = json.loads(Path(table.__file__).with_name("recorded.json").read_text())
+    recorded = {
+        f"{row['experiment']}: {row['name']}": {
+            "measured": row["measured"],
+            "u_val": row["sides"][EQUATIONS]["validation"],
+        }
+        for row in kept["quantities"]
+    }
+    files = read_folder(folder)
+    found = json.loads(STORED.read_text()) if STORED.exists() else {}
+    found["frame"] = compare_frame([frame.fold(run) for run in files.runs], recorded)
+    found["pendulum"] = compare_pendulum(files.decay, recorded)
+    found["mastodon"] = {
+        "published": list(cases.LIMITS),
+        "u_y = 0.01 mm": compute_mastodon(mastodon, 1e-5, 5e-5),
+        "u_y = 1 mm": compute_mastodon(mastodon, 1e-3, 1e-4),
+        "u_y = 1 mm, twice the step": compute_mastodon(mastodon, 1e-3, 2e-4),
+    }
+    if importlib.util.find_spec("openseespy") is not None:
+        found["opensees"] = compare_opensees()
+    STORED.write_text(json.dumps(found, indent=1) + "\n")
+    print(json.dumps(found, indent=None)[:6000])
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]))
