@@ -78,7 +78,8 @@ class FrictionSprings:
     The springs that turn the spheres, in units of the model.
 
     turns: index of the rotations of each sphere, (K, 3). law: friction of the contacts. displacement: elastic one at
-    which they slide under the weight. slide_end: slip speed at which slides end at level 0. Where steps are meant, `motion` is an `EngineMotion`.
+    which they slide under the weight. slide_end: slip speed at which slides end at level 0. Where steps are meant,
+    `motion` is an `EngineMotion`.
     """
 
     mbs: Any
