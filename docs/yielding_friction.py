@@ -289,8 +289,8 @@ def state_opensees(found: dict[str, Any]) -> str:
     return (
         "Friction of such an element is a spring k = μW/u_y up to μN. The law explains it: with `kInit` = k + W/R (the "
         f"element subtracts N/R) and steps of {OPENSEES_STEPS[-1]:g} s, OpenSees' bearing is within {100.0 * own:.2g} "
-        "% of an independent program of the element's own law in μ₁, μ₂ and displacement at all phase pairs. Trustworthy "
-        f"at every step tried, up to {OPENSEES_STEPS[0]:g} s: μ₂ (within {worst('0.004 s', 1)} of its limit), "
+        "% of an independent program of the element's own law in μ₁, μ₂ and displacement at all phase pairs. "
+        f"Trustworthy at every step tried, up to {OPENSEES_STEPS[0]:g} s: μ₂ (within {worst('0.004 s', 1)} of its limit), "
         f"displacement ({worst('0.004 s', 2)}) and base shear ({worst('0.004 s', 3)}). μ₁ needs steps of a fortieth of "
         "the period 2π √(m₁ u_y / (μW)) of the platform on the spring: then it is within 0.8 % of its limit. With "
         "longer steps its peaks are artifacts of the step: at u_y = 0.01 mm and 0.002 s, a seventh of that period, HHT "
