@@ -52,8 +52,9 @@ FREE_ITERATIONS = 2
 # Rows at the end of a chunk that decide whether the step may grow.
 RECENT_ROWS = 8
 
-# Divisions of the largest step from which on contacts rest where a step from sliding fails.
-DIVISIONS_BEFORE_REST = 3
+# Divisions of the largest step from which on contacts rest where a step from sliding fails, and with which they go on:
+# the shorter the step, the larger is the slip that noise of the contact force makes.
+DIVISIONS_BEFORE_REST, DIVISIONS_AT_REST = 3, 1
 
 # Number of the largest steps in the first chunk after a contact began or ended to slide: the next may follow soon.
 STEPS_BEHIND_CHANGE = 4
@@ -163,7 +164,7 @@ class _Progress:
         elif change is not None:
             last, rejected = change.row, False
         before = at.state
-        if last > 0 and not self._accept(motion.cut_at(last), size[: last + 1], settle=rejected):
+        if last > 0 and not self._accept(motion.cut_at(last), size[: last + 1], settle=rejected or change is not None):
             return False
         if openings is not None and event is not None:
             return self._pass_event(openings, event, step)
@@ -214,7 +215,7 @@ class _Progress:
             assert springs is not None
             assert state.accelerations is not None  # settled
             self.at.state = springs.rest(state, state.accelerations)
-            self.at.rested_at = self.at.time
+            self.at.rested_at, self.at.divisions = self.at.time, DIVISIONS_AT_REST
             return True
         if self.at.divisions == self.level.max_divisions:
             self.run.terminate(Outcome.SOLVER_FAILED, self.at.time)
@@ -264,18 +265,17 @@ class _Progress:
 
     def _find_change(self, motion: EngineMotion) -> Change | None:
         """Find the first contact that begins or ends to slide, where friction yields."""
-        springs, pressed = self.model.springs, self.model.bearing_penetration or self.level.penetration
+        springs = self.model.springs
         if springs is None:
             return None
         end = math.inf if self.at.rested_at == self.at.time else self.level.slide_end
-        return springs.find_change(motion, self.at.state, pressed, self.level.slide_end, end)
+        return springs.find_change(motion, self.at.state, self.level.slide_end, end)
 
     def _rates_of_limits(self, springs: FrictionSprings, motion: EngineMotion, row: int) -> Array:
         """Rates (K,) of the elastic displacements at which contacts slide, at a row."""
         near = motion.cut_at(max(row, 1))
-        pressed = self.model.bearing_penetration or self.level.penetration
         recent = EngineMotion(*[column[-RECENT_ROWS:] for column in near])
-        slope: Array = np.polyfit(recent.time - recent.time[-1], springs.limits(recent, pressed), 1)[0]
+        slope: Array = np.polyfit(recent.time - recent.time[-1], springs.limits(recent), 1)[0]
         return slope
 
     def _pass_change(self, springs: FrictionSprings, change: Change, step: float, rates: Array) -> bool:
@@ -287,9 +287,11 @@ class _Progress:
         if motion is not None and np.isfinite(motion.accelerations).all():
             # nothing is read here: the next chunk reads the place of the kink from its side
             size = absolute_accelerations(self.model, motion, self.integration.ground)
-            if not self._accept(motion, size, read=False):
+            if not self._accept(motion, size, settle=True, read=False):
                 return False
             at.state = springs.settle(at.state, before, motion.accelerations[-1], rates, self.level.slide_end)
+            if change.slides:
+                change = change._replace(limits=springs.limits(motion)[-1])
         assert at.state.accelerations is not None  # settled
         at.state = springs.settle(at.state, at.state, at.state.accelerations, rates, self.level.slide_end, change)
         self.run.peaks.restart()

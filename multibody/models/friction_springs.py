@@ -61,7 +61,8 @@ class Change(NamedTuple):
     """
     A contact that slides, or rests, from a share of the step behind `row` on.
 
-    limits: elastic displacements (K,) to which springs return that slip more slowly than at the end of a slide.
+    limits: elastic displacements (K,) that no spring at rest exceeds from there on, and that one which begins to slide
+    has; None where a slide ends.
     """
 
     row: int
@@ -77,8 +78,8 @@ class FrictionSprings:
     The springs that turn the spheres, in units of the model.
 
     turns: index of the rotations of each sphere, (K, 3). law: friction of the contacts. displacement: elastic one at
-    which they slide under the weight. slide_end: slip speed at which slides end at level 0. damping_ratio: that of the
-    contacts. Where steps are meant, `motion` is an `EngineMotion`.
+    which they slide under the weight. slide_end: slip speed at which slides end at level 0. Where steps are meant,
+    `motion` is an `EngineMotion`.
     """
 
     mbs: Any
@@ -88,7 +89,6 @@ class FrictionSprings:
     law: DryFriction
     displacement: float
     slide_end: float
-    damping_ratio: float
 
     def begin(self, state: EngineState) -> None:
         """Give every contact the coefficient with which it rests or slides from a state on."""
@@ -112,13 +112,11 @@ class FrictionSprings:
         changes = np.maximum(self.depressions.radius / self.displacement * turned, SHARE_OF_SLIDE * turning)
         return np.append(0.0, changes)
 
-    def find_change(
-        self, motion: Any, state: EngineState, penetration: float, end: float, begin: float
-    ) -> Change | None:
+    def find_change(self, motion: Any, state: EngineState, end: float, begin: float) -> Change | None:
         """Find the first contact that begins or ends to slide in steps from `state`; None without one."""
         if len(motion.time) < 2:
             return None
-        time, slip, limit = motion.time, motion.slip, self.limits(motion, penetration)
+        time, slip, limit = motion.time, motion.slip, self.limits(motion)
         excess = self.depressions.radius * np.linalg.norm(motion.coordinates[:, self.turns], axis=2) - limit
         left = EXCESS * self.displacement * (end / self.slide_end) ** 2
         changes = []
@@ -130,15 +128,16 @@ class FrictionSprings:
             if change is not None:
                 row = change.row
                 speed = (excess[row + 1, number] - excess[row, number]) / (time[row + 1] - time[row])
-                change = change if speed > begin else Change(row + 1, number, 0.0, False, limit[row + 1])
+                if speed > begin:
+                    change = change._replace(limits=limit[row])
+                else:
+                    change = Change(row + 1, number, 0.0, False, limit[row + 1])
             changes.append(change)
         return min((change for change in changes if change is not None), default=None)
 
-    def limits(self, motion: Any, penetration: float) -> Array:
+    def limits(self, motion: Any) -> Array:
         """Elastic displacements at which the contacts slide, (T, K)."""
-        lag = 2.0 * self.damping_ratio * math.sqrt(penetration)
-        pressed = motion.gap + lag * np.gradient(motion.gap, motion.time, axis=0)
-        load = np.maximum(-pressed / penetration, 0.0)
+        load = motion.load
         speed = np.linalg.norm(motion.velocities[:, :3], axis=1)[:, None]
         limit: Array = self.displacement * self.law.at(speed, load) / self.law.largest * load
         return limit
@@ -163,9 +162,9 @@ class FrictionSprings:
             coordinates = state.coordinates.copy()
             for number in np.flatnonzero(~sliding).tolist():
                 size = self.depressions.radius * float(np.linalg.norm(coordinates[self.turns[number]]))
-                coordinates[self.turns[number]] *= min(
-                    float(change.limits[number]) / max(size, SMALLEST_DISPLACEMENT), 1.0
-                )
+                factor = float(change.limits[number]) / max(size, SMALLEST_DISPLACEMENT)
+                begins = change.slides and number == change.contact
+                coordinates[self.turns[number]] *= factor if begins else min(factor, 1.0)
             state = replace(state, coordinates=coordinates)
         velocities, accelerations, contact = state.velocities.copy(), accelerations.copy(), state.contact.copy()
         normals, jacobian = self.depressions.contact_normals_and_jacobian(state.coordinates)
@@ -227,7 +226,6 @@ def make_friction_springs(
         return None
     turns = first + BODY_COORDINATES * np.arange(len(contacts))[:, None] + np.arange(3, BODY_COORDINATES)
     law = scene.dry_friction.in_unit_of_speed(units.velocity)
-    stated = scene.isolator.support_damping
     return FrictionSprings(
         mbs,
         contacts,
@@ -236,7 +234,6 @@ def make_friction_springs(
         law,
         scene.yield_displacement / units.length,
         end_of_slide(scene, units),
-        1.0 if stated is None else stated,
     )
 
 

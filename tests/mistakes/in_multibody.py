@@ -12,6 +12,7 @@ SPRINGS = TESTS + "test_springs_of_supports.py::"
 PEAK = TESTS + "test_peak.py::"
 NUMBERS = TESTS + "test_reported_numbers.py::"
 IMPACT = TESTS + "test_impact.py"
+YIELDING = TESTS + "test_yielding_friction.py::"
 
 # fmt: off
 MISTAKES = (
@@ -263,6 +264,25 @@ MISTAKES = (
     Mistake("multibody/demand_surface.py", "tolerance: float = DEFAULT_TOLERANCE", "tolerance: float = 1e-3",
             "A signature has a default of its own.",
             ("tests/test_defaults.py::test_a_default_is_taken_by_its_name_and_stated_with_its_value",)),
+    Mistake(MODELS + "friction_springs.py", "RESTING = 1e6", "RESTING = 1.0",
+            "A contact at rest creeps as in a slide, and its spring forgets.",
+            (YIELDING + "test_a_platform_vibrates_on_its_springs_below_yield_without_loss",)),
+    Mistake(MODELS + "friction_springs.py", "units.length / units.force * radius**2 / count",
+            "units.length / units.force * radius**2", "Every support has the springs of all.",
+            (YIELDING + "test_supports_that_stand_apart_share_the_stiffness",)),
+    Mistake(MODELS + "friction_springs.py", "units.length / units.force * radius**2 / count",
+            "units.length / units.force * radius / count", "The torsion spring forgets the lever of friction.",
+            (YIELDING + "test_supports_that_stand_apart_share_the_stiffness",)),
+    Mistake(MODELS + "friction_springs.py", "    limit: Array = self.displacement * self.law.at(speed, load)",
+            "    limit: Array = self.displacement * self.law.at(0.0 * speed, load)",
+            "A spring yields at the friction of rest, whatever the speed.",
+            (YIELDING + "test_engine_and_equations_agree_within_their_errors",)),
+    Mistake(MODELS + "speed_friction.py", "return [math.hypot(*velocities[:3])] * len(self._add_contacts)",
+            "return contact[SLIP::DATA_PER_CONTACT].tolist()", "Friction that yields depends on the slip speed.",
+            (YIELDING + "test_engine_and_equations_agree_within_their_errors",)),
+    Mistake(MODELS + "assembly.py", 'if loading != "inertial" and scene.dry_friction.elastic:', "if False:",
+            "Spheres on springs stand on the ground under a moving plate.",
+            (YIELDING + "test_the_motion_of_a_plate_is_refused",)),
     Mistake("multibody/surface.py", "effect, slip = finer.mu - found.mu,", "effect, slip = found.mu - finer.mu,",
             "The effect of regularization has the other sign.", ("tests/multibody/test_regularization_effect.py",)),
     Mistake("multibody/surface.py", "phases, model, FINER * regularization,", "phases, model, 0.3 * regularization,",

@@ -1,0 +1,46 @@
+"""What the pages say of friction that yields follows from what is recorded."""
+
+import copy
+import json
+from typing import Any
+
+import pytest
+import yielding_friction
+
+FOUND: dict[str, Any] = json.loads(yielding_friction.STORED.read_text(encoding="utf-8"))
+
+
+def test_the_frame_counts_what_is_met_with_and_without() -> None:
+    said = yielding_friction.state_frame(FOUND)
+    other = copy.deepcopy(FOUND)
+    rows = next(rows for name, rows in other["frame"]["laws"].items() if name.startswith("one ratio, u_y = 0.0"))
+    rows[next(k for k, row in enumerate(rows) if row[4])][4] = False
+    assert "9 of 20 quantities are met without and 5 with it, 3 gained and 7 lost" in said
+    assert "9 of 20 quantities are met without and 4 with it" in yielding_friction.state_frame(other)
+
+
+def test_the_pendulum_names_the_turning_points_that_are_met() -> None:
+    other = copy.deepcopy(FOUND)
+    for row in other["pendulum"]["rows"]:
+        row[4] = row[0] == 0.0
+    assert "turning points that are met are 5, 10, 12; without it 10." in yielding_friction.state_pendulum(FOUND)
+    assert "turning points that are met are none; without it 5, 10, 11, 12, 13." in yielding_friction.state_pendulum(
+        other
+    )
+
+
+def test_mastodon_gives_the_largest_difference_with_and_without() -> None:
+    other = copy.deepcopy(FOUND)
+    other["mastodon"]["u_y = 1 mm"][0] -= 10.0
+    assert "largest difference from the published ones is 1.9 mm; without" in yielding_friction.state_mastodon(FOUND)
+    assert "published ones is 9.8 mm" in yielding_friction.state_mastodon(other)
+
+
+@pytest.mark.parametrize(
+    ("column", "place", "words"), [("0.004 s", 1, "μ₂ (within 50.0 %"), ("exact", 3, "50.0 % of the base")]
+)
+def test_opensees_states_the_worst_of_all_rows(column: str, place: int, words: str) -> None:
+    other = copy.deepcopy(FOUND)
+    next(row for name, row in other["opensees"].items() if "u_y" in name)[column][place][1] = 0.5
+    assert words not in yielding_friction.state_opensees(FOUND)
+    assert words in yielding_friction.state_opensees(other)
