@@ -222,7 +222,7 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
 @pytest.mark.parametrize(
     ("words", "target", "line"),
     [
-        ((), "", "an ensemble needs recorded motions: give --suite"),
+        ((), "", "excitation.record = None: an ensemble needs recorded motions: give --suite"),
         (("--suite", "none"), "", "No such file or directory"),
         ((*SUITE, "--normalized"), "", "remove this key"),
         ((*SUITE, "--scales", "2", "1", "2"), "", "the smaller first"),
