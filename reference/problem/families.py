@@ -190,9 +190,12 @@ def with_bounds(data: dict[str, Any], bounds: tuple[float, float] | None) -> dic
 def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) -> Family:
     """Return the family of tables; label: their file, for errors and records. Raises as `load_family`."""
     name = Path(label).stem
-    combine = data.get("combine")
+    combine, given = data.get("combine"), data
     data = _expand_motions({key: value for key, value in data.items() if key != "combine"}, label)
-    data, bounds = _take_bounds(data, label)
+    try:
+        data, bounds = _take_bounds(data, label)
+    except SceneError as wrong:
+        raise _with_other_faults(wrong, given, label) from None
     places = list(islice(running_values((), data), MAX_KEYS + 1))
     if len(places) > MAX_KEYS:
         path, table = places[-1]
@@ -214,7 +217,12 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
         for key, step in zip(running, row):
             tables = _replace_value(tables, key.path, key.listed[step])
         texts = ", ".join(key.entries[step] for key, step in zip(running, row))
-        member = make_scene(tables, label, f"{name}[{texts}]")
+        try:
+            member = make_scene(tables, label, f"{name}[{texts}]")
+        except SceneError as error:
+            if bounds and error.key.startswith("isolator.friction"):
+                error = _as_written(error, tables, data, label, bounds[0].values)
+            raise error from None
         scenes.append(scale_loading(member, amplitude))
     columns = {key.name: tuple(key.values[row[n]] for row in rows) for n, key in enumerate(running)}
     values = [", ".join(key.texts[step] for key, step in zip(running, row)) for row in rows]
@@ -226,6 +234,27 @@ def family_of(data: dict[str, Any], label: str, amplitude: float | None = None) 
         columns,
         {key.name: tuple(key.labels[row[n]] for row in rows) for n, key in enumerate(running)},
     )
+
+
+def _with_other_faults(wrong: SceneError, data: dict[str, Any], label: str) -> SceneError:
+    """Return the error of wrong bounds with what else is wrong in the file."""
+    own = {key: value for key, value in data["isolator"].items() if key != "bounds"}
+    try:
+        family_of({**data, "isolator": own}, label)
+    except SceneError as error:
+        return SceneError(label, wrong.key, wrong.value, wrong.rule, (error, *error.others))
+    return wrong
+
+
+def _as_written(
+    error: SceneError, tables: dict[str, Any], data: dict[str, Any], label: str, factors: Sequence[Value]
+) -> SceneError:
+    """Return the error of a scene with the friction of a bound: of the file as written, or else of the bounds."""
+    try:
+        make_scene({**tables, "isolator": {**tables["isolator"], "friction": data["isolator"]["friction"]}}, label, "")
+    except SceneError as own:
+        return own
+    return SceneError(label, BOUNDS, factors, f"makes {error.key} = {brief(error.value)}, which {error.rule}")
 
 
 class _Key:

@@ -90,6 +90,8 @@ def _said_of(file: str, error: ErrorDetails, keys: Mapping[str, Sequence[str]]) 
     if error["type"] == "missing":
         return SceneError(file, key, None, MISSING.get(key, "this key is required"))
     rule = error["msg"].removeprefix("Value error, ").replace("Input should be", "must be")
+    if error["type"] == "dataclass_type" or error["type"] == "model_type":
+        rule = "must be a table of keys"
     if error["type"] == "list_type" and (form := ALONG_AXES.get(str(place[-1]))):
         rule = f"must be {form}"
     if key in LISTS_OF_SURFACES and isinstance(error["input"], list):

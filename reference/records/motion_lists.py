@@ -21,6 +21,7 @@ MAGNITUDE = "magnitude"  # column that a list may have, too
 LARGEST = 2**20  # bytes
 MAX_FACTOR = 1e6
 MAX_MAGNITUDE = 10.0
+NAMED = 10  # lines whose faults are said
 
 
 @dataclass(frozen=True)
@@ -68,44 +69,65 @@ class MotionList:
 
 
 def read_motion_list(folder: Path) -> MotionList | None:
-    """Return the motions that motions.csv of a folder lists; None without that file. Raises RecordError, OSError."""
+    """Return the motions that motions.csv of a folder lists; None without that file. Raises RecordError, all faults."""
     file = folder / FILE
     if not file.is_file():
         return None
-    text = decode_text(read_file(file, LARGEST))
+    try:
+        text = decode_text(read_file(file, LARGEST))
+    except (OSError, RecordError) as error:
+        raise RecordError(f"{FILE}: {getattr(error, 'strerror', None) or error}") from None
     lines = [line for line in text.splitlines() if line.strip()]
     if not lines:
         raise RecordError(f"{FILE}: empty: must have the columns {', '.join(COLUMNS)}")
     mark = next((mark for mark in "\t;," if mark in lines[0]), ",")
     rows = [[cell.strip() for cell in row] for row in csv.reader(lines, delimiter=mark)]
     heads = [head.lower() for head in rows[0]]
-    if "name" not in heads or "x" not in heads or not set(heads) <= {*COLUMNS, MAGNITUDE, ""}:
-        rule = f"must have the columns {', '.join(COLUMNS)}, and may have {MAGNITUDE}"
+    twice = any(heads.count(head) > 1 for head in heads if head)
+    if "name" not in heads or "x" not in heads or twice or not set(heads) <= {*COLUMNS, MAGNITUDE, ""}:
+        rule = f"must have the columns {', '.join(COLUMNS)}, each once, and may have {MAGNITUDE}"
         raise RecordError(f"{FILE}: line 1: {brief(lines[0])}: {rule}")
-    motions = [_motion(number, dict(zip(heads, row)), folder) for number, row in enumerate(rows[1:], 2)]
-    if not motions:
+    if not rows[1:]:
         raise RecordError(f"{FILE}: no motions: must have a line for each")
-    names = [motion.name for motion in motions]
-    for number, name in enumerate(names, 2):
-        if names.index(name) != number - 2:
-            raise RecordError(f"{FILE}: line {number}: {brief(name)}: two motions have one name")
-    return MotionList(tuple(motions), listed=True)
+    motions: dict[str, Motion] = {}
+    faults = []
+    for number, row in enumerate(rows[1:], 2):
+        try:
+            if any(row[len(heads) :]):
+                raise RecordError(f"{len(row)} cells, and {len(heads)} columns: a decimal comma needs quotes")
+            motion = _motion(dict(zip(heads, row)), folder)
+            if motion.name in motions:
+                raise RecordError(f"{brief(motion.name)}: two motions have one name")
+            motions[motion.name] = motion
+        except RecordError as error:
+            faults.append(f"line {number}: {error}")
+    if faults:
+        more = f"; also {len(faults) - NAMED} more lines" if len(faults) > NAMED else ""
+        raise RecordError(f"{FILE}: {'; also '.join(faults[:NAMED])}{more}")
+    return MotionList(tuple(motions.values()), listed=True)
 
 
-def _motion(number: int, row: Mapping[str, str], folder: Path) -> Motion:
+def _motion(row: Mapping[str, str], folder: Path) -> Motion:
     """One line of the file. Raises RecordError."""
     files = {axis: folder / row[axis] for axis in AXES if row.get(axis)}
     if not row.get("name") or not files:
-        raise RecordError(f"{FILE}: line {number}: must have a name, and a file along x, y or z")
+        raise RecordError("must have a name, and a file along x, y or z")
     for file in files.values():
-        if not file.is_file():
-            raise RecordError(f"{FILE}: line {number}: {brief(file.name)}: no such file in the folder")
-    factor = _number(number, row, "factor", MAX_FACTOR) or 1.0
-    magnitude = _number(number, row, MAGNITUDE, MAX_MAGNITUDE)
+        if not _is_file(file):
+            raise RecordError(f"{brief(file.name)}: no such file in the folder")
+    factor = _number(row, "factor", MAX_FACTOR) or 1.0
+    magnitude = _number(row, MAGNITUDE, MAX_MAGNITUDE)
     return Motion(row["name"], {"": files["x"]} if list(files) == ["x"] else files, factor, magnitude)
 
 
-def _number(number: int, row: Mapping[str, str], name: str, most: float) -> float | None:
+def _is_file(file: Path) -> bool:
+    try:
+        return file.is_file()
+    except (OSError, ValueError):  # too long a name, or no name
+        return False
+
+
+def _number(row: Mapping[str, str], name: str, most: float) -> float | None:
     """A number of a line, None where it has none. Raises RecordError."""
     text = (row.get(name) or "").replace(",", ".")
     if not text:
@@ -115,7 +137,7 @@ def _number(number: int, row: Mapping[str, str], name: str, most: float) -> floa
     except ValueError:
         value = math.nan
     if not 0.0 < abs(value) <= most:
-        raise RecordError(f"{FILE}: line {number}: {name} = {brief(text)}: must be a number up to {most:g}, not 0")
+        raise RecordError(f"{name} = {brief(text)}: must be a number up to {most:g}, not 0")
     return value
 
 

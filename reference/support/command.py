@@ -55,6 +55,15 @@ class OneLineParser(argparse.ArgumentParser):
         super().__init__(prog=prog, description=description, allow_abbrev=False)
         self.add_argument("--version", action="version", version=f"phase-resonance {__version__}")
 
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        """Parse words; "--" is the value of no option, which argparse would take for an empty list."""
+        words = list(sys.argv[1:] if args is None else args)
+        options = words[: words.index("--")] if "--" in words else words
+        for option, _, value in (word.partition("=") for word in options if word.startswith("--")):
+            if value == "--":
+                self.error(f"argument {option}: expected a value, not '--'")
+        return super().parse_known_args(words, namespace)
+
     def error(self, message: str) -> NoReturn:
         """Raise UsageError, one line."""
         raise UsageError(f"command line: {message} (--help lists the options)")

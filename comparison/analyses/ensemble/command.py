@@ -271,7 +271,8 @@ def family_of_options(options: argparse.Namespace, source: str) -> Family:
         count = read_whole_number("--scales", options.scales[2], 1, MAX_SCALES)
         asked: Any = {"range": [low, high], "steps": count} if count > 1 else {"values": [low]}
         loading = {**loading, "scale": asked} if isinstance(loading, dict) else loading
-    data["excitation"] = loading
+    if loading is not None:
+        data["excitation"] = loading
     return family_of(with_bounds(data, read_bounds(options)), source)
 
 

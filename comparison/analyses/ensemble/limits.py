@@ -27,6 +27,7 @@ from comparison.verdicts import (
 from reference.problem import Scene
 from reference.problem.acceptance import DemandLimits
 from reference.support.arguments import Range
+from reference.support.scene_error import printable
 
 KEY = "acceptance.demands."
 MEAN, LARGEST = "mean", "largest"
@@ -168,7 +169,7 @@ def _values_at_top(
 def compare_with_stored(ensemble: EnsembleResult, stored: EnsembleResult, within: float) -> list[DemandCheck]:
     """Return the verdict on mean and largest value of every demand by the equations against a stored ensemble."""
     new, old = _stripes(ensemble), _stripes(stored)
-    named = {each.name: each.name for each in (*stored.structures, *ensemble.structures)} | labels(ensemble)
+    named = {each.name: printable(each.name) for each in stored.structures} | labels(ensemble)
     return [
         check
         for place in dict.fromkeys([*old, *new])

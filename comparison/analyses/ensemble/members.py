@@ -57,7 +57,7 @@ def members_of(families: Sequence[Family]) -> tuple[Member, ...]:
         for n, scene in enumerate(family.scenes):
             if not isinstance(scene.excitation, Record):
                 rule = "an ensemble needs recorded motions: give --suite, or a record in the scene"
-                raise SceneError(family.name, "excitation", scene.name, rule)
+                raise SceneError(family.name, RECORD, None, rule)
             values = ", ".join(_entry(family, key, n) for key in inner)
             motion = ", ".join(family.labels[key][n] for key in outer) or scene.excitation.files
             structure = f"{family.name}[{values}]" if values else family.name

@@ -24,6 +24,10 @@ class Statistic:
     value: Annotated[float | None, "in the unit of the demand; null where it rests on a motion without an answer"]
     error: Annotated[float | None, "largest change within the errors of the motions"]
 
+    def __post_init__(self) -> None:
+        require(self.value is None or math.isfinite(self.value), f"value must be finite, not {self.value}")
+        require(self.error is None or 0.0 <= self.error < math.inf, f"error must be from 0 on, not {self.error}")
+
 
 @result
 class DemandFractile(Statistic):

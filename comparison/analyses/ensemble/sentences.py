@@ -146,8 +146,9 @@ def support_sentences(ensemble: EnsembleResult) -> list[str]:
         rows = [each for each in ensemble.supports if each.model == model]
         by = "By the equations and statics" if model == EXACT.key else f"By the {model} engine"
         parts = list(_support_parts(ensemble, rows))
-        if parts:
-            counts = {labels(ensemble)[each.structure]: each.motions for each in rows}
+        if not parts:
+            continue  # no motion has a value
+        counts = {labels(ensemble)[each.structure]: each.motions for each in rows}
         of = f"{', '.join(f'{count} motions of {bound}' for bound, count in counts.items())}"
         of = f"{count_motions(rows[0].motions)} of each bound" if len({*counts.values()}) == 1 else of
         said.append(f"{by}, {of}: {'; '.join(parts)}.")

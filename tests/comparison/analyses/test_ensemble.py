@@ -16,14 +16,14 @@ import pytest
 from terminal_tables import rows_under
 
 import reference
-from comparison.analyses.ensemble import analysis, governing, statistics
+from comparison.analyses.ensemble import analysis, governing, quantities, statistics
 from comparison.analyses.ensemble.command import CHECKED, FILES, main
 from comparison.analyses.ensemble.members import SCALE, Member, members_of
 from comparison.analyses.ensemble.rows import labels
 from comparison.analyses.ensemble.table import table_text
 from comparison.analyses.ensemble.target import match_spectrum
 from comparison.runner.runner import Runner
-from reference.measures import Estimate, FloorSpectra, story_forces
+from reference.measures import Estimate, FloorSpectra, StoryForces, story_forces
 from reference.problem import load_family, load_scene
 
 SCENE = """title = "two bodies"
@@ -33,6 +33,7 @@ excitation = {amplitudes = [[1.0, 0.0], [0.0, 1.0]], periods = [0.9, 1.1], decay
 duration = 20.0
 """
 NAN = float("nan")
+Numbers = tuple[float, ...]
 
 
 @pytest.fixture
@@ -108,6 +109,63 @@ def test_a_motion_without_an_answer_is_worse_than_all_and_counted() -> None:
     known, _, _ = statistics.stripes(analysis.Points(points[:3]))
     assert known.largest_motion == "m2"
     assert (known.mean.value, known.mean.error) == pytest.approx((3.0, 0.3))
+
+
+PLACES = [[3.0, 2.0], [-3.5, 2.0], [0.5, -2.5]]  # m
+FORCES = StoryForces((sure(1.0),), None, None, None, None)
+
+
+def carrying(motion: str, scale: float, smallest: Numbers, largest: Numbers, gaps: Numbers | None) -> analysis.Point:
+    """A motion with the forces of its supports, N, of which the errors are a tenth, and their gaps, m."""
+    scene = load_scene("fig3-I").with_values({"isolator.supports": PLACES, "isolator.ring": None})
+    low, high, gap = (
+        [Estimate(value, 0.1 * value) for value in row or ()] or None for row in (smallest, largest, gaps)
+    )
+    forces = replace(FORCES, support_min=low, support_max=high, uplift=gap)
+    model = "exact" if gaps is None else "spatial"
+    return analysis.Point(Member("mine", motion, scale, scene), model, "ok", forces=forces)
+
+
+def test_supports_have_their_own_extremes_at_the_largest_scale_with_their_motions() -> None:
+    equations = [
+        carrying("m1", 0.5, (1.0, 1.0, 1.0), (99.0, 99.0, 99.0), None),
+        carrying("m1", 2.0, (8.0, 4.0, NAN), (20.0, 31.0, NAN), None),
+        carrying("m2", 2.0, (7.0, 5.0, 6.0), (24.0, 30.0, 40.0), None),
+    ]
+    spatial = [carrying("m2", 2.0, (7.5, 5.5, 6.5), (25.0, 35.0, 45.0), (0.0, 0.002, 0.001))]
+    found = list(statistics.support_extremes(analysis.Points(equations, (), {"small": [], "spatial": spatial})))
+    assert [(each.support, each.x, each.y) for each in found] == [(n, *PLACES[n - 1]) for n in (1, 2, 3)] * 2
+    assert [(each.model, each.motions) for each in found] == [("exact", 2)] * 2 + [("exact", 1)] + [("spatial", 1)] * 3
+    smallest = [(each.smallest.value, each.smallest_motion) for each in found[:3]]
+    largest = [(each.largest.value, each.largest_motion) for each in found[:3]]
+    assert smallest == [(7.0, "m2"), (4.0, "m1"), (6.0, "m2")]
+    assert largest == [(24.0, "m2"), (31.0, "m1"), (40.0, "m2")]
+    assert [each.uplift.value for each in found] == [None] * 3 + [0.0, 0.002, 0.001]
+    assert (found[0].smallest.error, found[0].largest.error) == pytest.approx((0.7, 2.4))
+    assert [each.smallest.value for each in found[3:]] == [7.5, 5.5, 6.5]
+
+
+def test_demands_of_stories_have_their_own_heights_and_those_of_supports_the_worst(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    heights = (2.6, 5.9, 8.3)  # m: stories of 3.3 and 2.4 m
+    scene = load_scene("fig3-I").with_values({
+        "bodies": [{"mass": 1.0, "height": height, "period": [1.0, 1.0]} for height in heights],
+        "bodies.0.period": None,
+    })  # fmt: skip
+    drifts = Estimate(0.033, 0.0033), Estimate(0.048, 0.0012)
+    monkeypatch.setattr(quantities, "list_demands", lambda demands: ())
+    forces = replace(
+        FORCES, shear=(sure(9.0), sure(5.0), sure(2.0)), moment=(sure(70.0), sure(30.0), sure(4.0)),
+        support_min=(sure(3.0), sure(2.0), sure(4.0)), support_max=(sure(6.0), sure(8.0), sure(7.0)),
+    )  # fmt: skip
+    found = quantities.values_of_motion(scene, SimpleNamespace(drift=drifts), forces)  # type: ignore[arg-type]
+    ratios = {body: (number.value, number.error) for (name, body), number in found.items() if name == "drift_ratio"}
+    assert ratios[2] == pytest.approx((0.01, 0.001))
+    assert ratios[3] == pytest.approx((0.02, 0.0005))
+    assert [found["story_shear", body].value for body in (1, 2, 3)] == [9.0, 5.0, 2.0]
+    assert [found["overturning_moment", body].value for body in (1, 2, 3)] == [70.0, 30.0, 4.0]
+    assert [found[f"support_force_{end}", 0].value for end in ("min", "max")] == [2.0, 8.0]
 
 
 def test_a_band_of_floor_spectra_has_the_larger_direction() -> None:
@@ -222,7 +280,7 @@ NO_SPECTRUM = "--target = 'code.csv': must be"
 @pytest.mark.parametrize(
     ("words", "target", "line"),
     [
-        ((), "", "an ensemble needs recorded motions: give --suite"),
+        ((), "", "excitation.record = None: an ensemble needs recorded motions: give --suite"),
         (("--suite", "none"), "", "No such file or directory"),
         ((*SUITE, "--normalized"), "", "remove this key"),
         ((*SUITE, "--scales", "2", "1", "2"), "", "the smaller first"),

@@ -1,5 +1,7 @@
 """Limits on demands of an ensemble: the verdict, who broke it, and the exit code; demands of a stored ensemble."""
 
+import json
+import math
 import re
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -17,6 +19,7 @@ from comparison.analyses.ensemble.limits import check_limits, compare_with_store
 from comparison.analyses.ensemble.page import page_of
 from comparison.analyses.ensemble.result import (
     SCHEMA,
+    STORED,
     DemandCurve,
     DemandFractile,
     Engine,
@@ -24,8 +27,9 @@ from comparison.analyses.ensemble.result import (
     Statistic,
     Stripe,
     Structure,
+    SupportExtremes,
 )
-from comparison.analyses.ensemble.sentences import drift_warning
+from comparison.analyses.ensemble.sentences import drift_warning, support_sentences
 from reference.problem.acceptance import DemandLimits
 
 WEIGHT = 2e6  # N
@@ -170,6 +174,35 @@ def test_demands_of_a_stored_ensemble_are_met_within_the_tolerance_and_both_erro
     with_errors = ensemble_of({("displacement", None): (0.30, 0.51, 0.43)}, error=0.004)
     assert "not met" not in str([word_check(each) for each in compare_with_stored(with_errors, with_errors, 0.0)])
     assert compare_with_stored(with_errors, ensemble_of(MOVED, error=0.007), 0.0)[1].verdict == "met"
+
+
+def test_a_name_of_a_stored_ensemble_does_not_reach_the_terminal_as_it_is() -> None:
+    (check, *_) = compare_with_stored(ensemble_of(MOVED), ensemble_of(MOVED, bounds=("\x1b[31mred\nline",)), 0.01)
+    assert word_check(check).startswith("job[\ufffd[31mred\ufffdline]: ")
+
+
+@pytest.mark.parametrize("wrong", [(0.3, -0.1), (0.3, math.nan), (0.3, math.inf), (math.nan, 0.1), (-math.inf, 0.1)])
+def test_a_stored_number_that_is_none_is_refused(wrong: tuple[float, float]) -> None:
+    ensemble = ensemble_of(MOVED)
+    content = json.loads(STORED.as_json(ensemble))
+    assert STORED.read(json.dumps(content).encode()).stripes == ensemble.stripes
+    content["stripes"][0]["largest"] = dict(zip(("value", "error"), wrong))
+    with pytest.raises(ValueError, match="must be f"):
+        STORED.read(json.dumps(content).encode())
+
+
+def test_supports_of_which_no_motion_has_a_value_are_not_spoken_of() -> None:
+    nothing = Statistic(None, None)
+    supports = [
+        SupportExtremes("job[upper bound]", 1, 1.0, 2.0, model, 0, nothing, "", nothing, "", nothing)
+        for model in ("exact", "spatial")
+    ]
+    ensemble = replace(ensemble_of(MOVED), supports=supports)
+    assert support_sentences(ensemble) == []
+    known = replace(supports[1], motions=3, largest=Statistic(5e3, None), largest_motion="Kobe")
+    assert support_sentences(replace(ensemble, supports=[supports[0], known])) == [
+        "By the spatial engine, 3 motions of each bound: largest force 5 kN, support 1 at [1, 2] m (Kobe)."
+    ]
 
 
 def test_a_demand_that_one_of_two_ensembles_lacks_is_not_compared() -> None:

@@ -57,13 +57,20 @@ def test_bounds_of_the_caller_take_the_place_of_those_in_the_file(tmp_path: Path
         (TABLE, "[0.0, 1.5]", "must be two factors"),
         ("{values = [0.03, 0.05]}", "[0.8, 1.5]", "multiplies one friction: isolator.friction is {'values'"),
         ("{slow = {values = [0.03, 0.04]}, fast = 0.05, rate = 50.0}", "[0.8, 1.5]", "multiplies one friction"),
-        ('"much"', "[0.8, 1.5]", "multiplies one friction: isolator.friction is 'much'"),
+        ('"much"', "[0.8, 1.5]", "slow, fast and rate; also isolator.friction = 'much': must be"),
+        ("-1.0", "[1.5, 0.8]", "as [0.8, 1.5]; also isolator.friction = -1.0: must be"),
+        ("900.0", "[0.8, 1.5]", "= [0.8, 1.5]: makes isolator.friction = 1350.0, which must be finite, from 0 to 1000"),
     ],
 )
 def test_wrong_bounds_are_one_line(tmp_path: Path, friction: str, bounds: str, line: str) -> None:
     said = str(refusal(load_family, bounded_file(tmp_path, friction, bounds)))
     assert "isolator.bounds = " in said
     assert line in said
+
+
+def test_a_wrong_friction_is_said_as_it_is_written_and_not_as_a_bound(tmp_path: Path) -> None:
+    said = str(refusal(load_family, bounded_file(tmp_path, "{slow = 0.05}")))
+    assert "isolator.friction = {'slow': 0.05}: give fast and rate" in said
 
 
 def test_one_scene_of_a_file_with_bounds_is_refused(tmp_path: Path) -> None:

@@ -52,7 +52,9 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"duration": 1e9, "excitation.periods": [3.0, 2.0]}, "duration", "must be at most 1e+06 periods of 1 s"),
     ({"duration": None}, "duration", "this key is required"),
     ({"acceptance.median": -1.0}, "acceptance.median", "must be greater than 0"),
+    ({"superstructure": 0.05}, "superstructure", "must be a table of keys"),
     # isolator
+    ({"isolator": 3.0}, "isolator", "must be a table of keys"),
     ({"isolator.friction": None}, "isolator", "exactly one of friction and lubrication"),
     ({"isolator.lubrication": 0.1}, "isolator", "exactly one of friction and lubrication"),
     ({"isolator.period": None}, "isolator", "exactly one of period and radius"),

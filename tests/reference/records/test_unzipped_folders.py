@@ -160,6 +160,13 @@ def test_a_written_list_says_what_was_paired(tmp_path):
         ("name,x,factor\na,A.AT2,0\n", "motions.csv: line 2: factor = '0': must be a number up to 1e+06, not 0"),
         ("name,x,factor\na,A.AT2,two\n", "motions.csv: line 2: factor = 'two'"),
         ("name,x\na,A.AT2\na,A.AT2\n", "motions.csv: line 3: 'a': two motions have one name"),
+        ("name,x,x\na,A.AT2,A.AT2\n", "line 1: 'name,x,x': must have the columns name, x, y, z, factor, each once"),
+        ("name,x,factor\na,A.AT2,1,5\n", "line 2: 4 cells, and 3 columns: a decimal comma needs quotes"),
+        (f"name,x\na,{'A' * 5000}\n", "AAA...: no such file in the folder"),
+        ("name,x\na,A.AT2\0\n", "motions.csv: must be text in UTF-8"),
+        (f"name,x\n{'a' * 2**20}", "motions.csv: larger than 1 MiB"),
+        ("name,x,factor\na,B\n\nb,A.AT2,0\n", "'B': no such file in the folder; also line 3: factor = '0': must be"),
+        ("name,x\n" + "a,B\n" * 12, "line 11: 'B': no such file in the folder; also 2 more lines"),
     ],
 )
 def test_a_wrong_list_of_motions_is_refused_with_its_line(tmp_path, text, said):
