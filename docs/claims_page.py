@@ -23,7 +23,6 @@ from matplotlib.figure import Figure
 from PIL import Image
 from pydantic import TypeAdapter
 
-from comparison.evidence.claims.checks import MET
 from comparison.evidence.claims.evidence import CaseInReading, gather_evidence
 from comparison.evidence.claims.peaks_and_valleys import LEAST_SHARE, MOST_SHARE
 from comparison.evidence.claims.readings import CASES, READINGS, PeakReading, effective_reading
@@ -35,6 +34,7 @@ from comparison.runner.task import execute
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from comparison.surfaces.figures.paper import PRINT, draw_surface
+from comparison.verdicts import MET
 from reference.problem import builtin_scenes, load_scene
 
 FOLDER = Path(__file__).parent

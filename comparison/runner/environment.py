@@ -6,7 +6,7 @@ import os
 import platform
 import subprocess
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cache
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, packages_distributions, version
@@ -55,13 +55,19 @@ def engine_fingerprint(module: str) -> dict[str, str]:
     file = find_spec(module)
     if file is not None and file.origin is not None and file.origin.endswith(".py"):
         names |= _packages_in_use(Path(file.origin).read_text(encoding="utf-8"))
-    installed = packages_distributions()
+    installed = _installed_packages()
     versions = {part: version(part) for name in names for part in installed.get(name.split(".")[0], ())}
     local = {name for name in names if name in OURS or name.split(".")[0] not in installed}
     return {
         **{name: versions[name] for name in sorted(versions)},
         **{f"source of {name}": source_digest(name) for name in sorted(local)},
     }
+
+
+@cache
+def _installed_packages() -> Mapping[str, list[str]]:
+    """Return the distributions of every package that is installed: half a second of looking at their files."""
+    return packages_distributions()
 
 
 def _packages_in_use(source: str) -> set[str]:

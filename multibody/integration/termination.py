@@ -12,7 +12,7 @@ from scipy.interpolate import CubicHermiteSpline
 from multibody.integration.chunk import find_first_ends
 from multibody.integration.constant_step import EngineMotion
 from multibody.models.system import EngineModel
-from reference.measures.demands import squares_and_summits
+from reference.measures.demand_reader import squares_and_summits
 from reference.problem import Outcome
 
 Array = NDArray[np.float64]

@@ -18,7 +18,8 @@ EffectiveIsolator, FloorSpectra, PhaseDistribution, StoryForces     results of t
 Estimate, Estimates                 a number with its error; arrays of them
 """
 
-from reference.measures.demands import Demands, Estimate, demands
+from reference.measures.demand_reader import Estimate
+from reference.measures.demands import Demands, demands
 from reference.measures.distribution import PhaseDistribution, phase_distribution
 from reference.measures.effective import EffectiveIsolator, effective_isolator
 from reference.measures.peak_demands import Estimates, PeakDemands

@@ -2,49 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
-from reference.measures.energy import Energy, energy_of
-from reference.problem.outcome import Outcome
-from reference.problem.result import Array, Trajectory, takes_motion
+from reference.measures.demand_reader import DemandReader, DemandSamples, Estimate, ReadNumber
+from reference.measures.energy import Energy
+from reference.problem.result import Trajectory, takes_motion
 from reference.problem.scene import Scene
-
-ANSWERED = (Outcome.OK, Outcome.TOLERANCE_NOT_MET)  # outcomes of a motion that lasts as long as the scene
-END_TOLERANCE = 1e-9  # time by which a motion may miss its end, as a share of the duration
-DECIMATION = 5  # the sampling error is the largest change if only one of DECIMATION samples is taken
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """
-    Number with its error.
-
-    Attributes
-    ----------
-    value : float
-        NaN without an answer.
-    error : float
-        Estimated absolute error; NaN where it is not known.
-    reason : str
-        Why there is no value although the motion lasts as long as the scene; "" otherwise.
-    """
-
-    value: float
-    error: float
-    reason: str = ""
-
-
-NEVER_RESTS = "never at rest: no dry friction"
-MOVING_AT_END = "moving at the end: take a longer duration"
-NOT_SAMPLED = "no samples of the last rest"
-
-UNKNOWN = Estimate(math.nan, math.nan)
 
 
 @dataclass(frozen=True)
@@ -185,143 +150,6 @@ def demands(trajectory: Trajectory) -> Demands:
 def _ratio_to_limit(displacement: Estimate, limit: float) -> Estimate:
     """Return a displacement over its limit, m."""
     return Estimate(displacement.value / limit, displacement.error / limit)
-
-
-def largest_displacement(time: Array, place: Array, velocity: Array) -> float:
-    """Return the largest length of `place` (T, 2), m, also between the instants `time` (T,)."""
-    square, summits = squares_and_summits(time, place, velocity)
-    return float(np.sqrt(max(square.max(), summits.max(initial=0.0))))
-
-
-def squares_and_summits(time: Array, place: Array, velocity: Array) -> tuple[Array, Array]:
-    """Return the squared length of `place` (T, 2) at the instants, and its largest from each instant to the next."""
-    # Between two instants the rate p . v of half the squared length is taken as linear. Where it passes zero downward,
-    # the length has a summit: the squared length there exceeds the one before by rate^2 over the fall of the rate,
-    # times the interval.
-    square, rate = (place**2).sum(axis=1), (place * velocity).sum(axis=1)
-    before, behind = rate[:-1], rate[1:]
-    turns = (before > 0.0) & (behind < 0.0)
-    rise = np.divide(before**2, before - behind, where=turns, out=np.zeros_like(before)) * np.diff(time)
-    return square, np.where(turns, square[:-1] + rise, square[1:])
-
-
-class DemandSamples(NamedTuple):
-    """Samples of a motion at T instants, from which extremes are read."""
-
-    time: Array  # (T,) s
-    place: Array  # (T, N, 2) m, horizontal displacements
-    velocity: Array  # (T, N, 2) m/s
-    isolator: Array  # (T, 2) N, horizontal force of the isolator
-    contact: Array  # (T,) N, normal force of the isolator
-    support: Array  # (T, K) N, normal forces of the supports; K = 0 in a model without single supports
-    rotation: Array  # (T, N) rad, about the vertical; (T, 0) in a model whose bodies do not turn
-    uplift: Array  # (T, K) m, gaps of the supports
-    acceleration: Array  # (T, N, 2) m/s^2, absolute and horizontal
-
-    @staticmethod
-    def from_motion(motion: Trajectory) -> DemandSamples:
-        moving = motion.time, motion.position[:, :, :2], motion.velocity[:, :, :2]
-        support = motion.support_force
-        uplift = motion.extra.get("uplift", np.zeros_like(support))
-        return DemandSamples(
-            *moving, motion.isolator_force, motion.contact_force, support, motion.vertical_rotation, uplift,
-            motion.absolute_acceleration[:, :, :2],
-        )  # fmt: skip
-
-    def decimate(self) -> list[DemandSamples]:
-        """Return one of DECIMATION samples from the first on, from the second on, ..."""
-        firsts = range(min(DECIMATION, len(self.time)))
-        return [DemandSamples(*(part[first::DECIMATION] for part in self)) for first in firsts]
-
-    def largest_length(self, place: Array, velocity: Array) -> float:
-        """Return the largest length of a displacement (T, 2), m."""
-        return largest_displacement(self.time, place, velocity)
-
-    def residual_and_creep(self, stick: list[tuple[float, float]]) -> tuple[float, float]:
-        """Return the displacement at the start of the last rest, and the distance of creep in all rests together."""
-        place, creep, first = self.place[:, 0], 0.0, 0
-        for begin, end in stick:
-            first = int(np.searchsorted(self.time, begin))
-            rest = place[first : np.searchsorted(self.time, end, side="right")]
-            creep += float(np.hypot(*(rest - rest[:1]).T).max(initial=0.0))
-        return float(np.hypot(*place[min(first, len(place) - 1)])), creep
-
-
-ReadNumber = Callable[[DemandSamples], float]
-
-
-class DemandReader:
-    """Reader of numbers from a motion, and of their errors from its decimated samples and from its other runs."""
-
-    def __init__(self, motion: Trajectory) -> None:
-        self.motion, self.accuracy = motion, motion.accuracy
-        self.answered = motion.status in ANSWERED and len(motion.time) > 0
-        self.samples = DemandSamples.from_motion(motion)
-        self.decimated = self.samples.decimate()
-        self.others = self.accuracy.coarser if self.accuracy else ()
-        self.coarser = [DemandSamples.from_motion(other) for other in self.others]
-
-    def extreme(self, read: ReadNumber) -> Estimate:
-        """Return a number that is read from samples."""
-        if not self.answered:
-            return UNKNOWN
-        value = read(self.samples)
-        sampling = max(abs(read(samples) - value) for samples in self.decimated)
-        return Estimate(value, sampling + self._solution_error(value, [read(samples) for samples in self.coarser]))
-
-    def residual(self) -> Estimate:
-        """Return the displacement in the last rest, with the creep in all rests as part of its error."""
-        if not self.answered:
-            return UNKNOWN
-        scene, stick = self.motion.scene, self.motion.stick
-        yields = scene.dry_friction.elastic
-        stick = stick[-1:] if yields else stick  # elastic displacements do not add up
-        if not stick or stick[-1][1] < (1.0 - END_TOLERANCE) * scene.duration:
-            rests = scene.has_dry_friction or yields
-            return Estimate(math.nan, math.nan, MOVING_AT_END if rests else NEVER_RESTS)
-        if stick[-1][0] > self.samples.time[-1]:
-            return Estimate(math.nan, math.nan, NOT_SAMPLED)
-        value, creep = self.samples.residual_and_creep(stick)
-        decimated = (
-            samples.residual_and_creep(stick) for samples in self.decimated if samples.time[-1] >= stick[-1][0]
-        )
-        sampling = max(abs(place - value) + abs(way - creep) for place, way in decimated)
-        others = [samples.residual_and_creep(motion.stick)[0] for samples, motion in zip(self.coarser, self.others)]
-        return Estimate(value, creep + sampling + self._solution_error(value, others))
-
-    def energy(self, read: Callable[[Energy], float]) -> Estimate:
-        """Return an amount of energy, which is added up over the samples."""
-        if not self.answered:
-            return UNKNOWN
-        (energy, *coarser), decimated = self._energies
-        value = read(energy)
-        sampling = max(abs(read(part) - value) for part in decimated) / (DECIMATION - 1)
-        others = [read(other) for other in coarser]
-        return Estimate(value, sampling + self._solution_error(value, others, energy.friction_energy()))
-
-    @cached_property
-    def _energies(self) -> tuple[list[Energy], list[Energy]]:
-        """Energies of the motion and of its other runs, and of the motion's decimated samples."""
-        energies = [energy_of(motion) for motion in (self.motion, *self.others)]
-        return energies, energies[0].decimate(DECIMATION)
-
-    def count(self, read: Callable[[Trajectory], float]) -> Estimate:
-        """Return a number of events; its error is the difference of the runs."""
-        if not self.answered:
-            return UNKNOWN
-        value = read(self.motion)
-        return Estimate(value, max((abs(value - read(other)) for other in self.others), default=math.nan))
-
-    def peaks(self) -> tuple[Estimate, ...]:
-        """Return the largest accelerations of all bodies."""
-        bodies = len(self.motion.scene.bodies)
-        if not self.answered:
-            return (UNKNOWN,) * bodies
-        errors = self.accuracy.peak_error if self.accuracy else np.full(bodies, np.nan)
-        return tuple(Estimate(float(value), float(error)) for value, error in zip(self.motion.peak, errors))
-
-    def _solution_error(self, value: float, others: list[float], scale: float | None = None) -> float:
-        return math.nan if self.accuracy is None else self.accuracy.error_of(value, others, scale)
 
 
 def _drift_of(link: int) -> ReadNumber:

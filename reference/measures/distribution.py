@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from reference.measures.demands import Estimate
+from reference.measures.demand_reader import Estimate
 from reference.support.arguments import check_array
 
 FRACTILES = (0.05, 0.16, 0.5, 0.84, 0.95)

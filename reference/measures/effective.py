@@ -60,6 +60,7 @@ def effective_isolator(scene: Scene, displacement: ArrayLike) -> EffectiveIsolat
     Notes
     -----
     ASCE/SEI 7-22, chapter 17, for a bilinear loop. The formulas are those of small slopes, D much smaller than rho.
+    Friction that yields at u_y is elastic up to there; its loop loses 4 mu W (D - u_y), and nothing below u_y.
 
     Examples
     --------

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.measures.demands import Demands, Estimate, demands
+from reference.measures.demand_reader import Estimate
+from reference.measures.demands import Demands, demands
 from reference.problem.definition import ground_peak
 from reference.problem.outcome import Outcome
 from reference.problem.phases import flat_phases, phase_coordinates

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from reference.measures.demands import ANSWERED
+from reference.measures.demand_reader import ANSWERED
 from reference.problem.result import Array, Trajectory, takes_motion
 from reference.support.arguments import Range, check_array, check_number
 from reference.support.build_cache import cache_on_disk

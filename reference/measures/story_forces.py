@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference.measures.demands import DemandReader, DemandSamples, Estimate
+from reference.measures.demand_reader import DemandReader, DemandSamples, Estimate
 from reference.problem.result import Array, Trajectory, takes_motion
 from reference.problem.scene import Scene
 

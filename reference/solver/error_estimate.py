@@ -30,7 +30,7 @@ TOLERANCE_RATIO = 30.0  # tolerance inside a step of the coarser run over that o
 DIFFERENCE_FRACTION = 0.4
 # Lower bounds on the error, since closer agreement of two runs is accidental. The first is in units of the tolerance
 # inside a step, the second in those of the requested tolerance. The third takes the place of the second where friction
-# depends on the velocity: stiff creep needs more and shorter steps (measured: up to 0.015).
+# yields, or depends on the velocity: stiff creep needs more and shorter steps (measured: up to 0.015).
 MIN_ERROR_PER_STEP_TOLERANCE = 5e-4
 MIN_ERROR_FRACTION = 0.007
 MIN_ERROR_FRACTION_VARYING = 0.07
@@ -41,6 +41,8 @@ MAX_STEP_TOLERANCE = 1e-5
 MIN_STEP_TOLERANCE = 1e-11
 # Tolerance inside a step over the tolerance of the peak: errors inside a step are local, a peak comes from all steps
 STEP_TOLERANCE_FACTOR = 10.0
+# Its share under friction that yields, whose short slides are changes within a step that both runs may miss alike
+YIELDING_SHARE = 0.01
 # Time by which the coarser run goes beyond the last peak, over RunSettings.period: its events come earlier or later
 EVENT_MARGIN = 0.01
 
@@ -153,6 +155,8 @@ def peaks_with_error(system: System, phases: Array, settings: RunSettings, whole
     early = not whole and system.rest_condition == CONSISTENT and not len(system.heat) and system.law != YIELDING
     settings = settings._replace(early=early)
     tolerance = min(MAX_STEP_TOLERANCE, max(STEP_TOLERANCE_FACTOR * settings.tolerance, MIN_STEP_TOLERANCE))
+    if system.law == YIELDING:
+        tolerance = max(YIELDING_SHARE * tolerance, MIN_STEP_TOLERANCE)
     if len(system.heat) and len(phases) and not len(system.k_t):  # every pair has its own k_T, first from a coarse run
         rest, coarse = np.zeros((len(system.below), 2)), settings._replace(tolerance=TOLERANCE_RATIO * tolerance)
         begun = [record_run(rest, rest, system, pair, coarse)[2] for pair in phases]
@@ -196,7 +200,8 @@ def _compare_runs(
     solved = (before.code == SOLVED) & (after.code == SOLVED)
     met = solved & (error <= permitted).all(axis=1)
     refused = (before.code == after.code) & (after.code != SOLVED)
-    fraction = MIN_ERROR_FRACTION if system.rate == 0.0 else MIN_ERROR_FRACTION_VARYING
+    plain = system.rate == 0.0 and system.law != YIELDING
+    fraction = MIN_ERROR_FRACTION if plain else MIN_ERROR_FRACTION_VARYING
     return after._replace(error=np.maximum(error, fraction * permitted)), ~(met | refused)
 
 

@@ -9,13 +9,14 @@ from __future__ import annotations
 from math import inf
 
 from reference.solver.compiled import cached_entry_point, compiled
+from reference.solver.events import NEVER
 from reference.solver.phases.follow import MAX_VIBRATION_ANGLE, MIN_DRIFT_ANGLE, add_drift, vibration_angle
 from reference.solver.phases.yielding import (
-    FIRST_NODE,
     begin_yielding,
     commit_force,
-    cut_at_yield_or_unloading,
+    locate_event,
     share_before_slowest,
+    shift_to_event,
     solve_yielding_step,
 )
 from reference.solver.record import record_stick
@@ -62,8 +63,12 @@ from reference.solver.work import (
     system_by_reference,
 )
 
-# Length of a step, in units of RunSettings.period, down to which an event within its first stage is searched for
-EVENT_TIME = 1e-9
+# Share of a plain step that the first step of a phase has: what happens before its first stage is not seen
+BEGINNING = 0.1
+# Error of the end of a step at yield and at unloading, as a share of the step, and the most steps that aim at an event.
+# An error of the instant of unloading has an effect of second order.
+YIELD_SHARE, UNLOADING_SHARE, MAX_AIMS = 1e-11, 1e-6, 8
+EVENT_TIME = 1e-12  # time before an event that is none, in units of RunSettings.period
 
 
 @compiled
@@ -73,44 +78,57 @@ def integrate_yielding(system: System, work: Workspace, settings: RunSettings, r
     # once in favor of the other, the next one makes a short step whatever its events.
     reset_workspace(work, min(FIRST_STEP * settings.period, system.duration), system.duration)
     work.force[0] = work.force[1] = 0.0
-    contact, idle, shorter, begun, at_event, since = ELASTIC, 0, inf, False, False, work.time
+    contact, idle, shorter, aims, begun, since = ELASTIC, 0, inf, 0, False, work.time
     begin_yielding(system, work, contact, False)
     while remaining_time(system, work, settings) > 0.0 and work.time <= until:
         if not count_step(work, settings):
-            return STEP_LIMIT
-        h = min(propose_plain_length(system, work, settings), shorter)
+            return classify_failure(system, work, contact, settings, STEP_LIMIT)
+        h = propose_plain_length(system, work, settings)
+        if aims > 0 and h < shorter:
+            aims = 0  # the event is beyond a kink of the loading
+        h = min(h, shorter)
+        if begun:
+            h = min(h, BEGINNING * work.length)
         held = idle > MAX_IDLE_PHASES
         if held:
             h = min(h, HOLDING_TIME * settings.period)
         code = UNSOLVED
-        if not is_too_short(work, contact, settings, h, UNSOLVED):
+        if not is_too_short(work, contact, settings, h, SOLVED if held else UNSOLVED):
             load_step(system, work, h)
             guess_from_last_step(work, h)
             code = solve_yielding_step(system, work, contact, h, NEWTON_FRACTION * settings.tolerance * work.scale[0])
         if code != SOLVED:
             if is_too_short(work, contact, settings, h, code):
                 return classify_failure(system, work, contact, settings, code)
-            work.length, shorter = FAILURE_SHORTENING * h, inf
+            work.length, shorter, aims = FAILURE_SHORTENING * h, inf, 0
             continue
-        smooth = 1.0 if held else share_before_slowest(system, work)
+        smooth = 1.0 if held or aims > 0 else share_before_slowest(system, work)
         if smooth < 1.0:
-            shorter, at_event = h * smooth, False
+            shorter = h * smooth
             continue
         angle = vibration_angle(system, contact, h)
         weight = settings.damped_weight if angle > MAX_VIBRATION_ANGLE else 1.0
         error = step_error(system, work, settings.tolerance, weight)
         factor = length_factor(error, settings.tolerance)
         if not error <= settings.tolerance:
-            work.length, shorter = min(MAX_SHORTENING, factor) * h, inf
+            work.length, shorter, aims = min(MAX_SHORTENING, factor) * h, inf, 0
             continue
-        share, following = 1.0, contact
-        if not held:
-            begun = begun or h <= EVENT_TIME * settings.period
-            share, following = cut_at_yield_or_unloading(system, work, contact, h, begun)
-        if 0.0 < share < 1.0:
-            shorter, at_event = h * share, share > FIRST_NODE
-            continue
-        if share > 0.0:
+        ends, reached_event = False, False
+        if aims > 0:
+            shift = shift_to_event(system, work, contact, h)
+            near = abs(shift) <= (YIELD_SHARE if contact == ELASTIC else UNLOADING_SHARE) or aims == MAX_AIMS
+            if shift != NEVER and not near:
+                shorter, aims = h * (1.0 + shift), aims + 1
+                continue
+            ends = shift != NEVER
+        elif not held:
+            portion = locate_event(system, work, contact, h, begun)
+            reached_event = portion * h <= EVENT_TIME * settings.period
+            ends = reached_event
+            if not ends and portion < 1.0:
+                shorter, aims = h * portion, 1
+                continue
+        if not reached_event:
             work.edges[0], work.edges[1] = 0.0, 1.0
             reached = instant_of_travel(system, work, contact, h)
             if angle > MIN_DRIFT_ANGLE:
@@ -121,13 +139,13 @@ def integrate_yielding(system: System, work: Workspace, settings: RunSettings, r
                 work.time = reached
                 return TRAVEL
             adapt_length(work, h, factor)
-            idle, begun = 0, at_event and h == shorter
-            shorter, at_event = inf, False
-        if following != contact:
+            idle, begun, shorter, aims = 0, aims == 0 and h == shorter, inf, 0
+        if ends:
             if contact == ELASTIC:
                 record_stick(record, since, work.time)
+            following = PLASTIC if contact == ELASTIC else ELASTIC
             begin_yielding(system, work, following, contact == PLASTIC)
-            contact, idle, begun, since = following, idle + 1, True, work.time
+            contact, idle, begun, shorter, aims, since = following, idle + 1, True, inf, 0, work.time
     if contact == ELASTIC:
         record_stick(record, since, work.time)
     return SOLVED

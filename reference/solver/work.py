@@ -28,7 +28,8 @@ BY_POSITION, BY_VELOCITY, BY_DRIVE = 0, 4, 8
 ) = range(12)  # fmt: skip
 # Rows of Workspace.shear of friction that yields (contact/yielding.py), x and y. First what its motion depends on:
 # position, velocity, drive, friction force; then acceleration and rate of the force, each of which has four slopes in
-# Workspace.shear_slopes; at last the excess over the bound, the velocity along the force, m/s, and the bound
+# Workspace.shear_slopes; at last the excess of the
+# square over that of the bound, the velocity along the force, m/s, and the bound
 ARGUMENTS, PUSHED, FORCE, MOTION, FORCE_RATE, EXCESS, ALONG_FORCE, BOUND = 0, 4, 6, 8, 10, 12, 13, 14
 MAX_PARTS = 3  # separate parts of one step that count for the peaks
 SERIES_TERMS = 32  # terms of the Taylor series of the ground's harmonics in a step: more than any step needs

@@ -15,7 +15,7 @@ from comparison.analyses.motions.analysis import StoredMotion, choose_places, mo
 from comparison.study.models import MODEL_HIERARCHY, Model, never
 from comparison.study.study import Study
 from reference.measures import Demands, Estimate, FloorSpectra
-from reference.measures.demands import MOVING_AT_END
+from reference.measures.demand_reader import MOVING_AT_END
 from reference.problem import GRAVITY, Amplification, Outcome, Scene, Trajectory
 
 MOST = {"translational": 16, "spatial": 4}  # phases per axis: fewer than those of the real models, for small grids

@@ -9,7 +9,7 @@ import xarray as xr
 from known_conditioning import known_curves
 
 import comparison.registry
-from comparison.evidence.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict
+from comparison.evidence.claims.checks import StatementVerdict
 from comparison.evidence.claims.table import ClaimTable, table_of
 from comparison.evidence.trends import trend
 from comparison.runner.analysis import Analysis
@@ -17,6 +17,7 @@ from comparison.runner.runner import Runner
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
+from comparison.verdicts import MET, NOT_COMPARED, NOT_MET
 from reference.problem import Amplification
 
 SCALES = (1.0, 0.5, 0.25)

@@ -24,7 +24,8 @@ from comparison.evidence.benchmarks import table as benchmarks
 from comparison.evidence.extremes import matrix as extremes
 from comparison.evidence.extremes.columns import ModelColumn
 from comparison.evidence.extremes.matrix import Extreme, Matrix, MatrixEntry
-from comparison.evidence.extremes.rows import ExtremeCase, scene
+from comparison.evidence.extremes.rows import ExtremeCase
+from comparison.evidence.extremes.scenes import scene
 from comparison.evidence.tradeoff import command as tradeoff
 from comparison.evidence.tradeoff import growth
 from comparison.evidence.tradeoff.trade import Answered, MeasuredTrade, Trade, with_pareto_fronts
@@ -144,7 +145,7 @@ def known_ensemble() -> ensemble.EnsembleResult:
     stripes = [ensemble.Stripe(*named, 1.0, 3, mean, low, largest, smallest),
                ensemble.Stripe(*named, 2.0, 2, none, high, none, ensemble.Statistic(0.2, 1e-3))]  # fmt: skip
     spectrum = ensemble.Spectrum("tower", 1, 2.0, 0.05, (0.1, 1.0), (mean,) * 2, [(mean,) * 2] * 3, (largest,) * 2)
-    moved = ensemble.EngineMotion("tower", "motion 2", 2.0, ["largest displacement"], {"translational": "ok"})
+    moved = ensemble.ChosenMotion("tower", "motion 2", 2.0, ["largest displacement"], {"translational": "ok"})
     return ensemble.EnsembleResult(
         schema=ensemble.SCHEMA, structures=[ensemble.Structure("tower", "Tower & <town>", 1, 9.81e3)],
         scales=(1.0, 2.0), spectra=[spectrum],

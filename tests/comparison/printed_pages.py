@@ -3,6 +3,7 @@
 import math
 import unicodedata
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 from browsers import LAPTOP, opened, until
@@ -66,9 +67,7 @@ def lowest_text(sheet: PageObject) -> float:
 def printed_page(browser: Browser, file: Path) -> Printed:
     """Print a page through Chromium and read it back."""
     page = opened(browser, file, LAPTOP).page
-    pdf = file.parent.parent / f"{file.stem}.pdf"
-    page.pdf(path=pdf, prefer_css_page_size=True)
-    sheets = PdfReader(pdf).pages
+    sheets = PdfReader(BytesIO(page.pdf(prefer_css_page_size=True))).pages
     sizes = [(float(sheet.mediabox.width) * POINT, float(sheet.mediabox.height) * POINT) for sheet in sheets]
     texts = [letters(sheet.extract_text()) for sheet in sheets]
     filled = [1.0 - lowest_text(sheet) / float(sheet.mediabox.height) for sheet in sheets]

@@ -43,6 +43,13 @@ def test_the_readme_is_short_and_has_two_commands_of_one_line() -> None:
     assert blocks[1].endswith("-m pytest -n auto --dist loadfile\n"), "by continuous integration"
 
 
+def test_pages_name_extras_that_can_be_installed() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    for page in PAGES:
+        named = re.findall(r"'\.\[([\w,]+)\]'", page.read_text(encoding="utf-8"))
+        assert {part for words in named for part in words.split(",")} <= {*extras}, page.name
+
+
 def test_the_keys_that_the_guide_shows_make_a_scene() -> None:
     page = (DOCS / "guide/building.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```toml\n(.*?)^```$", page, flags=re.MULTILINE | re.DOTALL)

@@ -20,7 +20,7 @@ from multibody.integration.peak import PeakReader
 from multibody.integration.refine import refine
 from multibody.models.assembly import assemble
 from multibody.models.units import units_of
-from reference.measures.demands import largest_displacement
+from reference.measures.demand_reader import largest_displacement
 from reference.problem import Outcome, Scene, load_scene
 
 TOLERANCE = 3e-3

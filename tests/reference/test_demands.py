@@ -11,7 +11,7 @@ from chains import chain, made_up
 import multibody
 import reference
 from reference.measures import Demands, Estimate, demands
-from reference.measures.demands import largest_displacement
+from reference.measures.demand_reader import largest_displacement
 from reference.problem import GRAVITY, Accuracy, Scene, State, Trajectory, ground_peak
 
 PHASE = (2.0, 0.7)

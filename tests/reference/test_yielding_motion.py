@@ -52,11 +52,12 @@ def test_factors_are_those_of_the_other_program(name):
 def test_energy_is_balanced_and_dissipated_as_by_the_other_program(name):
     scene, phase, equations = case(name)
     demands = reference.demands(reference.trajectory(scene, phase, equations, tolerance=TOLERANCE))
-    lost = demands.friction_energy.value + demands.damping_energy.value
-    allowed = demands.friction_energy.error + demands.damping_energy.error
-    assert abs(lost - FOUND[name]["dissipated"]) <= allowed + 1e-6 * lost
+    damping = demands.damping_energy or reference.Estimate(0.0, 0.0)
+    lost = demands.friction_energy.value + damping.value
+    allowed = demands.friction_energy.error + damping.error
     assert allowed < 1e-2 * lost
     if equations == "exact":  # (4.3) as printed keeps terms that do work
+        assert abs(lost - FOUND[name]["dissipated"]) <= allowed + 1e-6 * lost
         assert abs(demands.energy_balance.value) <= demands.energy_balance.error
         assert abs(FOUND[name]["imbalance"]) < 1e-9 * lost
 
@@ -102,12 +103,12 @@ def test_free_decay_has_the_turning_points_of_a_bilinear_oscillator():
     assert len(expected) == 10
     # the platform turns where friction becomes elastic again; the first interval is the start
     starts = np.array([start for start, _ in motion.stick[1:]])
-    found = thrown(2.0, starts).position[:, 0, 0]
-    np.testing.assert_allclose(found, expected, rtol=1e-7)
+    found = thrown(2.0, starts).position[: len(expected), 0, 0]
+    np.testing.assert_allclose(found, expected, rtol=1e-10)
     assert motion.stick[-1][1] == pytest.approx(ALONE.duration)
     residual = reference.demands(motion).residual
     last = motion.position[motion.time > motion.stick[-1][0], 0, 0]
-    assert residual.error >= np.ptp(last)
+    assert np.ptp(last) <= residual.error < 2.1 * WAY
     assert residual.value == pytest.approx(abs(expected[-1]), rel=1e-3)
 
 
@@ -155,8 +156,8 @@ def test_errors_cover_the_difference_to_a_tighter_run():
 
 
 def test_a_small_yield_displacement_tends_to_the_set_valued_law_but_for_the_platform_s_peak():
-    ways, limit = (1e-3, 1e-4, 1e-5), reference.amplification(FIG3, PHASES, tolerance=1e-6)
-    answers = [reference.amplification(yielding(FIG3, way), PHASES, tolerance=1e-6) for way in ways]
+    ways, limit = (1e-3, 1e-4, 1e-5), reference.amplification(FIG3, PHASES, tolerance=1e-5)
+    answers = [reference.amplification(yielding(FIG3, way), PHASES, tolerance=1e-4) for way in ways]
     body = np.array([np.abs(each.mu[:, 1] / limit.mu[:, 1] - 1.0).max() for each in answers])
     reach = np.array([np.abs(each.displacement / limit.displacement - 1.0).max() for each in answers])
     assert (body[1:] < 0.12 * body[:-1]).all()

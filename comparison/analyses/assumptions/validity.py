@@ -218,7 +218,7 @@ class Validity:
 
 @dataclass(frozen=True)
 class Assumptions(MappedAnalysis[Validity]):
-    """How far the assumptions hold in the scenes of a study: a few variations, or as many as a command asks for."""
+    """Evidence on the assumptions in the scenes of a study: a few variations, or as many as a command asks for."""
 
     key, stage, needs_compiled_reference = "assumptions", "assumptions", False
     function, without_value = staticmethod(answer_trials), staticmethod(without_answer)

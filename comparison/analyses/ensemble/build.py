@@ -56,14 +56,14 @@ def build_result(
     )
 
 
-def engine_motions(points: Points) -> list[result.EngineMotion]:
+def engine_motions(points: Points) -> list[result.ChosenMotion]:
     """The motions of the engine, why they were chosen, and how they ended by every model."""
     statuses: dict[tuple[str, str, float], dict[str, str]] = {}
     for point in points.every:
         member = point.member
         statuses.setdefault((member.structure, member.motion, member.scale), {})[point.model] = point.status
     places = [(each.member.structure, each.member.motion, each.member.scale) for each in points.chosen]
-    return [result.EngineMotion(*at, each.reasons, statuses[at]) for at, each in zip(places, points.chosen)]
+    return [result.ChosenMotion(*at, each.reasons, statuses[at]) for at, each in zip(places, points.chosen)]
 
 
 def read_suite(members: Sequence[Member], listed: Mapping[str, Motion]) -> list[result.GroundMotion]:

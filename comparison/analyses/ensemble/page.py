@@ -50,7 +50,7 @@ def _demands(ensemble: EnsembleResult, say: Say) -> Context:
         "rows": demand_rows(ensemble, ensemble.top),
         "definitions": sentences.DEFINITIONS,
         "outcomes_sentence": sentences.outcomes_sentence(ensemble),
-        "missing": [line for each in ensemble.structures for line in sentences.missing_sentences(ensemble, each)],
+        "missing": sentences.all_missing_sentences(ensemble),
         "panels": made(panels.isolator_panels(ensemble), say),
     }
 

@@ -172,7 +172,7 @@ class SupportExtremes:
 
 
 @result
-class EngineMotion:
+class ChosenMotion:
     """A motion that the engine computed."""
 
     structure: Annotated[str, "name"]
@@ -187,7 +187,7 @@ class Engine:
     """The engine and its motions; `curves` have their demands by every model."""
 
     model: Annotated[str, "key of the model that gives the engine's demands"]
-    motions: Annotated[Sequence[EngineMotion], "by structure"]
+    motions: Annotated[Sequence[ChosenMotion], "by structure"]
     tolerance: Annotated[float, "relative error asked of its largest accelerations"] = 1e-2
 
 

@@ -86,11 +86,11 @@ def place_of(structure: Structure, quantity: str, body: int | None) -> str:
 
 
 def governing(rows: Sequence[Stripe]) -> Stripe | None:
-    """Of stripes of several bodies that with the largest mean, median or largest value, whichever is known."""
+    """Of stripes of several bodies that with the largest mean, or the largest fractile that is known."""
 
-    def size(row: Stripe) -> tuple[float, float, float]:
-        values = row.mean.value, row.fractiles[1].value, row.largest.value
-        return tuple(-math.inf if value is None else value for value in values)  # type: ignore[return-value]
+    def size(row: Stripe) -> list[float]:
+        values = (each.value for each in (row.mean, *reversed(row.fractiles), row.smallest))
+        return [-math.inf if value is None else value for value in values]
 
     return max(rows, key=size, default=None)
 

@@ -10,6 +10,7 @@ from comparison.wording import percent
 from reference.plausibility import implausible_drift
 
 NAMED = 12  # motions that are named one by one
+FEW = 3  # and of a sentence that has other things to say
 DEFINITIONS = (
     "Displacement, drift, story shear, base shear, overturning moment and acceleration are resultants of x and y, "
     "the largest over time; floor spectra are the larger of x and y.",
@@ -64,7 +65,11 @@ def answer_sentence(ensemble: EnsembleResult) -> str:
         where = f"{bound}{stripe.largest_motion}"
         said.append(f"{words}: mean {mean} {unit}, largest {largest} {unit}{share} ({where})")
     lost = {each.name: missing_motions(ensemble, each) for each in ensemble.structures}
-    bounds = [f"{', '.join(motions)} ({labels(ensemble)[name]})" for name, motions in lost.items() if motions]
+    bounds = [
+        f"{', '.join(motions) if len(motions) <= FEW else count_motions(len(motions))} ({labels(ensemble)[name]})"
+        for name, motions in lost.items()
+        if motions
+    ]
     lacking = f"No value under {'; '.join(bounds)}. " if bounds else ""
     if not said:
         return f"{lacking}No demand is known of all motions. {outcomes_sentence(ensemble)}"
@@ -142,7 +147,10 @@ def support_sentences(ensemble: EnsembleResult) -> list[str]:
         by = "By the equations and statics" if model == EXACT.key else f"By the {model} engine"
         parts = list(_support_parts(ensemble, rows))
         if parts:
-            said.append(f"{by}, {count_motions(rows[0].motions)} of each bound: {'; '.join(parts)}.")
+            counts = {labels(ensemble)[each.structure]: each.motions for each in rows}
+        of = f"{', '.join(f'{count} motions of {bound}' for bound, count in counts.items())}"
+        of = f"{count_motions(rows[0].motions)} of each bound" if len({*counts.values()}) == 1 else of
+        said.append(f"{by}, {of}: {'; '.join(parts)}.")
     return said
 
 
@@ -189,6 +197,13 @@ def missing_sentences(ensemble: EnsembleResult, structure: Structure) -> list[st
         what = "every demand" if every else ", ".join(names)
         lines.append(f"Without a value for {count_motions(count)}{which}: {what} ({why}).")
     return lines
+
+
+def all_missing_sentences(ensemble: EnsembleResult) -> list[str]:
+    """Return which motions of every bound lack which demands, each after the name of its bound."""
+    named = labels(ensemble) if len(ensemble.structures) > 1 else {}
+    lines = ((named.get(each.name, ""), missing_sentences(ensemble, each)) for each in ensemble.structures)
+    return [f"{bound}: {line}" if bound else line for bound, of_bound in lines for line in of_bound]
 
 
 def ground_sentence(ensemble: EnsembleResult) -> str:

@@ -147,7 +147,8 @@ def support_extremes(points: Points) -> Iterator[result.SupportExtremes]:
                 largest, high = _extreme(large, known, 1.0)
                 gap, _ = _extreme(gaps, known, 1.0)
                 x, y = map(float, places[number])
-                about = name, number + 1, x, y, known[0].model, len(known)
+                count = sum(math.isfinite(each.value) for each in large)
+                about = name, number + 1, x, y, known[0].model, count
                 yield result.SupportExtremes(*about, smallest, low, largest, high, gap)
 
 

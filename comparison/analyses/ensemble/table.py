@@ -19,7 +19,7 @@ def as_rows(points: Points, ensemble: EnsembleResult) -> list[dict[str, object]]
     """A row for every motion, bound, scale and model, with all demands and their errors; None without an answer."""
     named = labels(ensemble)
     listed = quantities(points.every)
-    units = {quantity: f" [{unit}]" if (unit := unit_of_demand(quantity[0])) else "" for quantity in listed}
+    units = {quantity: f" [{unit_of_demand(quantity[0]) or '-'}]" for quantity in listed}
     names = {quantity: "_".join(map(str, filter(None, quantity))) for quantity in units}  # drift_2 of body 2
     rows = []
     for point in points.every:
@@ -28,10 +28,10 @@ def as_rows(points: Points, ensemble: EnsembleResult) -> list[dict[str, object]]
         row: dict[str, object] = {
             "motion": member.motion,
             "bound": named[member.structure],
-            "scale": member.scale,
+            "scale [-]": member.scale,
             "model": point.model,
             "status": point.status,
-            "factor": member.factor,
+            "factor [-]": member.factor,
             "peak_ground_acceleration [m/s^2]": horizontal_peak(member.scene),
             "missing": "; ".join(missing),
         }

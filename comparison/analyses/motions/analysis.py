@@ -15,7 +15,7 @@ from comparison.study.study import Study
 from comparison.surfaces.model_difference import difference_of
 from comparison.wording import exception_line
 from reference.measures import Demands, FloorSpectra, demands, floor_spectra
-from reference.measures.demands import ANSWERED
+from reference.measures.demand_reader import ANSWERED
 from reference.problem import Outcome, Scene, Trajectory
 from reference.support.build_cache import cache_on_disk
 

@@ -67,6 +67,7 @@ FEATURE = Feature(
     (FOUND,),
     section=Section(
         "Records as read",
+        "phase-resonance run makes it, of scenes with a recorded motion",
         context=lambda report: {"gravity": GRAVITY},
         verdict=lambda results: word_warnings(FOUND.of(results)),
     ),

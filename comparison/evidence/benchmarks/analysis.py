@@ -19,7 +19,7 @@ from comparison.study.batches import import_function
 from comparison.study.models import EXACT, REGULARIZED, TRANSLATIONAL
 from comparison.study.study import Study
 from comparison.verdicts import MET, NOT_MET
-from reference.measures.demands import ANSWERED
+from reference.measures.demand_reader import ANSWERED
 from reference.problem import State, Trajectory
 
 MODELS = {EQUATIONS: EXACT, SMOOTHED: REGULARIZED, ENGINE: TRANSLATIONAL}

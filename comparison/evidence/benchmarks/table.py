@@ -103,14 +103,14 @@ class Benchmarks:
 
     def counts(self) -> dict[Verdict, int]:
         """Numbers of the equations and of the engine by verdict."""
-        return count_verdicts(number.verdict for _, _, _, number in self.judged_numbers())
+        return count_verdicts(number.verdict for _, _, _, number in self.iterate_numbers())
 
     def explained(self) -> dict[str, int]:
         """Return how many of the numbers that are not met each explanation has, "" for those that have none."""
-        found = [number.explanation for _, _, _, number in self.judged_numbers() if number.verdict == NOT_MET]
+        found = [number.explanation for _, _, _, number in self.iterate_numbers() if number.verdict == NOT_MET]
         return {why: found.count(why) for why in (FRICTION, MODEL, "")}
 
-    def judged_numbers(self) -> Iterator[tuple[Benchmark, PublishedNumber, str, Number]]:
+    def iterate_numbers(self) -> Iterator[tuple[Benchmark, PublishedNumber, str, Number]]:
         """Every number that has a verdict: of the equations and of the engine."""
         for each in self.benchmarks:
             for row in each.rows:
@@ -120,7 +120,7 @@ class Benchmarks:
 
 def verdict_line(table: Benchmarks) -> str:
     """Return the verdict of the section in one line: the counts, and the largest relative error that is not met."""
-    off = [(row, side, each) for each, row, side, number in table.judged_numbers() if number.verdict == NOT_MET]
+    off = [(row, side, each) for each, row, side, number in table.iterate_numbers() if number.verdict == NOT_MET]
     off = [each for each in off if each[0].published]
     largest = max(off, key=lambda each: abs((each[0].error_of(each[1]) or 0.0) / each[0].published), default=None)
     where = ""

@@ -1,7 +1,7 @@
 """Checks of what the paper says about its surfaces: each sees the evidence of its cases and computes its verdict."""
 
 from collections.abc import Callable
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from comparison.evidence.claims.evidence import Evidence
 from comparison.evidence.claims.smoothness import Bend
 from comparison.result_types import Text, result
 from comparison.surfaces.budget import torus_distance
+from comparison.verdicts import MET, NOT_MET, Verdict
 
 EPSILON = 0.1  # the paper's: T_1, T_2 = T_c (1 -+ epsilon)
 ROUNDING = 1e-9  # relative size of what rounding leaves; T_c (1 -+ epsilon) itself is close to T_c
@@ -21,19 +22,14 @@ COMPLEX_SHARE = 0.25  # prominence over the range; at 20 % the count of mu_1 dep
 OTHER_SHARES = 0.15, 0.35  # prominences at which the same count may say otherwise
 NEAR = np.pi / 4.0  # rad, from a corner
 CORNER = (0.0, 0.0)  # rad; on the square that closes the four corners are one point
-VIEWS = {"periodic": counting.periodic, "drawn": counting.drawn, "profile": counting.profiled}
-
-Word = Literal["met", "not met", "not compared"]
-MET: Word = "met"
-NOT_MET: Word = "not met"
-NOT_COMPARED: Word = "not compared"
+VIEWS = {"periodic": counting.count_periodic, "drawn": counting.count_drawn, "profile": counting.count_profile}
 
 
 @result
 class StatementVerdict:
     """Verdict on a statement of the paper by the surfaces in one reading of (5.1). Raises ValueError for no reason."""
 
-    verdict: Annotated[Word, "met, not met, or not compared"]
+    verdict: Annotated[Verdict, "met, not met, or not compared"]
     reason: Annotated[Text, "the numbers that decide, why it cannot hold, or why nothing was compared"]
 
     def __post_init__(self) -> None:
@@ -139,7 +135,7 @@ def compare_complexity(case: Evidence) -> StatementVerdict:
     """Check that mu_2 has several peaks and valleys, and more of them than mu_1; the shares that say otherwise."""
 
     def counts(share: float) -> list[counting.Counts]:
-        return [counting.periodic(case.mu[..., body], case.error, share) for body in (0, 1)]
+        return [counting.count_periodic(case.mu[..., body], case.error, share) for body in (0, 1)]
 
     def holds(share: float) -> bool:
         first, second = counts(share)

@@ -7,9 +7,10 @@ from functools import partial
 import numpy as np
 
 from comparison.evidence.claims import checks
-from comparison.evidence.claims.checks import NOT_COMPARED, Check, StatementVerdict
+from comparison.evidence.claims.checks import Check, StatementVerdict
 from comparison.evidence.claims.evidence import Evidence
 from comparison.evidence.claims.peaks_and_valleys import SHARE, Counts
+from comparison.verdicts import NOT_COMPARED
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ Peaks and valleys of a surface over the phases, by prominence.
 A peak is a maximum whose prominence is at least SHARE of the surface's range (highest minus lowest value) and larger
 than what the errors of the values can make; its prominence is how far one must go down from it to reach anything
 higher. A valley is a peak of the surface upside down. The square is periodic, so a ridge that leaves through one edge
-comes back through the opposite one and counts once. `drawn` counts on one period as it is drawn instead, bounded by
-its edges, where the same ridge is cut in two. `profiled` counts on the mean along the diagonals alpha1 - alpha2.
+comes back through the opposite one and counts once. `count_drawn` counts on one period as it is drawn, bounded by its
+edges, where the same ridge is cut in two. `count_profile` counts on the mean along the diagonals alpha1 - alpha2.
 """
 
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ class Counts(NamedTuple):
     valleys: int
 
 
-def periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+def count_periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     """
     Peaks and valleys on the square that closes at 2 pi.
 
@@ -46,12 +46,12 @@ def periodic(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     return Counts(len(relief(mu, error, share).tops), len(relief(-mu, error, share).tops))
 
 
-def drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+def count_drawn(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     """Peaks, and valleys between two peaks, on the closed square [0, 2 pi]^2 as it is drawn, bounded by its edges."""
     return _count_bounded(np.pad(mu, ((0, 1), (0, 1)), mode="wrap"), error, share)
 
 
-def profiled(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
+def count_profile(mu: Array, error: float = 0.0, share: float = SHARE) -> Counts:
     """Peaks and valleys of the mean along the diagonals alpha1 - alpha2 as the drawn square shows it, -2 pi to 2 pi."""
     n = len(mu)
     rows = np.arange(n)

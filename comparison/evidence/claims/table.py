@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from pydantic import computed_field
 
-from comparison.evidence.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict, Word
+from comparison.evidence.claims.checks import StatementVerdict
 from comparison.evidence.claims.claims import CLAIMS
 from comparison.evidence.claims.evidence import CaseInReading, Evidence, evidence_of_failure, gather_evidence
 from comparison.evidence.claims.readings import (
@@ -25,11 +25,11 @@ from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import values_of
+from comparison.verdicts import MET, NOT_COMPARED, Verdict, count_verdicts
 from reference.problem import builtin_scenes
 
 GRID = 24  # phases per axis: on 16, 32, 48 and 64 the same statements are met
 COARSE = 2  # every which phase of surfaces that are only correlated with another
-VERDICTS: tuple[Word, ...] = (MET, NOT_MET, NOT_COMPARED)
 
 
 @result
@@ -61,12 +61,10 @@ class ClaimTable:
 
     @computed_field  # type: ignore[prop-decorator]
     @property
-    def counts(self) -> dict[str, dict[str, int]]:
+    def counts(self) -> dict[str, dict[Verdict, int]]:
         """Return the numbers of statements met, not met and not compared, by name of the reading."""
         return {
-            reading.name: {
-                word: sum(each.verdicts[reading.name].verdict == word for each in self.statements) for word in VERDICTS
-            }
+            reading.name: count_verdicts(each.verdicts[reading.name].verdict for each in self.statements)
             for reading in READINGS
         }
 

@@ -55,7 +55,7 @@ def word_effective(values: Sequence[Effective]) -> str:
     return f"largest departures from what the scenes state: {', '.join(parts)}"
 
 
-def stated(scene: Scene) -> Effective:
+def values_of_scene(scene: Scene) -> Effective:
     """Return the values as the scene states them; the platform begins at rest on the plate and moves with it."""
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
     return Effective(
@@ -100,7 +100,9 @@ class EffectiveValues(MappedAnalysis[list[Effective]]):
     def collect(self, study: Study, surfaces: xr.Dataset | None, results: TaskResults) -> list[Effective]:
         """In the order scene, model; what the scene states comes first."""
         read = self.values(study, surfaces, results)
-        of_scenes = ([stated(scene), *(each for each in read if each.scene == scene.name)] for scene in study.scenes)
+        of_scenes = (
+            [values_of_scene(scene), *(each for each in read if each.scene == scene.name)] for scene in study.scenes
+        )
         return [value for values in of_scenes for value in values]
 
 

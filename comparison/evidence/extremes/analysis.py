@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from comparison.evidence.extremes.causes import CAUSES
 from comparison.evidence.extremes.columns import COLUMNS, EQUATIONS, REFERENCE, ModelColumn
-from comparison.evidence.extremes.matrix import Extreme, Matrix, MatrixEntry, Verdict
+from comparison.evidence.extremes.matrix import CellVerdict, Extreme, Matrix, MatrixEntry
 from comparison.evidence.extremes.rows import ExtremeCase
 from comparison.json_file import finite_or_none
 from comparison.result_types import Array
@@ -56,13 +56,13 @@ def judge_reply(
 ) -> MatrixEntry:
     """The verdict on the worst phase pair of an answer; finer: answers to the same question, the most trusted first."""
     if reply.raised:
-        return MatrixEntry(Verdict.FAILED, f"raises {reply.raised}")
+        return MatrixEntry(CellVerdict.FAILED, f"raises {reply.raised}")
     if reply.invalid:
-        return MatrixEntry(Verdict.REFUSED if invalid else Verdict.FAILED, reply.invalid)
+        return MatrixEntry(CellVerdict.REFUSED if invalid else CellVerdict.FAILED, reply.invalid)
     if invalid:
-        return MatrixEntry(Verdict.FAILED, "accepts an input that is against the rules")
+        return MatrixEntry(CellVerdict.FAILED, "accepts an input that is against the rules")
     points = [_point(reply, m, finer, tolerance, right) for m in range(len(reply.status))]
-    order = list(Verdict)
+    order = list(CellVerdict)
     return max(points, key=lambda point: (order.index(point.verdict), point.error or 0.0))
 
 
@@ -70,51 +70,51 @@ def _point(reply: Reply, m: int, finer: Sequence[Reply], tolerance: float, right
     status, mu, error = reply.status[m], reply.mu[m], reply.error[m]
     replies = [(other.status[m], other.mu[m], other.error[m]) for other in finer if len(other.status) > m]
     if status not in (PHYSICS | NUMERICS | {Outcome.OK}):
-        return MatrixEntry(Verdict.FAILED, f"status {status!r} is no answer of a model", status)
+        return MatrixEntry(CellVerdict.FAILED, f"status {status!r} is no answer of a model", status)
     if right and status != Outcome.OK and status not in right:
-        return MatrixEntry(Verdict.FAILED, f"refused as {status!r} instead of {' or '.join(right)}", status)
+        return MatrixEntry(CellVerdict.FAILED, f"refused as {status!r} instead of {' or '.join(right)}", status)
     if status in (Outcome.OK, Outcome.TOLERANCE_NOT_MET):
         return _value(status, mu, error, replies, tolerance)
     if not np.isnan(mu).all():
-        return MatrixEntry(Verdict.FAILED, f"{status}, and yet a value", status)
+        return MatrixEntry(CellVerdict.FAILED, f"{status}, and yet a value", status)
     if status in NUMERICS:
-        return MatrixEntry(Verdict.LIMIT, status, status)
+        return MatrixEntry(CellVerdict.LIMIT, status, status)
     answered = next((other for other, _, _ in replies if other not in NUMERICS), status)
     if answered != status and status not in right:
-        return MatrixEntry(Verdict.FAILED, f"{status}, but a finer run: {answered}", status)
-    return MatrixEntry(Verdict.REFUSED, status, status)
+        return MatrixEntry(CellVerdict.FAILED, f"{status}, but a finer run: {answered}", status)
+    return MatrixEntry(CellVerdict.REFUSED, status, status)
 
 
 def _value(status: str, mu: Array, error: Array, finer: Sequence[Finer], tolerance: float) -> MatrixEntry:
     """Judge a value with its error estimate; one that claims nothing, by whether it is as good as asked."""
     known = [(value, estimate) for _, value, estimate in finer if np.isfinite(value).all()]
     refused = next((other for other, _, _ in finer), "none")
-    unconfirmed = MatrixEntry(Verdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
+    unconfirmed = MatrixEntry(CellVerdict.FAILED, f"{status}, but no finer run confirms it: {refused}", status)
     if np.isfinite(mu).all() and np.isnan(error).all():
         if not known:
             return unconfirmed
         with np.errstate(divide="ignore", invalid="ignore"):
             difference = float(np.nan_to_num(np.abs(mu - known[0][0]) / np.abs(known[0][0]), nan=0.0).max())
-        verdict = Verdict.CONVERGED if difference <= tolerance else Verdict.LIMIT
+        verdict = CellVerdict.CONVERGED if difference <= tolerance else CellVerdict.LIMIT
         return MatrixEntry(verdict, f"states no error, off by {difference:.1e}", status)
     if not (np.isfinite(mu).all() and np.isfinite(error).all()):
-        return MatrixEntry(Verdict.FAILED, f"{status}, but no finite number", status)
+        return MatrixEntry(CellVerdict.FAILED, f"{status}, but no finite number", status)
     share = float((error / np.abs(mu)).max()) if (mu != 0.0).all() else float("inf")
     claimed = finite_or_none(share)
     if (error < 0.0).any() or (status == Outcome.OK and share > tolerance * (1.0 + ROUNDING)):
         reason = f"{status} with an error estimate of {share:.1e}, asked: {tolerance:g}"
-        return MatrixEntry(Verdict.FAILED, reason, status, claimed)
+        return MatrixEntry(CellVerdict.FAILED, reason, status, claimed)
     for value, estimate in known:
         off, allowed = np.abs(mu - value), error + estimate + ROUNDING * np.abs(mu)
         worst = int((off / allowed).argmax())
         if off[worst] > allowed[worst]:
             times = off[worst] / allowed[worst]
             reason = f"mu_{worst + 1} is off by {off[worst] / abs(mu[worst]):.1e}, {times:.2g} times what is claimed"
-            return MatrixEntry(Verdict.FAILED, reason, status, claimed)
+            return MatrixEntry(CellVerdict.FAILED, reason, status, claimed)
         if status == Outcome.OK and (estimate <= np.maximum(error, FINE * tolerance * np.abs(mu))).all():
-            return MatrixEntry(Verdict.CONVERGED, f"error {share:.1e} confirmed", status, claimed)
+            return MatrixEntry(CellVerdict.CONVERGED, f"error {share:.1e} confirmed", status, claimed)
     if status == Outcome.TOLERANCE_NOT_MET:
-        return MatrixEntry(Verdict.LIMIT, f"{status}: {share:.1e}", status, claimed)
+        return MatrixEntry(CellVerdict.LIMIT, f"{status}: {share:.1e}", status, claimed)
     return replace(unconfirmed, error=claimed)
 
 
@@ -151,7 +151,7 @@ def solve_cell(cell: Cell) -> MatrixEntry:
             if finer[-1].status and NUMERICS.isdisjoint(finer[-1].status):  # an answer, be it a refusal, at every point
                 break
     entry = judge_reply(reply, finer, tolerance, row.invalid, row.right)
-    cause = CAUSES.get((row.group, row.title), {}).get(column.key) if entry.verdict == Verdict.LIMIT else None
+    cause = CAUSES.get((row.group, row.title), {}).get(column.key) if entry.verdict == CellVerdict.LIMIT else None
     reason = " ".join(": ".join(filter(None, (entry.reason, cause))).split())
     total = time.process_time() - begin
     return replace(entry, reason=reason, seconds=round(seconds, 3), total=round(total, 3))
@@ -225,7 +225,7 @@ class Extremes(Analysis[Matrix]):
 
 def _entry_of_failure(cell: Cell, failed: TaskResult) -> MatrixEntry:
     reason = f"{FAILURES.get(failed.outcome, 'raises')} {failed.error_message}"
-    return MatrixEntry(Verdict.FAILED, reason, failed.outcome.value)
+    return MatrixEntry(CellVerdict.FAILED, reason, failed.outcome.value)
 
 
 def select_quick(every: Sequence[ExtremeCase]) -> list[ExtremeCase]:

@@ -18,7 +18,7 @@ from comparison.cli.computing import compute_tasks, run_facts
 from comparison.cli.user_models import add_models, user_models
 from comparison.evidence.extremes.analysis import LIMIT, Extremes, cells, select_quick
 from comparison.evidence.extremes.columns import COLUMNS, ENGINE, EQUATIONS, STATED, user_column
-from comparison.evidence.extremes.matrix import FILE, STORED, Matrix, Verdict
+from comparison.evidence.extremes.matrix import FILE, STORED, CellVerdict, Matrix
 from comparison.evidence.extremes.rows import rows
 from comparison.runner.output import destination, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
@@ -51,7 +51,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     matrix = judge_matrix(extremes, options, argv, console, executor)
 
     def show() -> None:
-        for verdict in (Verdict.LIMIT, Verdict.FAILED):
+        for verdict in (CellVerdict.LIMIT, CellVerdict.FAILED):
             for row, title, entry in matrix.cells_of(verdict):
                 console.print(f"{verdict}: {row.group} {row.title}, {title}: {entry.reason}", soft_wrap=True)
 
@@ -61,7 +61,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     console.print(f"{sum(matrix.counts().values())} cells in {spent}: {counts}.", soft_wrap=True)
     console.print(f"Matrix: {file}", soft_wrap=True)
     console.print("A report written into the same directory by phase-resonance run shows it.")
-    return 1 if matrix.counts()[Verdict.FAILED] else 0
+    return 1 if matrix.counts()[CellVerdict.FAILED] else 0
 
 
 def judge_matrix(

@@ -1,6 +1,6 @@
 """Stability at the extremes: in the report."""
 
-from comparison.evidence.extremes.matrix import MEANING, STORED, Matrix, Verdict, describe
+from comparison.evidence.extremes.matrix import MEANING, STORED, CellVerdict, Matrix, describe
 from comparison.report.feature import Feature, ResultField
 from comparison.report.section import Section
 
@@ -17,7 +17,7 @@ FEATURE = Feature(
         "Stability at the extremes",
         STORED.word_origin(),
         lambda report: {
-            "verdicts": [(verdict.value, MEANING[verdict]) for verdict in Verdict],
+            "verdicts": [(verdict.value, MEANING[verdict]) for verdict in CellVerdict],
             "describe": describe,
         },
         verifies=True,

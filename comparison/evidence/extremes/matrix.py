@@ -12,7 +12,7 @@ from comparison.result_types import require, result
 FILE = "extremes.json"
 
 
-class Verdict(StrEnum):
+class CellVerdict(StrEnum):
     """From best to worst; a cell of several phase pairs is as good as its worst one."""
 
     CONVERGED = "converged"
@@ -22,10 +22,10 @@ class Verdict(StrEnum):
 
 
 MEANING = {
-    Verdict.CONVERGED: "converged: error claimed, confirmed by a finer run",
-    Verdict.REFUSED: "refused: against a rule, or the motion leaves the model",
-    Verdict.LIMIT: "limit: the model says that it cannot",
-    Verdict.FAILED: "FAILED: no answer, or a wrong one",
+    CellVerdict.CONVERGED: "converged: error claimed, confirmed by a finer run",
+    CellVerdict.REFUSED: "refused: against a rule, or the motion leaves the model",
+    CellVerdict.LIMIT: "limit: the model says that it cannot",
+    CellVerdict.FAILED: "FAILED: no answer, or a wrong one",
 }
 
 
@@ -33,7 +33,7 @@ MEANING = {
 class MatrixEntry:
     """One cell of the matrix."""
 
-    verdict: Verdict
+    verdict: CellVerdict
     """converged: error confirmed by a finer run; refused: against a rule or outside the model; limit: the model says
     that it cannot; FAILED: all else"""
     reason: Annotated[str, "in a few words"]
@@ -72,7 +72,7 @@ class Matrix:
     def counts(self) -> dict[str, int]:
         """Number of cells of each verdict, from the best to the worst, zeros included."""
         seen = Counter(entry.verdict for row in self.rows for entry in row.entries.values())
-        return {verdict.value: seen[verdict] for verdict in Verdict}
+        return {verdict.value: seen[verdict] for verdict in CellVerdict}
 
     @property
     def count_line(self) -> str:
@@ -99,6 +99,6 @@ STORED = StoredFile(FILE, Matrix, "a matrix of extremes", "phase-resonance extre
 
 def describe(entry: MatrixEntry) -> str:
     """Return what stands in the field: the error claimed, or the status in its own words."""
-    if entry.verdict == Verdict.CONVERGED and entry.error is not None:
+    if entry.verdict == CellVerdict.CONVERGED and entry.error is not None:
         return f"{entry.error:.0e}"
-    return "FAILED" if entry.verdict == Verdict.FAILED else entry.status or "against a rule"
+    return "FAILED" if entry.verdict == CellVerdict.FAILED else entry.status or "against a rule"

@@ -6,7 +6,7 @@ few seconds, during which the platform rests, slides and stops, unless the durat
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -20,13 +20,20 @@ from comparison.evidence.extremes.columns import (
     WITH_ENGINE,
     WITH_V_REG,
 )
+from comparison.evidence.extremes.scenes import (
+    GRAVITY_LIMIT,
+    amplitudes_along,
+    amplitudes_upward,
+    change_bodies,
+    put_on_bars,
+    raise_bodies,
+    scene,
+)
 
 Phases = tuple[tuple[float, float], ...]
 
 PHASES: Phases = ((0.3, 1.1), (2.0, 0.7))  # rad
 SYMMETRIC: Phases = ((0.0, 0.0), (0.0, math.pi), (math.pi / 2, math.pi / 2), (math.pi, math.pi / 2))
-PLAIN_RADIUS = 0.25  # m, of the plain scene, whose period is 1 s
-GRAVITY_LIMIT = 9.81  # m/s^2: downward acceleration of the plate at which the contact carries nothing
 # steps of the engine for a phase pair where nothing but their number would stop the translational model, whose steps
 # cost least, and for one of a tower by its number of bodies, whose steps cost more
 MUCH_WORK = 4e6
@@ -53,46 +60,6 @@ class ExtremeCase:
     def name(self) -> str:
         """Quantity and value."""
         return f"{self.group} {self.title}"
-
-
-def scene(
-    *,
-    amplitudes: Sequence[Sequence[float]] = ((2.0, 0.0), (0.0, 2.0)),
-    periods: Sequence[float] = (0.9, 1.1),
-    decay: Sequence[float] = (1.0 / 3.0, 0.3 / 1.1),
-    duration: float = 3.0,
-    masses: Sequence[float] = (1.0, 1.0),
-    link: Sequence[float] = (1.5, 1.2),
-    damping: float | Sequence[float] | None = None,
-    storey: float = 1.0,
-    **isolator: Any,
-) -> dict[str, Any]:
-    """The plain scene, `fig3-I` at twice its amplitude, as in a scene file, with changed quantities; None: no key."""
-    if "radius" not in isolator:
-        isolator = {"period": 1.0, **isolator}
-    size = [2.0, 2.0, 0.2]
-    bodies: list[dict[str, Any]] = [
-        {"mass": mass, "height": 0.2 + storey * number, "size": size, "period": list(link)}
-        for number, mass in enumerate(masses)
-    ]
-    del bodies[0]["period"]
-    for body in bodies[1:]:
-        body["damping"] = damping
-    return {
-        "title": "one quantity at its extreme",
-        "duration": duration,
-        "isolator": {"friction": 0.1, "supports": 4, "ring": 1.0, "sphere_radius": 0.05, **isolator},
-        "bodies": bodies,
-        "excitation": {"amplitudes": [list(row) for row in amplitudes], "periods": list(periods), "decay": list(decay)},
-    }
-
-
-def _along(amplitude: float) -> list[list[float]]:
-    return [[amplitude, 0.0], [0.0, amplitude]]
-
-
-def _upward(amplitude: float) -> list[list[float]]:
-    return [[2.0, 0.0], [0.0, 2.0], [amplitude, 0.0]]
 
 
 def _rows(
@@ -147,25 +114,19 @@ def _numerics_of_the_engine() -> Iterator[ExtremeCase]:
 def _sizes() -> Iterator[ExtremeCase]:
     group = "amplitude, m/s^2"
     sizes = (1e-9, 1e-6, 1e-3, 5.0, 20.0, 1e3, 1e9)
-    yield from _rows(group, {amplitude: scene(amplitudes=_along(amplitude)) for amplitude in sizes})
-    near_rim = scene(amplitudes=_along(12.0), friction=0.02, duration=20.0)
+    yield from _rows(group, {amplitude: scene(amplitudes=amplitudes_along(amplitude)) for amplitude in sizes})
+    near_rim = scene(amplitudes=amplitudes_along(12.0), friction=0.02, duration=20.0)
     yield ExtremeCase(group, "12, friction 0.02, along the rim", near_rim, PLANAR, phases=PHASES[:1])
-    curved = {radius: _above_its_contacts(scene(radius=radius)) for radius in (1e-3, 3e-2, 30.0, 1e3)}
+    curved = {radius: raise_bodies(scene(radius=radius)) for radius in (1e-3, 3e-2, 30.0, 1e3)}
     flat = {
         "inf": scene(radius=math.inf),
-        "inf, upward 5 m/s^2": scene(radius=math.inf, amplitudes=_upward(5.0)),
-        "inf, 1e-06 m/s^2": scene(radius=math.inf, amplitudes=_along(1e-6)),
+        "inf, upward 5 m/s^2": scene(radius=math.inf, amplitudes=amplitudes_upward(5.0)),
+        "inf, 1e-06 m/s^2": scene(radius=math.inf, amplitudes=amplitudes_along(1e-6)),
     }
     yield from _rows("rho, m", {**curved, **flat})
-    far_off = scene(radius=math.inf, amplitudes=_along(1e3))  # the platform leaves its supports
+    far_off = scene(radius=math.inf, amplitudes=amplitudes_along(1e3))  # the platform leaves its supports
     yield ExtremeCase("rho, m", "inf, 1000 m/s^2", far_off, PLANAR)
     yield from _rows("travel, m", {travel: scene(travel=travel) for travel in (1e-6, 0.02, 0.24)})
-
-
-def _above_its_contacts(stated: dict[str, Any]) -> dict[str, Any]:
-    """The bodies no lower against the contacts than in the plain scene: heights count from a radius below them."""
-    rise = max(stated["isolator"]["radius"] - PLAIN_RADIUS, 0.0)
-    return {**stated, "bodies": [{**body, "height": body["height"] + rise} for body in stated["bodies"]]}
 
 
 def _chains() -> Iterator[ExtremeCase]:
@@ -198,27 +159,18 @@ def _chains() -> Iterator[ExtremeCase]:
 def _bars() -> Iterator[ExtremeCase]:
     """Bars under the weight of a mass of 1 kg, whose sway buckling load is stated in weights of that mass."""
     group = "load over the buckling load of bars"
-    yield from _rows(group, {share: _on_bars(share) for share in (1e-4, 0.01, 0.5, 0.99, 0.999999)})
-    yield ExtremeCase(group, "1.000001", _on_bars(1.000001), ALL, invalid=True)
+    yield from _rows(group, {share: put_on_bars(share) for share in (1e-4, 0.01, 0.5, 0.99, 0.999999)})
+    yield ExtremeCase(group, "1.000001", put_on_bars(1.000001), ALL, invalid=True)
     group = "axial stiffness of the bars, N"
     giving = {
-        f"{stiffness:g}, {effect}": _on_bars(0.3, axial_stiffness=stiffness, spread=0.8, load_effect=effect)
+        f"{stiffness:g}, {effect}": put_on_bars(0.3, axial_stiffness=stiffness, spread=0.8, load_effect=effect)
         for stiffness in (1e2, 1e4, 1e8)
         for effect in ("softening", "shortening")
     }
     yield from _rows(group, giving, SPATIAL, max_work=1e5)
-    topples = _on_bars(0.3, axial_stiffness=1.0, spread=0.8)
+    topples = put_on_bars(0.3, axial_stiffness=1.0, spread=0.8)
     topples["bodies"][1]["height"] = 6.0
     yield ExtremeCase(group, "1, under a body 6 m above", topples, SPATIAL, invalid=True)
-
-
-def _on_bars(share: float, **keys: Any) -> dict[str, Any]:
-    """The plain scene on four bars of 1 m that carry a share of their buckling load."""
-    beam = GRAVITY_LIMIT / (4.0 * math.pi**2 * share)
-    stated = scene()
-    platform, body = stated["bodies"]
-    bars = {"count": 4, "bending_stiffness": beam, "length": 1.0, "load_effect": "softening", **keys}
-    return {**stated, "bodies": [platform, {**body, "period": None, "bars": bars}]}
 
 
 def _excitations() -> Iterator[ExtremeCase]:
@@ -235,13 +187,13 @@ def _excitations() -> Iterator[ExtremeCase]:
     lasting = {duration: scene(duration=duration) for duration in (100.0, 1e4)}
     yield from _rows(group, lasting, PLANAR, phases=PHASES[:1], max_work=MUCH_WORK)
     group = "vertical loading, m/s^2"
-    yield from _rows(group, {upward: scene(amplitudes=_upward(upward)) for upward in (5.0, 9.8)})
-    exactly = scene(amplitudes=_upward(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
+    yield from _rows(group, {upward: scene(amplitudes=amplitudes_upward(upward)) for upward in (5.0, 9.8)})
+    exactly = scene(amplitudes=amplitudes_upward(GRAVITY_LIMIT), decay=(0.0, 0.0), duration=1.0)
     weightless = (0.0, 1.1), (math.pi, 0.7)  # for one instant: whether the contact has opened then is a matter of words
     yield ExtremeCase(group, "-g exactly", exactly, PLANAR, phases=weightless, right=("contact lost",))
     # the spatial model goes on when a contact opens: it may have an answer, or none, but no refusal
     yield ExtremeCase(group, "-g exactly", exactly, ("spatial",), phases=weightless)
-    yield from _rows(group, {upward: scene(amplitudes=_upward(upward)) for upward in (15.0, 1e3)})
+    yield from _rows(group, {upward: scene(amplitudes=amplitudes_upward(upward)) for upward in (15.0, 1e3)})
     yield ExtremeCase("phases", "at symmetric values", scene(duration=2.0), ALL, phases=SYMMETRIC)
 
 
@@ -267,17 +219,19 @@ def _starts_and_supports() -> Iterator[ExtremeCase]:
         amplitude = limit / math.cos(phase)
         alone = scene(amplitudes=[[amplitude, 0.0], [0.0, 0.0]], decay=(0.0, 0.0), masses=[1.0])
         yield ExtremeCase("start at the friction limit", name, alone, ALL, phases=((phase, 0.0),))
-    three = {ring: scene(amplitudes=_along(4.0), friction=0.05, supports=3, ring=ring) for ring in (1.0, 0.1, 0.01)}
+    three = {
+        ring: scene(amplitudes=amplitudes_along(4.0), friction=0.05, supports=3, ring=ring) for ring in (1.0, 0.1, 0.01)
+    }
     yield from _rows("three supports, ring in m", three, ("spatial",))
 
 
 def _uneven() -> Iterator[ExtremeCase]:
     """Uneven buildings: the equations and translation do not read what makes them so."""
     for share in (1e-6, 0.1, 0.45, 0.5, 1.0):  # shares of the ring, to a support: at 0.5 its opposite carries nothing
-        moved, beyond = _with_bodies(offset=[share * math.sqrt(0.5)] * 2), share >= 0.5
+        moved, beyond = change_bodies(offset=[share * math.sqrt(0.5)] * 2), share >= 0.5
         work = MAX_WORK if beyond else 1e5
         yield ExtremeCase("offset over the ring", f"{share:g}", moved, SPATIAL, invalid=beyond, max_work=work)
-    turned = {f"{yaw:.3g}": _with_bodies(yaw=yaw) for yaw in (1e-6, 0.25 * math.pi)}
+    turned = {f"{yaw:.3g}": change_bodies(yaw=yaw) for yaw in (1e-6, 0.25 * math.pi)}
     yield from _rows("yaw, rad", turned, SPATIAL)
     positions = {
         "2 m by 0.02 m": [[1.0, 0.01], [-1.0, 0.01], [-1.0, -0.01], [1.0, -0.01]],
@@ -289,11 +243,6 @@ def _uneven() -> Iterator[ExtremeCase]:
     yield from _rows(group, held, SPATIAL, max_work=5e4)
     line = scene(ring=None, supports=[[-1.0, -1.0], [0.0, 0.0], [1.0, 1.0]])
     yield ExtremeCase(group, "on one line", line, SPATIAL, invalid=True)
-
-
-def _with_bodies(**keys: Any) -> dict[str, Any]:
-    stated = scene()
-    return {**stated, "bodies": [{**body, **keys} for body in stated["bodies"]]}
 
 
 def _tolerances() -> Iterator[ExtremeCase]:
@@ -311,13 +260,13 @@ def _outside_the_rules() -> Iterator[ExtremeCase]:
         "duration 0": scene(duration=0.0),
         "travel beyond the radius": scene(radius=0.25, travel=0.3),
         "radius beyond double precision": scene(period=1e200),
-        "amplitude not a number": scene(amplitudes=_along(math.nan)),
+        "amplitude not a number": scene(amplitudes=amplitudes_along(math.nan)),
     }
     yield from _rows(group, wrong, ("exact", "translational"), invalid=True)
     for speed in (0.0, -1.0, math.inf):
         yield ExtremeCase(
             group, f"v_reg {speed:g} m/s", scene(), WITH_V_REG, settings={"regularization": speed}, invalid=True
         )
-    yield ExtremeCase(group, "no loading", scene(amplitudes=_along(0.0)), PLANAR, right=("no ground motion",))
-    overflow = scene(amplitudes=_along(1e200))
+    yield ExtremeCase(group, "no loading", scene(amplitudes=amplitudes_along(0.0)), PLANAR, right=("no ground motion",))
+    overflow = scene(amplitudes=amplitudes_along(1e200))
     yield ExtremeCase(group, "loading 1e200 m/s^2", overflow, PLANAR, right=("non-finite load",))

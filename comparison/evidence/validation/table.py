@@ -7,7 +7,6 @@ from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter
 from scipy.interpolate import CubicHermiteSpline
 
 import multibody
@@ -16,7 +15,7 @@ from comparison.evidence.sides import ENGINE, EQUATIONS, SMOOTHED
 from comparison.json_file import StoredFile, finite_or_none
 from comparison.result_types import Array, require, require_size, result
 from comparison.verdicts import NOT_MET, Verdict, count_verdicts, judge, word_verdict
-from reference.measures.demands import ANSWERED
+from reference.measures.demand_reader import ANSWERED
 from reference.problem import Scene, State, Trajectory
 
 SIDES = (EQUATIONS, SMOOTHED, ENGINE)
@@ -134,7 +133,7 @@ STORED = StoredFile("validation.json", Validation, "a table of measured quantiti
 def load_record() -> Validation:
     """The table of the published files, as the command made it; without their motions."""
     file = resources.files("comparison.evidence.validation") / "recorded.json"
-    return TypeAdapter(Validation).validate_json(file.read_bytes())
+    return STORED.read(file.read_bytes())
 
 
 class ComputedValues(NamedTuple):

@@ -9,7 +9,8 @@ a slip vector s = factor * v_h with v_h the horizontal velocity:
 The dry coefficient may depend on the sliding speed, mu(v) = mu(0) + rise (1 - exp(-rate v)). The condition for rest
 takes `static_coefficient` and the directions at a stop `kinetic_coefficient`, both mu(0). Where it depends on the
 normal force or on heating as well, this is its value under the weight, and `acceleration` (platform.py) multiplies the
-slip vector (load.py). In the solver only this file reads the law of a system (reference/problem/friction.py).
+slip vector (load.py). In the solver only this file reads the law of a system (reference/problem/friction.py), and
+yielding.py the stiffness of friction that yields.
 """
 
 from __future__ import annotations

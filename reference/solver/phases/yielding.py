@@ -17,7 +17,7 @@ from reference.solver.contact.platform import load_in_state
 from reference.solver.contact.yielding import yielding_motion
 from reference.solver.events import LEVEL, NEVER, expand_level, locate_first_event
 from reference.solver.ground import ground_at
-from reference.solver.polynomial import A_COLUMNS, NODES_ROW, expand
+from reference.solver.polynomial import A_COLUMNS, NODES_ROW, expand, value_at
 from reference.solver.rows import broadcast_like, highest, lowest, put, row
 from reference.solver.step_control import begin_with_acceleration
 from reference.solver.steps import (
@@ -28,7 +28,7 @@ from reference.solver.steps import (
     rim_or_unsolved,
     set_absolute_accelerations,
 )
-from reference.solver.system import ELASTIC, OPEN, PAINLEVE, PLASTIC, SOLVED, UNSOLVED, Array, Load, System
+from reference.solver.system import OPEN, PAINLEVE, PLASTIC, SOLVED, UNSOLVED, Array, Load, System
 from reference.solver.work import (
     ALONG_FORCE,
     ARGUMENTS,
@@ -51,6 +51,7 @@ from reference.solver.work import (
 DIFFERENCE, LEAST_SPEED = 1e-7, 1e-10
 FIRST_NODE = float(NODES[0])
 LATE_EVENT = 1e-10  # share of a step behind which an event counts as one at its end
+MAX_SHIFT = 0.5  # largest change of a step that ends at an event, as a share of it
 
 
 @compiled
@@ -122,7 +123,7 @@ def set_motion(system: System, work: Workspace, contact: int) -> None:
     put(shear, MOTION + 1, ay)
     put(shear, FORCE_RATE, rate_x)
     put(shear, FORCE_RATE + 1, rate_y)
-    put(shear, EXCESS, size - limit)
+    put(shear, EXCESS, (size / limit) * (size / limit) - 1.0)  # smooth where the force passes zero
     put(shear, ALONG_FORCE, along)
     put(shear, BOUND, limit)
 
@@ -259,29 +260,49 @@ def solve_all(factors: Array, pivots: Array, right: Array) -> None:
 
 
 @compiled
-def cut_at_yield_or_unloading(
-    system: System, work: Workspace, contact: int, h: float, begun: bool
-) -> tuple[float, int]:
-    """Return the share of the step up to its first event, 0 for one at its start, and the next contact."""
+def expand_event(system: System, work: Workspace, contact: int, h: float) -> float:
+    """Set powers[0] to a polynomial that is positive past the event that ends the phase; return its first stage."""
     # Elastic friction yields where its force reaches the bound. Plastic friction unloads where the rate of slip,
-    # the velocity along the force less the rate of the bound over k, passes zero. Both are zero at the start of a phase
-    # up to rounding, and the polynomial through the stages misses them there: the first stage decides.
+    # the velocity along the force less the rate of the bound over k, passes zero.
     shear = work.shear
-    values, following = row(shear, EXCESS) / row(shear, BOUND), PLASTIC
+    values = row(shear, EXCESS)
     if contact == PLASTIC:
         expand(row(shear, BOUND), work.powers[1])
         theta = row(NODES_ROW, ())
         growth = broadcast_like(0.0, theta)
         for k in range(STAGES - 1, 0, -1):
             growth = growth * theta + k * work.powers[1, k]
-        values, following = growth / (h * system.stiffness) - row(shear, ALONG_FORCE), ELASTIC
-    if values[0] > 0.0:
-        return (0.0, following) if begun else (FIRST_NODE, contact)
+        values = growth / (h * system.stiffness) - row(shear, ALONG_FORCE)
     expand_level(work, values, 0.0)
-    portion = locate_first_event(system, work, LEVEL, 1.0, FIRST_NODE, values[0])
-    if portion == NEVER:
-        return 1.0, contact
-    return (1.0, following) if portion > 1.0 - LATE_EVENT else (portion, contact)
+    first: float = values[0]
+    return first
+
+
+@compiled
+def locate_event(system: System, work: Workspace, contact: int, h: float, begun: bool) -> float:
+    """Return the share of the step up to the first event in it, 0 for one at its start, NEVER without one."""
+    # At the start of a phase the value is zero up to rounding, and the polynomial through the stages misses it there:
+    # in the first step the first stage decides. In any other step the polynomial may be positive at its start by error.
+    first = expand_event(system, work, contact, h)
+    if begun and first > 0.0:
+        return 0.0
+    start = value_at(work.powers[0], 0.0)
+    if begun or (start > 0.0 and first <= 0.0):
+        return locate_first_event(system, work, LEVEL, 1.0, FIRST_NODE, first)
+    return 0.5 * FIRST_NODE if start > 0.0 else locate_first_event(system, work, LEVEL, 1.0, 0.0, start)
+
+
+@compiled
+def shift_to_event(system: System, work: Workspace, contact: int, h: float) -> float:
+    """Return how much longer the step must be to end at the event, as a share of it; NEVER where it turns back."""
+    expand_event(system, work, contact, h)
+    slope = 0.0
+    for k in range(1, STAGES):
+        slope += k * work.powers[0, k]
+    end = value_at(work.powers[0], 1.0)
+    if not slope > 0.0:  # such as behind a kink of the bound, where the value jumps
+        return 0.0 if end > 0.0 else NEVER
+    return min(max(-end / slope, -MAX_SHIFT), MAX_SHIFT)
 
 
 @compiled

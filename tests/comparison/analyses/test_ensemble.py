@@ -182,7 +182,7 @@ def test_the_command_writes_the_demands_of_every_motion(folder: Path, capsys: py
         {"excitation": {"record": {"suite": "suite", "motion": 2}, "scale": 1.0}, "duration": 1.95}
     )
     numbers = reference.demands(reference.trajectory(scene, (0.0, 0.0)))
-    (row,) = (row for row in rows if (row["motion"], row["scale"], row["model"]) == ("m2", "1.0", "exact"))
+    (row,) = (row for row in rows if (row["motion"], row["scale [-]"], row["model"]) == ("m2", "1.0", "exact"))
     assert float(row["displacement [m]"]) == numbers.displacement.value
     assert float(row["drift_2 [m]"]) == numbers.drift[0].value
     assert float(row["acceleration_1_error [m/s^2]"]) == numbers.acceleration[0].error
@@ -190,7 +190,7 @@ def test_the_command_writes_the_demands_of_every_motion(folder: Path, capsys: py
     assert (row["bound"], row["status"]) == ("mine", "ok")
     shear = story_forces(reference.trajectory(scene, (0.0, 0.0))).shear
     assert float(row["story_shear_2 [N]"]) == shear[1].value
-    column = [float(row["displacement [m]"]) for row in rows if (row["scale"], row["model"]) == ("1.0", "exact")]
+    column = [float(row["displacement [m]"]) for row in rows if (row["scale [-]"], row["model"]) == ("1.0", "exact")]
     about = {"quantity": "displacement", "scale": 1.0, "model": "exact"}
     (stripe,) = (each for each in summary["stripes"] if about.items() <= each.items())
     assert stripe["mean"]["value"] == pytest.approx(np.mean(column))
@@ -332,8 +332,8 @@ def test_motions_are_scaled_to_the_target_spectrum(folder: Path, capsys: pytest.
     matching = np.array(target["motions"][1]["acceleration"])[inside]
     np.testing.assert_allclose(matching, np.array(target["acceleration"])[inside], rtol=2e-2)
     second = [row for row in table if row["motion"] == "m2"]
-    assert [float(row["scale"]) for row in second] == [0.5, 1.0]
-    assert [float(row["factor"]) for row in second] == pytest.approx([2.0, 2.0], rel=2e-3)
+    assert [float(row["scale [-]"]) for row in second] == [0.5, 1.0]
+    assert [float(row["factor [-]"]) for row in second] == pytest.approx([2.0, 2.0], rel=2e-3)
     peak = np.hypot(motion[:, 1], motion[:, 2]).max()
     peaks = [float(row["peak_ground_acceleration [m/s^2]"]) for row in second]
     assert peaks == pytest.approx([peak, 2.0 * peak], rel=2e-3)

@@ -24,10 +24,10 @@ from comparison.analyses.ensemble.quantities import text_of
 from comparison.analyses.ensemble.result import (
     STORED,
     BuildingRead,
+    ChosenMotion,
     DemandCurve,
     DemandFractile,
     Engine,
-    EngineMotion,
     EnsembleResult,
     GroundMotion,
     Statistic,
@@ -82,7 +82,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         along_x = 0.5 * (1.0 + number) * np.sin((3.0 + number) * time) * np.exp(-(((time - 1.0) / 0.5) ** 2))
         table = "\n".join(f"{t:.2f},{a:.6f},{(1.5 if number == 2 else 0.5) * a:.6f}" for t, a in zip(time, along_x))
         (place / "suite" / f"m{number}.csv").write_text(f"time [s],ax [m/s^2],ay [m/s^2]\n{table}\n")
-        lines.append(f"pulse {number},m{number}.csv,,,1.{number},{'6.9' if number == 1 else ''}")
+        name = f"pulse {number}" if number < 4 else "RSN1021_SUPERSTITION_HILLS_B-ICC"  # longer than a column
+        lines.append(f"{name},m{number}.csv,,,1.{number},{'6.9' if number == 1 else ''}")
     (place / "suite" / "motions.csv").write_text("\n".join(lines) + "\n")
     (place / "mine.toml").write_text(SCENE)
     with pytest.MonkeyPatch.context() as patch:
@@ -119,9 +120,10 @@ def test_every_number_of_the_printed_report_is_read_back(folder: Path, found: En
     assert sorted(cell for cell in cells if cell not in text) == []
     read, weight = table(folder), 90e3 * GRAVITY
     heads = {
-        "displacement [m]": 1e3, "travel_share": 100.0, "base_shear [N]": 1e-3, "acceleration_1 [m/s^2]": 1 / GRAVITY,
-        "drift_2 [m]": 1e3, "drift_ratio_2": 100.0, "overturning_moment_1 [N m]": 1e-3, "story_shear_3 [N]": 1e-3,
-        "support_force_max [N]": 1e-3, "support_force_min [N]": 1e-3,
+        "displacement [m]": 1e3, "travel_share [-]": 100.0, "base_shear [N]": 1e-3,
+        "acceleration_1 [m/s^2]": 1 / GRAVITY, "drift_2 [m]": 1e3, "drift_ratio_2 [-]": 100.0,
+        "overturning_moment_1 [N m]": 1e-3,
+        "story_shear_3 [N]": 1e-3, "support_force_max [N]": 1e-3, "support_force_min [N]": 1e-3,
     }  # fmt: skip
     for bound in ("lower bound", "upper bound"):
         own = [row for row in read if (row["bound"], row["model"]) == (bound, "exact")]
@@ -254,7 +256,7 @@ def planted(ratios: dict[str, float] | None = None, motions: int = 4) -> Ensembl
     fractiles = [DemandFractile(float(np.quantile(values, share, method="hazen")), 0.0, share) for share in shares]
     stripe = Stripe("b", "displacement", None, "exact", "m", 1.0, motions, numbers[0], fractiles, *numbers[1:],
                     {}, names[-1], names[0])  # fmt: skip
-    chosen = [EngineMotion("b", name, 1.0, ["largest displacement"], {}) for name in names[motions // 2 :]]
+    chosen = [ChosenMotion("b", name, 1.0, ["largest displacement"], {}) for name in names[motions // 2 :]]
     building = BuildingRead(4, 250.0, [[2.0]], [[]], [[]], 2.0, (0.03, 0.06), 0.5, None, ("deck",))
     return EnsembleResult(
         "phase-resonance/ensemble/3", [Structure("b", "A <block>", 1, 1e3, None, building)], (1.0,), motions,

@@ -14,7 +14,7 @@ from terminal_tables import rows_under
 
 from comparison.cli import computing
 from comparison.evidence.claims import table as table_module  # table: what a test made
-from comparison.evidence.claims.checks import MET, NOT_COMPARED, NOT_MET, StatementVerdict, Word, count_peaks
+from comparison.evidence.claims.checks import StatementVerdict, count_peaks
 from comparison.evidence.claims.claims import CLAIMS, Claim
 from comparison.evidence.claims.command import main
 from comparison.evidence.claims.evidence import MOTIONS, CaseInReading, Evidence, gather_evidence
@@ -22,7 +22,7 @@ from comparison.evidence.claims.feature import FEATURE
 from comparison.evidence.claims.peaks_and_valleys import Counts
 from comparison.evidence.claims.readings import AS_INTEGRATED, CASES, LITERAL_SUPREMUM, READINGS, effective_reading
 from comparison.evidence.claims.smoothness import Bend
-from comparison.evidence.claims.table import VERDICTS, Claims, ClaimTable, claims_line, surfaces_of_study, table_of
+from comparison.evidence.claims.table import Claims, ClaimTable, claims_line, surfaces_of_study, table_of
 from comparison.evidence.convergence.analysis import Convergence
 from comparison.evidence.forced_ratios import forced_ratios
 from comparison.evidence.scaling.analysis import Scaling
@@ -32,6 +32,7 @@ from comparison.study.batches import Batch, BatchResult
 from comparison.study.models import SMALL
 from comparison.study.study import Study
 from comparison.surfaces.surfaces import label_surfaces, surface_tasks
+from comparison.verdicts import MEANING, MET, NOT_COMPARED, NOT_MET, Verdict
 from reference import amplification, modes, trajectory
 from reference.problem import builtin_scenes, load_scene
 
@@ -152,7 +153,7 @@ def test_a_peak_in_a_corner_is_enough_and_its_twin_is_no_objection() -> None:
 @pytest.mark.parametrize(
     ("double", "word", "words", "other"), [(1.0, NOT_MET, "1 and 1", "15 %"), (1.5, MET, "4 and 2", "35 %")]
 )
-def test_a_count_that_depends_on_the_prominence_says_so(double: float, word: Word, words: str, other: str) -> None:
+def test_a_count_that_depends_on_the_prominence_says_so(double: float, word: Verdict, words: str, other: str) -> None:
     mu_2 = np.cos(A1) + np.cos(A2) + double * (np.cos(2.0 * A1) + np.cos(2.0 * A2))
     verdict = _claim("Fig. 3b", "more complex").verdict({"fig3-I": _seen(TWO, mu_2)})
     assert verdict == StatementVerdict(word, f"mu_2 {words}, mu_1 1 and 1; otherwise at a prominence of {other}")
@@ -176,7 +177,7 @@ def test_a_verdict_without_its_reason_is_refused() -> None:
 
 def _table(integrated: str, supremum: str) -> ClaimTable:
     """A table of verdicts, a letter for each statement: + met, - not met, ? not compared."""
-    words: Mapping[str, Word] = dict(zip("+-?", VERDICTS))
+    words: Mapping[str, Verdict] = dict(zip("+-?", MEANING))
     columns = zip((AS_INTEGRATED, LITERAL_SUPREMUM), (integrated, supremum))
     return table_of({r.name: [StatementVerdict(words[c], f"{k}{c}") for k, c in enumerate(row)] for r, row in columns})
 

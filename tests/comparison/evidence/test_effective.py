@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fake_models import fake_hierarchy, sliding
 
-from comparison.evidence.effective.analysis import PHASES, read_back, stated
+from comparison.evidence.effective.analysis import PHASES, read_back, values_of_scene
 from comparison.study.models import EXACT, MODEL_HIERARCHY, SOFTENED_SPATIAL, SOFTENED_TRANSLATIONAL, Model
 from reference.problem import Scene, Trajectory, ground_acceleration, load_scene
 
@@ -53,7 +53,7 @@ def test_of_friction_that_varies_the_fast_one_under_the_weight_is_read(law: dict
     scene = load_scene("fig3-I").with_values({"isolator.friction": law, "duration": 3.0})
     scene = scene.with_values({"excitation.amplitudes": [[1.0, 0.0], [0.0, 1.0], [3.0, 0.0]]})
     fast = law.get("fast", law["slow"])
-    assert stated(scene).friction == fast
+    assert values_of_scene(scene).friction == fast
     assert read_back((scene, EXACT)).friction == pytest.approx(fast, rel=1e-5)
     if "rate" in law:
         slowly = scene.with_values({"isolator.friction.rate": 0.1})
@@ -65,7 +65,7 @@ def test_the_scene_states_what_the_motion_is_held_against() -> None:
     scene = load_scene("fig3-II").with_values({"excitation.amplitudes": upward, "duration": 2.0})
     ground = ground_acceleration(scene, PHASES, [0.0])[0]
     expected = [scene.radius, 0.1, 2.0, 2.0 * (9.81 + ground[2]), np.linalg.norm(ground)]
-    for values in (stated(scene), read_back((scene, EXACT))):
+    for values in (values_of_scene(scene), read_back((scene, EXACT))):
         told = [values.radius, values.friction, values.mass, values.contact, values.acceleration]
         assert told == pytest.approx(expected, rel=1e-6), values.model
 
@@ -102,7 +102,7 @@ def test_the_dampers_of_both_sides_are_those_of_the_scene() -> None:
     platform, body = load_scene("fig3-I").model_dump(exclude_none=True)["bodies"]
     bodies = [platform, {**body, "damping": 0.2}, {**body, "damping": [0.7, 0.3], "height": 2.0 * body["height"]}]
     scene = load_scene("fig3-I").with_values({"bodies": bodies, "duration": 2.0})
-    assert stated(scene).damping == 0.7
+    assert values_of_scene(scene).damping == 0.7
     models = {model.key: model for model in MODEL_HIERARCHY}
     for key in ("small", "exact", "regularised", "translational"):
         assert read_back((scene, models[key])).damping == pytest.approx(0.7, rel=1e-3), key
@@ -112,8 +112,8 @@ def test_the_dampers_of_both_sides_are_those_of_the_scene() -> None:
 def test_the_bars_of_every_model_are_as_stiff_as_stated() -> None:
     bars = {"count": 4, "bending_stiffness": 0.8, "length": 1.0, "axial_stiffness": 2900.0, "spread": 0.8}
     scene = load_scene("fig3-I").with_values({"duration": 2.0, "bodies.1.period": None, "bodies.1.bars": bars})
-    assert stated(scene).stiffness == pytest.approx(12.0 * 4 * 0.8)
+    assert values_of_scene(scene).stiffness == pytest.approx(12.0 * 4 * 0.8)
     for model in (*MODEL_HIERARCHY[-2:], SOFTENED_TRANSLATIONAL, SOFTENED_SPATIAL):
         own = scene.softened() if "softened" in model.settings else scene
         assert read_back((scene, model)).stiffness == pytest.approx(own.stiffness[0, 0], rel=1e-5), model.key
-    assert np.isnan(stated(load_scene("fig3-I")).stiffness)
+    assert np.isnan(values_of_scene(load_scene("fig3-I")).stiffness)

@@ -15,8 +15,9 @@ from comparison.evidence.extremes import analysis
 from comparison.evidence.extremes.causes import CAUSES
 from comparison.evidence.extremes.command import main
 from comparison.evidence.extremes.engine import amplification
-from comparison.evidence.extremes.matrix import Verdict
-from comparison.evidence.extremes.rows import rows, scene
+from comparison.evidence.extremes.matrix import CellVerdict
+from comparison.evidence.extremes.rows import rows
+from comparison.evidence.extremes.scenes import scene
 from comparison.runner.processes import TimeLimitError, WorkerDiedError, process_pool
 from comparison.runner.task import TaskResult
 from reference.problem import Outcome
@@ -45,7 +46,7 @@ def test_a_model_that_hangs_or_crashes_costs_its_cell_alone():
     assert found["hangs"] == ("FAILED", "time limit", "hangs: no answer within 2 s of processor time")
     assert found["crashes"] == ("FAILED", "worker died", "crashes: the worker process died 2 times (exit code 3)")
     assert found["raises"] == ("FAILED", "", "raises ZeroDivisionError: an inner fault")
-    assert found["honest"][0] == Verdict.CONVERGED
+    assert found["honest"][0] == CellVerdict.CONVERGED
 
 
 AGAINST_A_RULE = replace(PLAIN, scene=scene(friction=-0.1))
@@ -84,7 +85,7 @@ def test_the_equations_fail_at_no_extreme():
     assert {row.group for row in chosen} == groups
     for cell in analysis.cells(chosen):
         entry = analysis.solve_cell(cell)
-        assert entry.verdict != Verdict.FAILED, (cell.row.title, cell.column.key, entry.reason)
+        assert entry.verdict != CellVerdict.FAILED, (cell.row.title, cell.column.key, entry.reason)
         assert entry.total >= entry.seconds, "with its finer runs"
 
 
@@ -127,7 +128,9 @@ def test_a_row_has_the_quantity_that_it_names():
 @pytest.mark.long
 def test_the_equations_fail_at_none_of_the_extremes():
     matrix = collected(analysis.Extremes(analysis.select_quick(list(rows())), limit=120.0), None, executor=process_pool)
-    assert [(row.group, row.title, title, cell.reason) for row, title, cell in matrix.cells_of(Verdict.FAILED)] == []
+    assert [
+        (row.group, row.title, title, cell.reason) for row, title, cell in matrix.cells_of(CellVerdict.FAILED)
+    ] == []
     assert sum(matrix.counts().values()) >= 120
 
 

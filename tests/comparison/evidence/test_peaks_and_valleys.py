@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.evidence.claims.peaks_and_valleys import Counts, drawn, periodic, profiled, relief
+from comparison.evidence.claims.peaks_and_valleys import Counts, count_drawn, count_periodic, count_profile, relief
 from comparison.evidence.claims.smoothness import bends
 from reference.problem import phase_grid
 
@@ -17,51 +17,51 @@ A1, A2 = phase_grid(N).T.reshape(2, N, N)
 
 def test_waves_have_as_many_peaks_and_valleys_as_periods() -> None:
     a1, a2 = phase_grid(36).T.reshape(2, 36, 36)
-    assert periodic(np.cos(3.0 * a1) + np.cos(2.0 * a2)) == Counts(6, 6)
+    assert count_periodic(np.cos(3.0 * a1) + np.cos(2.0 * a2)) == Counts(6, 6)
 
 
 def test_a_diagonal_ridge_is_one_peak_and_two_where_cut() -> None:
-    assert periodic(np.cos(A1 - A2)) == Counts(1, 1)
-    assert drawn(np.cos(A1 - A2 - np.pi)) == Counts(2, 1), "two parallel ridges and the valley between them"
-    assert drawn(np.cos(2.0 * (A1 - A2) - np.pi)) == Counts(4, 3), "four, and what separates them"
+    assert count_periodic(np.cos(A1 - A2)) == Counts(1, 1)
+    assert count_drawn(np.cos(A1 - A2 - np.pi)) == Counts(2, 1), "two parallel ridges and the valley between them"
+    assert count_drawn(np.cos(2.0 * (A1 - A2) - np.pi)) == Counts(4, 3), "four, and what separates them"
 
 
 def test_ridges_are_counted_along_their_own_diagonal() -> None:
     rough = 0.3 * np.cos(3.0 * A1 + 3.0 * A2)
-    assert profiled(rough - np.cos(2.0 * (A1 - A2))) == Counts(4, 3)
-    assert profiled(rough - np.cos(A1 - A2)) == Counts(2, 1)
-    assert profiled(np.cos(A1 + A2)) == Counts(0, 0)
+    assert count_profile(rough - np.cos(2.0 * (A1 - A2))) == Counts(4, 3)
+    assert count_profile(rough - np.cos(A1 - A2)) == Counts(2, 1)
+    assert count_profile(np.cos(A1 + A2)) == Counts(0, 0)
 
 
 def test_a_peak_across_the_edge_counts_once() -> None:
     corner = np.exp(np.cos(A1) + np.cos(A2))
-    assert periodic(corner).peaks == 1
+    assert count_periodic(corner).peaks == 1
     assert relief(corner).tops == [(0, 0)]
-    assert drawn(corner).peaks == 4
+    assert count_drawn(corner).peaks == 4
 
 
 def test_a_peak_less_prominent_than_the_share_does_not_count() -> None:
     two = np.cos(A1) + 0.45 * np.cos(2.0 * A1)  # along alpha1: peaks 1.45 and -0.55, valley -0.73 between them
     prominence = -0.55 - float(two.min())
     share = prominence / float(np.ptp(two))
-    assert periodic(two, share=0.99 * share).peaks == 2
-    assert periodic(two, share=1.01 * share).peaks == 1
+    assert count_periodic(two, share=0.99 * share).peaks == 2
+    assert count_periodic(two, share=1.01 * share).peaks == 1
 
 
 def test_noise_within_the_errors_makes_no_peak() -> None:
     noise = np.random.default_rng(1).uniform(-1.0, 1.0, A1.shape)
-    assert periodic(1.0 + 1e-7 * noise, error=1e-7) == Counts(0, 0)
-    assert periodic(np.cos(A1) + np.cos(A2) + 0.1 * noise, error=0.1) == Counts(1, 1)
+    assert count_periodic(1.0 + 1e-7 * noise, error=1e-7) == Counts(0, 0)
+    assert count_periodic(np.cos(A1) + np.cos(A2) + 0.1 * noise, error=0.1) == Counts(1, 1)
     spike = 0.1 * noise
     spike[5, 5] = 10.0
-    assert periodic(spike, error=0.1, share=0.001).peaks == 1
-    assert periodic(spike, error=0.0, share=0.001).peaks > 1, "the noise, were it not known to be noise"
+    assert count_periodic(spike, error=0.1, share=0.001).peaks == 1
+    assert count_periodic(spike, error=0.0, share=0.001).peaks > 1, "the noise, were it not known to be noise"
 
 
 def test_a_plateau_is_one_peak_however_wide() -> None:
-    assert periodic(np.minimum(np.cos(A1) + np.cos(A2), 0.3)).peaks == 1
-    assert periodic(np.maximum(np.cos(A1) + np.cos(A2), -0.3)).valleys == 1
-    assert periodic(np.full((N, N), 2.0)) == Counts(0, 0)
+    assert count_periodic(np.minimum(np.cos(A1) + np.cos(A2), 0.3)).peaks == 1
+    assert count_periodic(np.maximum(np.cos(A1) + np.cos(A2), -0.3)).valleys == 1
+    assert count_periodic(np.full((N, N), 2.0)) == Counts(0, 0)
 
 
 def test_regions_belong_to_the_peak_across_the_saddle() -> None:

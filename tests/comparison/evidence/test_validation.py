@@ -10,6 +10,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from runs import Here
 from scipy.integrate import solve_ivp
 from scipy.io import savemat
 from scipy.special import ellipk
@@ -305,7 +306,8 @@ def make(folder: Path) -> Path:
         (lambda folder: [save(make(folder / part), 350) for part in "ab"], "must hold each file once: also a/s_b_350"),
     ],
 )  # fmt: skip
-def test_wrong_files_end_in_one_line(tmp_path, capsys, spoil, said):
+def test_wrong_files_end_in_one_line(tmp_path, capsys, monkeypatch, spoil, said):
+    monkeypatch.setattr("comparison.evidence.validation.files.Workers", Here)
     folder = tmp_path / "files"
     folder.mkdir()
     save(folder, 250)

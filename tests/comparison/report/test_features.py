@@ -36,22 +36,27 @@ FEATURE = Feature(
 ''',
     "section.html.j2": '{% for ratio in results.ratio %}<p class="ratio">{{ ratio }}</p>{% endfor %}',
 }
-# one process loads what the packages share; a child of it for each feature loads the package without that one
+# one process loads all that names no feature; a child of it for each feature loads the rest without that one
 CHILDREN = """
-import importlib, os, sys, traceback
-import contourpy, h5netcdf, jinja2, markupsafe, matplotlib.figure, pydantic, rich.console, rich.table, xarray
-import reference, multibody
+import importlib, os, re, sys, traceback
+import comparison.report.building, comparison.report.writing, comparison.runner.runner, comparison.surfaces.completion
 from pathlib import Path
+from runs import RUN
+
+assert not [name for name in sys.modules if re.match(r"comparison\\.(analyses|evidence|registry)", name)]
 
 def load_without(copy, key):
-    sys.path.insert(0, str(copy))
-    from runs import RUN
-    from comparison.cli.start import commands
+    comparison.__path__.insert(0, str(copy))
+    import reference
+    from comparison.cli import start
+    start.PACKAGE = copy
+    commands = start.commands
     from comparison.run import main
     from comparison import registry
     from comparison.report.writing import write_report
     from comparison.study.study import Study
     from comparison.surfaces.surfaces import label_surfaces
+    assert Path(registry.__file__).parent == copy
     for command in commands().values():
         importlib.import_module(command.module)
     assert key not in commands()
@@ -73,9 +78,9 @@ for copy in map(Path, sys.argv[1:]):
     child = os.fork()
     if child == 0:
         try:
-            load_without(copy, copy.name)
+            load_without(copy, copy.parent.name)
         except BaseException:
-            print(f"without {copy.name}:", traceback.format_exc(), file=sys.stderr, flush=True)
+            print(f"without {copy.parent.name}:", traceback.format_exc(), file=sys.stderr, flush=True)
             os._exit(1)
         os._exit(0)
     if os.waitpid(child, 0)[1]:
@@ -115,10 +120,14 @@ def test_each_feature_can_be_deleted(tmp_path: Path) -> None:
     copies = []
     for folder in folders():
         room, key = folder.split(".")
-        copies.append(tmp_path / key)
-        copies[-1].mkdir()
-        replace_once(copy_package(copies[-1]), f'    _feature("{folder}"),\n', "")
-        shutil.rmtree(copies[-1] / "comparison" / room / key)
+        copies.append(tmp_path / key / "comparison")
+        for name in ("analyses", "evidence"):
+            shutil.copytree(ROOT / "comparison" / name, copies[-1] / name)
+        shutil.copy(ROOT / REGISTRY, copies[-1])
+        replace_once(copies[-1] / "registry.py", f'    _feature("{folder}"),\n', "")
+        shutil.rmtree(copies[-1] / room / key)
+        others = [file.read_text(encoding="utf-8") for file in copies[-1].rglob("*.j2")]
+        assert not [text for text in others if f'"{key}/' in text], "no template reads another feature's"
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (HELPERS, ROOT)))}
     run = subprocess.run(
         [sys.executable, "-P", "-c", CHILDREN, *map(str, copies)],

@@ -13,7 +13,7 @@ from distinct_models import distinct_hierarchy, distinct_motions
 from known_analyses import analyses_are, known_others
 from known_results import FILES, MEASURED, SEARCHED, known_assumptions, leave_beside
 from places import scene_text
-from report_texts import page_of
+from report_texts import data_of, page_of
 from runs import quick_figures
 
 import comparison.registry
@@ -160,6 +160,24 @@ def test_what_raises_in_a_part_costs_that_part_alone(
     assert shown.count('class="section"') >= sections - 1
     for name in {"summary.json", "summary.schema.json"} & there:
         json.loads((folder / name).read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("act", [fail, lambda report, scene: {"worst": {"exact": [float("inf")]}}])
+def test_data_of_a_feature_that_fail_cost_neither_the_surfaces_nor_those_of_others(
+    last_report: Last, capsys: pytest.CaptureFixture[str], act: Callable[..., Any]
+) -> None:
+    folder, write, _ = last_report
+    (feature,) = (each for each in FEATURES if each.key == "worst_phases")
+    write()
+    before = data_of(folder)["scenes"]
+    with raising(Place(feature, "page_data", "")):
+        put(Place(feature, "page_data", ""), act)
+        write()
+    assert "data of worst_phases on the page could not be shown" in capsys.readouterr().err
+    after = data_of(folder)["scenes"]
+    assert all("worst" in scene for scene in before)
+    assert after == [{name: part for name, part in scene.items() if name != "worst"} for scene in before]
+    assert all(scene["places"] and scene["models"] for scene in after[:1])
 
 
 def test_a_logarithmic_panel_without_any_value_is_drawn(tmp_path: Path) -> None:

@@ -37,7 +37,6 @@ from comparison.runner.environment import (
     source_digest,
     task_environment_fingerprint,
 )
-from comparison.runner.processes import process_pool
 from comparison.runner.runner import Runner
 from comparison.runner.task import Task, TaskResult, execute, fingerprint
 from comparison.runner.task_results import TaskResults
@@ -239,7 +238,7 @@ def test_a_task_that_fails_has_its_reason_and_costs_no_other(tmp_path: Path) -> 
 
     tasks = [Task(raises, "1", "scaling test", 0.3), Task(doubled, str(tmp_path / "2"), "scaling test", 0.1)]
     results = TaskResults(Cache(tmp_path))
-    Runner(results, 2, process_pool).run(tasks)
+    Runner(results, 2, ThreadPoolExecutor).run(tasks)
     failed = "1", Outcome.SOLVER_FAILED, "RuntimeError: singular"
     assert [results.value(task, on_failure) for task in tasks] == [failed, 2]
     assert TaskResults(Cache(tmp_path)).missing(tasks) == tasks[:1], "the next run tries them again"

@@ -5,7 +5,6 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext, suppress
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -37,9 +36,9 @@ def _results(executor: Pool, done: Callable[[int], object] = lambda count: None)
     return [(each.mu.tobytes(), each.error.tobytes(), each.instant.tobytes(), each.status) for each in batches]
 
 
-@pytest.fixture
-def workers(tmp_path: Path) -> Iterator[LocalCluster]:
-    started = LocalCluster(tmp_path)
+@pytest.fixture(scope="module")
+def workers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LocalCluster]:
+    started = LocalCluster(tmp_path_factory.mktemp("cluster"))
     yield started
     started.end()
 
