@@ -12,7 +12,7 @@ SPRINGS = TESTS + "test_springs_of_supports.py::"
 PEAK = TESTS + "test_peak.py::"
 NUMBERS = TESTS + "test_reported_numbers.py::"
 IMPACT = TESTS + "test_impact.py"
-YIELDING = TESTS + "test_yielding_supports.py::"
+YIELDING = TESTS + "test_friction_springs.py::"
 
 # fmt: off
 MISTAKES = (
