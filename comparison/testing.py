@@ -13,7 +13,7 @@ import xarray as xr
 
 from comparison.study.batches import execute_batch
 from comparison.study.models import MODEL_HIERARCHY, Model, Pair, pairs_of, with_softened_bars
-from comparison.study.study import Study
+from comparison.study.study import STUDY_TOLERANCE, Study
 from comparison.study.user_models import LAWS, user_model
 from comparison.surfaces.model_difference import difference_of
 from comparison.surfaces.surfaces import label_surfaces
@@ -37,7 +37,7 @@ def assert_consistent(
     like_for_like_maximum: float | None = None,
     total_maximum: float | None = None,
     grid: int = 4,
-    tolerance: float = 1e-3,
+    tolerance: float = STUDY_TOLERANCE,
     engine: Callable[..., Any] | None = None,
     law: str = "regularised",
     failed: int = 0,

@@ -13,11 +13,11 @@ from comparison.runner.cache import refuse_foreign_store
 from comparison.runner.output import destination, refuse_foreign_report
 from comparison.study.models import Model
 from comparison.study.selection import Selection, refuse_unknown, select
-from comparison.study.study import refuse_same_names
+from comparison.study.study import STUDY_TOLERANCE, refuse_same_names
 from reference.problem import Family, Scene, SceneError, builtin_scenes, example_scenes, load_family
 from reference.problem.acceptance import Acceptance
 
-DEFAULT_TOLERANCE, TIGHTEST = 1e-3, 1e-8
+TIGHTEST_TOLERANCE = 1e-8  # relative error of mu
 DEFAULT_GRID = 48  # phases per axis of the equations; the engine's models have a `most` of their own
 
 
@@ -60,7 +60,8 @@ def parse_options(argv: Sequence[str]) -> Options:
         grid=DEFAULT_GRID if words.grid is None else read_whole_number("--grid", words.grid, 2, 512),
         out=destination(words.out),
         jobs=number_of_jobs(words),
-        tolerance=_optional("--tolerance", words.tolerance, TIGHTEST, 0.1, "relative error of mu") or DEFAULT_TOLERANCE,
+        tolerance=_optional("--tolerance", words.tolerance, TIGHTEST_TOLERANCE, 0.1, "relative error of mu")
+        or STUDY_TOLERANCE,
         budget=_optional("--budget", words.budget, 1.0, 1e7, "s of the whole run"),
         check=words.check,
         plan=words.plan,
@@ -120,7 +121,7 @@ def _parser() -> CommandParser:
         "--tolerance",
         metavar="X",
         help="relative error asked of every mu; the equations are asked for 1e-6 or better "
-        f"(default {DEFAULT_TOLERANCE:g})",
+        f"(default {STUDY_TOLERANCE:g})",
     )
     parser.add_argument(
         "--budget",

@@ -32,7 +32,7 @@ def page_data(report: Report, say: Callable[[str], object] = on_stderr) -> str:
 
     grid: phases per axis of the study. titles: by model. scenes, each: name, title, labels (by model, with the reading
     of mu), bodies, duration (s), recorded, flat (whether it is a flat slider); pairs, each: key, title, sentence,
-    first, second (models), supplied (whether the second is an engine of the user), contours (per body: polylines
+    first, second (models), user (whether the second is an engine of the user), contours (per body: polylines
     [[alpha1, alpha2], ...], rad, on which |D| = u_D), uncertainty (per body: u_D relative to the first model on the
     phases of both, or null where both are surfaces); models (by key: see `_model`); and what the `page_data` of every
     feature adds. A surface is a list of rows, one per alpha1, of values, one per alpha2.

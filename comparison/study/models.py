@@ -261,9 +261,9 @@ _PEAK = "largest value the computed motion reaches"
 _RESOLVED_PEAK = f"largest value at rest or sliding faster than v_c = {V_C_TEXT}"
 
 
-def _next(before: Model, departs: Mapping[str, str], **changes: Any) -> Model:
-    """The model after `before`: the same but for `changes`, and for the assumptions in which it `departs`."""
-    return replace(before, assumptions={**before.assumptions, **departs}, **changes)
+def _model_after(before: Model, changed_assumptions: Mapping[str, str], **changes: Any) -> Model:
+    """Return the model after `before`: the same but for other assumptions, by key, and other fields, by name."""
+    return replace(before, assumptions={**before.assumptions, **changed_assumptions}, **changes)
 
 
 SMALL = Model(
@@ -290,7 +290,7 @@ SMALL = Model(
     in_chain=smooth,
     seconds=0.0005,
 )
-EXACT = _next(
+EXACT = _model_after(
     SMALL,
     {
         "equations": "(3.9)-(3.13), errata corrected",
@@ -303,7 +303,7 @@ EXACT = _next(
     adds="The whole sphere: equations (3.9)-(3.13) with the errata of the print corrected, same friction law.",
     settings={"equations": "exact", "regularization": None},
 )
-SMALL_RESOLVED = _next(
+SMALL_RESOLVED = _model_after(
     SMALL,
     {"mu_i": _RESOLVED_PEAK},
     key="small-resolved",
@@ -315,7 +315,7 @@ SMALL_RESOLVED = _next(
     reading=AS_INTEGRATED,
     in_chain=any_scene,
 )
-RESOLVED = _next(
+RESOLVED = _model_after(
     EXACT,
     {"mu_i": _RESOLVED_PEAK},
     key="resolved",
@@ -327,7 +327,7 @@ RESOLVED = _next(
     in_chain=any_scene,
 )
 _LINEAR = {"friction": f"the same Coulomb law, times |v| / v_reg below v_reg = {V_REG_TEXT}", "mu_i": _PEAK}
-SMALL_REGULARIZED = _next(
+SMALL_REGULARIZED = _model_after(
     SMALL_RESOLVED,
     _LINEAR,
     key="small-regularised",
@@ -339,7 +339,7 @@ SMALL_REGULARIZED = _next(
     in_chain=never,
     seconds=0.001,
 )
-REGULARIZED = _next(
+REGULARIZED = _model_after(
     RESOLVED,
     _LINEAR,
     key="regularised",
@@ -350,7 +350,7 @@ REGULARIZED = _next(
     applies=dry,
     seconds=0.001,
 )
-TRANSLATIONAL = _next(
+TRANSLATIONAL = _model_after(
     REGULARIZED,
     {
         "equations": "Newton-Euler of the bodies, assembled by Exudyn",
@@ -374,7 +374,7 @@ TRANSLATIONAL = _next(
     most=16,
     seconds=0.06,
 )
-SPATIAL = _next(
+SPATIAL = _model_after(
     TRANSLATIONAL,
     {
         "geometry": "exact spheres at the supports, bodies as boxes at their heights, offsets and angles",
@@ -407,7 +407,7 @@ BESIDE_THE_CHAIN = (
 
 def _soften(model: Model, applies: Callable[[Scene], bool]) -> Model:
     """The step after an engine model that softens its bars."""
-    return _next(
+    return _model_after(
         model,
         {"links": "bars as soft as the weight that they carry makes them"},
         key=f"{SOFTENED}{model.key}",

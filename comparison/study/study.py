@@ -17,6 +17,9 @@ from comparison.study.selection import Selection
 from reference.problem import Scene, SceneError, phase_grid
 from reference.problem.symmetry import indices_of_solved_pairs
 
+# Relative error of every mu where --tolerance is not given, as the engine's own default; also of analyses by the engine
+STUDY_TOLERANCE = 1e-3
+
 
 def refuse_same_names(names: Iterable[tuple[str, str]]) -> None:
     """Raise SceneError, one line, if a name of a scene or family is there twice; names: source and name."""

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from comparison.surfaces.headline import Effect, Headline
 
 
-SAME = 1e-6  # share of mu: the error asked of the equations
+# Relative difference below which two mu are called the same: the error asked of the equations
+SAME = 1e-6
 UNRESOLVED = "less than five times the numerical error"
 NAMED = 4  # scenes that a sentence names one by one
 

@@ -196,7 +196,8 @@ def _is_recognized(file: Path) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _is_record(file: Path, changed: int, size: int) -> bool:
+def _is_record(file: Path, modified_ns: int, size: int) -> bool:
+    """Tell whether the content is that of a record; `modified_ns` and `size`, bytes, only key the cache."""
     try:
         return recognize_format(decode_text(read_file(file, LARGEST)), file.suffix) is not None
     except (OSError, RecordError):

@@ -26,7 +26,8 @@ try:
 except ImportError:
     fcntl = None  # type: ignore[assignment]
 
-TEMPORARY = ".phase-resonance-"  # begins names of temporary files and staging directories, and proves nothing
+# Prefix of temporary files and staging directories; a file of the user may have it, too: MARK decides
+TEMPORARY = ".phase-resonance-"
 MARK = "staging.json"  # file in a staging directory that says what it is and for which place
 CHUNK = 2**20  # bytes read at once
 NEW = "new"  # directory in a staging directory, for the files that are being written

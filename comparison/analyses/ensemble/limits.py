@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from comparison.analyses.ensemble.quantities import title_of, unit_of_demand
 from comparison.analyses.ensemble.result import EnsembleResult, LimitVerdict, Statistic, Stripe, Structure
 from comparison.analyses.ensemble.rows import labels, place_of
-from comparison.analyses.ensemble.sentences import count_motions
+from comparison.analyses.ensemble.sentences import motions_in_words
 from comparison.study.models import EXACT
 from comparison.verdicts import (
     MET,
@@ -136,7 +136,7 @@ def _check_body(
     count = f"{len(known)} of " if len(known) < ensemble.motions else ""
     what = "base shear over the weight" if key == "base_shear" else title_of(key)
     what += f" {place}" if (place := place_of(structure, key, body)) else ""
-    what += f", {statistic} of {count}{count_motions(ensemble.motions)}{by}"
+    what += f", {statistic} of {count}{motions_in_words(ensemble.motions)}{by}"
     what += f" at scale {ensemble.top:g}" if len(ensemble.scales) > 1 else ""
     about: tuple[str, str, str] = f"{KEY}{key}", labels(ensemble)[structure.name], what
     lacking = (ensemble.motions if statistic == MEAN else len(values)) - len(known)

@@ -9,7 +9,7 @@ import numpy as np
 from comparison.analyses.ensemble.quantities import title_of, unit_for_reading
 from comparison.analyses.ensemble.result import DemandCurve, EnsembleResult, Statistic, Structure
 from comparison.analyses.ensemble.rows import HEIGHTS, floor_of, labels
-from comparison.analyses.ensemble.sentences import count_motions
+from comparison.analyses.ensemble.sentences import motions_in_words
 from comparison.report.panels import panel
 from comparison.report.plots import Panel
 from reference.problem import GRAVITY
@@ -67,7 +67,7 @@ def _panel(ensemble: EnsembleResult, quantity: str) -> Panel:
     bounds = list(labels(ensemble).values())
     strips = {"title": "", "ticks": [[place, bounds[place]] for place in places], "range": [-0.6, len(places) - 0.4]}
     scales = {"title": "scale factor of the motion", "range": [0.0, 1.04 * ensemble.top]}
-    label = f"{title} {'by bound' if one else 'over the scale factor'}, {count_motions(ensemble.motions)}"
+    label = f"{title} {'by bound' if one else 'over the scale factor'}, {motions_in_words(ensemble.motions)}"
     series += by_engine
     return panel(title, label, strips if one else scales, _from_zero(f"{title}, {unit}", series), series)
 
@@ -126,7 +126,7 @@ def _profile(ensemble: EnsembleResult, quantity: str) -> Panel:
     y: dict[str, Any] = {"title": HEIGHT_AXIS} if heights else {"title": "body, from the platform up"}
     if not heights:
         y["ticks"] = [[n, str(n)] for n in range(1, max(each.bodies for each in ensemble.structures) + 1)]
-    label = f"{title_of(quantity)} over the height: 16, 50 and 84 %, {count_motions(ensemble.motions)}"
+    label = f"{title_of(quantity)} over the height: 16, 50 and 84 %, {motions_in_words(ensemble.motions)}"
     return panel(f"{title_of(quantity)} over the height", label, x, y, series)
 
 
@@ -144,7 +144,7 @@ def _floor_spectrum(ensemble: EnsembleResult, title: str) -> Panel:
         if (spectrum.structure, spectrum.body) == (structure.name, 1 if title == "platform" else structure.bodies)
     ]
     quantity = f"pseudo-acceleration, {100.0 * ensemble.spectra[0].damping:g} % damping, g"
-    label = f"floor spectrum of the {title}, {count_motions(ensemble.motions)}"
+    label = f"floor spectrum of the {title}, {motions_in_words(ensemble.motions)}"
     return panel(f"floor spectrum: {title}", label, PERIOD, _from_zero(quantity, series), series)
 
 
@@ -162,7 +162,7 @@ def _ground_spectra(ensemble: EnsembleResult) -> Panel:
     wanted = [value / GRAVITY for value in target.acceleration]
     series.append({"x": x, "y": wanted, "name": "target", "color": "ink", "width": 2.4})
     y = _from_zero("pseudo-acceleration, 5 % damping, g", series)
-    label = f"response spectra of the ground and their target, {count_motions(ensemble.motions)} at scale 1"
+    label = f"response spectra of the ground and their target, {motions_in_words(ensemble.motions)} at scale 1"
     return panel("response spectra of the ground", label, PERIOD, y, series)
 
 

@@ -151,7 +151,7 @@ def _compute_engine_nearby(worst: Worst, scene: Scene, like: Model, model: Model
     (corners, _), (square, _) = square_nodes(2), square_nodes(3)
     computed = engine.compute(search.phases + ENGINE_HALF_WIDTH * corners)
     equations = _surface(scene, like, TOLERANCE, worst.body).compute(search.phases + ENGINE_HALF_WIDTH * square)
-    highest, _ = predict_best(engine, search, _estimate(start, computed, equations))
+    highest, _ = predict_best(engine, search, _estimate_engine_by_ratio(start, computed, equations))
     search.move_to_best(computed)
     search.move_to_best(engine.compute(highest[None]))
     if not math.isfinite(search.value):
@@ -196,11 +196,13 @@ def _surface(scene: Scene, model: Model, tolerance: float, body: int) -> Surface
     return Surface(scene, import_function(model.amplification), {**model.settings, "tolerance": tolerance}, body - 1)
 
 
-def _estimate(middle: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases) -> ComputedPhases:
-    """The engine at the 3 x 3 places of a square that the equations have, from its ratio to them at five of these."""
+def _estimate_engine_by_ratio(
+    center: ComputedPhases, corners: ComputedPhases, equations: ComputedPhases
+) -> ComputedPhases:
+    """Return the engine at the 3 x 3 places of a square by its ratio to the equations, known at five of these."""
     like = equations.numerator.reshape(3, 3)
     ratio = np.empty((3, 3))
     ratio[::2, ::2] = corners.numerator.reshape(2, 2) / like[::2, ::2]
     ratio[1, ::2], ratio[::2, 1] = ratio[::2, ::2].mean(axis=0), ratio[::2, ::2].mean(axis=1)
-    ratio[1, 1] = middle.numerator[0] / like[1, 1]
+    ratio[1, 1] = center.numerator[0] / like[1, 1]
     return replace(equations, numerator=(ratio * like).ravel())

@@ -12,7 +12,8 @@ from comparison.runner.task import TaskResult
 from reference.problem import Amplification, Scene, exponents, ground_peak, phase_grid
 from reference.problem.symmetry import complete_surface
 
-TOLERANCE = 1e-3  # relative, of surfaces that the study does not have: peaks are counted in parts of their range
+# Relative error of surfaces that the study does not have: enough to count peaks in parts of their range
+SURFACE_TOLERANCE = 1e-3
 SHARP = 1e-6  # relative error of the values that tell a fold from a curvature
 FLAT = 0.05  # range of a surface over its mean, below which it has no peaks to speak of
 MOTIONS = ((0.3, 1.1), (2.0, 0.7), (4.0, 5.5), (0.0, np.pi))  # rad, whose motion is looked at
@@ -62,7 +63,7 @@ def gather_evidence(question: CaseInReading) -> Evidence:
     """Return surfaces, bends and facts of the motions of one case in one reading. Runs inside a worker process."""
     scene, cutoff = CASES[question.case](), question.reading.cutoff
 
-    def solve(scene: Scene, phases: Array, tolerance: float = TOLERANCE) -> Amplification:
+    def solve(scene: Scene, phases: Array, tolerance: float = SURFACE_TOLERANCE) -> Amplification:
         return reference.amplification(scene, phases, equations="small", cutoff=cutoff, tolerance=tolerance)
 
     surfaces = question.known

@@ -13,9 +13,9 @@ from comparison.evidence.tradeoff.settings import (
     Setting,
     Settings,
     TradeoffQuestion,
+    list_settings,
+    list_user_settings,
     questions_of,
-    settings,
-    user_settings,
 )
 from comparison.json_file import finite_or_none
 from comparison.result_types import Array
@@ -124,7 +124,7 @@ class TradeOff(Analysis[list[trade.MeasuredTrade]]):
         return [self._trade(scene, results) for scene in study.phased]
 
     def _settings(self, scene: Scene) -> list[Setting]:
-        return [*settings(scene, self.quick), *user_settings(self.supplied)]
+        return [*list_settings(scene, self.quick), *list_user_settings(self.supplied)]
 
     def _measurements(self, scene: Scene) -> Iterator[list[Task]]:
         """The tasks of the reference solution of every question; then of every setting, and of what it is against."""

@@ -26,7 +26,7 @@ from comparison.runner.attempts import attempt
 from comparison.runner.output import destination, netcdf, publish, refuse_foreign_files
 from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
-from comparison.study.study import Study, refuse_same_names
+from comparison.study.study import STUDY_TOLERANCE, Study, refuse_same_names
 from comparison.surfaces.figures.file_names import figure_file
 from reference.problem import Scene, SceneError, load_scene
 from reference.support.command import UsageError
@@ -35,7 +35,6 @@ DEFAULT = "fig3-I"
 COMMAND = "comparison.tradeoff"
 STARTING = 8.0  # s of a worker before its first task: imports, compiled code loaded
 MODELS = {REFERENCE, ENGINE, RUN, LEVEL, CONSTANT, SCIPY}  # what the workers ask
-TOLERANCE = 1e-3  # tolerance of a study; every setting has one of its own
 
 
 @command
@@ -88,7 +87,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
 def _measure_growth(
     scene: Scene, options: argparse.Namespace, words: Sequence[str], out: Path, console: Console, executor: Pool
 ) -> int:
-    begin, study = time.monotonic(), Study((scene,), 1, TOLERANCE)
+    begin, study = time.monotonic(), Study((scene,), 1, STUDY_TOLERANCE)
     tasks = Growth().tasks(study)
     models = {task.argument.function[0] for task in tasks}
     results = compute_tasks("tradeoff", options, words, tasks, models, console, executor)
@@ -139,7 +138,7 @@ def measure_trades(
 ) -> list[MeasuredTrade]:
     """The trades of the scenes with all that is known of their run; what is stored is not measured again."""
     supplied = user_models(options.model, options.model_limit, options.scheduler)
-    tradeoff, study = TradeOff(options.quick, supplied), Study(tuple(scenes), 1, TOLERANCE)
+    tradeoff, study = TradeOff(options.quick, supplied), Study(tuple(scenes), 1, STUDY_TOLERANCE)
     tasks, width = tradeoff.tasks(study), number_of_jobs(options)
     about = STARTING + sum(task.seconds for task in tasks) / width
     for scene in scenes:

@@ -17,10 +17,9 @@ from comparison.runner.processes import cores
 from comparison.runner.task import Task
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import EXACT, SPATIAL, TRANSLATIONAL, Model
-from comparison.study.study import Study
+from comparison.study.study import STUDY_TOLERANCE, Study
 from reference.problem import Scene
 
-TOLERANCE = 1e-3  # asked of the engine; the equations are asked for their own
 CALLS, PAIRS = 16, 64  # calls and phase pairs of the equations, shared by the workers
 
 FILE = "growth.json"
@@ -154,7 +153,7 @@ class Growth(Analysis[list[Series]]):
 
     def _task(self, quantity: GrowingQuantity, model: Model, scene: Scene, value: float) -> Task:
         work = {"max_work": MAX_WORK} if model.side == "engine" else {}
-        settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(TOLERANCE), **work}
+        settings: dict[str, Any] = {**model.settings, "tolerance": model.tolerance(STUDY_TOLERANCE), **work}
         phases = sample(int(value) if quantity.name == PAIRED else POINTS[model.side])
         measurement = Measurement(quantity.scene(scene, value), (model.amplification, settings), phases)
         return Task(measure, measurement, self.stage, about=scene, timeout=LIMIT)

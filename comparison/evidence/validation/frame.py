@@ -37,13 +37,13 @@ from comparison.evidence.validation.table import (
     Found,
 )
 from comparison.result_types import Array
+from comparison.study.study import STUDY_TOLERANCE
 from reference.problem import GRAVITY, Scene, Trajectory
 
 HEAVY, LOOSE = 10.0, 1e4  # mass of the second body over that of the platform; period of its link, s
 FAST = 1.0  # by how much friction would grow at infinite speed: the slope at zero is what counts
 CYCLES = 12  # computed, of which the last is read
 REGULARIZATION = 1e-4  # m/s, of the engine
-TOLERANCE = 1e-3  # relative error asked of the engine
 FIRST = 0.250  # kg, weight of the disc in the run that the ratio is fitted to, if the folder has it
 SECOND = 0.450  # kg, in the second run that friction of the load is fitted to, if the folder has it
 LOADED = ", friction of the load"  # behind the name of a run
@@ -113,7 +113,7 @@ def compute(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
     """The motion of a run by one side, from the base's largest position on."""
     scene, phases = scene_of(cycles, setup)
     place = np.array([1e-3 * cycles.amplitude, 0.0])
-    return table.motion_of(side, scene, phases, place, REGULARIZATION, TOLERANCE, "small")
+    return table.motion_of(side, scene, phases, place, REGULARIZATION, STUDY_TOLERANCE, "small")
 
 
 def read(cycles: Cycles, motion: Trajectory) -> ComputedValues:

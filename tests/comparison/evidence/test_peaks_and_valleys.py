@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from comparison.evidence.claims.peaks_and_valleys import Counts, count_drawn, count_periodic, count_profile, relief
+from comparison.evidence.claims.peaks_and_valleys import (
+    Counts,
+    find_relief,
+)
+from comparison.evidence.claims.peaks_and_valleys import count_drawn_peaks_and_valleys as count_drawn
+from comparison.evidence.claims.peaks_and_valleys import count_periodic_peaks_and_valleys as count_periodic
+from comparison.evidence.claims.peaks_and_valleys import count_profile_peaks_and_valleys as count_profile
 from comparison.evidence.claims.smoothness import bends
 from reference.problem import phase_grid
 
@@ -36,7 +42,7 @@ def test_ridges_are_counted_along_their_own_diagonal() -> None:
 def test_a_peak_across_the_edge_counts_once() -> None:
     corner = np.exp(np.cos(A1) + np.cos(A2))
     assert count_periodic(corner).peaks == 1
-    assert relief(corner).tops == [(0, 0)]
+    assert find_relief(corner).tops == [(0, 0)]
     assert count_drawn(corner).peaks == 4
 
 
@@ -66,7 +72,7 @@ def test_a_plateau_is_one_peak_however_wide() -> None:
 
 def test_regions_belong_to_the_peak_across_the_saddle() -> None:
     heights = np.array([[9.0, 0.0, 5.0, 4.0, 4.5, 1.0, 8.0]])  # the peak of 4.5 is lesser: it hangs on the one of 5
-    peaks = relief(heights, share=0.3, closed=False)
+    peaks = find_relief(heights, share=0.3, closed=False)
     assert peaks.tops == [(0, 0), (0, 6), (0, 2)]
     assert peaks.regions[0, 4] == 2
 

@@ -15,7 +15,7 @@ from scipy.stats import linregress
 from comparison.evidence.tradeoff import analysis, command, growth, outside, single_runs
 from comparison.evidence.tradeoff.analysis import Measurement, SettingResult, entry, join_results, sample
 from comparison.evidence.tradeoff.growth import QUANTITIES, STORED, Growth, fit_slope, tall, with_slope
-from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Setting, TradeoffQuestion, settings
+from comparison.evidence.tradeoff.settings import QUESTIONS, RUN, Setting, TradeoffQuestion, list_settings
 from comparison.evidence.tradeoff.trade import load, quantile, unbeaten, with_pareto_fronts
 from comparison.study.batches import import_function
 from comparison.study.study import Study
@@ -116,7 +116,7 @@ def test_single_runs_have_the_factors_at_the_step_that_is_asked() -> None:
 
 
 def test_truths_are_a_hundred_times_tighter_than_tolerances() -> None:
-    every = settings(load_scene("fig3-I"))
+    every = list_settings(load_scene("fig3-I"))
     for question in QUESTIONS:
         of_question = [setting for setting in every if setting.question == question.key]
         side = "multibody" if question.key == "spatial" else "reference"

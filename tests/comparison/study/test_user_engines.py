@@ -28,7 +28,7 @@ from comparison.evidence.extremes.rows import rows
 from comparison.evidence.tradeoff import analysis
 from comparison.evidence.tradeoff.analysis import TradeOff
 from comparison.evidence.tradeoff.feature import tradeoff_panels
-from comparison.evidence.tradeoff.settings import QUESTIONS, user_settings
+from comparison.evidence.tradeoff.settings import QUESTIONS, list_user_settings
 from comparison.runner.environment import engine_fingerprint, source_digest
 from comparison.runner.processes import process_pool
 from comparison.study.batches import drop_unusable, execute_batch
@@ -493,7 +493,7 @@ def test_extremes_of_its_law_concern_a_user_engine() -> None:
 def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
     def curve(names: str, like: str = "regularised") -> list[tuple[str, float, bool]]:
         model = user_model("mine", {"function": "user_engines:plain", "names": names}, like)
-        return [(one.question, one.value, one.against is None) for one in user_settings([model])]
+        return [(one.question, one.value, one.against is None) for one in list_user_settings([model])]
 
     assert curve("tolerance") == [("regularised", value, True) for value in (1e-2, 1e-3, 1e-4, 1e-5)]
     assert (curve(""), curve("", "resolved")) == ([("regularised", 1e-3, True)], [("exact", 1e-3, False)])
