@@ -225,7 +225,7 @@ class _Line:
 
 def _find_sensitivity(line: _Line) -> Sensitivity:
     """Return the derivative, the finite changes, and the kink that makes them contradict each other."""
-    derivative, middle = _differentiate(line), line.middle
+    derivative, middle = _differentiate_line(line), line.middle
     moved = [line.answer_at(line.value * (1.0 + share)) for share in SHARES]
     change = Estimates(
         np.array([each.value - middle.value for each in moved]), np.array([each.error + middle.error for each in moved])
@@ -264,7 +264,7 @@ def describe_kink(key: str, at: float, kink: Estimate, slopes: tuple[float, floa
     return f"{kind} at {place}: slope {slopes[0]:.3g} below and {slopes[1]:.3g} beyond it"
 
 
-def _differentiate(line: _Line) -> Estimates:
+def _differentiate_line(line: _Line) -> Estimates:
     """Return the derivative from the step with the smallest error."""
     middle, value = line.middle, line.value
 

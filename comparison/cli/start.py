@@ -43,16 +43,16 @@ COMMANDS = {  # those that belong to no feature
 }
 
 
-def commands() -> dict[str, Command]:
+def list_commands() -> dict[str, Command]:
     """Return all commands by name: those of no feature, then each `command.py` in the folder of a feature."""
     found = dict(COMMANDS)
     for file in sorted(PACKAGE.glob("*/*/command.py"), key=lambda file: file.parent.name):
         folder = ".".join(file.parent.relative_to(PACKAGE.parent).parts)
-        found[file.parent.name] = Command(f"{folder}.command", _purpose(folder))
+        found[file.parent.name] = Command(f"{folder}.command", _purpose_of_package(folder))
     return found
 
 
-def _purpose(package: str) -> str:
+def _purpose_of_package(package: str) -> str:
     """Return the first sentence of a package, as the help lists it."""
     text = import_module(package).__doc__ or ""
     return f"{text[:1].lower()}{text[1:].strip().rstrip('.')}"
@@ -87,12 +87,12 @@ def _of_children() -> float:
 _started: list[Clock] = []
 
 
-def start_time() -> Clock:
+def command_start() -> Clock:
     """When the command of this process started, before its modules were loaded; now where a program calls it."""
     return _started.pop() if _started else Clock.now()
 
 
-def start(module: str) -> NoReturn:
+def run_command(module: str) -> NoReturn:
     """Import a command by its full name, run its `main` and end the process with its exit code."""
     _started.append(Clock.now())
     gc.set_threshold(*COLLECTIONS)
@@ -124,7 +124,7 @@ def _refuse_threads() -> None:
 def main() -> NoReturn:
     """Run the console script: its first word is the command, the others are for the command."""
     name = sys.argv[1] if len(sys.argv) > 1 else "help"
-    known = commands()
+    known = list_commands()
     if name in ("-h", "--help", "help"):
         print(f"usage: {SCRIPT} COMMAND [options]; {SCRIPT} COMMAND --help lists the options; {SCRIPT} --version\n")
         print("\n".join(f"  {name:12s} {command.purpose}" for name, command in known.items()))
@@ -138,4 +138,4 @@ def main() -> NoReturn:
         print(f"command line: COMMAND = {name!r}: {rule}", file=sys.stderr)
         raise SystemExit(2)
     sys.argv = [f"{SCRIPT} {name}", *sys.argv[2:]]
-    start(known[name].module)
+    run_command(known[name].module)

@@ -49,7 +49,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
     """
     Return what a supplied function answers, in the form of `multibody.amplification`, asked with the settings it names.
     """
-    with quiet():
+    with silence_output():
         function = user_function(engine["function"])
         begin = _processor_time()
         try:
@@ -60,7 +60,7 @@ def amplification(scene: Scene, phases: Array, *, engine: Mapping[str, Any], **s
             note_line(error, _file_of(function))
             raise
         seconds = _processor_time() - begin
-        return _read(answer, len(phases), len(scene.bodies), seconds)
+        return _read_answer(answer, len(phases), len(scene.bodies), seconds)
 
 
 def note_line(error: BaseException, file: Path | None) -> None:
@@ -148,7 +148,7 @@ def _names_by(function: Callable[..., Any], settings: Mapping[str, Any]) -> dict
     return {key: value for key, value in settings.items() if key in names}
 
 
-def _read(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer:
+def _read_answer(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer:
     """An answer of any accepted form: an object with `mu`, an array mu, or a tuple (mu, error)."""
     if hasattr(answer, "mu"):
         mu, parts = answer.mu, {name: getattr(answer, name, None) for name in ("error", "instant", "displacement")}
@@ -162,11 +162,11 @@ def _read(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer
         parts, outcomes = {"error": rest[0] if rest else None}, None
     shapes = {"mu": (points, bodies), "error": (points, bodies), "instant": (points,), "displacement": (points,)}
     arrays: dict[str, Any] = {
-        name: _array(name, {"mu": mu, **parts}.get(name), shape) for name, shape in shapes.items()
+        name: _check_array(name, {"mu": mu, **parts}.get(name), shape) for name, shape in shapes.items()
     }
     mu, error = arrays["mu"], arrays["error"]
     error[~(error >= 0.0)] = UNKNOWN_ERROR
-    status, error_message = _outcomes(outcomes, points)
+    status, error_message = _read_outcomes(outcomes, points)
     drop_unusable(mu, error, status, own=False)
     missing = np.isnan(mu).any(axis=1)
     for point in np.flatnonzero(missing).tolist():
@@ -177,7 +177,7 @@ def _read(answer: Any, points: int, bodies: int, seconds: float) -> EngineAnswer
     return EngineAnswer(status=np.array(status), cost=seconds, error_message=error_message, **arrays)
 
 
-def _array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
+def _check_array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
     """A new array of this shape; NaN without a value."""
     if value is None:
         return np.full(shape, np.nan)
@@ -190,7 +190,7 @@ def _array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
         return array.astype(float)
 
 
-def _outcomes(stated: Sequence[Any] | None, points: int) -> tuple[list[str], str]:
+def _read_outcomes(stated: Sequence[Any] | None, points: int) -> tuple[list[str], str]:
     """The outcomes that the engine states, "solver failed" in place of its own words, and a message with these."""
     texts = ["ok"] * points if stated is None else [str(text) for text in stated]
     if len(texts) != points:
@@ -209,12 +209,12 @@ def _processor_time() -> float:
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
+def silence_output() -> Iterator[None]:
     """Drop what the block prints, also from compiled code, and give it nothing to read; in a worker process only."""
     if multiprocessing.parent_process() is None:
         yield
         return
-    _flush()
+    _flush_output()
     kept = [os.dup(number) for number in range(3)]
     nothing = os.open(os.devnull, os.O_RDWR)
     try:
@@ -222,14 +222,14 @@ def quiet() -> Iterator[None]:
             os.dup2(nothing, number)
         yield
     finally:
-        _flush()
+        _flush_output()
         for number, before in enumerate(kept):
             os.dup2(before, number)
         for number in (*kept, nothing):
             os.close(number)
 
 
-def _flush() -> None:
+def _flush_output() -> None:
     for stream in (sys.stdout, sys.stderr):
         with suppress(Exception):
             stream.flush()

@@ -42,7 +42,7 @@ from reference.problem.excitation import (
 from reference.problem.families import Family, load_family
 from reference.problem.friction import DryFriction
 from reference.problem.outcome import ADVICE, Outcome
-from reference.problem.phases import checked_phase, checked_phases, flat_phases, phase_axis, phase_grid
+from reference.problem.phases import check_phases, checked_phase, flat_phases, phase_axis, phase_grid
 from reference.problem.recorded import describe_record
 from reference.problem.reductions import (
     Reduction,
@@ -61,7 +61,7 @@ from reference.problem.result import Accuracy, Amplification, State, Trajectory
 from reference.problem.scene import Scene
 from reference.problem.scene_file import builtin_scenes, example_scenes, load_scene, parse_scene
 from reference.support.constants import GRAVITY
-from reference.support.drawing import verbatim
+from reference.support.drawing import escape_for_matplotlib
 from reference.support.scene_error import SceneError
 
 __all__ = [
@@ -78,9 +78,10 @@ __all__ = [
     "State",
     "Trajectory",
     "builtin_scenes",
+    "check_phases",
     "checked_phase",
-    "checked_phases",
     "describe_record",
+    "escape_for_matplotlib",
     "example_scenes",
     "exponents",
     "flat_phases",
@@ -104,5 +105,4 @@ __all__ = [
     "planar_chain",
     "untilted",
     "unused_harmonics",
-    "verbatim",
 ]

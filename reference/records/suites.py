@@ -134,7 +134,7 @@ def list_motions(suite: str, folder: Path, components: Any = None) -> MotionList
     found = _read_directory(folder / suite)
     if isinstance(found, MotionList):
         return found
-    kinds = {file: _kind(file) for file in found}
+    kinds = {file: _kind_of_other_file(file) for file in found}
     records = [file for file, kind in kinds.items() if not kind]
     ignored = Counter(kind for kind in kinds.values() if kind)
     if not records:
@@ -170,7 +170,7 @@ def _read_directory(place: Path) -> MotionList | list[Path]:
     return files
 
 
-def _kind(file: Path) -> str:
+def _kind_of_other_file(file: Path) -> str:
     """Return the kind of a file that is no record, "" for a record."""
     suffix = file.suffix.lower()
     if file.name.startswith("."):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 
-def plain(value: Any) -> Any:
+def as_plain_values(value: Any) -> Any:
     """
     Return lists and numbers of Python in place of arrays, tuples and numbers of numpy, at any depth of lists.
 
@@ -17,10 +17,10 @@ def plain(value: Any) -> Any:
     """
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
-    return [plain(part) for part in value] if isinstance(value, list | tuple) else value
+    return [as_plain_values(part) for part in value] if isinstance(value, list | tuple) else value
 
 
-def hashable(value: Any) -> Hashable:
+def as_hashable(value: Any) -> Hashable:
     """
     Return tuples and frozen sets in place of lists and tables, at any depth: equal for equal values.
 
@@ -28,5 +28,5 @@ def hashable(value: Any) -> Hashable:
     True
     """
     if isinstance(value, dict):
-        return frozenset((key, hashable(part)) for key, part in value.items())
-    return tuple(map(hashable, value)) if isinstance(value, list) else value
+        return frozenset((key, as_hashable(part)) for key, part in value.items())
+    return tuple(map(as_hashable, value)) if isinstance(value, list) else value

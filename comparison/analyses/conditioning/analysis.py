@@ -22,8 +22,8 @@ import reference
 from comparison.result_types import Array, Number, Phases, Text, result
 from comparison.runner.mapped_analysis import MappedAnalysis
 from comparison.runner.task import TaskResult
-from comparison.study.models import REFERENCE_TOLERANCE, any_scene, dry, has_spatial_data
-from comparison.study.shorten import shorten
+from comparison.study.models import REFERENCE_TOLERANCE, any_scene, has_dry_friction, has_spatial_data
+from comparison.study.shorten import shorten_scene
 from comparison.study.study import STUDY_TOLERANCE, Study, nested_grids
 from comparison.surfaces.sampling import sampling_error
 from reference.problem import Outcome, Scene, phase_grid
@@ -127,15 +127,15 @@ def conditioning_curves(task: Arguments) -> list[ConditioningCurve]:
     """Return the curves of every body for one question; with set-valued friction the literal supremum, too."""
     scene, number, grid = task
     question = QUESTIONS[number]
-    answers = _answers(scene if grid else shorten(scene, FEW_PERIODS), question, grid)
-    curves = [_curve(task, body, question.speeds, answers) for body in range(1, len(scene.bodies) + 1)]
+    answers = _ask_at_speeds(scene if grid else shorten_scene(scene, FEW_PERIODS), question, grid)
+    curves = [_make_curve(task, body, question.speeds, answers) for body in range(1, len(scene.bodies) + 1)]
     if question.argument == "cutoff":
         limit = answers._replace(mu=answers.supremum[None], error=answers.supremum_error[None])
-        curves += [_curve(task, body, (0.0,), limit) for body in range(1, len(scene.bodies) + 1)]
+        curves += [_make_curve(task, body, (0.0,), limit) for body in range(1, len(scene.bodies) + 1)]
     return curves
 
 
-def _answers(moving: Scene, question: Question, grid: int) -> _Answers:
+def _ask_at_speeds(moving: Scene, question: Question, grid: int) -> _Answers:
     """Ask the model at every speed, and the equations for the literal supremum; NaN at pairs that lack any of it."""
     phases, taken = distinct_pairs(moving, grid) if grid else (FEW, np.arange(len(FEW)))
     supremum = reference.amplification(moving, phases, **question.base)
@@ -156,7 +156,7 @@ def _answers(moving: Scene, question: Question, grid: int) -> _Answers:
     )  # fmt: skip
 
 
-def _curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answers) -> ConditioningCurve:
+def _make_curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answers) -> ConditioningCurve:
     mu, error = answers.mu[..., body - 1], answers.error[..., body - 1]
     supremum, supremum_error = answers.supremum[:, body - 1], answers.supremum_error[:, body - 1]
     over_supremum = mu / supremum - 1.0
@@ -165,7 +165,7 @@ def _curve(task: Arguments, body: int, speeds: tuple[float, ...], answers: _Answ
         _statistics_at_speed(*each, answers, task[2]) for each in zip(mu, error, over_supremum, over_supremum_error)
     ]
     pairs = int(np.isfinite(mu).any(axis=0).sum())
-    return _describe(task, body, speeds, rows, pairs, "" if pairs else answers.lost)
+    return _fill_curve(task, body, speeds, rows, pairs, "" if pairs else answers.lost)
 
 
 def _statistics_at_speed(
@@ -193,10 +193,10 @@ def _without_value(task: Arguments, failed: TaskResult) -> list[ConditioningCurv
     scene, number, _ = task
     speeds = QUESTIONS[number].speeds
     rows = [_SpeedStatistics()] * len(speeds)
-    return [_describe(task, body, speeds, rows, 0, failed.reason) for body in range(1, len(scene.bodies) + 1)]
+    return [_fill_curve(task, body, speeds, rows, 0, failed.reason) for body in range(1, len(scene.bodies) + 1)]
 
 
-def _describe(
+def _fill_curve(
     task: Arguments, body: int, speeds: tuple[float, ...], rows: Sequence[_SpeedStatistics], pairs: int, reason: str
 ) -> ConditioningCurve:
     scene, number, grid = task
@@ -210,7 +210,7 @@ def _describe(
         speed=SYMBOLS[question.argument],
         grid=grid,
         pairs=pairs,
-        duration=(scene if grid else shorten(scene, FEW_PERIODS)).duration,
+        duration=(scene if grid else shorten_scene(scene, FEW_PERIODS)).duration,
         v=speeds,
         base=question.base["equations"],
         reason=reason,
@@ -231,7 +231,7 @@ class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
         return [
             (scene, number, grid if question.on_grid else 0)
             for scene in study.phased
-            if dry(scene)
+            if has_dry_friction(scene)
             for number, question in enumerate(QUESTIONS)
             if question.applies(scene)
         ]

@@ -20,7 +20,7 @@ from comparison.verdicts import (
     NOT_MET,
     Verdict,
     count_verdicts,
-    judge,
+    judge_error,
     word_counts,
     word_verdict,
 )
@@ -63,7 +63,7 @@ class DemandCheck:
     @property
     def verdict(self) -> Verdict:
         """Met, not met or not compared."""
-        return NOT_COMPARED if self.reason else judge(self.excess, self.allowed)
+        return NOT_COMPARED if self.reason else judge_error(self.excess, self.allowed)
 
 
 def word_check(check: DemandCheck) -> str:
@@ -83,7 +83,7 @@ def _stated_in_words(check: DemandCheck) -> str:
 
 def word_checks(checks: Sequence[DemandCheck]) -> list[str]:
     """Return how many demands are met, then a line for every one that is not, the worst last."""
-    lines = [word_check(check) for check in sorted(checks, key=_order, reverse=True) if check.verdict != MET]
+    lines = [word_check(check) for check in sorted(checks, key=_order_of_check, reverse=True) if check.verdict != MET]
     return [word_counts(count_verdicts(check.verdict for check in checks), "demand"), *lines] if checks else []
 
 
@@ -92,7 +92,7 @@ def verdicts_of(checks: Sequence[DemandCheck]) -> list[LimitVerdict]:
     return [LimitVerdict(check.key, check.bound, check.verdict, word_check(check)) for check in checks]
 
 
-def _order(check: DemandCheck) -> tuple[int, float, float]:
+def _order_of_check(check: DemandCheck) -> tuple[int, float, float]:
     """Return the order of checks, the worst first: by the share of the stated number by which a demand is off."""
     share = abs(check.excess or 0.0) / abs(check.stated) if check.stated else math.inf
     return WORST_FIRST.index(check.verdict), -share, -(check.found or 0.0)
@@ -101,7 +101,7 @@ def _order(check: DemandCheck) -> tuple[int, float, float]:
 def check_limits(ensemble: EnsembleResult, limits: Mapping[str, DemandLimits]) -> list[DemandCheck]:
     """Return the verdict on every limit of every structure, at the largest scale. limits: by name of the structure."""
     return [
-        min(_check_bodies(ensemble, structure, key, limit, stated.statistic), key=_order)
+        min(_check_bodies(ensemble, structure, key, limit, stated.statistic), key=_order_of_check)
         for structure in ensemble.structures
         if (stated := limits.get(structure.name)) is not None
         for key, limit in stated.limits_by_key().items()
@@ -167,7 +167,7 @@ def _values_at_top(
 
 def compare_with_stored(ensemble: EnsembleResult, stored: EnsembleResult, within: float) -> list[DemandCheck]:
     """Return the verdict on mean and largest value of every demand by the equations against a stored ensemble."""
-    new, old = _stripes(ensemble), _stripes(stored)
+    new, old = _stripes_by_place(ensemble), _stripes_by_place(stored)
     named = {each.name: each.name for each in (*stored.structures, *ensemble.structures)} | labels(ensemble)
     return [
         check
@@ -179,7 +179,7 @@ def compare_with_stored(ensemble: EnsembleResult, stored: EnsembleResult, within
 Place = tuple[str, str, int | None, float]
 
 
-def _stripes(ensemble: EnsembleResult) -> dict[Place, Stripe]:
+def _stripes_by_place(ensemble: EnsembleResult) -> dict[Place, Stripe]:
     """Return the stripes of the equations by structure, demand, body and scale."""
     return {
         (each.structure, each.quantity, each.body, each.scale): each

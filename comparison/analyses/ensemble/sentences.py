@@ -124,7 +124,7 @@ def engine_sentences(ensemble: EnsembleResult) -> list[str]:
         if not own:
             continue
         each_motion = [
-            f"{each.motion} ({', '.join(each.reasons)}{_status(each.statuses.get(engine.model, ''))})"
+            f"{each.motion} ({', '.join(each.reasons)}{_word_status(each.statuses.get(engine.model, ''))})"
             for each in own[:NAMED]
         ]
         more = f" and {len(own) - NAMED} more" if len(own) > NAMED else ""
@@ -135,7 +135,7 @@ def engine_sentences(ensemble: EnsembleResult) -> list[str]:
     return said
 
 
-def _status(status: str) -> str:
+def _word_status(status: str) -> str:
     return "" if status in ("ok", "") else f"; {status}"
 
 

@@ -72,11 +72,11 @@ def _print_demands(console: Console, ensemble: EnsembleResult) -> None:
         say(console, [f"{bound}:".capitalize() if bound == ENVELOPE else f"{bound}:"])
         table = new_table("quantity", "unit", "mean", *shares, "largest", "motion")
         for row in rows:
-            table.add_row(*_cells(row))
+            table.add_row(*_cells_of_row(row))
         console.print(table)
 
 
-def _cells(row: DemandRow) -> list[str]:
+def _cells_of_row(row: DemandRow) -> list[str]:
     mean, *others = row.cells
     values = [cell.partition(" ±")[0] for cell in others]
     name = f"{row.name}, {row.where}" if row.where else row.name

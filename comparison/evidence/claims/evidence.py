@@ -6,7 +6,7 @@ import numpy as np
 
 import reference
 from comparison.evidence.claims.readings import CASES, PeakReading
-from comparison.evidence.claims.smoothness import Bend, bends
+from comparison.evidence.claims.smoothness import Bend, find_bends
 from comparison.result_types import Array
 from comparison.runner.task import TaskResult
 from reference.problem import Amplification, Scene, exponents, ground_peak, phase_grid
@@ -81,11 +81,11 @@ def gather_evidence(question: CaseInReading) -> Evidence:
     apart, swing = _motion_facts(scene)
     return replace(
         surfaces,
-        bends=bends(surfaces.mu, lambda phases: solve(scene, phases, SHARP).mu),
+        bends=find_bends(surfaces.mu, lambda phases: solve(scene, phases, SHARP).mu),
         apart=apart,
         swing=swing,
         resonance=tuple((float(each), float(natural[np.abs(each / natural - 1.0).argmin()])) for each in periods),
-        ground=bends(ground(phase_grid(grid)).reshape(grid, grid, 1), ground)[0],
+        ground=find_bends(ground(phase_grid(grid)).reshape(grid, grid, 1), ground)[0],
     )
 
 

@@ -88,7 +88,7 @@ def find_relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: boo
         islands: dict[int, int] = {}  # adjacent to this node, and their highest node
         for other in sorted(around[node], key=rank.__getitem__):
             if parent[other] >= 0:
-                islands.setdefault(_root(parent, other), other)
+                islands.setdefault(_root_of_node(parent, other), other)
         if not islands:
             tops.append(node)
             parent[node] = top_of[node] = node
@@ -101,12 +101,12 @@ def find_relief(mu: Array, error: float = 0.0, share: float = SHARE, closed: boo
             if height[lesser] - height[node] < least:
                 into[lesser] = top_of[islands[highest]]
     peaks = [top for top in tops if into[top] == top]
-    number = {top: peaks.index(_root(into, top)) for top in tops}
+    number = {top: peaks.index(_root_of_node(into, top)) for top in tops}
     regions = np.array([number[top] for top in top_of]).reshape(mu.shape)
     return Relief([divmod(top, mu.shape[1]) for top in peaks], regions)
 
 
-def _root(parent: list[int], node: int) -> int:
+def _root_of_node(parent: list[int], node: int) -> int:
     while parent[node] != node:
         parent[node] = parent[parent[node]]
         node = parent[node]

@@ -116,7 +116,7 @@ def _read_values(scene: Scene, motion: Trajectory) -> dict[str, Any]:
         radius = float("inf")
     return {
         "radius": radius,
-        "friction": _friction(scene, motion, radius),
+        "friction": _friction_of_motion(scene, motion, radius),
         "contact": float(motion.contact_force[0]),
         "mass": float(motion.contact_force[0] / (GRAVITY + ground[0, 2])),
         "acceleration": float(np.linalg.norm(motion.absolute_acceleration[0, 0])),
@@ -152,7 +152,7 @@ def _top_link(scene: Scene, motion: Trajectory) -> dict[str, float]:
     return read | ({"damping": float(factors[1])} if damped and not turning else {})
 
 
-def _friction(scene: Scene, motion: Trajectory, radius: float) -> float:
+def _friction_of_motion(scene: Scene, motion: Trajectory, radius: float) -> float:
     """Median ratio of contact forces across and along the normal in fast slides; NaN where heat changes it."""
     if np.isnan(radius) or scene.dry_friction.heat is not None:
         return float("nan")

@@ -28,7 +28,7 @@ class ModelColumn:
 MAX_WORK = 6e5  # steps of the engine for a phase pair: a cell ends within the limit of its processor time
 
 
-def _column(key: str, title: str, equations: str, regularization: float | None) -> ModelColumn:
+def _model_column(key: str, title: str, equations: str, regularization: float | None) -> ModelColumn:
     function, settings = EQUATIONS, {"equations": equations, "regularization": regularization}
     return ModelColumn(key, title, function, settings, 1e-6, ((function, settings, 1e-8), (function, settings, 1e-7)))
 
@@ -41,9 +41,9 @@ STATED = "comparison.evidence.extremes.engine:amplification"  # the engine at a 
 _FINER = (EQUATIONS, _REGULARIZED, 1e-6), (ENGINE, _TRANSLATIONAL, 3e-5), (ENGINE, _TRANSLATIONAL, 1e-4)
 _FINER_SPATIAL = (ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)
 COLUMNS = (
-    _column("small", "small equations", "small", None),
-    _column("exact", "exact equations", "exact", None),
-    _column("regularised", "exact equations, v_reg", "exact", DEFAULT_V_REG),
+    _model_column("small", "small equations", "small", None),
+    _model_column("exact", "exact equations", "exact", None),
+    _model_column("regularised", "exact equations, v_reg", "exact", DEFAULT_V_REG),
     ModelColumn("translational", "translational engine", ENGINE, _TRANSLATIONAL, 1e-3, _FINER, 1.0),
     ModelColumn("spatial", "spatial engine", ENGINE, _SPATIAL, 1e-2, _FINER_SPATIAL, 8.5),
 )

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from comparison.evidence.tradeoff.trade import StatedSetting
-from comparison.study.models import V_REG_TEXT, Model, dry, has_spatial_data
+from comparison.study.models import V_REG_TEXT, Model, has_dry_friction, has_spatial_data
 from comparison.study.user_models import engine_of
 from reference.problem import Scene
 from reference.problem.readings import DEFAULT_V_REG
@@ -132,7 +132,7 @@ def _reference_settings(scene: Scene) -> Iterator[Setting]:
         )
         yield from _settings_of_curve(question, "reference, one run", "tolerance inside a step", single, powers, 0.0015)
     call = _VariedCall(REFERENCE, "regularization", {"tolerance": 1e-6})
-    for speed in DRY_SPEEDS if dry(scene) else ():
+    for speed in DRY_SPEEDS if has_dry_friction(scene) else ():
         faster = REFERENCE, {"cutoff": speed, "tolerance": TIGHT}
         for what, against in (("supremum", None), ("peak faster than v_reg", faster)):
             method = f"v_reg, model error against the {what}"

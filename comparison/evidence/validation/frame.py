@@ -23,7 +23,7 @@ import numpy as np
 
 from comparison.evidence.sides import ENGINE, EQUATIONS
 from comparison.evidence.validation import table
-from comparison.evidence.validation.cycles import SAMPLES, Cycles, fold, read_cycle
+from comparison.evidence.validation.cycles import SAMPLES, Cycles, fold_into_cycles, read_cycle
 from comparison.evidence.validation.files import Shaken
 from comparison.evidence.validation.table import (
     COVERAGE,
@@ -104,34 +104,34 @@ def scene_of(cycles: Cycles, setup: Setup) -> tuple[Scene, tuple[float, float]]:
 def last_cycle(motion: Trajectory, frequency: float) -> Array:
     """The last computed cycle, (SAMPLES,), mm about its mean."""
     grid = (CYCLES - 1 + np.arange(SAMPLES) / SAMPLES) / frequency
-    place = 1e3 * table.spline(motion)(grid)
+    place = 1e3 * table.position_spline(motion)(grid)
     about: Array = place - place.mean()
     return about
 
 
-def compute(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
+def compute_motion(side: str, cycles: Cycles, setup: Setup) -> Trajectory:
     """The motion of a run by one side, from the base's largest position on."""
     scene, phases = scene_of(cycles, setup)
     place = np.array([1e-3 * cycles.amplitude, 0.0])
     return table.motion_of(side, scene, phases, place, REGULARIZATION, STUDY_TOLERANCE, "small")
 
 
-def read(cycles: Cycles, motion: Trajectory) -> ComputedValues:
+def read_quantities(cycles: Cycles, motion: Trajectory) -> ComputedValues:
     """The quantities of a computed motion of a run."""
     rate = cycles.frequency
-    return table.answer(motion, lambda each: read_cycle(last_cycle(each, rate), rate), len(NAMES))
+    return table.values_of_motion(motion, lambda each: read_cycle(last_cycle(each, rate), rate), len(NAMES))
 
 
-def solve(cycles: Cycles, setup: Setup) -> Array:
+def solve_quantities(cycles: Cycles, setup: Setup) -> Array:
     """The quantities of a run by the equations."""
-    return read(cycles, compute(EQUATIONS, cycles, setup)).values
+    return read_quantities(cycles, compute_motion(EQUATIONS, cycles, setup)).values
 
 
-def fit(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]:
+def fit_inputs(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]:
     """The inputs for which the equations come closest to the mean cycle, and their scatter (J, names)."""
 
     def curve(at: Setup) -> Array:
-        return last_cycle(compute(EQUATIONS, cycles, at), cycles.frequency)
+        return last_cycle(compute_motion(EQUATIONS, cycles, at), cycles.frequency)
 
     for _ in range(12):
         nearby = [setup._replace(**{name: getattr(setup, name) + STEP}) for name in names]
@@ -168,24 +168,24 @@ class Fitted(NamedTuple):
 
 def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> Fitted:
     """Fit the friction ratio of a run; shift: base motion of `shifted`, None to fit that of this run."""
-    setup, scatter = fit(cycles, start, "ratio")
+    setup, scatter = fit_inputs(cycles, start, "ratio")
     spread = COVERAGE * float(scatter[:, 0].std(ddof=1))
     changes = ({name: getattr(setup, name) + ASSUMED[name][0]} for name in REFITTED)
-    changed = [fit(cycles, setup._replace(**change), "ratio")[0] for change in changes]
+    changed = [fit_inputs(cycles, setup._replace(**change), "ratio")[0] for change in changes]
     if shift is None:
-        shifted, _ = fit(cycles, setup, "ratio", "scale")
+        shifted, _ = fit_inputs(cycles, setup, "ratio", "scale")
     else:
-        shifted, _ = fit(cycles, setup._replace(scale=shift.scale), "ratio")
+        shifted, _ = fit_inputs(cycles, setup._replace(scale=shift.scale), "ratio")
     return Fitted(cycles, setup, spread, changed, shifted)
 
 
-def compare(runs: Sequence[Shaken]) -> Found:
+def compare_frame(runs: Sequence[Shaken]) -> Found:
     """Compare all runs of a folder: by one ratio, and by friction of the load where there are runs to predict."""
-    folded = [fold(run) for run in runs]
+    folded = [fold_into_cycles(run) for run in runs]
     first = min(folded, key=lambda cycles: (abs(cycles.run.weight - FIRST) > 1e-9, cycles.run.weight))
     fitted = fit_run(first, Setup())
     setup, varied = fitted.setup, fitted.variations()
-    own = [setup if each is first else fit(each, setup, "ratio")[0] for each in folded]
+    own = [setup if each is first else fit_inputs(each, setup, "ratio")[0] for each in folded]
     inputs = [
         table.word_input(f"frame: {name}", getattr(setup, key), size, unit, source)
         for key, (size, name, unit, source) in ASSUMED.items()
@@ -196,12 +196,12 @@ def compare(runs: Sequence[Shaken]) -> Found:
         for each, best in zip(folded, own)
     ]
     rest = [(each, best) for each, best in zip(folded, own) if each is not first]
-    if any(_slides(each) for each, _ in rest):
+    if any(_is_sliding(each) for each, _ in rest):
         parts.append(_compare_by_load(fitted, rest))
     return table.join_findings([Found([], inputs, [], [], []), *parts])
 
 
-def _slides(cycles: Cycles) -> bool:
+def _is_sliding(cycles: Cycles) -> bool:
     return bool(read_cycle(cycles.mean, cycles.frequency)[2] < 100.0)
 
 
@@ -212,7 +212,7 @@ def _ratio_of_setup(fitted: Fitted) -> str:
 
 def _compare_by_load(first: Fitted, rest: Sequence[tuple[Cycles, Setup]]) -> Found:
     """Friction that is a power of the load, fitted to two runs; the others are predicted."""
-    sliding = [cycles for cycles, _ in rest if _slides(cycles)]
+    sliding = [cycles for cycles, _ in rest if _is_sliding(cycles)]
     chosen = min(sliding, key=lambda cycles: abs(cycles.run.weight - SECOND))
     second = fit_run(chosen, first.setup, first.shifted)
     one, two = first.setup.ratio, second.setup.ratio
@@ -246,9 +246,9 @@ def _compare_run(
     title = cycles.run.name + law
     found = [read_cycle(motion, cycles.frequency) for motion in cycles.motions]
     data = table.Data(NAMES, UNITS, [use] * 5, np.mean(found, axis=0), COVERAGE * np.std(found, axis=0, ddof=1))
-    motions = {side: compute(side, cycles, setup) for side in SIDES}
-    answers = {side: read(cycles, motion) for side, motion in motions.items()}
-    by_input, by_ratio = (np.abs(solve(cycles, each) - data.values) for each in (other, own))
+    motions = {side: compute_motion(side, cycles, setup) for side in SIDES}
+    answers = {side: read_quantities(cycles, motion) for side, motion in motions.items()}
+    by_input, by_ratio = (np.abs(solve_quantities(cycles, each) - data.values) for each in (other, own))
 
     def explain(k: int, allowed: float) -> str:
         shift = f"a base motion of {100.0 * (other.scale - 1.0):+.1f} % and ratio {other.ratio:.3f}"
@@ -258,8 +258,8 @@ def _compare_run(
             return f"{LAW}: gone with the ratio of this run, {own.ratio:.3f}, so the ratio depends on the load"
         return f"{OPEN}: gone neither with the ratio of this run, {own.ratio:.3f}, nor with {shift}"
 
-    rows = table.quantities(title, data, answers, [solve(cycles, each) for each in varied], explain)
-    best = last_cycle(compute(EQUATIONS, cycles, own), cycles.frequency)
+    rows = table.measured_quantities(title, data, answers, [solve_quantities(cycles, each) for each in varied], explain)
+    best = last_cycle(compute_motion(EQUATIONS, cycles, own), cycles.frequency)
     lines = {"measured": cycles.mean} | {
         side: last_cycle(motions[side], cycles.frequency) for side in (EQUATIONS, ENGINE)
     }
@@ -273,5 +273,5 @@ def _compare_run(
     residual = table.CycleResidual(title, use, off / float(data.values[0]))
     axes, turn = ("phase of the base, deg", "top plate, mm"), np.arange(SAMPLES) * 360.0 / SAMPLES
     return Found(
-        rows, [], [fact], [residual], table.curves(title, axes, {name: (turn, y) for name, y in lines.items()})
+        rows, [], [fact], [residual], table.plot_curves(title, axes, {name: (turn, y) for name, y in lines.items()})
     )

@@ -85,7 +85,7 @@ def test_the_requirement_is_where_others_find_the_project(
     monkeypatch.setattr(source, "CHECKOUT", tmp_path)
     if recorded is None:  # not installed: it runs from a checkout
         (tmp_path / "pyproject.toml").touch()
-    assert source.requirement() == f"phase-resonance{address}"
+    assert source.requirement_line() == f"phase-resonance{address}"
     assert f"\nphase-resonance{address}\n".encode() in study_files("x")["requirements.txt"]
 
 

@@ -26,7 +26,7 @@ from runs import Run, no_executor
 from comparison.evidence.extremes import command as extremes
 from comparison.evidence.extremes.matrix import STORED
 from comparison.runner.cache import Cache, locate_store
-from comparison.runner.output import publish
+from comparison.runner.output import publish_files
 from comparison.runner.task_results import TaskResults
 from comparison.study.models import MODEL_HIERARCHY
 from comparison.study.study import Study
@@ -56,7 +56,7 @@ if __name__ == "__main__":
 @pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.long)])
 def test_a_stopped_run_keeps_what_is_finished(tmp_path: Path, number: signal.Signals) -> None:
     old = tmp_path / "report"
-    publish(old, {"summary.json": b'{"schema": "phase-resonance/summary"}'}, "comparison.run")
+    publish_files(old, {"summary.json": b'{"schema": "phase-resonance/summary"}'}, "comparison.run")
     script = SCRIPT.format(here=str(HELPERS), root=str(ROOT))
     process = subprocess.Popen(
         [sys.executable, "-c", script],

@@ -13,7 +13,7 @@ import pytest
 from runs import Here
 from scipy.io import savemat
 
-from comparison.evidence.benchmarks.cases import mastodon
+from comparison.evidence.benchmarks.cases import read_mastodon_case
 from comparison.evidence.validation import files
 from comparison.evidence.validation.command import main
 from comparison.evidence.validation.files import DECAY, LARGE
@@ -169,7 +169,7 @@ def test_a_damaged_measured_file_is_read_or_refused_in_one_line(
 ) -> None:
     """Two hundred damaged files, the same every time; what is read is not compared."""
     monkeypatch.setattr(files, "Workers", Here)
-    monkeypatch.setattr("comparison.evidence.validation.command._compare", lambda *rest: Found([], [], [], [], []))
+    monkeypatch.setattr("comparison.evidence.validation.command._compare_file", lambda *rest: Found([], [], [], [], []))
     monkeypatch.setattr("comparison.evidence.validation.command.provenance", dict)
     chance, endings = random.Random(5), Counter()
     for content in (pair(), decay(INSTANTS[:600], SWING[:600])):
@@ -191,5 +191,5 @@ def test_a_damaged_input_of_mastodon_is_refused_in_one_line(tmp_path: Path) -> N
     for _ in range(200):
         file.write_bytes(damaged(CSV.encode(), chance))
         with pytest.raises(SceneError) as refused:
-            mastodon(file)
+            read_mastodon_case(file)
         assert str(refused.value).isprintable()
