@@ -12,7 +12,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from reference.support.files import read_file
 
-LARGEST = 2**26  # bytes of a file
+LARGEST = 2**26  # bytes of the largest file that is read
 
 T = TypeVar("T")
 

@@ -298,7 +298,7 @@ def _find_contradiction(derivative: Estimates, change: Estimates, value: float) 
     steps = np.abs(value) * np.array(SHARES[len(SHARES) // 2 :])
     below, above = (np.reshape(part, (len(steps), -1)) for part in np.split(change.value, 2))
     low_error, high_error = (np.reshape(part, (len(steps), -1)) for part in np.split(change.error, 2))
-    below, low_error, sign = below[::-1], low_error[::-1], np.sign(value)  # from the nearest on
+    below, low_error, sign = below[::-1], low_error[::-1], np.sign(value)  # the nearest change first
     mean = sign * (above - below) / (2.0 * steps[:, None])
     mean_error = (high_error + low_error) / (2.0 * steps[:, None])
     slope, slope_error = np.ravel(derivative.value), np.ravel(derivative.error)

@@ -11,7 +11,7 @@ from reference.support.arguments import Range
 
 LOAD_PER_SUPPORT = Range(1e3, 1e8, "N")
 NORMALIZED = 10.0  # kg: a scene of unit masses, as those of the paper, is meant as no building
-FIXED_BASE_PERIOD = Range(0.05, 5.0, "s")  # of the first mode along either axis
+FIXED_BASE_PERIOD = Range(0.05, 5.0, "s")  # period of the first mode along either axis
 LARGEST_RADIUS = 50.0  # m
 LARGEST_FRICTION = 1.0
 LARGEST_DAMPING = 0.2  # ratio of critical of the first fixed-base mode

@@ -26,7 +26,8 @@ Rest = ParamSpec("Rest")
 Value = TypeVar("Value", int, float)
 
 BOUND_FACTORS = BOUND_FACTOR.lowest, BOUND_FACTOR.highest
-STORED_RESULTS = "report whose stored results, in DIR.tiles, are used and added to"  # --out of what writes nothing else
+# Help of --out where a command writes nothing else into the folder
+STORED_RESULTS = "report whose stored results, in DIR.tiles, are used and added to"
 
 
 class EndedEarlyError(RuntimeError):

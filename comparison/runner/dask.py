@@ -28,8 +28,8 @@ if TYPE_CHECKING:
     from distributed import Client
 
 CONNECT_TIMEOUT = 10.0  # s for the scheduler to answer
-LONGEST_KNOCK = 12.0  # s for that to end: what accepts a connection and stays silent takes longer
-LONGEST = 200  # letters of what Dask says of that
+LONGEST_KNOCK = 12.0  # s for the attempt to end: what accepts a connection and stays silent takes longer
+LONGEST = 200  # letters that are shown of what Dask says when it does not answer
 PATIENCE = 60.0  # s without any worker, before the run ends
 RECOUNT = 2.0  # s between counts of the workers: some may join, or leave, at any time
 GONE = "the connection to the scheduler was lost"
@@ -172,7 +172,7 @@ def _same_code(client: Client, models: set[str], refusal: Callable[[str], SceneE
     ours = _all_fingerprints(sorted(models))
     for worker, versions in theirs.items():
         if isinstance(versions, OSError):
-            continue  # it died or left meanwhile
+            continue  # this worker died or left meanwhile
         if isinstance(versions, Exception):
             raise refusal(f"worker {worker} cannot import this project ({versions}): install it there")
         for name, value in ours.items():

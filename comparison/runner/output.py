@@ -86,7 +86,7 @@ def resolve_destination(path: Path, option: str = "--out") -> Path:
 
 
 def refuse_foreign_report(out: Path) -> None:
-    """Raise SceneError, one line, if a report cannot take the place of what is at `out`, a `resolve_destination`."""
+    """Raise SceneError, one line, if a report cannot take the place of what is at `out`, a destination."""
     refusal = partial(SceneError, "command line", "--out", str(out))
     place = out.resolve()
     refuse_other_page(out, REPORT)

@@ -29,10 +29,11 @@ from reference.problem import Amplification, Outcome, Scene
 
 CALLED_THROUGH = "comparison.study.user_models:amplification"
 LIKE = "regularised"  # key of the reference's model that an engine is compared with unless it names another
-LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]  # that an engine may be compared with
-MOST = 8  # phases per axis, as the dearest model of the hierarchy: what a call costs is unknown
+# Keys of the models that an engine may be compared with
+LAWS = [model.key for model in MODEL_HIERARCHY if model.side == "reference"]
+MOST = 8  # phases per axis that an engine is asked for at most: what a call costs is unknown
 TIME_LIMIT = 60.0  # s of processor time of one call, which is asked for one phase pair
-ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # to a function that names it
+ALWAYS_GIVEN = ("tolerance", "regularization", "equations")  # arguments that a function gets wherever it names them
 OURS, INSTALLED = {"reference", "multibody", "comparison"}, {"site-packages", "dist-packages"}
 UNKNOWN_ERROR = np.nan  # error of an engine that states none
 LONGEST_STATUS = 60  # letters of a status of its own words that a message repeats

@@ -48,7 +48,7 @@ def largest_change(found: Validity, cell: AssumptionCell, body: int, stated: Ass
     base = TRANSLATIONAL
     if stated is not None:
         before, its_error = (np.array(rows)[: len(sizes), body - 1] for rows in (stated.change, stated.uncertainty))
-        if len(before) < len(sizes):  # a control at one phase pair: symmetry says that the others are alike
+        if len(before) < len(sizes):  # the control was computed at one phase pair: by symmetry it is the same at all
             before, its_error = np.full_like(sizes, before[0]), np.full_like(sizes, its_error[0])
         sizes, errors = (1.0 + sizes) / (1.0 + before) - 1.0, np.hypot(errors, its_error)
         base = STATED

@@ -227,7 +227,7 @@ class Assumptions(MappedAnalysis[Validity]):
     sizes: int = SIZES
     directed: Sequence[tuple[Axis, ...]] = (DIRECTED,)
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """
         Yield what is tried in every scene with phases that has both models of the engine.
 
@@ -251,7 +251,7 @@ class Assumptions(MappedAnalysis[Validity]):
         cells: list[AssumptionCell] = []
         directions: list[DirectionTrial] = []
         answers: list[TaskTrials] = self.values(study, surfaces, results)
-        for (scene, _, what, *_), answer in zip(self.arguments(study), answers):
+        for (scene, _, what, *_), answer in zip(self.task_arguments(study), answers):
             if what is None:  # before the variations of its scene
                 (plain,) = answer.trials
                 continue

@@ -225,7 +225,7 @@ class Conditioning(MappedAnalysis[list[ConditioningCurve]]):
     seconds = 4.0
     function, without_value = staticmethod(conditioning_curves), staticmethod(_without_value)
 
-    def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
+    def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
         """Return the scenes with the numbers of their questions; the grid is the largest nested one up to MAX_GRID."""
         grid = max((each for each in nested_grids(study.grid) if each <= MAX_GRID), default=MAX_GRID)
         return [

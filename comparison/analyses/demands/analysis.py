@@ -86,7 +86,7 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
             for model in _models_with_own_motions(study, scene)
         )
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """Motions of about two seconds each."""
         phases = phase_grid(study.grid)
         for scene, model, places in _list_batches(study):

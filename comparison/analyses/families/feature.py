@@ -24,7 +24,7 @@ from comparison.surfaces.waterfall import PHASES
 from comparison.wording import MAX_NAMES
 
 MOTION = "excitation.record.motion"  # a number that no axis has: motions are named
-DECADES = 30.0  # ratio of its largest to its smallest value: beyond it the axis is logarithmic
+DECADES = 30.0  # ratio of the largest to the smallest value that a key takes: beyond it the axis is logarithmic
 
 
 class FamilyResult(Part):

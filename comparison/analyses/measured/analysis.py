@@ -146,7 +146,7 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
     function = staticmethod(peaks_at)
     without_value = staticmethod(lambda task, failed: [(math.nan, math.nan, failed.outcome.value)] * len(task[4]))
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """One for each scene, phase pair of a test, and model."""
         for scene in study.scenes:
             for phases in dict.fromkeys(map(phases_of, scene.measured or ())):
@@ -159,7 +159,7 @@ class MeasuredPeaks(MappedAnalysis[list[MeasuredPeak]]):
         """In the order of the scene files; None where no scene has measured peaks."""
         known: dict[tuple[str, tuple[float, float]], list[tuple[str, Mapping[Asked, Peak]]]] = {}
         values = self.values(study, surfaces, results)
-        for (scene, model, _, phases, asked), peaks in zip(self.arguments(study), values, strict=True):
+        for (scene, model, _, phases, asked), peaks in zip(self.task_arguments(study), values, strict=True):
             known.setdefault((scene.name, phases), []).append((model.key, dict(zip(asked, peaks, strict=True))))
         scenes = [(scene, peak) for scene in study.scenes for peak in scene.measured or ()]
         return [_compare_peak(scene, peak, known[scene.name, phases_of(peak)]) for scene, peak in scenes] or None

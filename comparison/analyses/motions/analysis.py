@@ -208,7 +208,7 @@ class Motions(MappedAnalysis[list[StoredMotion]]):
     seconds = 4.0
     function, without_value, collect = staticmethod(compute_motion), staticmethod(_without_value), MappedAnalysis.values
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Arguments]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[Arguments]:
         """Every place with every model that moves there, in the order scene, place, model."""
         assert surfaces is not None, "the places are chosen by the surfaces"
         axes = np.asarray(surfaces["alpha1"]), np.asarray(surfaces["alpha2"])

@@ -2,7 +2,7 @@
 The motions that the page's script draws: their numbers packed, and where each stands among them.
 
 Packed numbers: 32-bit integers, little-endian, gzip, base64. One motion after the other, each column by column: T
-numbers of one component. A motion in `places_with_motions` has
+numbers of one component. A motion in `places` has
 
     start      index of its first number
     count      T

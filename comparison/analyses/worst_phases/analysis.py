@@ -134,7 +134,7 @@ class WorstPhases(MappedAnalysis[list[Worst]]):
     seconds = 2.0
     function, without_value = staticmethod(search_worst), staticmethod(_without_value)
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> Iterator[Arguments]:
         """One for each search, of the engine with that of its counterpart."""
         for scene in study.phased:
             for model, engine, quantity, body in _list_searches(study, scene):

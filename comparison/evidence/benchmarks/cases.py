@@ -54,7 +54,7 @@ class Case:
     One benchmark.
 
     source: where the numbers are published. evidence: for what it is evidence. reading: gives a value for each of
-    `published_number`. phases: rad. start: m, where the bodies are released from rest; at the equilibrium if empty.
+    `published`. phases: rad. start: m, where the bodies are released from rest; at the equilibrium if empty.
     regularization: m/s, v_reg of the engine, and of the equations that are compared with it. difference: what the
     source models and this project does not, or the other way round; empty where the models are the same.
     """
@@ -226,9 +226,9 @@ READ_TO = 3.0  # mm, from the published loops
 RADIUS = 2.2352  # m
 HEAVY = 6285710.0  # N, of the pendulum
 LASTING = 8.0  # s of 50: later displacements are smaller
-SAMPLES, STEP = 5002, 0.01  # samples of their input; the step in s, of all samples but the first
+SAMPLES, STEP = 5002, 0.01  # samples of the MASTODON input motion; their step, s, from the second sample on
 PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, of their input along x, y and z
-ROUNDED = 1e-3  # relative, by how much a copy of their input in other units or digits may be off
+ROUNDED = 1e-3  # relative deviation that a copy of the MASTODON input in other units or digits may have
 LIMITS = (-432.0, 330.0, -197.0, 152.0)  # mm: smallest and largest along x, then along y
 FRICTION = {
     "slow": 0.03 * 0.789 / 0.79,  # theirs has k_T = 0.789 (0.7^(0.02 T) + 0.4)

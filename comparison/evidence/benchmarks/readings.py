@@ -12,7 +12,7 @@ from scipy.interpolate import CubicHermiteSpline
 from comparison.result_types import Array
 from reference.problem import Trajectory
 
-PARTS = 16  # between two instants, for extremes and lengths
+PARTS = 16  # parts into which the time between two instants is cut, to read extremes and lengths of the path
 ROUNDING = 1e-12  # relative, of the last instant
 STILL = 1e-3  # share of the largest speed: slower turns are creep, not swings
 

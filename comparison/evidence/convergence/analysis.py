@@ -30,10 +30,10 @@ from reference.problem import Amplification, Outcome, Scene, ground_peak, loadin
 Values = tuple[Array, Array]  # relative sizes and their errors, (P, S, N)
 
 PHASES = np.array([(0.3, 1.1), (1.0, 3.0), (2.0, 0.7), (4.0, 5.5)])  # rad
-FEW = PHASES[[0, 3]]  # for the engine
+FEW = PHASES[[0, 3]]  # rad, phase pairs that the engine computes
 PERIODS = 6.0  # periods of the slower harmonic: the loading is strongest in the first of them
-FEW_PERIODS = 3.0  # for the engine
-FEWEST_PERIODS = 2.5  # for the engine at constant step
+FEW_PERIODS = 3.0  # periods of the slower harmonic that the engine is run for
+FEWEST_PERIODS = 2.5  # periods of the slower harmonic that the engine is run for at a constant step
 REGULARIZATIONS = (3e-3, 1e-3, 3e-4, 1e-4, 3e-5)  # m/s
 ENGINE_REGULARIZATIONS = (1e-2, 3e-3, 1e-3)  # m/s
 PENETRATIONS = (3e-3, 1e-3, 3e-4)  # shares of rho, under the weight
@@ -159,7 +159,7 @@ class Convergence(MappedAnalysis[list[Trend]]):
     seconds = 1.5
     function, without_value = staticmethod(limit_trends), staticmethod(_without_value)
 
-    def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
+    def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
         """Every scene with phases, and the numbers of its limits."""
         return [
             (scene, number) for scene in study.phased for number, limit in enumerate(LIMITS) if limit.applies(scene)

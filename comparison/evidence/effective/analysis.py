@@ -93,7 +93,7 @@ class EffectiveValues(MappedAnalysis[list[Effective]]):
     function = staticmethod(read_back)
     without_value = staticmethod(lambda task, failed: Effective(task[0].name, task[1].key, error_message=failed.reason))
 
-    def arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[tuple[Scene, Model]]:
+    def task_arguments(self, study: Study, surfaces: xr.Dataset | None = None) -> list[tuple[Scene, Model]]:
         """Every model of every scene."""
         return [(scene, model) for scene in study.scenes for model in chain_of(scene, study.hierarchy)]
 

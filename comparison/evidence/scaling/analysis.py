@@ -92,7 +92,7 @@ class Scaling(MappedAnalysis[list[Trend]]):
     seconds = 0.1
     function, without_value = staticmethod(scene_trends), staticmethod(_without_value)
 
-    def arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
+    def task_arguments(self, study: Study, surfaces: Any = None) -> list[Arguments]:
         """Every scene with phases and without heat, which does not scale, and whether the supremum is taken."""
         scenes = [scene for scene in study.phased if scene.dry_friction.heat is None]
         return [

@@ -33,7 +33,7 @@ TALL_DURATION = 5.0  # s, of scenes with many bodies
 SHAKEN = 3.0  # times the loading of the scene: else friction holds a tall platform, which costs nothing
 STOREY = 1.0  # m between the bodies of a tall scene; its ring is as wide as it is high
 LIMIT = 60.0  # s of processor time of one measurement
-MAX_WORK = 1e9  # steps of the engine: the limit ends what takes too long, not a refusal
+MAX_WORK = 1e9  # steps of the engine: none is refused in advance; LIMIT ends what takes too long
 
 
 def make_tall(scene: Scene, bodies: int) -> Scene:
@@ -170,7 +170,8 @@ def measure_by_workers(scene: Scene, pool: Callable[[int], Executor]) -> CostSer
     seconds = []
     for workers in counts:
         with pool(workers) as executor:
-            list(executor.map(measure_setting, [call] * 2 * workers))  # every worker is warm
+            # before the clock starts, every worker imports and compiles
+            list(executor.map(measure_setting, [call] * 2 * workers))
             begin = time.monotonic()
             list(executor.map(measure_setting, [call] * CALLS))
             seconds.append(time.monotonic() - begin)

@@ -25,7 +25,7 @@ def reference_run(
     equations: str = "exact",
     regularization: float | None = None,
 ) -> tuple[Array, float]:
-    """Return mu of one run of the reference for each phase pair, each step to `step_tolerance`, and the mean step, s."""
+    """Return mu of one run of the reference by phase pair, each step to `step_tolerance`; and the mean step, s."""
     pairs = check_phases(phases)
     system, demand = prepare_run(scene, equations, regularization, 1e-6, None, "consistent")
     peaks = peaks_at(system, pairs, demand, step_tolerance)

@@ -72,7 +72,8 @@ ASSUMED = {  # uncertainty of each input, its name, unit and source
     "second": (1.0, "share of the second harmonic of the base", "", "0 or the measured one, 1 % of the first: assumed"),
     "disc": (0.01, "weight of the disc over the stated one", "", "authors; 1 % assumed"),
 }
-REFITTED = ("mass", "stiffness", "damping", "scale", "second")  # with these the ratio is fitted again
+# Inputs whose change by their uncertainty asks for another fit of the ratio
+REFITTED = ("mass", "stiffness", "damping", "scale", "second")
 
 
 def scene_of(cycles: Cycles, setup: Setup) -> tuple[Scene, tuple[float, float]]:

@@ -388,7 +388,7 @@ def test_bars_under_load_are_varied_only_where_they_give_way() -> None:
         bars["axial_stiffness"] = stiffness
         scene = FIRST.with_values({"bodies.1.period": None, "bodies.1.bars": bars})
         study = Study((scene,), 1, 1e-3, MODEL_HIERARCHY)
-        asked = [what for _, _, what, *_ in Assumptions((), directed=()).arguments(study)]
+        asked = [what for _, _, what, *_ in Assumptions((), directed=()).task_arguments(study)]
         assert asked == [None, *expected]
         effects = [variation.of(scene).bodies[1].bars.load_effect for variation in expected]
         assert effects == ["softening", "shortening"][: len(expected)]

@@ -129,7 +129,9 @@ def test_at_the_largest_difference_of_every_body_its_own_model_moves() -> None:
     assert list(places.values())[:2] == ["largest difference of body 1", "largest difference of body 2"]
     assert places[5, 2] == "largest difference in translation, body 1"
     assert len(places) == 9, "two of each difference, and five evenly spread"
-    moving = {(model.key, place.row, place.column) for _, model, _, place, _ in Motions().arguments(study, surfaces)}
+    moving = {
+        (model.key, place.row, place.column) for _, model, _, place, _ in Motions().task_arguments(study, surfaces)
+    }
     assert {("spatial", 3, 9), ("translational", 5, 2), ("translational", 0, 0), ("spatial", 0, 0)} <= moving
     assert not {("translational", 3, 9), ("spatial", 5, 2)} & moving
     assert {("small-resolved", *place) for place in places} <= moving, "the equations move everywhere"
