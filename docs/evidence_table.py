@@ -181,7 +181,7 @@ def limits() -> str:
 def findings() -> str:
     """Return what the errors of several quantities have in common."""
     table = load_record()
-    words = (statements.word_farther_off, statements.word_last_swings, statements.word_large_angles)
+    words = (statements.word_motions_farther_off, statements.word_last_swings, statements.word_large_angles)
     return "\n".join(f"- {text[0].upper()}{text[1:]}." for text in (word(table) for word in words))
 
 

@@ -61,7 +61,7 @@ def connect_cluster(address: str, models: set[str]) -> Iterator[ClusterExecutor]
     except Exception as error:  # whatever Dask makes of what it is told, and of TLS without a configuration
         raise refusal(f"no scheduler answers there: {' '.join(str(error).split())[:LONGEST]}") from None
     try:
-        _same_code(client, models, refusal)
+        _refuse_other_code(client, models, refusal)
         yield ClusterExecutor(client)
     finally:
         client.close(timeout=1.0)
@@ -160,7 +160,7 @@ def _count_workers(client: Client) -> int:
     raise ExecutorLostError(GONE)
 
 
-def _same_code(client: Client, models: set[str], refusal: Callable[[str], SceneError]) -> None:
+def _refuse_other_code(client: Client, models: set[str], refusal: Callable[[str], SceneError]) -> None:
     """Numbers from other code must not be taken for ours."""
     try:
         client.wait_for_workers(1, timeout=PATIENCE)

@@ -51,9 +51,8 @@ def engine_fingerprint(module: str) -> dict[str, str]:
     """
     package = module.split(".")[0]
     spec = find_spec(package)
-    names = {
-        package if spec is not None and spec.origin is not None else module
-    }  # a namespace package has no source file
+    # a namespace package has no source file
+    names = {package if spec is not None and spec.origin is not None else module}
     file = find_spec(module)
     if file is not None and file.origin is not None and file.origin.endswith(".py"):
         names |= _packages_in_use(Path(file.origin).read_text(encoding="utf-8"))

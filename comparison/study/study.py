@@ -51,7 +51,7 @@ def levels_of_phases(grid: int) -> NDArray[np.intp]:
     """
     Return which of `nested_grids` is the first with each phase of an axis.
 
-    >>> levels(8).tolist()
+    >>> levels_of_phases(8).tolist()
     [0, 2, 1, 2, 0, 2, 1, 2]
     """
     level = np.zeros(grid, dtype=np.intp)
@@ -139,7 +139,7 @@ class Study:
         axis = self.phase_indices(model, scene)
         return (self.grid * axis[:, None] + axis).ravel()
 
-    def sources(self, scene: Scene, model: Model) -> NDArray[np.intp]:
+    def symmetric_sources(self, scene: Scene, model: Model) -> NDArray[np.intp]:
         """For each of `places` the one whose answer is also its own, by the symmetries of the scene (symmetry.py)."""
         places = self.places(model, scene)
         if scene.recorded:
@@ -153,7 +153,7 @@ class Study:
 
     def places_by_level(self, scene: Scene, model: Model) -> list[NDArray[np.intp]]:
         """The places that the model is asked for, by the nested grid of its phases that is the first with them."""
-        solved, stride = np.unique(self.sources(scene, model)), self.stride(model, scene)
+        solved, stride = np.unique(self.symmetric_sources(scene, model)), self.stride(model, scene)
         level = levels_of_phases(len(self.phase_indices(model, scene)))
         first = np.maximum(*(level[position // stride] for position in np.divmod(solved, self.grid)))
         return [solved[first == number] for number in range(level.max() + 1)]

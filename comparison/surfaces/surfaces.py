@@ -86,7 +86,7 @@ def label_surfaces(study: Study, batches: Sequence[Batch], answers: Sequence[Bat
         cost[where] += answer.cost
     for row, scene in enumerate(study.scenes):
         for model in models_of(scene, study.hierarchy):
-            place, source = study.places(model, scene), study.sources(scene, model)
+            place, source = study.places(model, scene), study.symmetric_sources(scene, model)
             for array in values.values():
                 of_model = array[row, models.index(model.key)]
                 of_model[..., place] = of_model[..., source]

@@ -37,7 +37,7 @@ def check_phases(phases: ArrayLike) -> Array:
 
     Examples
     --------
-    >>> checked_phases([(0.5, 1.0)]).tolist()
+    >>> check_phases([(0.5, 1.0)]).tolist()
     [[0.5, 1.0]]
     """
     array = check_array("phases", phases, f"must be (M, 2), {PHASE.rule}")
@@ -49,7 +49,7 @@ def check_phases(phases: ArrayLike) -> Array:
     return np.where(np.abs(array) <= 2.0 * np.pi, array, np.arctan2(np.sin(array), np.cos(array)))
 
 
-def checked_phase(phase: ArrayLike) -> Array:
+def check_phase(phase: ArrayLike) -> Array:
     """
     Return one phase pair as an array.
 
@@ -68,7 +68,7 @@ def checked_phase(phase: ArrayLike) -> Array:
 
     Examples
     --------
-    >>> checked_phase((0.5, 1.0)).tolist()
+    >>> check_phase((0.5, 1.0)).tolist()
     [0.5, 1.0]
     """
     pair = check_array("phases", phase, f"must be (2,), {PHASE.rule}")

@@ -32,7 +32,7 @@ def escape_for_matplotlib(text: str) -> str:
 
     Examples
     --------
-    >>> print(verbatim("price in $"))
+    >>> print(escape_for_matplotlib("price in $"))
     price in \$
     """
     return text.replace("$", r"\$")

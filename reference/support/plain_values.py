@@ -12,7 +12,7 @@ def as_plain_values(value: Any) -> Any:
     """
     Return lists and numbers of Python in place of arrays, tuples and numbers of numpy, at any depth of lists.
 
-    >>> plain((np.float64(0.5), np.arange(2)))
+    >>> as_plain_values((np.float64(0.5), np.arange(2)))
     [0.5, [0, 1]]
     """
     if isinstance(value, np.ndarray | np.generic):
@@ -24,7 +24,7 @@ def as_hashable(value: Any) -> Hashable:
     """
     Return tuples and frozen sets in place of lists and tables, at any depth: equal for equal values.
 
-    >>> hash(hashable({"a": [1.0]})) == hash(hashable({"a": [1]}))
+    >>> hash(as_hashable({"a": [1.0]})) == hash(as_hashable({"a": [1]}))
     True
     """
     if isinstance(value, dict):

@@ -114,7 +114,7 @@ class DemandSurfaces(MappedAnalysis[xr.Dataset]):
                     numbers.setdefault(key, np.full(shape, np.nan))[where][first : first + len(rows), places] = rows
         for row, scene in enumerate(study.scenes):
             for model in _models_with_own_motions(study, scene):
-                place, source = study.places(model, scene), study.sources(scene, model)
+                place, source = study.places(model, scene), study.symmetric_sources(scene, model)
                 for array in (status, *numbers.values()):
                     of_model = array[row, models.index(model.key)]
                     of_model[..., place] = of_model[..., source]

@@ -70,7 +70,7 @@ def _word_key_that_runs(family: Family, key: str, n: int) -> str:
     return family.labels[key][n] if key == BOUNDS else f"{key.rpartition('.')[2]}={family.columns[key][n]}"
 
 
-def refuse_unfit(members: Sequence[Member], model: Model) -> None:
+def refuse_unfit_scenes(members: Sequence[Member], model: Model) -> None:
     """Raise SceneError if a scene does not state what the engine's model needs."""
     for scene in (member.scene for member in members):
         if model.is_spatial and not has_spatial_data(scene):

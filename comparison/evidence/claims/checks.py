@@ -55,7 +55,7 @@ def compare_intensity(case: Evidence) -> StatementVerdict:
     return verdict_with_reason(share > 0.5, f"mu_1 > mu_2 at {100.0 * share:.0f} % of the phases")
 
 
-def correlate(*cases: Evidence, bodies: tuple[int, int] = (1, 1)) -> StatementVerdict:
+def correlate_surfaces(*cases: Evidence, bodies: tuple[int, int] = (1, 1)) -> StatementVerdict:
     """Check that the surfaces of a body of each case are similar, at the phases that both have."""
     if any(case.flat(body) for case, body in zip(cases, bodies)):
         return verdict_with_reason(False, "one of them is flat")
@@ -71,7 +71,7 @@ def find_folds(*cases: Evidence) -> StatementVerdict:
     return verdict_with_reason(rough, "; ".join(map(_describe_bends, cases)))
 
 
-def find_no_folds(case: Evidence) -> StatementVerdict:
+def check_for_no_fold(case: Evidence) -> StatementVerdict:
     """Check that no surface has a fold or a jump where it bends most; a fold of the denominator of (5.1) is in all."""
     if case.ground is not None and not case.ground.smooth:
         return verdict_with_reason(False, f"cannot hold: the denominator of (5.1) has a fold; {_describe_bends(case)}")

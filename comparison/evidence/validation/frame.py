@@ -147,7 +147,7 @@ def fit_inputs(cycles: Cycles, setup: Setup, *names: str) -> tuple[Setup, Array]
     return setup, scatter
 
 
-class Fitted(NamedTuple):
+class FittedRun(NamedTuple):
     """
     A run with the friction ratio of its motion.
 
@@ -167,7 +167,7 @@ class Fitted(NamedTuple):
         return [self.setup._replace(ratio=self.setup.ratio + self.spread), heavier, *self.changed]
 
 
-def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> Fitted:
+def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> FittedRun:
     """Fit the friction ratio of a run; shift: base motion of `shifted`, None to fit that of this run."""
     setup, scatter = fit_inputs(cycles, start, "ratio")
     spread = COVERAGE * float(scatter[:, 0].std(ddof=1))
@@ -177,7 +177,7 @@ def fit_run(cycles: Cycles, start: Setup, shift: Setup | None = None) -> Fitted:
         shifted, _ = fit_inputs(cycles, setup, "ratio", "scale")
     else:
         shifted, _ = fit_inputs(cycles, setup._replace(scale=shift.scale), "ratio")
-    return Fitted(cycles, setup, spread, changed, shifted)
+    return FittedRun(cycles, setup, spread, changed, shifted)
 
 
 def compare_frame(runs: Sequence[Shaken]) -> Found:
@@ -206,12 +206,12 @@ def _is_sliding(cycles: Cycles) -> bool:
     return bool(read_cycle(cycles.mean, cycles.frequency)[2] < 100.0)
 
 
-def _ratio_of_setup(fitted: Fitted) -> str:
+def _ratio_of_setup(fitted: FittedRun) -> str:
     source = f"fitted to the motion of the run with {1e3 * fitted.cycles.run.weight:g} g; its scatter over the cycles"
     return table.word_input("frame: friction ratio", fitted.setup.ratio, fitted.spread, "", source)
 
 
-def _compare_by_load(first: Fitted, rest: Sequence[tuple[Cycles, Setup]]) -> Found:
+def _compare_by_load(first: FittedRun, rest: Sequence[tuple[Cycles, Setup]]) -> Found:
     """Friction that is a power of the load, fitted to two runs; the others are predicted."""
     sliding = [cycles for cycles, _ in rest if _is_sliding(cycles)]
     chosen = min(sliding, key=lambda cycles: abs(cycles.run.weight - SECOND))

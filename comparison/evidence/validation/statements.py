@@ -109,7 +109,7 @@ def word_motions(table: Validation, loaded: bool) -> str:
     return f"whole motion off by {', '.join(sizes)} (rms over the half range)"
 
 
-def word_farther_off(table: Validation) -> str:
+def word_motions_farther_off(table: Validation) -> str:
     """Return in how many predicted runs of the frame the whole motion is farther off than its relative quantities."""
     runs = [each for each in table.residuals if each.use == "predicted"]
     farther = 0

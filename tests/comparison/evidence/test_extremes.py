@@ -140,7 +140,7 @@ def test_the_command_names_limits_and_failures(tmp_path, monkeypatch, capsys):
     columns = tuple(replace(fake(model), key=model) for model in ("calls_nan_ok", "unable", "at_the_rim", "honest"))
     plain = replace(PLAIN, columns=tuple(each.key for each in columns))
     monkeypatch.setattr("comparison.evidence.extremes.command.COLUMNS", columns)
-    monkeypatch.setattr("comparison.evidence.extremes.command.rows", lambda: iter([plain]))
+    monkeypatch.setattr("comparison.evidence.extremes.command.extreme_cases", lambda: iter([plain]))
     assert main(["--jobs", "1", "--out", str(tmp_path / "report")], ThreadPoolExecutor) == 1
     limit, failed, counts, *_ = capsys.readouterr().out.splitlines()[-5:]
     assert limit == "limit: anything plain, unable: step limit"

@@ -93,7 +93,7 @@ def test_a_reference_solution_states_its_error_its_cost_and_what_agrees() -> Non
     ids=str,
 )
 def test_scipy_has_the_factors_of_the_equations(monkeypatch: pytest.MonkeyPatch, name: str, friction: object) -> None:
-    for function in ("slope", "slopes", "exact_acceleration"):  # not compiled
+    for function in ("state_derivative", "state_derivatives", "exact_acceleration"):  # not compiled
         monkeypatch.setattr(outside, function, getattr(outside, function).py_func)
     bodies = [{"mass": 1.0}, *({"mass": 0.5, "period": [0.6, 0.5], "damping": ratio} for ratio in (0.3, 0.1))]
     values = {"duration": 0.8, "bodies": bodies} | ({"isolator.friction": friction} if friction else {})
@@ -145,7 +145,7 @@ def test_the_command_measures_nothing_twice(tmp_path, monkeypatch):
     path, gaps = f"{__name__}:_known", (1e-3, 1e-2)
     question = TradeoffQuestion("exact", "known", (path, {"gap": 0.0, "tolerance": 1e-9}), 5, 3, 100.0)
     known = [Setting("exact", "one", "gap", "", gap, False, False, path, {"gap": gap}, 100.0) for gap in gaps]
-    monkeypatch.setattr(analysis, "settings", lambda scene, quick: known)
+    monkeypatch.setattr(analysis, "list_settings", lambda scene, quick: known)
     monkeypatch.setattr(analysis, "questions_of", lambda scene: [question])
     words = ["fig3-I", "--quick", "--jobs", "1", "--out", str(tmp_path / "out")]
     assert command.main(words, ThreadPoolExecutor) == 0
@@ -201,7 +201,7 @@ def test_the_cost_is_of_a_phase_pair_or_of_a_whole_call(monkeypatch: pytest.Monk
         mu = np.ones((len(measurement.phases), len(measurement.scene.bodies)))
         return SettingResult(mu, mu, float(mu.size), np.nan)
 
-    monkeypatch.setattr(growth, "measure", measured)
+    monkeypatch.setattr(growth, "measure_setting", measured)
     few = [replace(QUANTITIES[0], values=(2, 4, 8)), replace(QUANTITIES[2], values=(4, 16))]
     monkeypatch.setattr(growth, "QUANTITIES", few)
     *bodies, pairs = collected(Growth(), Study((SCENE,), 1, 1e-3))
@@ -214,7 +214,7 @@ def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path)
     workers = series_with_slope("workers", "", "exact", (1.0, 2.0), (3.0, float("nan")))
     monkeypatch.setattr(command, "compute_tasks", lambda *rest: None)
     monkeypatch.setattr(Growth, "collect", lambda *rest: [bodies])
-    monkeypatch.setattr(command, "by_workers", lambda *rest: workers)
+    monkeypatch.setattr(command, "measure_by_workers", lambda *rest: workers)
     assert command.main(["fig3-I", "--growth", "--out", str(tmp_path)]) == 0
     found = STORED.load(tmp_path)
     assert found.series == [bodies, workers]
@@ -226,8 +226,8 @@ def test_the_command_writes_and_prints_the_growth(monkeypatch, capsys, tmp_path)
 
 def test_workers_share_the_same_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[object] = []
-    monkeypatch.setattr(growth, "measure", calls.append)
-    monkeypatch.setattr(growth, "cores", lambda: 3)
+    monkeypatch.setattr(growth, "measure_setting", calls.append)
+    monkeypatch.setattr(growth, "count_cores", lambda: 3)
     series = growth.measure_by_workers(SCENE, ThreadPoolExecutor)
     assert list(series.values) == [1.0, 2.0, 3.0]
     assert len(calls) == 3 * growth.CALLS + 2 * (1 + 2 + 3), "the same work for all, and two calls to warm each up"

@@ -121,7 +121,7 @@ def test_the_predictions_of_the_pendulum_are_counted() -> None:
 
 
 def test_a_run_whose_motion_is_as_close_as_its_quantities_is_not_counted() -> None:
-    words = statements.word_farther_off
+    words = statements.word_motions_farther_off
     assert words(load_record()).endswith("in 5 of 5 predicted runs")
     closer = [
         replace(each, share=0.12) if each.experiment == "frame, 550 g" else each for each in load_record().residuals

@@ -88,7 +88,7 @@ def test_a_key_has_all_that_a_result_depends_on(monkeypatch: pytest.MonkeyPatch)
         assert {_batch_task().key, _task().key}.isdisjoint(keys.values())
     assert describe_provenance()["exudyn module"] == multibody.models.engine.MODULE
     before = fingerprint(model)
-    for name in ("_version", "source_digest"):
+    for name in ("_version_of", "source_digest"):
         with monkeypatch.context() as patch:
             patch.setattr(f"comparison.runner.environment.{name}", lambda package: "changed")
             assert {_batch_task().key, _task().key}.isdisjoint(keys.values()), name

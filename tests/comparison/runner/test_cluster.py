@@ -68,7 +68,7 @@ def test_a_scheduler_that_goes_is_one_line_and_the_run_goes_on(
     command: Callable[..., Run], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with Lost(3) as lost:
-        monkeypatch.setattr("comparison.cli.computing.cluster", lambda address, models: nullcontext(lost))
+        monkeypatch.setattr("comparison.cli.computing.connect_cluster", lambda address, models: nullcontext(lost))
         run = command("fig3-I", "--grid", "4", "--fresh", "--scheduler", "tcp://there:1")
         assert (run.code, run.report.exists()) == (4, False)
         kept = len(list(run.report.with_name("report.tiles").glob("*/*.batch")))

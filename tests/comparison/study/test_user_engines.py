@@ -504,7 +504,7 @@ def test_the_curve_of_a_user_engine_runs_over_its_tolerance() -> None:
 
 
 def test_the_trade_has_the_curve_of_a_user_engine(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(analysis, "settings", lambda scene, quick: [])
+    monkeypatch.setattr(analysis, "list_settings", lambda scene, quick: [])
     monkeypatch.setattr(analysis, "questions_of", lambda scene: [one for one in QUESTIONS if one.key == "regularised"])
     models = supplied("as_reference", "good"), supplied("raises", "bad")
     scene = SCENE.with_values({"duration": 1.0})

@@ -62,7 +62,9 @@ def test_mirrored_phases_are_pi_away_from_computed_ones(name: str) -> None:
     studies = [Study((load_scene(name),), grid, 1e-3) for grid in (12, 34, 48, 50)]
     for study, model in [(each, model) for each in studies for model in each.hierarchy]:
         scene, grid = study.scenes[0], study.grid
-        apart = np.subtract(np.divmod(study.places(model), grid), np.divmod(study.sources(scene, model), grid))
+        apart = np.subtract(
+            np.divmod(study.places(model), grid), np.divmod(study.symmetric_sources(scene, model), grid)
+        )
         assert (2 * apart % grid == 0).all(), model.key
 
 
