@@ -43,7 +43,7 @@ COMMANDS = {  # those that belong to no feature
 }
 
 
-def list_commands() -> dict[str, Command]:
+def commands() -> dict[str, Command]:
     """Return all commands by name: those of no feature, then each `command.py` in the folder of a feature."""
     found = dict(COMMANDS)
     for file in sorted(PACKAGE.glob("*/*/command.py"), key=lambda file: file.parent.name):
@@ -124,7 +124,7 @@ def _refuse_threads() -> None:
 def main() -> NoReturn:
     """Run the console script: its first word is the command, the others are for the command."""
     name = sys.argv[1] if len(sys.argv) > 1 else "help"
-    known = list_commands()
+    known = commands()
     if name in ("-h", "--help", "help"):
         print(f"usage: {SCRIPT} COMMAND [options]; {SCRIPT} COMMAND --help lists the options; {SCRIPT} --version\n")
         print("\n".join(f"  {name:12s} {command.purpose}" for name, command in known.items()))

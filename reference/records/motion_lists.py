@@ -82,7 +82,7 @@ def read_motion_list(folder: Path) -> MotionList | None:
     if "name" not in heads or "x" not in heads or not set(heads) <= {*COLUMNS, MAGNITUDE, ""}:
         rule = f"must have the columns {', '.join(COLUMNS)}, and may have {MAGNITUDE}"
         raise RecordError(f"{FILE}: line 1: {brief(lines[0])}: {rule}")
-    motions = [_parse_motion(number, dict(zip(heads, row)), folder) for number, row in enumerate(rows[1:], 2)]
+    motions = [_motion(number, dict(zip(heads, row)), folder) for number, row in enumerate(rows[1:], 2)]
     if not motions:
         raise RecordError(f"{FILE}: no motions: must have a line for each")
     names = [motion.name for motion in motions]
@@ -92,7 +92,7 @@ def read_motion_list(folder: Path) -> MotionList | None:
     return MotionList(tuple(motions), listed=True)
 
 
-def _parse_motion(number: int, row: Mapping[str, str], folder: Path) -> Motion:
+def _motion(number: int, row: Mapping[str, str], folder: Path) -> Motion:
     """One line of the file. Raises RecordError."""
     files = {axis: folder / row[axis] for axis in AXES if row.get(axis)}
     if not row.get("name") or not files:
@@ -100,12 +100,12 @@ def _parse_motion(number: int, row: Mapping[str, str], folder: Path) -> Motion:
     for file in files.values():
         if not file.is_file():
             raise RecordError(f"{FILE}: line {number}: {brief(file.name)}: no such file in the folder")
-    factor = _parse_number(number, row, "factor", MAX_FACTOR) or 1.0
-    magnitude = _parse_number(number, row, MAGNITUDE, MAX_MAGNITUDE)
+    factor = _number(number, row, "factor", MAX_FACTOR) or 1.0
+    magnitude = _number(number, row, MAGNITUDE, MAX_MAGNITUDE)
     return Motion(row["name"], {"": files["x"]} if list(files) == ["x"] else files, factor, magnitude)
 
 
-def _parse_number(number: int, row: Mapping[str, str], name: str, most: float) -> float | None:
+def _number(number: int, row: Mapping[str, str], name: str, most: float) -> float | None:
     """A number of a line, None where it has none. Raises RecordError."""
     text = (row.get(name) or "").replace(",", ".")
     if not text:

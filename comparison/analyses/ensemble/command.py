@@ -37,7 +37,7 @@ from comparison.analyses.ensemble.limits import (
     word_check,
     word_checks,
 )
-from comparison.analyses.ensemble.members import SCALE, Member, group_by, members_of, refuse_unfit_scenes, with_suite
+from comparison.analyses.ensemble.members import SCALE, Member, group_by, members_of, refuse_unfit, with_suite
 from comparison.analyses.ensemble.page import page_of
 from comparison.analyses.ensemble.result import STORED, EnsembleResult, Target
 from comparison.analyses.ensemble.table import table_text
@@ -97,7 +97,7 @@ def main(argv: Sequence[str], executor: Pool = process_pool) -> int:
     elif options.periods is not None:
         raise SceneError("command line", "--periods", " ".join(options.periods), "needs --target")
     if options.model is not None and asked != 0:
-        refuse_unfit_scenes(members, ENGINES[options.model])
+        refuse_unfit(members, ENGINES[options.model])
     check = demand_check(options, members)
     out = resolve_destination(options.out)
     refuse_other_page(out, COMMAND)

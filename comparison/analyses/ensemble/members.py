@@ -58,19 +58,19 @@ def members_of(families: Sequence[Family]) -> tuple[Member, ...]:
             if not isinstance(scene.excitation, Record):
                 rule = "an ensemble needs recorded motions: give --suite, or a record in the scene"
                 raise SceneError(family.name, "excitation", scene.name, rule)
-            values = ", ".join(_word_key_that_runs(family, key, n) for key in inner)
+            values = ", ".join(_entry(family, key, n) for key in inner)
             motion = ", ".join(family.labels[key][n] for key in outer) or scene.excitation.files
             structure = f"{family.name}[{values}]" if values else family.name
             members.append(Member(structure, motion, float(scene.excitation.scale or 1.0), scene))
     return tuple(members)
 
 
-def _word_key_that_runs(family: Family, key: str, n: int) -> str:
+def _entry(family: Family, key: str, n: int) -> str:
     """What tells a structure apart by one key that runs."""
     return family.labels[key][n] if key == BOUNDS else f"{key.rpartition('.')[2]}={family.columns[key][n]}"
 
 
-def refuse_unfit_scenes(members: Sequence[Member], model: Model) -> None:
+def refuse_unfit(members: Sequence[Member], model: Model) -> None:
     """Raise SceneError if a scene does not state what the engine's model needs."""
     for scene in (member.scene for member in members):
         if model.is_spatial and not has_spatial_data(scene):

@@ -143,9 +143,9 @@ def support_extremes(points: Points) -> Iterator[result.SupportExtremes]:
             for number in range(len(places)):
                 names = "support_min", "support_max", "uplift"
                 small, large, gaps = ([_of_support(each, key, number) for each in known] for key in names)
-                smallest, low = _extreme_statistic(small, known, -1.0)
-                largest, high = _extreme_statistic(large, known, 1.0)
-                gap, _ = _extreme_statistic(gaps, known, 1.0)
+                smallest, low = _extreme(small, known, -1.0)
+                largest, high = _extreme(large, known, 1.0)
+                gap, _ = _extreme(gaps, known, 1.0)
                 x, y = map(float, places[number])
                 count = sum(math.isfinite(each.value) for each in large)
                 about = name, number + 1, x, y, known[0].model, count
@@ -157,9 +157,7 @@ def _of_support(point: Point, name: str, number: int) -> Estimate:
     return values[number] if values else Estimate(math.nan, math.nan)
 
 
-def _extreme_statistic(
-    numbers: Sequence[Estimate], points: Sequence[Point], sign: float
-) -> tuple[result.Statistic, str]:
+def _extreme(numbers: Sequence[Estimate], points: Sequence[Point], sign: float) -> tuple[result.Statistic, str]:
     """The largest of the known numbers, or the smallest by a negative sign, and its motion."""
     known = [pair for pair in zip(numbers, points) if math.isfinite(pair[0].value)]
     if not known:

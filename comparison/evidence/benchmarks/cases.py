@@ -239,7 +239,7 @@ FRICTION = {
 }
 
 
-def read_mastodon_case(path: Path) -> Case:
+def mastodon(path: Path) -> Case:
     """The benchmark with the input motion of a CSV file: time, s, ax, ay and the vertical az. Raises SceneError."""
     try:
         samples = read_csv_samples(read_file(path, LARGEST).decode("utf-8-sig"))

@@ -29,7 +29,7 @@ WINDOW, FEWEST = 0.1, 4  # rad, of amplitudes about each of them; half swings in
 def compare_decay(swing: Swing) -> Found:
     """Turning points and half periods of the swing to rest."""
     step = float(np.min(np.diff(np.unique(swing.angle))))
-    instants, turns = _turning_points(swing, STEPS * step)
+    instants, turns = _turns(swing, STEPS * step)
     numbers = np.arange(SHOWN[-1] + 1)
     if len(turns) < len(numbers):
         raise wrong_file(DECAY, f"Theta1 must have {len(numbers)} turning points, not {len(turns)}")
@@ -96,10 +96,7 @@ def compare_large(swing: Swing) -> Found:
 
     def compute(side: str, half: float, equations: str = "exact") -> ComputedValues:
         motions = [_move_half_swings(side, half, 0.0, angle, 3.2, equations) for angle in ANGLES]
-        parts = [
-            table.values_of_motion(each, lambda motion: 1e3 * np.diff(_zero_crossings(motion))[:1], 1)
-            for each in motions
-        ]
+        parts = [table.values_of_motion(each, lambda motion: 1e3 * np.diff(_zeros(motion))[:1], 1) for each in motions]
         return ComputedValues(*(np.concatenate(each) for each in zip(*parts)))
 
     answers = {side: compute(side, half) for side in SIDES}
@@ -140,7 +137,7 @@ def _move_half_swings(
     return table.motion_of(side, made, (0.0, 0.0), place, REGULARIZATION, TOLERANCE, equations)
 
 
-def _turning_points(swing: Swing, back: float) -> tuple[Array, Array]:
+def _turns(swing: Swing, back: float) -> tuple[Array, Array]:
     """Instants, in the middle of the encoder's step, and angles of turns by more than `back`; at last the rest."""
     turns: list[tuple[float, float]] = []
     best, way, first, last = swing.angle[0], 0.0, swing.time[0], swing.time[0]
@@ -179,16 +176,16 @@ def _half_period_near(sizes: Array, periods: Array, angle: float) -> tuple[float
     return float(line[1]), _of_mean(periods[near] - np.polyval(line, sizes[near] ** 2 - angle**2))
 
 
-def _zero_crossings(motion: Trajectory) -> Array:
-    zeros: Array = table.position_spline(motion).roots(extrapolate=False)
+def _zeros(motion: Trajectory) -> Array:
+    zeros: Array = table.spline(motion).roots(extrapolate=False)
     return zeros
 
 
 def _compute_turns(motion: Trajectory) -> tuple[Array, Array]:
     """Instants and angles, towards the side of each turn, of the turning points from the first on; at last the rest."""
-    place, end = table.position_spline(motion), float(motion.time[-1])
+    place, end = table.spline(motion), float(motion.time[-1])
     found: list[tuple[float, float]] = []
-    for begin, stop in pairwise([0.0, *_zero_crossings(motion), end]):
+    for begin, stop in pairwise([0.0, *_zeros(motion), end]):
         dense = np.linspace(begin, stop, PARTS)
         along = place(dense) * (-1.0) ** len(found)
         found.append((dense[np.argmax(along)], along.max()))

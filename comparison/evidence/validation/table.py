@@ -196,7 +196,7 @@ def values_of_motion(motion: Trajectory, read: Callable[[Trajectory], Array], co
     return ComputedValues(values, np.array(errors))
 
 
-def position_spline(motion: Trajectory) -> CubicHermiteSpline:
+def spline(motion: Trajectory) -> CubicHermiteSpline:
     """Position of the platform along x, m."""
     return CubicHermiteSpline(motion.time, motion.position[:, 0, 0], motion.velocity[:, 0, 0])
 
