@@ -167,7 +167,7 @@ def _values_at_top(
 
 def compare_with_stored(ensemble: EnsembleResult, stored: EnsembleResult, within: float) -> list[DemandCheck]:
     """Return the verdict on mean and largest value of every demand by the equations against a stored ensemble."""
-    new, old = _stripes_by_place(ensemble), _stripes_by_place(stored)
+    new, old = _stripes(ensemble), _stripes(stored)
     named = {each.name: each.name for each in (*stored.structures, *ensemble.structures)} | labels(ensemble)
     return [
         check
@@ -179,7 +179,7 @@ def compare_with_stored(ensemble: EnsembleResult, stored: EnsembleResult, within
 Place = tuple[str, str, int | None, float]
 
 
-def _stripes_by_place(ensemble: EnsembleResult) -> dict[Place, Stripe]:
+def _stripes(ensemble: EnsembleResult) -> dict[Place, Stripe]:
     """Return the stripes of the equations by structure, demand, body and scale."""
     return {
         (each.structure, each.quantity, each.body, each.scale): each
