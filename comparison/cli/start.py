@@ -100,7 +100,7 @@ def run_command(module: str) -> NoReturn:
     if not sys.warnoptions:  # warnings of libraries: a sentence says what a user must know
         warnings.simplefilter("ignore")
         os.environ.setdefault("PYTHONWARNINGS", "ignore")  # in worker processes
-    sys.modules["__main__"].__spec__ = __spec__  # what worker processes load again: not the whole command
+    sys.modules["__main__"].__spec__ = __spec__  # worker processes import this module again, not the command
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:

@@ -240,7 +240,7 @@ def _install_report(new: Path, place: Path) -> Path:
             (there / name).unlink()
         with suppress(OSError):
             (there / name).parent.rmdir()
-    # before the files: whatever ends the moving, all of them are the study's own
+    # The manifest moves first: if the moving is interrupted, every file is known as the study's own
     replaced = {name: _old_or_new(old.get(name), own) for name, own in mine.items()}
     (new / MANIFEST).write_bytes(manifest_json(kept | replaced))
     for name in (MANIFEST, *mine):

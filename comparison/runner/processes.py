@@ -38,10 +38,12 @@ except ImportError:  # Windows limits no process: the wall time has to do
 
 CONTEXT = multiprocessing.get_context("spawn")
 STALLED = 20.0  # times the limit: wall time after which a silent process waits for something that never comes
-SLOWEST, SPARE = 5.0, 60.0  # times a limit of more than a few seconds, and s: the same, on a processor that is shared
-LONGEST_WAIT = 1e6  # s: the system takes no longer one
+# A limit of more than a few seconds leaves less wall time: SLOWEST times the limit, for a shared processor, and SPARE s
+SLOWEST, SPARE = 5.0, 60.0
+LONGEST_WAIT = 1e6  # s, the longest timeout that the system takes
 EXIT = 5.0  # s from the end of a pipe to the end of its process
-SAFE_PATH = "PYTHONSAFEPATH"  # set: Python does not put the working directory in front of what it searches
+# Variable of the environment: where it is set, Python does not search the working directory first
+SAFE_PATH = "PYTHONSAFEPATH"
 
 Call = Callable[[], Any]
 Pool = Executor | Callable[[int], Executor]  # an executor that somebody else ends, or what makes one for N jobs

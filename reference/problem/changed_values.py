@@ -100,7 +100,7 @@ def put_value(scene: str, data: dict[str, Any], key: str, value: Any, keys: Mapp
     index = _index_of(scene, place, parts, len(parts) - 1, value, keys)
     if key == "excitation.record":
         place["record"] = value
-        for name in SET_BY_THE_READER:  # those of the record before
+        for name in SET_BY_THE_READER:  # what was read from the record before the change
             place.pop(name, None)
     elif value is not None:
         place[index] = value

@@ -231,7 +231,7 @@ PEAKS = (8.950749, 6.770387, 1.692597)  # m/s^2, of their input along x, y and z
 ROUNDED = 1e-3  # relative deviation that a copy of the MASTODON input in other units or digits may have
 LIMITS = (-432.0, 330.0, -197.0, 152.0)  # mm: smallest and largest along x, then along y
 FRICTION = {
-    "slow": 0.03 * 0.789 / 0.79,  # theirs has k_T = 0.789 (0.7^(0.02 T) + 0.4)
+    "slow": 0.03 * 0.789 / 0.79,  # MASTODON has k_T = 0.789 (0.7^(0.02 T) + 0.4)
     "fast": 0.06 * 0.789 / 0.79,
     "rate": 100.0,
     "load_exponent": -0.357,  # slope of 0.7^(0.02 (p - 50)) at p = 50 MPa, that of the weight

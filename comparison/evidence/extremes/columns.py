@@ -37,7 +37,8 @@ _REGULARIZED = {"equations": "exact", "regularization": DEFAULT_V_REG}
 _TRANSLATIONAL = {"model": "translational", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
 _SPATIAL = {"model": "spatial", "regularization": DEFAULT_V_REG, "max_work": MAX_WORK}
 STATED = "comparison.evidence.extremes.engine:amplification"  # the engine at a step or a contact stiffness of the row
-# the same law and geometry by other means and far closer; the engine itself where that has no answer
+# Calls that check a value, the first with an answer: the equations of the same law and geometry, then the engine at a
+# far closer tolerance
 _FINER = (EQUATIONS, _REGULARIZED, 1e-6), (ENGINE, _TRANSLATIONAL, 3e-5), (ENGINE, _TRANSLATIONAL, 1e-4)
 _FINER_SPATIAL = (ENGINE, _SPATIAL, 3e-4), (ENGINE, _SPATIAL, 1e-3)
 COLUMNS = (

@@ -25,7 +25,7 @@ from comparison.runner.processes import Pool, process_pool
 from comparison.runner.progress import wide_console
 from reference.problem import SceneError
 
-MODELS = {EQUATIONS, ENGINE, STATED}  # what the workers ask
+MODELS = {EQUATIONS, ENGINE, STATED}  # functions that the workers call
 
 
 @command
